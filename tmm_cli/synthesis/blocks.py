@@ -1,6 +1,4 @@
-"""The block `synthesis:` of a problem file: what the blocks of all tasks share. Each task has its own in its room (see
-tmm_cli.synthesis.tasks).
-"""
+"""The block `synthesis:` of a problem file: keys and value limits that all tasks share (register: tasks.py)."""
 
 from __future__ import annotations
 
@@ -43,7 +41,7 @@ Range = Annotated[
 
 
 class TaskBlock(Strict):
-    """What all tasks have. names: other names of the parameters that are found."""
+    """Keys that every task has. names: other names for the parameters that the task finds."""
 
     task: str = Field(description="one of: " + ", ".join(TASKS))
     names: dict[Name, Name] = Field(
@@ -57,9 +55,10 @@ UNDETERMINED: Final = N_("these keys do not determine a mechanism")
 def choose_key_set(
     shape: TaskBlock, sets: Sequence[tuple[str, ...]], others: Sequence[str] = (), refusal: str = UNDETERMINED
 ) -> tuple[str, ...]:
-    """Return the set of keys that the block has, with no other of them and none of `others`.
+    """Return the set of keys that the block gives, without any other key of `sets` or `others`.
 
-    Raises ProblemError: the refusal, with the keys that are missing or too many.
+    Raises:
+        ProblemError: no set fits; `refusal`, with the missing or surplus keys.
     """
     keys = dict.fromkeys([*(key for one in sets for key in one), *others])
     here = tuple(key for key in keys if getattr(shape, key) is not None)
@@ -86,13 +85,13 @@ def _alternatives(sets: Sequence[tuple[str, ...]]) -> str:
 
 
 def read_numbers(shape: TaskBlock, values: ValueReader, quantities: Mapping[str, tuple[Kind, str]]) -> dict[str, Any]:
-    """The values in SI of those of these quantities, by their keys, that are given. Raises ProblemError."""
+    """Read the given quantities of a block into SI, by key. Raises ProblemError."""
     given = {key: value for key in quantities if (value := getattr(shape, key)) is not None}
     return {key: values.number(value, DIMENSIONS[quantities[key][0]].dimension, (key,)) for key, value in given.items()}
 
 
 class TriedFileError(Exception):
-    """What the file around the block is refused for, with numbers that the synthesis tries."""
+    """The file around the block is invalid with numbers that the synthesis tries."""
 
     def __init__(self, error: ProblemError) -> None:
         super().__init__(str(error))
@@ -108,13 +107,13 @@ class SynthesisFile(FileHead):
 
 
 class TaskName(BaseModel):
-    """The key that says whose block it is."""
+    """The key that names the task of a block."""
 
     task: Literal[tuple(TASKS)]  # type: ignore[valid-type]
 
 
 def check_block(tree: Tree) -> TaskBlock:
-    """The block of a file in the shape of its task, of which only the file's own is imported. Raises ProblemError."""
+    """Validate the block of a file against the keys of its task; only that task is imported. Raises ProblemError."""
     given, shape = tree.data["synthesis"], TaskBlock
     try:
         if not isinstance(given, dict) or not isinstance(given.get("task"), str) or given["task"] not in TASKS:
@@ -139,9 +138,9 @@ FUNCTION_KEYS: Final = ("table", "x")  # of a function: they are no measures of 
 
 
 class BoundedReader(ValueReader):
-    """The sense of a file's values, for a task that computes a mechanism.
+    """Reader of values that refuses sizes no mechanism has.
 
-    others: values (SI) in the place of the file's own; given: what was read, with its dimension. Both by their paths.
+    others: values (SI) that replace those of the file, by path; given: values read (SI) and their dimensions, by path.
     """
 
     def __init__(
@@ -159,7 +158,7 @@ class BoundedReader(ValueReader):
         return limit if _exempt(path) else LARGEST_VALUES.get(want, limit)
 
     def number(self, value: Any, want: Dimension, path: Path) -> float:
-        """A value in SI. Raises ProblemError where no mechanism has it."""
+        """Return a value in SI. Raises ProblemError if no mechanism can have it."""
         found = super().number(value, want, path)
         self.given[path] = found, want
         key = path[-1] if path else ""

@@ -1,6 +1,6 @@
-"""Drawings of a synthesis as records, to be drawn elsewhere: constructions with compasses and ruler, curves.
+"""Drawings of a synthesis as records, drawn elsewhere: ruler-and-compass constructions and diagrams.
 
-Places in metres, angles in radians.
+Points are complex numbers in metres; angles are in radians.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ CHAIN_LETTERS: Final[
 
 @dataclass(frozen=True)
 class Segment:
-    """A straight line; name: written beside it."""
+    """A straight line; name: the text beside it."""
 
     start: complex
     end: complex
@@ -36,7 +36,7 @@ class Segment:
 
 @dataclass(frozen=True)
 class Arc:
-    """An arc of a circle, counterclockwise from one angle to another."""
+    """An arc of a circle, counterclockwise from `start` to `end` (rad)."""
 
     centre: complex
     radius: float
@@ -46,21 +46,21 @@ class Arc:
 
 
 def full_circle(centre: complex, radius: float) -> Arc:
-    """A whole circle of construction."""
+    """Return a whole circle as a construction line."""
     return Arc(centre, radius, 0.0, 2 * np.pi, "dashed")
 
 
 def swept_arc(centre: complex, places: Any, style: Style = "thin", beyond: float = 0.0) -> Arc:
-    """The arc about a centre on which places (an array) follow one another, and so far (rad) beyond both ends."""
+    """Return the arc about a centre through successive points (an array), extended by `beyond` (rad) at both ends."""
     turns = np.unwrap(np.angle(places - centre))
     return Arc(centre, float(abs(places[0] - centre)), float(turns.min()) - beyond, float(turns.max()) + beyond, style)
 
 
 @dataclass(frozen=True)
 class ConstructionCurve:
-    """A curve through places that lie close together (locus of pivots, coupler curve); name: written beside it.
+    """A curve through closely spaced points (locus of pivots, coupler curve), cut at the edge of the sheet.
 
-    It is cut at the edge of the sheet. Pieces of one curve have one name, which is written once.
+    name: the text beside it; pieces of one curve share a name, which is written once.
     """
 
     places: tuple[complex, ...]
@@ -70,7 +70,7 @@ class ConstructionCurve:
 
 @dataclass(frozen=True)
 class LetteredPoint:
-    """A lettered point; along: direction of a slider's guide, or of the link that a stone is on."""
+    """A point with a letter. along: direction of a slider's guide, or of the link that carries a sliding block."""
 
     name: str
     at: complex
@@ -80,7 +80,7 @@ class LetteredPoint:
 
 @dataclass(frozen=True)
 class Angle:
-    """The angle at a vertex between the ways to two places; right: drawn as a right angle is."""
+    """The angle at a vertex between the directions to two points. right: drawn with a right-angle mark."""
 
     vertex: complex
     first: complex
@@ -91,7 +91,7 @@ class Angle:
 
 @dataclass(frozen=True)
 class DimensionLine:
-    """A dimension line: the distance of two places along a direction (of the line between them if it is 0)."""
+    """A dimension: the distance of two points along a direction; along = 0: along the line between them."""
 
     start: complex
     end: complex
@@ -101,7 +101,7 @@ class DimensionLine:
 
 @dataclass(frozen=True)
 class CircleCentre:
-    """Centre of a circle of construction, with lines to it from places on the circle; it may be far off the sheet."""
+    """Centre of a construction circle, with lines to it from points on the circle; it may lie far off the sheet."""
 
     at: complex
     radius: float
@@ -111,10 +111,16 @@ class CircleCentre:
 
 @dataclass(frozen=True)
 class GeometricConstruction:
-    """A sheet to scale. title, and notes for the corner: texts with letters in {}; name: of its file.
+    """A construction drawn to scale on a sheet of its own.
 
-    wishes: what else is on the sheet if the mechanism stays large enough on it, first wish first. Places that are not
-    in `places` or granted are cut at the edge. chain: which mechanism it is, so that joints can be called as in a file.
+    Attributes:
+        title, notes: texts with letters in {}; the notes stand in a corner.
+        name: name of its file.
+        wishes: sets of points to show too, in order of priority, if the mechanism stays large enough. Other points that
+            are not in `places` are cut at the edge of the sheet.
+        chain: the mechanism it shows; gives the letters of the joints (CHAIN_LETTERS).
+        values: name, value (SI) and kind of the quantities listed in the corner.
+        around: further points that the sheet must hold.
     """
 
     title: str
@@ -133,23 +139,20 @@ class GeometricConstruction:
     around: tuple[complex, ...] = ()  # what the sheet must hold besides
 
     def places(self) -> list[complex]:
-        """What must be on the sheet."""
+        """Return the points that the sheet must hold."""
         ends = [place for s in self.segments for place in (s.start, s.end)]
         sizes = [place for s in self.sizes for place in (s.start, s.end)]
         return [*ends, *(s.at for s in self.spots), *sizes, *self.around]
 
 
 def circle_extent(centre: complex, radius: float) -> tuple[complex, ...]:
-    """Places that hold a whole circle."""
+    """Return four points whose bounding box contains the circle."""
     return tuple(centre + radius * way for way in (1, 1j, -1, -1j))
 
 
 @dataclass(frozen=True)
 class DiagramLine:
-    """A curve of a diagram: values over its x (SI, rad); text: what it is called; dots: drawn as single points.
-
-    faint: behind the others.
-    """
+    """A curve of a diagram. text: legend; x, y: values (SI, rad); dots: drawn as points; faint: behind the others."""
 
     text: str
     x: Any
@@ -160,10 +163,10 @@ class DiagramLine:
 
 @dataclass(frozen=True)
 class Diagram:
-    """A diagram (largest pressure angle along an arc, structural error). x, y: text and kind of the axes.
+    """A diagram, for example of the structural error or of the largest pressure angle along an arc.
 
-    equal: both to one scale, as a path has to be.
-    lower: curves of a panel below it over the same x, with an axis (text, kind) that is logarithmic.
+    x, y: title and kind of the axes; equal: both axes to one scale, as for a path. lower: curves of a second panel
+    below, over the same x, with a logarithmic axis `lower_y`.
     """
 
     name: str

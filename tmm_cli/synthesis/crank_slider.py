@@ -1,4 +1,4 @@
-"""Crank-slider from its stroke, or its mean speed, and two more."""
+"""Crank-slider from its stroke, or its mean speed, and two more quantities."""
 
 from __future__ import annotations
 
@@ -38,10 +38,11 @@ SMALLEST_DRAWN_THETA: Final = 0.01  # rad: the least theta that shows on a drawi
 
 
 def draw_construction(found: CrankSliderSolution) -> GeometricConstruction:
-    """The extreme positions, and the circle on which B1B2 is seen under theta, with O on it at the distance e.
+    """Draw the extreme positions, and the circle from which B1B2 is seen at the angle theta, with O on it at the offset
+    e.
 
-    B1 is the far extreme position (the rod in line with the crank), B2 the near one; the crank's pivot O is the origin.
-    It may be on the circle from B2 to the place over B2, where e = H cot(theta).
+    B1 is the far extreme position (rod in line with the crank), B2 the near one; the crank pivot O is the origin. O may
+    lie on the circle between B2 and the point above B2, where e = H cot(theta).
     """
     r, l, e, height, theta = (float(getattr(found, n)) for n in ("r", "l", "e", "stroke", "theta"))  # noqa: E741
     near, far = (float(np.sqrt((x - e) * (x + e))) for x in (l - r, l + r))
@@ -126,8 +127,10 @@ FOUND_QUANTITIES: Final = {
 
 @dataclass(frozen=True)
 class CrankSliderTask:
-    """Stroke (m), or mean speed of the slider (m/s) with that of the crank (rad/s); and two more: ratio L and nu, L and
-    e (m), L and k, pressure (largest angle, rad) and nu, pressure and k, e and k. Floats or arrays; None: not given.
+    """Given quantities of a crank-slider; floats or arrays, None: not given.
+
+    The stroke (m), or the mean speed of the slider (m/s) with that of the crank (rad/s); and two more: ratio L and nu,
+    L and e (m), L and k, largest pressure angle (rad) and nu, pressure angle and k, e and k.
     """
 
     stroke: Any = None
@@ -142,9 +145,9 @@ class CrankSliderTask:
 
 @dataclass(frozen=True)
 class CrankSliderSolution:
-    """Lengths r, l, e and the stroke (m), theta and the largest pressure angle (rad), L, nu, h, k.
+    """Lengths r, l, e and stroke (m), theta and largest pressure angle (rad), ratios L, nu, h, k.
 
-    printed: nu by the approximation sqrt((h - 2)(L^2 - 1)) for small theta; error: of that, relative.
+    printed: nu by the approximation sqrt((h - 2)(L^2 - 1)) for small theta; error: its relative error.
     """
 
     r: Any
@@ -162,33 +165,33 @@ class CrankSliderSolution:
 
 
 def nu_of(length: Any, theta: Any) -> Any:
-    """Offset nu for a ratio L and theta."""
+    """Return the relative offset nu = e/r for a ratio L (`length`) and theta."""
     sine, cosine = np.sin(theta / 2), np.cos(theta / 2)
     more = (length - 1) * (length + 1)
     return more * sine * cosine / np.sqrt(1 + more * sine * sine)
 
 
 def theta_between(length: Any, nu: Any) -> Any:
-    """Theta for a ratio L and an offset nu, from the sides and the height of the triangle."""
+    """Return theta for a ratio L and an offset nu, from the sides and the height of the triangle."""
     near, far = np.sqrt((length - 1 - nu) * (length - 1 + nu)), np.sqrt((length + 1 - nu) * (length + 1 + nu))
     return np.arctan2(4 * length * nu / (near + far), near * far + nu * nu)
 
 
 def stroke_ratio(length: Any, nu: Any) -> Any:
-    """h = H/r for a ratio L and an offset nu."""
+    """Return h = H/r for a ratio L and an offset nu."""
     near, far = (length - 1 - nu) * (length - 1 + nu), (length + 1 - nu) * (length + 1 + nu)
     return 4 * length / (np.sqrt(near) + np.sqrt(far))
 
 
 def largest_theta(length: Any) -> Any:
-    """The bound of theta for a ratio L: beyond it the crank does not turn fully; tan(theta/2) = 1/sqrt(L)."""
+    """Return the limit of theta for a ratio L, tan(theta/2) = 1/sqrt(L); beyond it the crank does not rotate fully."""
     return 2 * np.arctan(1 / np.sqrt(length))
 
 
 def smallest_pressure(theta: Any) -> Any:
-    """The least possible largest pressure angle for theta, over all L; see `shortest`.
+    """Return the smallest possible value of the largest pressure angle (rad) for theta, over all L; see `shortest_rod`.
 
-    The derivative of sin(lambda) over sigma vanishes where sin(sigma)^2 = s cos(sigma).
+    The derivative of sin(lambda) with respect to sigma vanishes where sin(sigma)^2 = s cos(sigma).
     """
     s = np.sin(theta / 2)
     cosine = 2 / (s + np.sqrt(s * s + 4))
@@ -196,12 +199,12 @@ def smallest_pressure(theta: Any) -> Any:
 
 
 def shortest_rod(theta: Any, pressure: Any) -> Any:
-    """The least ratio L for theta at which the largest pressure angle is the given one; nan where there is none.
+    """Return the smallest ratio L with this theta and this largest pressure angle (rad); nan if there is none.
 
-    With sigma half the sum of the angles of both extreme rods with the guide, s = sin(theta/2), c = cos(theta/2):
-    L = tan(sigma) c/s, nu = (sin(sigma)^2 - s^2)/(s cos(sigma)); so 1 + nu = L sin(lambda) becomes, with w =
-    sin(sigma)/s, an equation that theta = 0 does not spoil: s (w^2 - 1) + sqrt(1 - s^2 w^2) = w c sin(lambda). It falls
-    from w = 1 to the least of lambda.
+    With sigma half the sum of the angles between the guide and the rod in both extreme positions, s = sin(theta/2) and
+    c = cos(theta/2): L = tan(sigma) c/s, nu = (sin(sigma)^2 - s^2)/(s cos(sigma)). With w = sin(sigma)/s the condition
+    1 + nu = L sin(lambda) becomes s (w^2 - 1) + sqrt(1 - s^2 w^2) = w c sin(lambda), which stays regular at theta = 0.
+    The difference of its sides falls from w = 1 to the w of the smallest lambda.
     """
     theta, pressure = np.broadcast_arrays(theta, pressure)
     s, c, sine = np.sin(theta / 2), np.cos(theta / 2), np.sin(pressure)
@@ -217,20 +220,20 @@ def shortest_rod(theta: Any, pressure: Any) -> Any:
 
 
 def ratio_of_offset(height: Any, e: Any, theta: Any) -> Any:
-    """L for a stroke H and an offset e: (2 r)^2 = H (H - 2 e tan(theta/2)), (2 l)^2 = H (H + 2 e cot(theta/2)).
+    """Return L for a stroke H and an offset e: (2 r)^2 = H (H - 2 e tan(theta/2)), (2 l)^2 = H (H + 2 e cot(theta/2)).
 
-    (l + r)(l - r) sin(theta) = H e is twice the triangle's area; the law of cosines gives the sums of the squares.
+    (l + r)(l - r) sin(theta) = H e is twice the area of the triangle; the law of cosines gives the sum of the squares.
     """
     tangent = np.tan(theta / 2)
     return np.sqrt((height + 2 * e / tangent) / (height - 2 * e * tangent))
 
 
 def crank_of_offset(height: Any, e: Any, length: Any) -> Any:
-    """The crank r (m) for a stroke H (m), an offset e (m) and a ratio L, or nan where no crank has them.
+    """Return the crank r (m) for a stroke H (m), an offset e (m) and a ratio L; nan if there is none.
 
-    The sums of the squares of the sides r (L + 1), r (L - 1) and of twice the area H e/2 of the triangle of the
-    extreme positions give r^2 = ((L^2 + 1) H^2 + sqrt((L^2 + 1)^2 H^4 - 4 L^2 H^2 (H^2 + 4 e^2)))/(8 L^2); under the
-    root is H^2 ((L^2 - 1)^2 H^2 - 16 L^2 e^2). The other sign is a crank that does not turn fully.
+    The sides r (L + 1), r (L - 1) of the triangle of the extreme positions and its doubled area H e give
+    r^2 = ((L^2 + 1) H^2 + sqrt((L^2 + 1)^2 H^4 - 4 L^2 H^2 (H^2 + 4 e^2)))/(8 L^2); the radicand is
+    H^2 ((L^2 - 1)^2 H^2 - 16 L^2 e^2). With the other sign of the root the crank does not rotate fully.
     """
     more = (length - 1) * (length + 1) * height
     under = (more - 4 * length * e) * (more + 4 * length * e)
@@ -239,7 +242,7 @@ def crank_of_offset(height: Any, e: Any, length: Any) -> Any:
 
 
 def find_crank_slider(task: CrankSliderTask) -> CrankSliderSolution:
-    """The lengths. Where there is no such mechanism (`refuse` says why) they mean nothing."""
+    """Solve the task. If no such mechanism exists (`refuse` gives the reason), the values are meaningless."""
     height = _stroke_length(task)
     theta = None if task.k is None else theta_of(task.k)
     if task.ratio is not None:
@@ -282,14 +285,14 @@ def find_crank_slider(task: CrankSliderTask) -> CrankSliderSolution:
 
 
 def _stroke_length(task: CrankSliderTask) -> Any:
-    """H, or from the mean speed of the slider: v = H omega/pi, which is H = 30 v/n."""
+    """Return the stroke H; if the mean speed v is given instead, H = pi v/omega (H = 30 v/n)."""
     if task.stroke is not None:
         return np.asarray(task.stroke)
     return np.pi * task.speed / task.crank_speed
 
 
 def refuse(task: CrankSliderTask) -> None:
-    """Raises Infeasible with the reason."""
+    """Raise Infeasible, with the reason, if no such crank-slider exists."""
     ratio, nu, pressure, e = task.ratio, task.nu, task.pressure, task.e
     if nu is not None and not nu >= 0:
         raise Infeasible("nu", _("the offset is a distance; turn the drawing over for the other side"))
@@ -311,7 +314,7 @@ def refuse(task: CrankSliderTask) -> None:
 
 
 def _refuse_k(task: CrankSliderTask) -> float:
-    """Theta, from 0 up to its bound for what else is given."""
+    """Return theta (rad). Raises Infeasible if it exceeds the limit set by the other quantities."""
     theta, limit = float(theta_of(task.k)), np.pi / 2
     if not task.k >= 1:
         raise Infeasible("k", _("k is the time of the working stroke over that of the idle one, the shorter"))
@@ -331,7 +334,7 @@ def _refuse_k(task: CrankSliderTask) -> float:
 
 
 def solve(task: CrankSliderTask) -> SynthesisOutcome:
-    """The task of one file: what is asked, found, and to be measured. Raises Infeasible."""
+    """Solve the task of one file: given values, solution, values to be measured, drawing. Raises Infeasible."""
     refuse(task)
     found = find_crank_slider(task)
     lengths = tuple(NamedValue(name, getattr(found, name), *FOUND_QUANTITIES[name]) for name in PARAMETERS)
@@ -387,7 +390,7 @@ BLOCK = CrankSliderBlock
 
 
 def read(shape: CrankSliderBlock, values: ValueReader) -> CrankSliderTask:
-    """The task in SI; one of the sets of keys that determine a crank-slider must be given. Raises ProblemError."""
+    """Read the task into SI; its keys must be one of the sets that determine a crank-slider. Raises ProblemError."""
     for sets in (STROKE_KEYS, KEY_PAIRS):
         choose_key_set(shape, sets)
     return CrankSliderTask(**read_numbers(shape, values, QUANTITIES))

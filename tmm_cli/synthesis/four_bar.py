@@ -1,11 +1,11 @@
-"""The four-bar ABCD (A, D on the frame; AB = l1, BC = l2, CD = l3, DA = l4): which links turn fully, transmission, and
-its loop in a linkage.
+"""The four-bar ABCD (A, D on the frame; AB = l1, BC = l2, CD = l3, DA = l4): type, transmission angle, and the four-bar
+loop of a linkage.
 
-A joint of a four-bar between links x and y, with z and w the others, turns fully when the distance that z and w must
-bridge stays within their reach: x + y <= z + w and |x - y| >= |z - w|. The types are those of C. R. Barker, A complete
-classification of planar four-bar linkages, Mechanism and Machine Theory 20 (1985): with the shortest link s and the
-longest l, s + l less than the sum of the others (Grashof, by the shortest link), more (triple rockers, by the
-longest), or the same (change points).
+A joint between adjacent links x and y of a four-bar, z and w being the other two, rotates fully if the distance that z
+and w must span stays within their reach: x + y <= z + w and |x - y| >= |z - w|. The types are those of C. R. Barker, A
+complete classification of planar four-bar linkages, Mechanism and Machine Theory 20 (1985): with the shortest link s
+and the longest link l, s + l is less than the sum of the others (Grashof types, by the shortest link), greater (triple
+rockers, by the longest link) or equal to it (change points).
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ POSITIONS_ONLY: Final = DriverMotion(0.0, 1.0, 0.0, 1)  # only places are asked 
 
 @dataclass(frozen=True)
 class FourBarLinks:
-    """Lengths (m) of links 1 to 4 as they are joined round; frame, driver: numbers (1 to 4) of two adjacent ones."""
+    """Lengths (m) of links 1 to 4 in the order of connection; frame, driver: numbers (1 to 4) of two adjacent links."""
 
     l1: Any
     l2: Any
@@ -55,7 +55,7 @@ class FourBarLinks:
 
     @property
     def ordered(self) -> tuple[Any, Any, Any, Any]:
-        """Frame, input, coupler, output."""
+        """Lengths of frame, input link, coupler and output link."""
         links = (self.l1, self.l2, self.l3, self.l4)
         step = 1 if (self.driver - self.frame) % 4 == 1 else -1
         g, a, b, c = (links[(self.frame - 1 + step * k) % 4] for k in range(4))
@@ -64,11 +64,14 @@ class FourBarLinks:
 
 @dataclass(frozen=True)
 class FourBarType:
-    """kind: number in TYPES, -1 where the links do not close; excess: (p + q) - (s + l), m: positive for Grashof.
+    """Type of four-bars and mobility of their links; arrays, `joints` and `turns` with one more axis at the end.
 
-    joints: whether those of frame-input, input-coupler, coupler-output, output-frame turn fully; turns: whether input,
-    coupler, output turn fully against the frame (at change points: whether they can). Arrays, joints and turns with a
-    last axis more.
+    Attributes:
+        kind: index in FOUR_BAR_TYPES; -1 if the links do not close.
+        excess: (p + q) - (s + l), m: positive for Grashof linkages.
+        joints: True for each of the joints frame-input, input-coupler, coupler-output, output-frame that rotates fully.
+        turns: True for each of input, coupler, output that rotates fully relative to the frame (with change points:
+            that it can do so).
     """
 
     kind: Any
@@ -78,7 +81,7 @@ class FourBarType:
 
 
 def classify_four_bar(links: FourBarLinks) -> FourBarType:
-    """Type and turning links of four-bars."""
+    """Return the type of four-bars and which of their links rotate fully."""
     lengths = np.stack(np.broadcast_arrays(*links.ordered), axis=-1)
     total = lengths.sum(-1)
     same = SAME_RATIO * total
@@ -103,14 +106,14 @@ def classify_four_bar(links: FourBarLinks) -> FourBarType:
 
 
 def cosine_bcd(l2: Any, l3: Any, square: Any) -> Any:
-    """Of the angle BCD, from the square of BD; the transmission angle is BCD, or what it lacks of two right angles."""
+    """Return the cosine of the angle BCD from the square of BD. The transmission angle is BCD or 180° - BCD."""
     return (l2 * l2 + l3 * l3 - square) / (2 * l2 * l3)
 
 
 def extreme_cosine(lengths: tuple[Any, Any, Any, Any], low: Any, high: Any) -> tuple[Any, Any]:
-    """The largest size of the cosine of BCD while AB turns from low to high (rad from AD), and the angle of AB there.
+    """Return the largest |cos BCD| while AB rotates from `low` to `high` (rad from AD), and the angle of AB there.
 
-    lengths: l1 to l4. BD, and with it BCD, is extreme at both ends, and where B lies on AD.
+    lengths: l1 to l4. BD, and with it BCD, is extreme at both ends and where B lies on the line AD.
     """
     l1, l2, l3, l4, low, high = (np.asarray(x)[..., None] for x in (*lengths, low, high))
     on_frame = np.pi * (np.ceil(low / np.pi) + np.arange(2))
@@ -123,7 +126,7 @@ def extreme_cosine(lengths: tuple[Any, Any, Any, Any], low: Any, high: Any) -> t
 
 @dataclass(frozen=True)
 class FourBarPins:
-    """The four-bar in a linkage that the crank AB drives: names of its pins."""
+    """Names of the pins of a four-bar in a linkage whose crank AB is the driver."""
 
     a: str
     b: str
@@ -132,7 +135,7 @@ class FourBarPins:
 
 
 def find_four_bar(linkage: Linkage) -> FourBarPins | None:
-    """The four-bar that the crank drives; None where there is none."""
+    """Find the four-bar that the crank of a linkage drives; None if there is none."""
     crank = linkage.driver.link
     a = linkage.shared(FRAME, crank)
     if a is None or linkage.driver.kind != "turn":
@@ -147,8 +150,9 @@ def find_four_bar(linkage: Linkage) -> FourBarPins | None:
 
 
 def pin_positions(results: Results, phi: Any) -> tuple[Any, Any, Any, Any] | None:
-    """A, B, C, D (m) where AB stands at angles phi (rad) from AD; A, D single, B, C a place for each angle, nan where
-    it cannot be assembled.
+    """Return A, B, C, D (m, complex) for angles phi (rad) of AB from AD; None if the linkage has no four-bar.
+
+    A and D are single points; B and C have one point for each angle, nan if the four-bar cannot be assembled there.
     """
     linkage, loop = results.linkage, find_four_bar(results.linkage)
     if loop is None or not results.kernels:
@@ -160,7 +164,9 @@ def pin_positions(results: Results, phi: Any) -> tuple[Any, Any, Any, Any] | Non
 
 
 def output_angles(results: Results, phi: Any, near: Any) -> Any:
-    """Angles of DC from AD (rad) at those phi of AB, of all whole turns the one nearest to `near`."""
+    """Return the angles of DC from AD (rad) at angles phi of AB, plus the whole turns that bring them nearest to
+    `near`.
+    """
     found = pin_positions(results, phi)
     if found is None:
         return np.full(np.shape(near), np.nan)
@@ -169,7 +175,7 @@ def output_angles(results: Results, phi: Any, near: Any) -> Any:
 
 
 def transmission_angle(phi: float, results: Results) -> float:
-    """The transmission angle (rad, acute) where AB stands at phi from AD."""
+    """Return the transmission angle (rad, acute) at the angle phi of AB from AD."""
     found = pin_positions(results, np.array([phi]))
     if found is None:
         return float("nan")

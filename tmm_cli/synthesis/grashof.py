@@ -1,4 +1,4 @@
-"""Which links of a four-bar, a crank-slider or a slotted lever turn fully."""
+"""Crank condition: which links of a four-bar, a crank-slider or a slotted-lever mechanism rotate fully."""
 
 from __future__ import annotations
 
@@ -78,7 +78,10 @@ class SlottedLever:
 
 @dataclass(frozen=True)
 class CrankCondition:
-    """kind: number in SLIDERS or LEVERS; margin (m): by how much the crank turns fully (negative: does not)."""
+    """Type of a mechanism and its margin.
+
+    kind: index in CRANK_SLIDER_TYPES or SLOTTED_LEVER_TYPES; margin (m): positive if the crank rotates fully.
+    """
 
     kind: Any
     margin: Any
@@ -88,7 +91,10 @@ CrankConditionTask = FourBarLinks | CrankSlider | SlottedLever
 
 
 def classify_crank_slider(task: CrankSlider) -> CrankCondition:
-    """The crank turns fully when l >= r + |e|, with r = l and e = 0 or l = r + |e| a change point."""
+    """Classify a crank-slider: the crank rotates fully if l >= r + |e|, with a change point if l = r + |e|.
+
+    r = l with e = 0 is a change point too.
+    """
     r, rod, e = np.broadcast_arrays(task.r, task.l, np.abs(task.e))
     same = SAME_RATIO * (r + rod + e)
     margin = rod - (r + e)
@@ -99,7 +105,7 @@ def classify_crank_slider(task: CrankSlider) -> CrankCondition:
 
 
 def classify_slotted_lever(task: SlottedLever) -> CrankCondition:
-    """The slotted link swings when OC > OA + |e|, turns when OA > OC + |e|; else the crank does not turn."""
+    """Classify a slotted lever: it swings if OC > OA + |e|, rotates if OA > OC + |e|; else the crank rocks."""
     crank, frame, e = np.broadcast_arrays(task.OA, task.OC, np.abs(task.e))
     same = SAME_RATIO * (crank + frame + e)
     margin = np.abs(frame - crank) - e
@@ -112,7 +118,7 @@ def _without_rounding(margin: Any, same: Any) -> Any:
 
 
 def refuse(task: CrankConditionTask) -> None:
-    """Raises Infeasible for links that do not close."""
+    """Raise Infeasible if the links do not close."""
     if isinstance(task, FourBarLinks) and classify_four_bar(task).kind < 0:
         longest = max(("l1", "l2", "l3", "l4"), key=lambda name: float(getattr(task, name)))
         reason = _("the links do not close: {link} is as long as the others together, or longer")
@@ -120,7 +126,7 @@ def refuse(task: CrankConditionTask) -> None:
 
 
 def solve(task: CrankConditionTask) -> SynthesisOutcome:
-    """The answer for one file. Raises Infeasible for what is no mechanism."""
+    """Solve the task of one file. Raises Infeasible if the links do not form a mechanism."""
     refuse(task)
     if isinstance(task, FourBarLinks):
         return _solve_four_bar(task)
@@ -167,7 +173,7 @@ def _solve_four_bar(task: FourBarLinks) -> SynthesisOutcome:
 
 
 def _rotation_demands(turns: bool, change: bool) -> tuple[Demand, ...]:
-    """Nothing is foretold of a change point."""
+    """Return the predicted rotation of the driver, to be measured; none with change points."""
     words = N_("driver turns fully (1: yes, 0: no)")
     return () if change else (Demand(words, float(turns), "number", driver_completes_range, asked=False),)
 
@@ -206,7 +212,7 @@ BLOCK = GrashofBlock
 
 
 def read(shape: GrashofBlock, values: ValueReader) -> CrankConditionTask:
-    """The lengths in m. Raises ProblemError."""
+    """Read the lengths (m). Raises ProblemError."""
     found = read_numbers(shape, values, LINKS)
     given = {*found, *(key for key in ("frame", "driver") if getattr(shape, key) is not None)}
     fitting = [one for one, needed, more in KEY_SETS if set(needed) <= given <= {*needed, *more}]

@@ -1,8 +1,8 @@
-"""The coefficient k of change of mean speed: from the angle theta between the extreme cranks, and of any curve.
+"""Time ratio k, and the quantities of a synthesis measured on the analysed mechanism.
 
-k of a curve is found closely: strokes end where the slope of the output changes its sign. Dwells, in which the slope is
-exactly zero, belong to no stroke; where the output all but rests rounding gives the slope one sign and the other, and
-the middle of such places is one end. Both as in tmm_cli.mechanics.kinematics.strokes.
+The time ratio of a curve is found accurately: strokes end where the slope of the output changes sign. Dwells, where the
+slope is exactly zero, belong to no stroke; near an instantaneous stop rounding may give the slope either sign, and the
+middle of these positions is one end. Both as in tmm_cli.mechanics.kinematics.strokes.
 """
 
 from __future__ import annotations
@@ -23,20 +23,22 @@ from tmm_cli.synthesis.record import Demand, SynthesisOutcome
 
 
 def theta_of(k: Any) -> Any:
-    """The angle theta between the extreme cranks, from k."""
+    """Return the angle theta = pi (k - 1)/(k + 1) between the crank positions at the ends of the strokes (rad)."""
     k = np.asarray(k)
     return np.pi * (k - 1) / (k + 1)
 
 
 def k_of(theta: Any) -> Any:
-    """The coefficient k from theta."""
+    """Return the time ratio k = (pi + theta)/(pi - theta)."""
     return (np.pi + theta) / (np.pi - theta)
 
 
 def time_ratio_of_curve(slope: Callable[[Real], Real], shares: Real) -> float:
-    """The longer strokes over the shorter; nan where there are none.
+    """Return the time of the longer strokes over that of the shorter ones; nan if the curve has no strokes.
 
-    slope: the output's first transfer function at shares of the cycle; shares: all round it, at equal steps.
+    Args:
+        slope: first transfer function of the output at fractions of the cycle.
+        shares: fractions of the whole cycle in equal steps.
     """
     y, step = slope(shares), shares[1] - shares[0]
     moves = np.flatnonzero(y)
@@ -58,7 +60,7 @@ def time_ratio_of_curve(slope: Callable[[Real], Real], shares: Real) -> float:
 
 
 def _stroke_ends(slope: Callable[[Real], Real], low: Real, step: float, before: Real) -> Real:
-    """Where a slope that has the sign `before` at low has it no more, at most a step farther on."""
+    """Return where a slope that has the sign `before` at `low` loses it, within one step."""
     return bisect(lambda shares: np.sign(slope(shares)) == before, low, low + step)[0]
 
 
@@ -71,7 +73,7 @@ DriverEnds = tuple[float, float] | None  # of the driver's way (rad or m), where
 
 
 def output_stroke(results: Results, ends: DriverEnds = None) -> float:
-    """Stroke H (m) or swing psi (rad) of the output: in a cycle, or over a way of the driver."""
+    """Return the stroke H (m) or swing angle psi (rad) of the output in a cycle, or over a range of the driver."""
     if results.driver_range is not None and (ends or not results.driver_range.full):
         way, link = results.driver_range, results.mechanism.output
         found = link and find_travel(results.linkage, results.kernels, np.array(ends or (way.start, way.end)), link)
@@ -81,20 +83,20 @@ def output_stroke(results: Results, ends: DriverEnds = None) -> float:
 
 
 def arc_or_stroke(results: Results) -> float:
-    """Stroke H (m) of the output; of an output that swings the arc H = psi l of its first point."""
+    """Return the stroke H (m) of the output; of a swinging output the arc H = psi l of its first point."""
     link = results.mechanism.output
     arm = results.linkage.output_arm(link) if link else None
     return output_stroke(results) * (1.0 if arm is None else arm[1])
 
 
 def time_ratio(results: Results) -> float:
-    """Coefficient of change of mean speed k."""
+    """Return the time ratio k (coefficient of change of mean speed)."""
     strokes = results.strokes
     return strokes.k if strokes is not None and strokes.strokes else NO_VALUE
 
 
 def time_ratio_uncertainty(results: Results) -> float:
-    """By how much of k rounding leaves it open, as the sign of the output's speed is not sure about ends of strokes."""
+    """Return the uncertainty of k from rounding: near the ends of strokes the sign of the output speed is uncertain."""
     strokes = results.strokes
     if strokes is None or not strokes.strokes:
         return 0.0
@@ -113,7 +115,7 @@ def time_ratio_uncertainty(results: Results) -> float:
 
 
 def largest_pressure_angle(results: Results, ends: DriverEnds = None) -> float:
-    """The largest pressure angle on the output, rad."""
+    """Return the largest pressure angle on the output, rad."""
     strokes, over = results.strokes, results.pressure
     link = strokes.link if strokes is not None else None
     if ends and results.motion is not None:
@@ -124,7 +126,7 @@ def largest_pressure_angle(results: Results, ends: DriverEnds = None) -> float:
 
 
 def mean_output_speed(results: Results) -> float:
-    """Mean speed of a sliding output over a cycle, of an accelerated crank over the first from position 0 on, m/s."""
+    """Return the mean speed (m/s) of a sliding output over a cycle; with an accelerated crank over the first cycle."""
     strokes, driver = results.strokes, results.linkage.driver
     if strokes is None or not strokes.strokes or strokes.kind != "slide":
         return NO_VALUE
@@ -134,7 +136,7 @@ def mean_output_speed(results: Results) -> float:
 
 
 def completes_range(results: Results, ends: DriverEnds = None) -> bool:
-    """Whether the driver turns fully, goes the whole of its stroke, or from one end to the other."""
+    """Return True if the driver rotates fully, covers its stroke, or moves from one end of `ends` to the other."""
     way = results.driver_range
     if way is None:
         return False
@@ -142,14 +144,14 @@ def completes_range(results: Results, ends: DriverEnds = None) -> bool:
 
 
 def driver_completes_range(results: Results, ends: DriverEnds = None) -> float:
-    """1 when it does, else 0."""
+    """Return 1 if the driver completes its range, else 0."""
     return float(completes_range(results, ends))
 
 
 def stroke_end_angle(results: Results, near: float) -> float:
-    """The angle (rad) of a swinging output from its hinge on the frame, at the end of a stroke nearest to `near`.
+    """Return the angle (rad) of a swinging output at the end of a stroke that is nearest to `near`.
 
-    It is that of the line from that hinge to the first other point of the link.
+    It is the angle of the line from its hinge on the frame to the first other point of the link.
     """
     strokes, linkage = results.strokes, results.linkage
     if strokes is None or not strokes.strokes or strokes.kind != "swing":
@@ -170,9 +172,9 @@ def stroke_end_angle(results: Results, near: float) -> float:
 
 @dataclass(frozen=True)
 class MeasuredDemand:
-    """A demand, its value on the mechanism (SI, rad; nan: there is none), and the relative difference.
+    """A demand, its value on the mechanism (SI, rad; nan: it has none) and the relative difference.
 
-    open: by how much of it rounding leaves the value open, where that is more than is tolerated.
+    open: uncertainty of the value from rounding, where it exceeds the tolerance.
     """
 
     demand: Demand
@@ -187,7 +189,7 @@ class MeasuredDemand:
 
 @lru_cache(maxsize=1)
 def measure_problem(results: Results) -> tuple[MeasuredDemand, ...]:
-    """What a problem's synthesis asked and foretold, on its mechanism; nothing where there is none, or no motion."""
+    """Measure the demands of a problem's synthesis on its mechanism; () if it has no synthesis or no motion."""
     synthesis = results.problem.synthesis
     if synthesis is None or results.of or results.motion is None:
         return ()
@@ -195,7 +197,7 @@ def measure_problem(results: Results) -> tuple[MeasuredDemand, ...]:
 
 
 def measure_demands(outcome: SynthesisOutcome, results: Results) -> tuple[MeasuredDemand, ...]:
-    """Every demand on the mechanism, of the link that the task is about, whatever the file's output is."""
+    """Measure every demand on the mechanism, on the link that the task is about even if the output is another."""
     results, found = _with_output(synthesised_link(outcome, results), results), []
     for demand in outcome.demands:
         value = _without_rounding(demand, float(demand.measure(results)))
@@ -205,9 +207,9 @@ def measure_demands(outcome: SynthesisOutcome, results: Results) -> tuple[Measur
 
 
 def synthesised_link(outcome: SynthesisOutcome, results: Results) -> str | None:
-    """The link whose stroke or swing the task found: of those of its kind on the frame the nearest to the driver.
+    """Return the link whose stroke or swing the task found: of its kind on the frame, the nearest to the driver.
 
-    The file's output if it is one of them, or the task says nothing of a kind.
+    The output of the file is taken if it is one of these, or if the task does not specify slide or swing.
     """
     linkage, output = results.linkage, results.mechanism.output
     on_frame = {"slide": linkage.slides_on_frame, "swing": linkage.hinged_to_frame}.get(outcome.output)
@@ -221,7 +223,7 @@ def synthesised_link(outcome: SynthesisOutcome, results: Results) -> str | None:
 
 
 def _with_output(link: str | None, results: Results) -> Results:
-    """The same with another link as the output."""
+    """Return the results with another link as the output."""
     mechanism = results.mechanism
     if link is None or link == mechanism.output:
         return results
@@ -231,5 +233,5 @@ def _with_output(link: str | None, results: Results) -> Results:
 
 
 def _without_rounding(demand: Demand, value: float) -> float:
-    """The same; zero where it is nothing but rounding beside what counts."""
+    """Return the measured value, or zero if it is only rounding compared with the demand."""
     return 0.0 if abs(value) <= NO_DEMAND * max(abs(demand.value), demand.at) else value

@@ -1,4 +1,6 @@
-"""Refusals of a task as they are printed: the reason, and the nearest feasible value of one number that was given."""
+"""The block `synthesis:` of a problem file: read and checked when the file is loaded, solved when its solution is
+needed; refusals with the nearest feasible value.
+"""
 
 from __future__ import annotations
 
@@ -60,7 +62,10 @@ NO_NEAREST: Final = N_("another task: no other value of it was found to help")
 
 
 def refusal_error(error: Infeasible, given: Any, units: UnitSystem, searched: str | None = None) -> ProblemError:
-    """The reason, and what could be met: what the task knows of it, else what was searched. given: the file's block."""
+    """Return the refusal of a task as it is printed: the reason, and the nearest feasible value.
+
+    That value comes from the task itself, or else from a search (`searched`). given: the block of the file.
+    """
     told = error.nearest if isinstance(error.nearest, str) else searched
     if isinstance(error.nearest, tuple):
         value, kind, side = error.nearest
@@ -76,9 +81,9 @@ def refusal_error(error: Infeasible, given: Any, units: UnitSystem, searched: st
 def describe_nearest(
     given: Mapping[Path, tuple[float, Dimension]], solved: Callable[[Path, float], bool], units: UnitSystem
 ) -> str:
-    """The nearest feasible value of the first of these numbers (SI) that has one, as it is typed in.
+    """Describe the nearest feasible value of the first of these numbers (SI) that has one, in the units of the file.
 
-    solved: whether the task is, with another value at a path.
+    solved: returns True if the task is feasible with another value at a path.
     """
     for path, (value, want) in given.items():
         found = _find_nearest(value, want, partial(solved, path))
@@ -96,7 +101,7 @@ def _nearest_message(path: Path, number: float, want: Dimension, units: UnitSyst
 
 
 def _find_nearest(value: float, want: Dimension, solved: Callable[[float], bool]) -> float | None:
-    """The feasible value that is nearest to one that is not: changes are tried, the least first, and halved."""
+    """Find the feasible value nearest to an infeasible one: try growing changes, then bisect; None if none is found."""
     places = [value + (abs(value) or 1.0) * STEPS]
     places += [fixed + abs(value - fixed) * SHARES for fixed in SPECIAL_VALUES.get(want, (0.0,))]
     reach = 2 * np.pi if want == ANGLE else np.inf
@@ -114,7 +119,7 @@ def _find_nearest(value: float, want: Dimension, solved: Callable[[float], bool]
 
 
 def round_to_side(units: UnitSystem, value: float, dimension: Dimension, side: int) -> float:
-    """A limit (SI) in the file's unit with as many digits as are printed, to its larger (1) or smaller (-1) side."""
+    """Round a limit (SI), in the unit of the file, to the printed digits, up (side = 1) or down (side = -1)."""
     exact = Decimal(float(units.from_si(value, dimension)))
     if side == 0 or not exact.is_finite() or exact == 0:
         return float(exact)
@@ -133,7 +138,7 @@ GOLDEN_RATIO = (math.sqrt(5) - 1) / 2  # its multiples are in no simple ratio
 
 
 def read(tree: Tree) -> TaskProblem:
-    """A file with a task and a linkage: all of the block is checked, nothing is solved. Raises ProblemError."""
+    """Read a file with a task and a linkage: the whole block is checked, nothing is solved. Raises ProblemError."""
     if "links" not in tree.data:
         raise ProblemError(
             _("there is no linkage that could use what is found"),
@@ -157,28 +162,29 @@ def read(tree: Tree) -> TaskProblem:
 
 
 def build_synthesised(tree: Tree) -> Problem:
-    """A problem with all its numbers: those that its task finds too, if it has one. Raises ProblemError."""
+    """Build the problem of a file, with the dimensions that its synthesis task finds, if any. Raises ProblemError."""
     return read(tree).whole if "synthesis" in tree.data else build_linkage(tree)
 
 
 def solve_alone(tree: Tree) -> tuple[str, str, Synthesised, UnitSystem]:
-    """Of a file with a task and no linkage: name, title, what was found, units. Raises ProblemError."""
+    """Solve the task of a file without a linkage: name, title, solution, units. Raises ProblemError."""
     file, name = TaskFile(tree), tree.name
     with locate_errors_in(tree):
         return name, file.shape.title or name, file.solved(), file.units
 
 
 def read_task(tree: Tree) -> Any:
-    """What the task of a file asks, in SI, without its answer. Raises ProblemError."""
+    """Read the task of a file into SI without solving it. Raises ProblemError."""
     file = TaskFile(tree)
     with locate_errors_in(tree):
         return file.task
 
 
 class TaskFile:
-    """A file with a task: which of its parameters the task finds, which rest on these, and which it rests on.
+    """A file with a synthesis task: the parameters that the task finds, and those that depend on them or do not.
 
-    Raises ProblemError, located in the file.
+    Raises:
+        ProblemError: located in the file.
     """
 
     def __init__(self, tree: Tree, *, extended: bool = False) -> None:
@@ -197,12 +203,12 @@ class TaskFile:
             self._check_independence()
 
     def _find_kinds(self) -> dict[str, str]:
-        """Names and kinds of what the task finds; they may depend on what is asked."""
+        """Return names and kinds of the parameters that the task finds; they may depend on the block."""
         own = getattr(block_module(self.block.task), "parameters", None)
         return dict(solver_module(self.block.task).PARAMETERS if own is None else own(self.block))
 
     def _find_names(self) -> dict[str, str]:
-        """Standard names of what is found, and those that the file gives them."""
+        """Map the standard names of the parameters to be found to their names in the file. Raises ProblemError."""
         raw, own, task = self.shape.parameters, self.block.names, self.block.task
         for name, other in own.items():
             path = ("synthesis", "names", name)
@@ -234,7 +240,10 @@ class TaskFile:
         return names
 
     def placeholders(self) -> Parameters:
-        """Values in place of those to be found, no two in a simple ratio. A search does not tell its kinds before."""
+        """Return placeholder values for the parameters to be found, no two in a simple ratio.
+
+        Those of an optimal synthesis have no dimension: it is not known before the ranges are read.
+        """
         return {
             name: PhysicalValue(
                 1 + k * GOLDEN_RATIO % 1, None if self.searches else DIMENSIONS[self.kinds[own]].dimension
@@ -243,7 +252,7 @@ class TaskFile:
         }
 
     def _dependent_parameters(self, found: set[str]) -> set[str]:
-        """Parameters given by hand that rest on what is found, at first hand or through others."""
+        """Return the given parameters that depend, directly or through others, on those that the task finds."""
         raw = self.shape.parameters
         known = dict.fromkeys([*raw, *found], PhysicalValue(0.0))
         needs = {
@@ -257,7 +266,7 @@ class TaskFile:
         return late
 
     def _check_independence(self) -> None:
-        """What is asked cannot rest on what is found; a search may ask for something of the linkage with it."""
+        """Raise ProblemError if the task depends on its solution. An optimal synthesis may refer to what it varies."""
         known = dict.fromkeys([*self.dependent, *(() if self.searches else self.names.values())], PhysicalValue(0.0))
         for path, text in _iterate_texts(self.block):
             used = Parser(plain_text(text[:200]), known, self.units).names()
@@ -271,7 +280,7 @@ class TaskFile:
 
     @cached_property
     def task(self) -> Any:
-        """What is asked, in the record of the task."""
+        """The task in SI, in the record of its kind."""
         read = block_module(self.block.task).read
         try:
             with prefix_errors("synthesis"):
@@ -288,21 +297,21 @@ class TaskFile:
             raise error.error from None
 
     def try_values(self, found: Parameters, units: UnitSystem) -> Problem:
-        """The linkage with other values of what is to be found, for a search. Raises OfTheFile."""
+        """Build the problem with trial values of the parameters of an optimal synthesis. Raises TriedFileError."""
         try:
             return self.with_values(found, units)
         except ProblemError as error:
             raise TriedFileError(error) from None
 
     def with_values(self, found: Parameters, units: UnitSystem) -> Problem:
-        """The linkage with these values of what is to be found."""
+        """Build the problem with these values of the parameters to be found."""
         assert isinstance(self.shape, schema.File)
         known = self.independent | found
         everything = known | build_parameters(self.dependent, units, known)
         return build_from_shape(self.shape, self.tree, ValueReader(everything, units))
 
     def solved(self) -> Synthesised:
-        """What the task finds. Raises ProblemError."""
+        """Solve the task. Raises ProblemError."""
         task = self.task
         try:
             with prefix_errors("synthesis"), np.errstate(all="ignore"):  # what has no value is refused by `sound`
@@ -318,7 +327,7 @@ class TaskFile:
         return refusal_error(error, self.tree.data["synthesis"], self.units, searched).at("synthesis")
 
     def find_nearest(self, at_fault: Path) -> str:
-        """The nearest feasible value of one of the numbers at this path, the last of them first, in words."""
+        """Describe the nearest feasible value of one of the numbers at this path, starting with the last one."""
         read, refuse, own = (
             block_module(self.block.task).read,
             solver_module(self.block.task).refuse,
@@ -338,7 +347,7 @@ class TaskFile:
             return describe_nearest(given, solved, self.units)
 
     def values(self, outcome: SynthesisOutcome) -> Parameters:
-        """The parameters that were found, under the names that the file gives them."""
+        """Return the parameters found, under their names in the file."""
         return {
             self.names[name]: PhysicalValue(_plain_number(value.value), DIMENSIONS[value.kind].dimension)
             for name, value in outcome.parameters.items()
@@ -347,7 +356,7 @@ class TaskFile:
 
 
 def _solved_problem(file: TaskFile) -> Problem:
-    """The problem with what its task finds."""
+    """Build the problem with the dimensions that its task finds."""
     with locate_errors_in(file.tree):
         return _with_solution(file, file.solved())
 
@@ -364,14 +373,14 @@ def _with_solution(file: TaskFile, synthesised: Synthesised) -> Problem:
 
 
 def _extended_problem(tree: Tree, synthesised: Synthesised) -> Problem:
-    """The same with the decimals of the file as double-doubles; what the task found stays as it is."""
+    """Build the problem with the decimals of the file as double-doubles; the solution of the task stays as it is."""
     file = TaskFile(tree, extended=True)
     with locate_errors_in(tree):
         return _with_solution(file, synthesised)
 
 
 def _draft_problem(file: TaskFile) -> Problem | None:
-    """Links and pairs with other numbers for what is to be found; None where the file refuses these."""
+    """Build the problem with placeholders for the parameters to be found; None if the file is invalid with them."""
     try:
         return file.with_values(file.placeholders(), file.units)
     except ProblemError:
@@ -379,7 +388,7 @@ def _draft_problem(file: TaskFile) -> Problem | None:
 
 
 def _iterate_texts(value: Any, path: Path = ()) -> Iterator[tuple[Path, str]]:
-    """Every text of a block with its place in it."""
+    """Yield every text of a block with its path."""
     if isinstance(value, str):
         yield path, value
     elif isinstance(value, list | tuple):
@@ -391,6 +400,6 @@ def _iterate_texts(value: Any, path: Path = ()) -> Iterator[tuple[Path, str]]:
 
 
 def _plain_number(value: Any) -> Any:
-    """A Python float, or a number of more digits as it is."""
+    """Return a Python float; a number of higher precision is returned unchanged."""
     number = np.asarray(value)[()]
     return float(number) if number.dtype == np.float64 else number

@@ -1,4 +1,4 @@
-"""What every synthesis gives: values, what the mechanism must show when it is analysed, and how it is drawn."""
+"""Outcome of a synthesis: given values, solution, demands to be measured, tables, drawings; refusals."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ Kind = str  # a dimension by its name: length, angle, number, speed, ...; `word`
 
 @dataclass(frozen=True)
 class NamedValue:
-    """A quantity of a task (SI, rad); text: what it is called. Of kind `word` the value is a text itself.
+    """A quantity of a task (SI, rad). text: its description; kind `word`: the value is a text.
 
-    name: of the parameter that it is, or of the key that gives it.
+    name: the parameter it sets, or the key that gives it.
     """
 
     name: str
@@ -34,11 +34,10 @@ class NamedValue:
 
 @dataclass(frozen=True)
 class Listing:
-    """A table of what was found. columns: name in result.json, text of the header, and kind of the values; name: of its
-    file; a long one is for files only.
+    """A table of a solution. name: of its file; long: written to files only.
 
-    kind `word`, `name`: texts as they are; `mixed`: numbers whose kind is in the row's column of kind `unit`. None:
-    there is none.
+    columns: name in result.json, heading, kind. Kinds `word` and `name` are plain texts; `mixed` are numbers whose kind
+    stands in the row's column of kind `unit`. A cell of None is empty.
     """
 
     name: str
@@ -50,12 +49,16 @@ class Listing:
 
 @dataclass(frozen=True)
 class Demand:
-    """What must come back when the mechanism is analysed: value (SI, rad), and how it is measured on the Results.
+    """A value that the analysed mechanism must show, and the function that measures it on the Results.
 
-    text: what it is called. asked: by the file; else it is what the synthesis foretells. A measure gives nan where the
-    mechanism has no such quantity. at: the least size that counts in the relative difference, for a value that may be
-    zero. open: by how much of it rounding leaves the measured value open; None: by next to nothing. of: what is
-    measured, where a warning looks for it (pressure).
+    Attributes:
+        text: its description.
+        value: required or predicted value (SI, rad).
+        asked: True if the file requires it; False if the synthesis predicts it.
+        measure: returns the measured value; nan if the mechanism has no such quantity.
+        at: smallest reference of the relative difference, for a value that may be zero.
+        open: returns the uncertainty of the measured value from rounding; None: negligible.
+        of: the quantity measured, under which warnings look for it (pressure).
     """
 
     text: str
@@ -68,18 +71,24 @@ class Demand:
     of: str = ""
 
     def difference(self, measured: float) -> float:
-        """Relative to what is wanted, or absolute where that is zero."""
+        """Return the difference relative to the value, or the absolute one if the value is zero."""
         return abs(measured - self.value) / (max(abs(self.value), self.at) or 1.0)
 
 
 @dataclass(frozen=True)
 class SynthesisOutcome:
-    """What a task gives. parameters: what the linkage may use, by name; source: where the formula is from.
+    """Outcome of a synthesis.
 
-    asked, found: what is shown; demands: what is measured; drawings: how a student draws it;
-    notes: texts below what was found; listings: further tables. sketch: how the mechanism is assembled,
-    where the file's own does not show it. output: slide or swing, whose link the demands are about where the file's
-    output is another; empty: they look for theirs.
+    Attributes:
+        asked, found: given values and solution, as tables show them.
+        source: source of the formulas.
+        demands: values to be measured on the mechanism.
+        drawings: constructions and diagrams.
+        notes: texts below the solution.
+        listings: further tables.
+        sketch: the assembly, if the sketch of the file does not show it.
+        output: "slide" or "swing": motion of the link that the demands concern, if the file has another output; "": the
+            demands find their link themselves.
     """
 
     asked: tuple[NamedValue, ...]
@@ -94,22 +103,26 @@ class SynthesisOutcome:
 
     @property
     def parameters(self) -> dict[str, NamedValue]:
-        """Found values by name."""
+        """The values found that are parameters, by name."""
         return {value.name: value for value in self.found if value.name}
 
 
 def given_values(task: Any, quantities: Mapping[str, tuple[Kind, str]]) -> tuple[NamedValue, ...]:
-    """Those of these quantities that a task has as fields, and not None, by their kinds and what they are called."""
+    """Return the quantities that the task has as fields and are not None. quantities: kind and description by name."""
     numbers = ((name, getattr(task, name, None)) for name in quantities)
     return tuple(NamedValue(name, value, *quantities[name]) for name, value in numbers if value is not None)
 
 
 class Infeasible(Exception):  # noqa: N818  said of a task, as it is said
-    """A task that no mechanism meets.
+    """No mechanism meets the task.
 
-    key: which of what was given is at fault, or the way to it inside the block. nearest: its nearest feasible value,
-    where the task knows it: a word, or (value in SI, kind, the side to which it may be rounded: 1, -1, or 0). Else it
-    is searched for, but not where `search` says that this takes as long as the task itself, again and again.
+    Attributes:
+        path: the key at fault, or the path inside the block.
+        reason: the message.
+        nearest: nearest feasible value, if the task knows it: a text, or (value in SI, kind, rounding: 1 up, -1 down, 0
+            none).
+            Else the value is searched for.
+        search: False if such a search would repeat a solution that takes long.
     """
 
     def __init__(
@@ -126,7 +139,8 @@ class Infeasible(Exception):  # noqa: N818  said of a task, as it is said
 
 
 def refuse_nonfinite(outcome: SynthesisOutcome) -> SynthesisOutcome:
-    """The same. Raises Infeasible where a number that was found is none, so that none is ever shown as an answer."""
+    """Return the outcome. Raises Infeasible if one of its numbers is not finite, so that none is shown as a
+    solution."""
     for value in outcome.found:
         if value.kind != "word" and not bool(np.all(np.isfinite(np.asarray(value.value, dtype=float)))):
             raise Infeasible((), _("no mechanism was found: it has no {name}").format(name=value.text))

@@ -25,7 +25,9 @@ from tmm_cli.synthesis.slotted_lever import HALF_A_TURN, QUICK_RETURN, SlottedLe
 
 
 def draw_construction(f: ShaperSolution) -> GeometricConstruction:
-    """The lever in its extreme positions, the guide midway in D's arc, the ram at both ends of its stroke; O at 0."""
+    """Draw the lever in its extreme positions, the guide at half the height of D's arc, and the ram at both ends; O at
+    0.
+    """
     middle, half = np.pi / 2, float(f.theta) / 2
     lever = Lever(
         f.crank, f.frame, f.lever, 0j, complex(0, -float(f.frame)), middle + half, middle - half, f.theta, f.lever
@@ -85,7 +87,9 @@ ROD_KEYS: Final = ("DE", "rod_ratio", "pressure")
 
 @dataclass(frozen=True)
 class ShaperTask:
-    """Stroke, k; frame OC, its ratio to CD or the crank OA; rod DE, its ratio or the pressure angle (m, rad)."""
+    """Stroke (m) and k; frame OC, its ratio to CD or the crank OA; rod DE, its ratio to CD or the pressure angle (m,
+    rad).
+    """
 
     stroke: Any
     k: Any
@@ -99,7 +103,7 @@ class ShaperTask:
 
 @dataclass(frozen=True)
 class ShaperSolution:
-    """Lengths (m), level: of the guide over O (m), theta and the largest pressure angle of the ram (rad)."""
+    """Lengths (m), height `level` of the guide above O (m), theta and largest pressure angle of the ram (rad)."""
 
     crank: Any
     frame: Any
@@ -111,7 +115,7 @@ class ShaperSolution:
 
 
 def find_shaper(task: ShaperTask) -> ShaperSolution:
-    """The lengths. Where there is no such mechanism (`refuse` says why) they mean nothing."""
+    """Solve the task. If no such mechanism exists (`refuse` gives the reason), the values are meaningless."""
     theta = theta_of(task.k)
     sine, half_height = np.sin(theta / 2), np.sin(theta / 4) ** 2
     lever = np.asarray(task.stroke) / (2 * sine)
@@ -129,7 +133,7 @@ def find_shaper(task: ShaperTask) -> ShaperSolution:
 
 
 def refuse(task: ShaperTask) -> None:
-    """Raises Infeasible with the reason."""
+    """Raise Infeasible, with the reason, if no such shaper exists."""
     if not task.k > 1:
         raise Infeasible("k", QUICK_RETURN)
     half = float(theta_of(task.k)) / 2
@@ -149,7 +153,7 @@ def _given_key(task: ShaperTask, keys: tuple[str, ...]) -> str:
 
 
 def solve(task: ShaperTask) -> SynthesisOutcome:
-    """The task of one file. Raises Infeasible."""
+    """Solve the task of one file. Raises Infeasible."""
     refuse(task)
     f = find_shaper(task)
     kind, text = QUANTITIES["pressure"]
@@ -201,7 +205,7 @@ BLOCK = ShaperBlock
 
 
 def read(shape: ShaperBlock, values: ValueReader) -> ShaperTask:
-    """The task in SI. Raises ProblemError."""
+    """Read the task into SI. Raises ProblemError."""
     for ways in (FRAME_KEYS, ROD_KEYS):
         choose_key_set(shape, [(key,) for key in ways])
     return ShaperTask(**read_numbers(shape, values, QUANTITIES))

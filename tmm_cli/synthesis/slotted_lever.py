@@ -1,4 +1,4 @@
-"""Slotted lever by k (or its swing) and the extreme positions of its end."""
+"""Slotted-lever mechanism by k (or the swing angle) and the extreme positions of the lever's end."""
 
 from __future__ import annotations
 
@@ -41,7 +41,10 @@ FAMILY_SIZE: Final = 61  # lengths of OC within bounds that are listed
 def lever_elements(
     f: SlottedLeverSolution, end: str
 ) -> tuple[list[Segment], list[Arc], list[LetteredPoint], list[Angle]]:
-    """The lever in its extreme positions, the bisector, the pin's circle that touches both; end: letter of its end."""
+    """Return the drawing elements of the lever in its extreme positions: segments, arcs, points, angles.
+
+    The crank circle touches both positions; end: letter of the end of the lever.
+    """
     c, o = complex(f.c), complex(f.o)
     lever, crank, frame = float(f.lever), float(f.crank), float(f.frame)
     ways = [complex(np.exp(1j * float(psi))) for psi in (f.psi1, f.psi2)]
@@ -72,7 +75,7 @@ def lever_elements(
 
 
 def draw_construction(f: SlottedLeverSolution) -> GeometricConstruction:
-    """Both extreme positions, with C by the isosceles triangle on B1B2 and O on the bisector."""
+    """Draw both extreme positions, with C from the isosceles triangle on B1B2 and O on the bisector."""
     segments, arcs, spots, angles = lever_elements(f, "B")
     b1, b2 = spots[-2].at, spots[-1].at
     segments.append(Segment(b1, b2, "dashed"))
@@ -95,7 +98,7 @@ def draw_construction(f: SlottedLeverSolution) -> GeometricConstruction:
 
 
 def tabulate_family(task: SlottedLeverTask, f: SlottedLeverSolution) -> tuple[Diagram, Listing]:
-    """OA and the stone's distances from C over the free distance OC within its bounds, drawn and in numbers."""
+    """Draw and tabulate OA and the extreme distances of the sliding block from C over OC within its bounds."""
     assert task.within is not None
     low, high = (float(x) for x in task.within)
     frame = np.linspace(low, high, FAMILY_SIZE)
@@ -143,11 +146,17 @@ HALF_A_TURN: Final = N_("the lever of a crank that turns fully swings by less th
 
 @dataclass(frozen=True)
 class SlottedLeverTask:
-    """Places b1, b2 (m) of the lever's end, or its length (m) with the place of C and the direction (rad) from C to O.
+    """Extreme positions of the lever and the free distance OC.
 
-    k or the swing (rad). side: of the way from b1 to b2 on which C lies, 1 left, -1 right; with the length 1 turns the
-    lever clockwise from b1 to b2. OC (m), or the crank OA (m), or bounds of OC and which is chosen: force (the longest
-    with the stone on CB) or shortest.
+    Attributes:
+        b1, b2: extreme positions of the lever's end (m, complex); or CB, c, axis: its length (m), the hinge C and the
+            direction
+            (rad) from C to O.
+        side: side of the line from b1 to b2 on which C lies, 1 left, -1 right; with CB, 1 means that the lever rotates
+            clockwise from B1 to B2.
+        k, swing: time ratio, or swing angle (rad).
+        OC, OA, within: OC (m), or the crank OA (m), or bounds of OC (m).
+        choose: OC within its bounds: force (the longest with the sliding block on CB) or shortest.
     """
 
     b1: Any = None
@@ -170,7 +179,8 @@ class SlottedLeverTask:
 
 @dataclass(frozen=True)
 class SlottedLeverSolution:
-    """Lengths (m), places O and C (m), angles of CB1 and CB2 (rad); longest: OC that leaves the stone on CB."""
+    """Lengths (m), O and C (m, complex), angles of CB1 and CB2 (rad); longest: OC that keeps the sliding block on
+    CB."""
 
     crank: Any
     frame: Any
@@ -184,7 +194,7 @@ class SlottedLeverSolution:
 
 
 def find_slotted_lever(task: SlottedLeverTask) -> SlottedLeverSolution:
-    """The lengths and places. Where there is no such mechanism (`refuse` says why) they mean nothing."""
+    """Solve the task. If no such mechanism exists (`refuse` gives the reason), the values are meaningless."""
     theta = task.theta
     sine = np.sin(theta / 2)
     if task.CB is None:
@@ -214,7 +224,7 @@ def find_slotted_lever(task: SlottedLeverTask) -> SlottedLeverSolution:
 
 
 def refuse(task: SlottedLeverTask) -> None:
-    """Raises Infeasible with the reason."""
+    """Raise Infeasible, with the reason, if no such mechanism exists."""
     if task.k is not None and not task.k > 1:
         raise Infeasible("k", QUICK_RETURN)
     if task.swing is not None and not task.swing > 0:
@@ -230,7 +240,7 @@ def refuse(task: SlottedLeverTask) -> None:
 
 
 def solve(task: SlottedLeverTask) -> SynthesisOutcome:
-    """The task of one file. Raises Infeasible."""
+    """Solve the task of one file. Raises Infeasible."""
     refuse(task)
     f = find_slotted_lever(task)
     demands = (
@@ -309,7 +319,7 @@ FRAME_KEYS = (("OC",), ("OA",), ("within",))
 
 
 class SlottedLeverBlock(TaskBlock):
-    """A slotted lever by the extreme places of its end B (or its length) and k (or its swing)."""
+    """A slotted lever by the extreme positions of its end B (or its length) and k (or its swing angle)."""
 
     task: Literal["slotted-lever"]
     B1: Vector | None = Field(default=None, description="extreme place of the lever's end B")
@@ -335,7 +345,7 @@ BLOCK = SlottedLeverBlock
 
 
 def read(shape: SlottedLeverBlock, values: ValueReader) -> SlottedLeverTask:
-    """The task in SI. Raises ProblemError."""
+    """Read the task into SI. Raises ProblemError."""
     ends, *__ = (choose_key_set(shape, sets) for sets in (END_KEYS, SWING_KEYS, FRAME_KEYS))
     _check_companions(shape, {"C": ("B1", "B2"), "support": ("CB",), "axis": ("CB",), "choose": ("within",)})
     found = read_numbers(shape, values, QUANTITIES)

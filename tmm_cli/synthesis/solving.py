@@ -1,4 +1,4 @@
-"""What the package offers: problems read, computed, driven by another link, prepared for many at once.
+"""Public API: load, solve and prepare problems.
 
 Everything is in SI and radians. Bad input raises `tmm_cli.problem.errors.ProblemError`.
 """
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 def load(path: str) -> Problem | TaskProblem:
     """Read and check a problem file. Raises ProblemError.
 
-    A task of synthesis is solved when something needs the lengths that it finds: `solve`, `prepare`, `linkage`.
+    A synthesis task is solved only when the dimensions that it finds are needed: by `solve`, `prepare`, `linkage`.
     """
     return build_any_problem(read_file(path))
 
@@ -41,9 +41,9 @@ def solve(
     positions: Sequence[int] | None = None,
     of: Sequence[str] = (),
 ) -> Results:
-    """Compute up to a stage, at all positions of the file or at those numbered. Raises ProblemError.
+    """Compute a problem up to a stage, at all positions of the file or at those numbered. Raises ProblemError.
 
-    of: points, links, centres of mass (E, 5, S3) that alone are asked for; only groups on the way to them are solved.
+    of: names of points, links and centres of mass (E, 5, S3); only the groups that these depend on are solved.
     """
     whole = problem.whole
     with translate_errors(whole):
@@ -56,7 +56,7 @@ def solve(
 
 
 def structure_of(problem: Problem | TaskProblem) -> Results:
-    """The structure alone: no task of synthesis is solved for it, unless it hangs on lengths. Raises ProblemError."""
+    """Compute the structure alone; a synthesis task is solved only if the structure needs lengths. Raises ProblemError."""
     draft = problem.draft() if isinstance(problem, TaskProblem) else None
     if draft is not None:
         try:
@@ -67,7 +67,7 @@ def structure_of(problem: Problem | TaskProblem) -> Results:
 
 
 def inputs_of(problem: Problem) -> Inputs:
-    """What the stages need of a problem."""
+    """Return the inputs of the computing stages for a problem."""
     extended = None if problem.extended is None else ExtendedInputs(problem.extended)
     return Inputs(
         problem.linkage,
@@ -83,7 +83,7 @@ def inputs_of(problem: Problem) -> Inputs:
 
 @dataclass(frozen=True)
 class ExtendedInputs:
-    """The same as double-doubles, made when first asked for; a class, so that results can go to other processes."""
+    """Inputs as double-doubles, built on first use; a class, so that results can be sent to other processes."""
 
     problem: Callable[[], Problem]
 
@@ -96,14 +96,14 @@ class ExtendedInputs:
 
 
 def count(problem: ChainProblem) -> ChainResults:
-    """Count the chain of a problem that gives it by pairs alone."""
+    """Count links, pairs and mobility of a problem that specifies its chain by pairs only."""
     return ChainResults(problem, count_chain(problem.chain, problem.output, problem.local, problem.wanted))
 
 
 def redrive(problem: Problem | TaskProblem, link: str) -> Problem:
-    """The same problem driven by another link on the frame, from the same sketch. Raises ProblemError.
+    """Return the problem with another link on the frame as the driver, from the same sketch. Raises ProblemError.
 
-    What hangs on the driver of the file is left out: its law of motion, balancing, wheels, loads by its angle.
+    Everything tied to the driver of the file is dropped: law of motion, balancing, wheels, loads by its angle.
     """
     whole = problem.whole
     with translate_errors(whole):
@@ -118,9 +118,9 @@ def redrive(problem: Problem | TaskProblem, link: str) -> Problem:
 
 
 def prepare(problems: Sequence[Problem | TaskProblem] | Problem | TaskProblem) -> Batch:
-    """Problems that differ in their numbers only, to be solved at any places of the driver (variants.batch.everything).
+    """Prepare problems that differ only in their numbers, to be solved together at any driver coordinates.
 
-    Loads of a working stroke act always, unless there is one problem alone. Raises ProblemError.
+    Loads of a working stroke act always, unless there is only one problem. Raises ProblemError.
     """
     from tmm_cli.batch import prepare_batch as every_variant  # and the tape under it
 

@@ -1,1 +1,1 @@
-"""Four-bar by 2 to 5 pairs of angles of its input and output, given or taken from a function."""
+"""Four-bar by pairs of angles of its input and output links, or by a function that it generates."""

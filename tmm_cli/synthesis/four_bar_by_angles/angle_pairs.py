@@ -37,7 +37,9 @@ ANGLES: Final = ("sin(x)", "cos(x)", "tan(x)")  # their x is an angle
 
 @dataclass(frozen=True)
 class GeneratedFunction:
-    """y(x), straight between the rows of its table, from x[0] to x[1]; input, output: angles (rad) at these ends."""
+    """A function y(x) on x[0]..x[1]; a table is interpolated linearly. phi, psi: input and output angles (rad) at both
+    ends.
+    """
 
     x: tuple[float, float]
     phi: tuple[float, float]
@@ -52,20 +54,20 @@ class GeneratedFunction:
         return np.interp(np.asarray(x, dtype=float), rows[:, 0], rows[:, 1])
 
     def required_output(self, phi: Any) -> Any:
-        """The output angle for an input angle."""
+        """Return the output angle (rad) that the function requires at an input angle."""
         start, end = self.value(np.asarray(self.x[0])), self.value(np.asarray(self.x[1]))
         x = self.x[0] + (phi - self.phi[0]) / (self.phi[1] - self.phi[0]) * (self.x[1] - self.x[0])
         return self.psi[0] + (self.value(x) - start) / (end - start) * (self.psi[1] - self.psi[0])
 
     def table_angles(self) -> Any:
-        """Input angles of the rows of the table within the range; there it may have corners."""
+        """Return the input angles of the table rows inside the range, where the function may have corners."""
         x = np.asarray([row[0] for row in self.table], dtype=float)
         share = (x - float(self.x[0])) / (float(self.x[1]) - float(self.x[0]))
         share = share[(share > 0) & (share < 1)]
         return float(self.phi[0]) + share * (float(self.phi[1]) - float(self.phi[0]))
 
     def precision_points(self, count: int) -> tuple[Any, Any]:
-        """Angles at the precision points: Chebyshev's spacing, x = middle - half range cos((2j - 1) pi/(2 n))."""
+        """Return the angles at Chebyshev's precision points: x = middle - half range cos((2j - 1) pi/(2 n))."""
         turns = np.arange(1, 2 * count, 2) / np.longdouble(2 * count)
         share = ((1 - np.cos(turns * np.longdouble(PI))) / 2).astype(float)
         phi = self.phi[0] + share * (self.phi[1] - self.phi[0])
@@ -99,10 +101,13 @@ SHORT, LONG = 1e-6, 1e6  # lengths over l4 that still make a four-bar
 
 @dataclass(frozen=True)
 class AnglePairsTask:
-    """Given angles (rad); lengths (m) by name: one, or two of l1, l3, l4 with two pairs, l4 and l1 or l3 with three;
-    zero angles, None: to find.
+    """Given pairs of angles (rad) and lengths (m) of a four-bar.
 
-    choose: transmission, crank, or the number of a solution; keep: whether defects are put up with.
+    Attributes:
+        lengths: by name: one, or two of l1, l3, l4 with two pairs, or l4 and l1 or l3 with three pairs.
+        phi0, psi0: zero angles of input and output; None: to be found.
+        choose: transmission, crank, or the number of a solution.
+        keep: True if solutions with defects are accepted.
     """
 
     phi: tuple[float, ...]
@@ -116,24 +121,29 @@ class AnglePairsTask:
 
     @property
     def span(self) -> tuple[float, float]:
-        """First and last input angle that are used."""
+        """First and last input angle of the range."""
         return self.function.phi if self.function else (self.phi[0], self.phi[-1])
 
     @property
     def free(self) -> bool:
-        """Whether two pairs and one length leave l1/l4 free."""
+        """True if the task leaves l4/l1 free: two pairs and one length."""
         return len(self.phi) == 2 and len(self.lengths) == 1
 
     @property
     def approximate(self) -> bool:
-        """Whether there are more pairs than a four-bar can pass."""
+        """True if there are more pairs than a four-bar can pass through exactly."""
         return len(self.phi) > 3 + (self.phi0 is None) + (self.psi0 is None)
 
 
 class FourBarQuality(NamedTuple):
-    """Of four-bars (arrays of one shape): the least transmission angle (rad) over the range and the input angle there
-    (from AD), the defect ("", locks, branch), whether the input turns fully, whether a link is the other way than its
-    given zero says.
+    """Quality of four-bars, arrays of one shape.
+
+    Attributes:
+        least: smallest transmission angle (rad) over the range.
+        worst: input angle from AD where it occurs.
+        defect: "", "locks" or "branch".
+        crank: True if the input link rotates fully.
+        reversed: True if a link points opposite to its given zero direction.
     """
 
     least: Any
@@ -144,7 +154,7 @@ class FourBarQuality(NamedTuple):
 
 
 def rate_four_bars(found: FourBarRatios, task: AnglePairsTask) -> FourBarQuality:
-    """What four-bars are worth."""
+    """Rate four-bars: transmission angle, defect, full rotation of the input link."""
     l1, l2, l3, phi0 = (np.asarray(x, dtype=float) for x in (found.l1, found.l2, found.l3, found.phi0))
     l4 = np.ones(np.shape(l1))
     with np.errstate(all="ignore"):
@@ -164,8 +174,9 @@ def rate_four_bars(found: FourBarRatios, task: AnglePairsTask) -> FourBarQuality
 
 
 def four_bars_through(task: AnglePairsTask) -> FourBarRatios:
-    """All four-bars that are found for the task, over l4; the best of those whose ratio l4/l1 is free, or of those
-    that pass no pairs exactly.
+    """Find all four-bars of the task, with lengths over l4.
+
+    If l4/l1 is free, or no four-bar passes through all pairs exactly, only the best one is returned.
     """
     if len(task.phi) == 3 and len(task.lengths) == 2:
         found = _four_bar_of_circle(task)
@@ -186,12 +197,12 @@ def four_bars_through(task: AnglePairsTask) -> FourBarRatios:
 
 
 def four_bars_of_ratios(task: AnglePairsTask, ratios: Any) -> FourBarRatios:
-    """The four-bars through two pairs with l4/l1 = |ratio|; a negative one is a crank drawn the other way."""
+    """Find the four-bars through two pairs with l4/l1 = |ratio|; a negative ratio draws the crank the opposite way."""
     return _four_bars_through_two(task, np.broadcast_to([1.0, 0.0, 0.0], (len(ratios), 3)), ratios)
 
 
 def _four_bars_of_lengths(task: AnglePairsTask) -> FourBarRatios:
-    """The four-bars through two pairs with two given lengths; either link may be drawn the other way."""
+    """Find the four-bars through two pairs with two given lengths; either link may be drawn the opposite way."""
     a, b = sorted(task.lengths)
     ratio, sense = task.lengths[b] / task.lengths[a], np.array([1.0, -1.0])
     one, zero = np.ones(2), np.zeros(2)
@@ -203,8 +214,10 @@ def _four_bars_of_lengths(task: AnglePairsTask) -> FourBarRatios:
 
 
 def _four_bar_of_circle(task: AnglePairsTask) -> FourBarRatios:
-    """The four-bar through three pairs with l4 and l1 (or l3): B turned back about D by the output angles (C about A by
-    the input angles) has three places, and the centre of the circle through them is C (B) with its zero angle.
+    """Find the four-bar through three pairs with given l4 and l1 (or l3).
+
+    B rotated back about D by the output angles (or C about A by the input angles) has three positions; the centre of
+    the circle through them is C (or B), which gives its zero angle.
     """
     phi, psi = (np.asarray(x, EXACT) + (zero or 0.0) for x, zero in ((task.phi, task.phi0), (task.psi, task.psi0)))
     by_input = "l1" in task.lengths
@@ -219,7 +232,7 @@ def _four_bar_of_circle(task: AnglePairsTask) -> FourBarRatios:
 
 
 def _four_bars_through_two(task: AnglePairsTask, known: Any, value: Any) -> FourBarRatios:
-    """The four-bars through two pairs with conditions known . (p, q, s) = value, (n, 3) and (n,)."""
+    """Find the four-bars through two pairs with the conditions known . (p, q, s) = value, shapes (n, 3) and (n,)."""
     phi0, psi0 = task.phi0 or 0.0, task.psi0 or 0.0
     phi, psi = (
         np.broadcast_to(np.asarray(row, EXACT) + zero, (len(known), 2))
@@ -231,7 +244,7 @@ def _four_bars_through_two(task: AnglePairsTask, known: Any, value: Any) -> Four
 
 
 def _best_ratio(task: AnglePairsTask) -> FourBarRatios:
-    """The four-bar of best transmission through two pairs, l1/l4 being free."""
+    """Find the four-bar through two pairs with the best transmission angle, l4/l1 being free."""
 
     def badness(ratios: Any) -> Any:
         found = four_bars_of_ratios(task, ratios)
@@ -249,7 +262,7 @@ def _best_ratio(task: AnglePairsTask) -> FourBarRatios:
 
 
 def are_real(found: FourBarRatios) -> Any:
-    """Whether there are such four-bars, with links neither infinite nor of no length."""
+    """Return True for each four-bar that exists and whose link lengths are neither zero nor infinite."""
     numbers = np.stack([np.asarray(x, dtype=float) for x in found])
     lengths = numbers[:3]
     with np.errstate(all="ignore"):
@@ -257,7 +270,7 @@ def are_real(found: FourBarRatios) -> Any:
 
 
 def choose_four_bar(task: AnglePairsTask, found: FourBarRatios) -> int:
-    """Which of the four-bars is taken; one at least must have no defect, or defects be put up with."""
+    """Return the index of the four-bar to take; at least one must be free of defects, or defects be accepted."""
     if task.choose.isdigit():
         return int(task.choose) - 1
     mark = rate_four_bars(found, task)
@@ -313,7 +326,7 @@ BLOCK = FourBarByAnglesBlock
 
 
 def read(shape: FourBarByAnglesBlock, values: ValueReader) -> AnglePairsTask:
-    """The task in SI. Raises ProblemError."""
+    """Read the task into SI. Raises ProblemError."""
     lengths = read_numbers(shape, values, LENGTHS)
     function = None
     if shape.pairs is None:
@@ -351,7 +364,10 @@ def _check_lengths(lengths: dict[str, float], count: int) -> None:
 
 
 def _complete_zero_angles(zeros: dict[str, Any], count: int, lengths: dict[str, float]) -> None:
-    """The zero angles that are to be found stay None, others are 0: 4 pairs find one, more both that are not given."""
+    """Set zero angles that are not given to 0, except those that the task finds, which stay None.
+
+    Four pairs determine one zero angle, five and more both (if neither is given). Raises ProblemError.
+    """
     given = [key for key, value in zeros.items() if value is not None]
     if count == 3 and len(lengths) == 2:
         found, other = ("psi0", "phi0") if "l1" in lengths else ("phi0", "psi0")

@@ -2,10 +2,10 @@
 
     p cos(psi) - q cos(phi) + s = cos(phi - psi),   p = l4/l1, q = l4/l3, s = (l1^2 + l3^2 + l4^2 - l2^2)/(2 l1 l3)
 (F. Freudenstein, An analytical approach to the design of four-link mechanisms, Trans. ASME 76 (1954)). A negative p or
-q is a link drawn the other way: its zero angle is then half a turn more. With phi = phi0 + given angle, psi = psi0 +
-given angle, 4 pairs leave one of the zero angles to be found: the determinant of the four equations is a quadratic form
-in its cosine and sine; 5 pairs leave both: with delta = phi0 - psi0 a cubic form in cos(delta) and sin(delta).
-Arrays: tasks on the first axis, pairs on the last.
+q means a link drawn in the opposite direction: its zero angle is then greater by half a turn. With phi = phi0 + given
+angle and psi = psi0 + given angle, 4 pairs determine one zero angle: the determinant of the four equations is a
+quadratic form in its cosine and sine. 5 pairs determine both: with delta = phi0 - psi0 a cubic form in cos(delta) and
+sin(delta). Arrays: tasks on the first axis, pairs on the last.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ REAL: Final = 5e-7  # rad: so near to a real angle a root is one
 
 
 class FourBarRatios(NamedTuple):
-    """Lengths over l4 (positive) and zero angles (rad), arrays of one shape: a four-bar each."""
+    """Lengths over l4 (positive) and zero angles (rad) of four-bars, arrays of one shape."""
 
     l1: Any
     l2: Any
@@ -35,25 +35,25 @@ class FourBarRatios(NamedTuple):
     psi0: Any
 
     def at(self, index: Any) -> FourBarRatios:
-        """The four-bars at an index of the arrays."""
+        """Return the four-bars at an index of the arrays."""
         return FourBarRatios(*(np.asarray(value)[index] for value in self))
 
     @property
     def size(self) -> int:
-        """How many there are."""
+        """Number of four-bars."""
         return int(np.size(self.l1))
 
     def pins(self, phi: Any, psi: Any) -> tuple[Any, Any]:
-        """Pins B and C for given angles (without the zero angles), over l4; A is 0, D is 1."""
+        """Return pins B and C over l4 for given angles (without the zero angles); A is 0, D is 1."""
         return self.l1 * unit(self.phi0 + phi), 1 + self.l3 * unit(self.psi0 + psi)
 
 
 def pseudo_inverse(rows: Any) -> Any:
-    """Inverses (..., m, n) of rows (..., n, m) in ordinary precision, for corrections; of least squares where there are
-    more rows than columns, of least length where there are fewer; nan where rows are singular, whatever their size.
+    """Return the pseudo-inverses (..., m, n) of matrices (..., n, m) in double precision, for corrections.
 
-    Near positions make rows that are nearly the same: their determinant is as small as it may be, and they are still
-    good while their least singular value, over the largest one, is more than rounding.
+    Least squares if there are more rows than columns, least norm if there are fewer; nan for singular matrices. Pairs
+    that are close together give nearly equal rows and a small determinant; they are usable as long as the ratio of the
+    smallest to the largest singular value is above rounding.
     """
     near = np.asarray(rows, dtype=float)
     finite = np.isfinite(near).all((-1, -2), keepdims=True)
@@ -64,7 +64,7 @@ def pseudo_inverse(rows: Any) -> Any:
 
 
 def solve_linear(rows: Any, right: Any) -> Any:
-    """Linear systems (..., n, m), (..., n), refined in extended precision; nan where they are singular."""
+    """Solve linear systems (..., n, m), (..., n) with refinement in extended precision; nan if singular."""
     back = pseudo_inverse(rows)
     found = np.zeros((*np.shape(rows)[:-2], np.shape(rows)[-1]), dtype=EXACT)
     for _ in range(REFINEMENTS):
@@ -74,7 +74,7 @@ def solve_linear(rows: Any, right: Any) -> Any:
 
 
 def solve_homogeneous(rows: Any) -> Any:
-    """Two vectors (..., m, 2) that span what rows (..., m - 2, m) send to zero, in extended precision."""
+    """Return two vectors (..., m, 2) that span the null space of matrices (..., m - 2, m), in extended precision."""
     near, back = np.asarray(rows, dtype=float), pseudo_inverse(rows)
     near = np.where(np.isfinite(near), near, 0.0)
     found = np.swapaxes(np.linalg.svd(near)[2][..., -2:, :], -1, -2).astype(EXACT)
@@ -85,21 +85,22 @@ def solve_homogeneous(rows: Any) -> Any:
 
 
 def solve_pqs(phi: Any, psi: Any) -> Any:
-    """p, q, s (tasks, 3) of three or more pairs with their zero angles in them."""
+    """Return p, q, s (tasks, 3) from three or more pairs whose angles include the zero angles."""
     return solve_linear(_equation_rows(phi, psi), np.cos(phi - psi))
 
 
 def solve_two_pairs(phi: Any, psi: Any, known: Any, value: Any) -> Any:
-    """p, q, s (tasks, 3) of two pairs and a linear condition known . (p, q, s) = value."""
+    """Return p, q, s (tasks, 3) from two pairs and a linear condition known . (p, q, s) = value."""
     rows = np.concatenate([_equation_rows(phi, psi), np.asarray(known, dtype=EXACT)[..., None, :]], axis=-2)
     right = np.concatenate([np.cos(phi - psi), np.asarray(value, dtype=EXACT)[..., None]], axis=-1)
     return solve_linear(rows, right)
 
 
 def zero_angles_of_four(phi: Any, psi: Any, free: str) -> tuple[Any, Any]:
-    """Both zero angles (tasks, 2), nan where not real; phi and psi of four pairs, of which `free` still lacks its own.
+    """Return both zero angles (tasks, 2) from four pairs; nan if not real.
 
-    Angles half a turn away are the same four-bars.
+    free: the zero angle to be found, which its angles do not include yet. Solutions half a turn apart are the same
+    four-bar.
     """
 
     turn = phi - psi
@@ -122,10 +123,11 @@ def zero_angles_of_four(phi: Any, psi: Any, free: str) -> tuple[Any, Any]:
 
 
 def zero_angles_of_five(phi: Any, psi: Any) -> tuple[Any, Any]:
-    """Both zero angles (tasks, 3), nan where not real, of five pairs.
+    """Return both zero angles (tasks, 3) from five pairs; nan if not real.
 
-    The equations are homogeneous in p e^(-i psi0), -q e^(-i phi0), s and e^(i delta), all times a number: two vectors
-    span their solutions, and the directions of the three complex numbers, which must agree, make a cubic form.
+    The equations are homogeneous in p e^(-i psi0), -q e^(-i phi0), s and e^(i delta), up to a common factor: two
+    vectors span their solutions. The arguments of the three complex numbers must be consistent, which gives a cubic
+    form.
     """
     columns = (np.cos(psi), np.sin(psi), np.cos(phi), np.sin(phi), np.ones_like(phi), -np.cos(phi - psi))
     span = solve_homogeneous(np.stack([*columns, np.sin(phi - psi)], axis=-1))
@@ -142,11 +144,11 @@ def zero_angles_of_five(phi: Any, psi: Any) -> tuple[Any, Any]:
 
 
 def roots_of_cubic_forms(forms: Any) -> Any:
-    """Angles (tasks, 3), rad, in a half turn, where forms (tasks, 4) f0 s^3 + f1 s^2 c + f2 s c^2 + f3 c^3 of cosine
-    and sine vanish; nan where there is no more.
+    """Return the angles (tasks, 3) in a half turn at which f0 s^3 + f1 s^2 c + f2 s c^2 + f3 c^3 = 0, s and c being
+    sine and cosine; forms: (tasks, 4); nan for roots that are not real.
 
-    A form is a cubic of the tangent, whose real roots are known to half their digits where two lie together; `polished`
-    makes them exact.
+    The form is a cubic in the tangent. Close real roots are found to half the digits; `refine_by_newton` makes them
+    exact.
     """
     found = np.full((len(forms), 3), EXACT(np.nan))
     size = np.max(np.abs(forms), axis=-1)
@@ -159,7 +161,10 @@ def roots_of_cubic_forms(forms: Any) -> Any:
 
 
 def refine_by_newton(values: Any, phi: Any, psi: Any, free: tuple[str, ...]) -> Any:
-    """p, q, s, phi0, psi0 (tasks, 5) by Newton's method with residuals of 31 digits: near pairs take ten of them."""
+    """Refine p, q, s, phi0, psi0 (tasks, 5) by Newton's method.
+
+    The residuals carry 31 digits, as close pairs cancel about ten of them.
+    """
     columns = [0, 1, 2, *(["phi0", "psi0"].index(name) + 3 for name in free)]
     values, phi, psi = (_to_double_double(numbers) for numbers in (values, phi, psi))
     for _ in range(NEWTON_STEPS):
@@ -176,23 +181,23 @@ def refine_by_newton(values: Any, phi: Any, psi: Any, free: tuple[str, ...]) -> 
 
 
 def _to_double_double(numbers: Any) -> DoubleDouble:
-    """Numbers with all their digits as double-doubles."""
     numbers = np.asarray(numbers, dtype=EXACT)
     near = numbers.astype(float)
     return DoubleDouble(near, (numbers - near).astype(float))
 
 
 def equation_slopes(p: Any, q: Any, phi: Any, psi: Any) -> Any:
-    """Of the equation over p, q, s, phi0, psi0 (last axis), angles with their zeros; those over psi are the last."""
+    """Return the derivatives of the equation by p, q, s, phi0, psi0 (last axis); the angles include their zeros."""
     turn = np.sin(phi - psi)
     columns = np.cos(psi), -np.cos(phi), np.ones_like(phi), q * np.sin(phi) + turn, -p * np.sin(psi) - turn
     return np.stack(columns, -1)
 
 
 def output_angles(one: FourBarRatios, phi: Any, near: Any, side: float, open_: float | None = None) -> Any:
-    """Output angles (without psi0) of a four-bar at input angles phi; side: the sign of (BC x DC).
+    """Return the output angles (rad, without psi0) of a four-bar at input angles phi.
 
-    open_: what stands where it does not close; None: the angle where it is nearest to that.
+    side: sign of (BC x DC); near: angles to which the results are made nearest by whole turns. open_: the value where
+    the four-bar does not close; None: the angle at which it comes nearest to closing.
     """
     l1, l2, l3 = (np.asarray(x, dtype=float) for x in (one.l1, one.l2, one.l3))
     way = l1 * np.exp(1j * (float(one.phi0) + phi)) - 1
@@ -204,7 +209,7 @@ def output_angles(one: FourBarRatios, phi: Any, near: Any, side: float, open_: f
 
 
 def lengths_from_pqs(values: Any, phi: Any, psi: Any) -> FourBarRatios:
-    """Positive lengths from p, q, s, phi0, psi0 (tasks, 5); the coupler is measured at the first pair."""
+    """Return positive lengths from p, q, s, phi0, psi0 (tasks, 5); the first pair gives the coupler."""
     p, q, _, phi0, psi0 = (values[..., k] for k in range(5))
     half = EXACT(PI)
     with np.errstate(all="ignore"):
@@ -215,9 +220,10 @@ def lengths_from_pqs(values: Any, phi: Any, psi: Any) -> FourBarRatios:
 
 
 def solve_exact_pairs(phi: Any, psi: Any, phi0: Any = 0.0, psi0: Any = 0.0) -> FourBarRatios:
-    """All real four-bars (tasks, roots) through 3, 4 or 5 pairs (tasks, pairs); nan where there is no more root.
+    """Find all real four-bars (tasks, roots) through 3, 4 or 5 pairs (tasks, pairs); nan where a root is not real.
 
-    A zero angle (one, or one a task) of None is to be found: none for 3 pairs, one for 4, both for 5.
+    phi0, psi0: zero angles, one value or one for each task; None: to be found (none for 3 pairs, one for 4, both for
+    5).
     """
     phi, psi = np.atleast_2d(np.asarray(phi, EXACT)), np.atleast_2d(np.asarray(psi, EXACT))
     free = tuple(name for name, value in (("phi0", phi0), ("psi0", psi0)) if value is None)
@@ -241,7 +247,7 @@ def _equation_rows(phi: Any, psi: Any) -> Any:
 
 
 def _wrap_angle(angle: Any) -> Any:
-    """Within half a turn, in the angle's precision."""
+    """Return the angle in -pi..pi, without loss of precision."""
     full = 2 * EXACT(PI)
     return angle - full * np.round(np.asarray(angle / full, dtype=float))
 
@@ -258,8 +264,10 @@ SHARE: Final = 0.5  # l1/l4 of the parallelogram that is taken
 
 
 def find_parallelogram(phi: Any, psi: Any, phi0: Any, psi0: Any) -> FourBarRatios | None:
-    """The one that is taken for three to five pairs (rad; a zero angle of None is to be found); None where the angles
-    from the zeros do not stay equal. Angles that stay half a turn apart are equal ones of a link drawn the other way.
+    """Return the parallelogram for three to five pairs of equal angles (rad); None if the angles do not stay equal.
+
+    A zero angle of None is to be found. Angles that stay half a turn apart are equal ones of a link drawn in the
+    opposite direction.
     """
     phi, psi = np.asarray(phi, dtype=float), np.asarray(psi, dtype=float)
     if len(phi) < 3 or np.max(np.abs(np.sin((psi - phi - psi[0] + phi[0]) / 2))) > SAME:
@@ -295,7 +303,10 @@ GAIN: Final = 1e-15  # of the sum of squares: what a step must bring
 
 
 def fit_least_squares(phi: Any, psi: Any, phi0: Any, psi0: Any) -> tuple[FourBarRatios, Any]:
-    """Four-bars (n,), the best first, and their root mean square errors (rad); a zero angle of None is to be found."""
+    """Find four-bars (n,) with least squares of the output error, best first, and their root mean square errors (rad).
+
+    A zero angle of None is to be found.
+    """
     phi, psi = np.asarray(phi, dtype=float), np.asarray(psi, dtype=float)
     count = round(GRID ** (0.5 if phi0 is None and psi0 is None else 1))
     half = np.pi * np.arange(count) / count
@@ -314,14 +325,16 @@ def fit_least_squares(phi: Any, psi: Any, phi0: Any, psi0: Any) -> tuple[FourBar
 
 
 def fitted_lengths(values: Any) -> FourBarRatios:
-    """Positive lengths from p, q, s, phi0, psi0 (..., 5), the coupler from s, as no pair is passed exactly."""
+    """Return positive lengths from p, q, s, phi0, psi0 (..., 5); the coupler follows from s, as the pairs are not
+    exact.
+    """
     found, (p, q, s) = lengths_from_pqs(values, np.zeros(1), np.zeros(1)), (values[..., k] for k in range(3))
     with np.errstate(all="ignore"):
         return found._replace(l2=np.sqrt(1 + 1 / p**2 + 1 / q**2 - 2 * s / (p * q)))
 
 
 def _squared_errors(x: Any, phi: Any, psi: Any, side: float) -> tuple[Any, float]:
-    """Errors of the output angle, and their sum of squares: inf where the four-bar does not close."""
+    """Return the errors of the output angle (rad) and their sum of squares, inf if the four-bar does not close."""
     p, q, s, phi0, psi0 = x
     with np.errstate(all="ignore"):  # outputs take a link drawn the other way as one of negative length
         l2 = np.sqrt(1 + 1 / p**2 + 1 / q**2 - 2 * s / (p * q))
@@ -331,7 +344,7 @@ def _squared_errors(x: Any, phi: Any, psi: Any, side: float) -> tuple[Any, float
 
 
 def _descend(x: Any, phi: Any, psi: Any, free: list[int]) -> tuple[Any, float] | None:
-    """Where damped steps lead on the better one of both assemblies, and the sum of squares there; None: to no end."""
+    """Minimise the sum of squares by damped steps on the better assembly: end point and sum, or None."""
     side = min((1.0, -1.0), key=lambda side: _squared_errors(x, phi, psi, side)[1])
     (off, least), damping = _squared_errors(x, phi, psi, side), FIRST
     for _ in range(STEPS):

@@ -1,4 +1,4 @@
-"""Structural error of a four-bar that generates a function: its curve and its largest size."""
+"""Four-bar by pairs of angles: solution, structural error of a generated function, drawings and tables."""
 
 from __future__ import annotations
 
@@ -43,15 +43,15 @@ NEAR: Final = 0.9  # of the largest: peaks that are looked at closely
 
 
 def _scan_angles(function: GeneratedFunction) -> Any:
-    """Input angles (rad) that are looked at: even, and where the table has rows."""
+    """Return the input angles (rad) of the scan: evenly spaced ones and those of the table rows."""
     even = np.linspace(min(function.phi), max(function.phi), ERRORS)
     return np.unique(np.concatenate((even, function.table_angles())))
 
 
 def error_extremes(error: Callable[[Any], Any], function: GeneratedFunction) -> tuple[Any, float]:
-    """Input angles (rad) of the largest peaks of an error, and its largest size, to the last digits.
+    """Return the input angles (rad) of the largest peaks of an error, and the largest |error|, to full precision.
 
-    Where a table has a corner an extreme may be there; between the places of the scan the error has one extreme.
+    A peak may lie at a corner of a table; between two angles of the scan the error has at most one extreme.
     """
     phi = _scan_angles(function)
     size = np.abs(error(phi))
@@ -62,19 +62,19 @@ def error_extremes(error: Callable[[Any], Any], function: GeneratedFunction) -> 
 
 
 def assembly_of(one: FourBarRatios, task: AnglePairsTask) -> float:
-    """The assembly of the pairs: the sign of (BC x DC)."""
+    """Return the sign of (BC x DC) of the assembly that passes through the pairs."""
     phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
     return min((1.0, -1.0), key=lambda side: float(np.sum((output_angles(one, phi, psi, side) - psi) ** 2)))
 
 
 def output_errors(one: FourBarRatios, task: AnglePairsTask) -> Any:
-    """Errors of the output angle (rad) at the pairs."""
+    """Return the errors of the output angle (rad) at the pairs."""
     phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
     return output_angles(one, phi, psi, assembly_of(one, task)) - psi
 
 
 def draw_reached(one: FourBarRatios, task: AnglePairsTask) -> Diagram:
-    """Output angles over the input, and the pairs they are to be near."""
+    """Draw the output angle over the input angle, with the required pairs."""
     side, (start, end) = assembly_of(one, task), task.span
     phi, at_pairs = np.linspace(float(start), float(end), ERRORS), np.asarray(task.phi, dtype=float)
     psi = np.asarray(task.psi, dtype=float)
@@ -93,7 +93,7 @@ def draw_reached(one: FourBarRatios, task: AnglePairsTask) -> Diagram:
 
 
 def draw_structural_error(one: FourBarRatios, task: AnglePairsTask) -> tuple[Diagram, float]:
-    """The curve of structural error over the input angle, with the points of the task, and its largest size."""
+    """Draw the structural error over the input angle, with the points of the task; return the largest |error| (rad)."""
     assert task.function
     function = task.function
     side = assembly_of(one, task)
@@ -119,7 +119,7 @@ def draw_structural_error(one: FourBarRatios, task: AnglePairsTask) -> tuple[Dia
 
 
 def draw_construction(one: FourBarRatios, given_phi: Any, given_psi: Any, size: float) -> GeometricConstruction:
-    """All positions turned back about A to the first input: C1, C2', C3' ... lie on a circle about B1."""
+    """Draw all positions rotated back about A to the first input: C1, C2', C3' ... lie on a circle about B1."""
     phi, psi = np.asarray(given_phi, float), np.asarray(given_psi, float)
     b, c = (np.asarray(x, dtype=complex) * size for x in one.pins(phi, psi))
     back = c * np.exp(-1j * (phi - phi[0]))
@@ -200,7 +200,7 @@ FAMILY: Final = 121  # four-bars through two pairs that are listed, of each sens
 
 
 def solve(task: AnglePairsTask) -> SynthesisOutcome:
-    """The task of one file. Raises Infeasible."""
+    """Solve the task of one file. Raises Infeasible."""
     found, at = choose_solution(task)
     one, mark = found.at(at), rate_four_bars(found.at(at), task)
     any_one = find_parallelogram(task.phi, task.psi, task.phi0, task.psi0) is not None
@@ -238,7 +238,7 @@ def solve(task: AnglePairsTask) -> SynthesisOutcome:
 
 
 def choose_solution(task: AnglePairsTask) -> tuple[FourBarRatios, int]:
-    """All four-bars of the task, and the number of the one that is taken. Raises Infeasible."""
+    """Return all four-bars of the task and the index of the one taken. Raises Infeasible."""
     _refuse_inputs(task)
     found = four_bars_through(task)
     defects = rate_four_bars(found, task).defect
@@ -255,12 +255,12 @@ def choose_solution(task: AnglePairsTask) -> tuple[FourBarRatios, int]:
 
 
 def refuse(task: AnglePairsTask) -> None:
-    """Raises Infeasible with the reason where there is no such four-bar."""
+    """Raise Infeasible, with the reason, if no such four-bar exists."""
     choose_solution(task)
 
 
 def _refuse_inputs(task: AnglePairsTask) -> None:
-    """The input only grows, or only falls, by less than a turn. Raises Infeasible."""
+    """Raise Infeasible unless the input angles only increase, or only decrease, by less than one turn."""
     steps = np.diff(np.asarray(task.phi, dtype=float))
     back = np.flatnonzero(steps * (np.sign(steps[0]) or 1.0) <= 0) + 1
     if back.size and not task.function:
@@ -272,7 +272,7 @@ def _refuse_inputs(task: AnglePairsTask) -> None:
 
 
 def _frame_length(task: AnglePairsTask, one: FourBarRatios) -> Any:
-    """l4 (m) of a four-bar, by the length that is given."""
+    """Return l4 (m) of a four-bar from the given length."""
     name = next(iter(task.lengths))
     return task.lengths[name] / (1.0 if name == "l4" else getattr(one, name))
 
@@ -312,7 +312,7 @@ def _mean_error(one: FourBarRatios, task: AnglePairsTask) -> float:
 
 
 def _measured_outputs(one: FourBarRatios, results: Any, phi: Any, near: Any) -> Any:
-    """Output angles of the mechanism, from their zero, at input angles; of all whole turns those nearest to `near`."""
+    """Return the output angles of the mechanism from their zero at input angles, nearest to `near` by whole turns."""
     return four_bar.output_angles(results, phi + float(one.phi0), near + float(one.psi0)) - float(one.psi0)
 
 
@@ -330,7 +330,7 @@ def _measured_output(one: FourBarRatios, phi: float, psi: float, results: Any) -
 
 
 def _measured_largest_error(one: FourBarRatios, task: AnglePairsTask, results: Any) -> float:
-    """The largest structural error on the mechanism."""
+    """Return the largest structural error measured on the mechanism."""
     assert task.function
     function = task.function
 
@@ -368,7 +368,7 @@ def _notes(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality, any_o
 
 
 def _tabulate_solutions(task: AnglePairsTask, found: FourBarRatios, at: int) -> Listing:
-    """Every four-bar that was found, by the number by which it can be chosen."""
+    """Tabulate all solutions with the numbers by which they can be chosen."""
     columns = (
         ("number_of", N_("choose"), "name"),
         ("taken", N_("taken"), "word"),
@@ -387,7 +387,7 @@ def _tabulate_solutions(task: AnglePairsTask, found: FourBarRatios, at: int) -> 
 
 
 def _tabulate_pairs(task: AnglePairsTask, one: FourBarRatios) -> Listing:
-    """Every pair, and by how much the output is off."""
+    """Tabulate the pairs and the errors of the output angle."""
     columns = (
         ("phi", N_("input angle"), "angle"),
         ("psi", N_("output angle, wanted"), "angle"),
@@ -402,7 +402,7 @@ def _tabulate_pairs(task: AnglePairsTask, one: FourBarRatios) -> Listing:
 
 
 def _tabulate_family(task: AnglePairsTask) -> Listing:
-    """Four-bars through two pairs for the ratios l1/l4 that are compared."""
+    """Tabulate the four-bars through two pairs over the free ratio l4/l1."""
     columns = (("free", N_("l4/l1, free with two pairs"), "number"), *COLUMNS, ("defect", N_("defects"), "word"))
     ratios = np.geomspace(1 / LONGEST, LONGEST, FAMILY)
     ratios = np.concatenate([ratios, -ratios])
@@ -415,7 +415,7 @@ def _tabulate_family(task: AnglePairsTask) -> Listing:
 
 
 def _solution_row(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality) -> tuple[float, ...]:
-    """Lengths (m), zero angles and least transmission angle of a four-bar."""
+    """Return lengths (m), zero angles and smallest transmission angle of a four-bar."""
     size = _frame_length(task, one)
     return (*(float(x * size) for x in one[:3]), float(size), float(one.phi0), float(one.psi0), float(mark.least))
 

@@ -1,1 +1,1 @@
-"""Four-bar by k and both extreme positions of its rocker; the crank's pivot A is chosen on its arcs."""
+"""Four-bar by k and both extreme positions of its rocker; the crank pivot A is chosen on its arcs."""

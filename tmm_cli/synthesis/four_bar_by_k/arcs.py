@@ -1,14 +1,15 @@
-"""The arcs of pivots A of the four-bars by k and both extreme positions C1, C2 of their rocker.
+"""Arcs of the crank pivot A of four-bars with given k and extreme positions C1, C2 of the rocker.
 
-C1C2 = 2 h is seen from A under theta = pi (k - 1)/(k + 1): A lies on one of two arcs of equal circles, on D's side of
-C1C2 or beyond it. With beta the angle A C2 C1, w = l2/h is a place along the arc that theta = 0 does not spoil:
+C1C2 = 2 h is seen from A at the angle theta = pi (k - 1)/(k + 1): A lies on one of two arcs of equal circles, on D's
+side of C1C2 or beyond it. With beta the angle A C2 C1, w = l2/h is a coordinate along the arc that stays regular at
+theta = 0:
     sin(beta + theta/2) = w sin(theta/2),
     l1 = (AC2 - AC1)/2 = h cos(beta + theta/2)/cos(theta/2),  l2 = AC2 - l1 = w h.
-The triangles A C1 D and A C2 D make the crank turn fully; both positions belong to one motion when C1 and C2 lie on one
-side of AD, so that the rocker does not pass its dead position, and AC2 > AC1 is the order of the positions:
+The triangles A C1 D and A C2 D ensure that the crank rotates fully. Both positions belong to one motion if C1 and C2
+lie on one side of AD, so that the rocker does not pass its dead position; AC2 > AC1 gives the order of the positions:
     0 < beta < pi/2 - psi/2 - theta beyond C1C2,  0 < beta < pi/2 - |psi/2 - theta/2| - theta/2 on D's side.
-Along each arc l4 = AD is monotonic, for the nearest and the farthest place of a circle lie on the line to its centre;
-l2 grows from h on, l1 falls from h on (with k = 1 it is h everywhere).
+Along each arc l4 = AD is monotonic, as the nearest and the farthest point of a circle lie on the line through its
+centre; l2 increases from h, l1 decreases from h (with k = 1 it is h everywhere).
 """
 
 from __future__ import annotations
@@ -33,11 +34,14 @@ FARTHEST: Final = 1e6  # l2 over half C1C2 where the arc is a straight line
 
 @dataclass(frozen=True)
 class FourBarByKTask:
-    """Rocker l3 (m), its extreme angles (rad), k, its support D; and the choice of A.
+    """Rocker l3 (m), its extreme angles (rad), k, its pivot D (`support`), and the condition for A.
 
-    psi1: where crank and coupler overlap, psi2: where they are in line. choose: best, level (as high as D), near (a
-    place), l1, l2, l4, xA or yA (m), pressure (largest angle, rad). sense: of the crank (1: counterclockwise) with the
-    slow stroke from psi1 to psi2; 0: any.
+    Attributes:
+        psi1, psi2: rocker angle where crank and coupler overlap, and where they are in line.
+        choose: best, level (A as high as D), near (nearest to a point), l1, l2, l4, xA or yA (m), pressure (largest
+            pressure
+            angle, rad); the value stands in the field of that name.
+        sense: sense of rotation of the crank (1: counterclockwise) with the slow stroke from psi1 to psi2; 0: any.
     """
 
     l3: Any
@@ -66,9 +70,9 @@ class FourBarByKTask:
 
 @dataclass(frozen=True)
 class FourBarByKSolution:
-    """Lengths (m), the pivot a (complex, m), the slope of a over w, the largest pressure angle and beta (rad).
+    """Lengths (m), pivot `a` (complex, m), derivative of `a` with respect to w, largest pressure angle and beta (rad).
 
-    side: -1 on D's side of C1C2, 1 beyond; sense: of the crank whose slow stroke leads from psi1 to psi2.
+    side: -1 on D's side of C1C2, 1 beyond it; sense: of the crank whose slow stroke leads from psi1 to psi2.
     """
 
     w: Any
@@ -84,20 +88,20 @@ class FourBarByKSolution:
 
 
 def largest_beta(task: FourBarByKTask, side: Any) -> Any:
-    """The bound of beta on an arc; negative where the arc has no pivot."""
+    """Return the upper limit of beta (rad) on an arc; negative if the arc has no pivot."""
     half, theta = task.swing / 2, task.theta
     return np.where(np.asarray(side) > 0, np.pi / 2 - half - theta, np.pi / 2 - np.abs(half - theta / 2) - theta / 2)
 
 
 def largest_w(task: FourBarByKTask, side: Any) -> Any:
-    """The bound of w on an arc that has pivots."""
+    """Return the upper limit of w on an arc that has pivots."""
     sine = np.sin(task.theta / 2)
     most = np.sin(largest_beta(task, side) + task.theta / 2) / np.where(sine > 0, sine, 1.0)
     return np.where(sine > 0, np.minimum(most, FARTHEST), FARTHEST)
 
 
 def four_bar_at(task: FourBarByKTask, w: Any, side: Any) -> FourBarByKSolution:
-    """The four-bar whose pivot A stands at a place of an arc."""
+    """Compute the four-bar whose pivot A lies at the coordinate w of an arc."""
     half, theta, l3 = task.swing / 2, task.theta, task.l3
     h, s, c = l3 * np.sin(half), np.sin(theta / 2), np.cos(theta / 2)
     sine = w * s
@@ -128,7 +132,7 @@ def four_bar_at(task: FourBarByKTask, w: Any, side: Any) -> FourBarByKSolution:
 
 
 def admissible_arcs(task: FourBarByKTask) -> list[int]:
-    """The sides whose arcs have pivots; with k = 1 both are the same straight line."""
+    """Return the sides whose arcs have pivots; with k = 1 both are the same straight line."""
     if task.k == 1:
         return [-1]
     way = 1 if task.psi2 > task.psi1 else -1
@@ -138,7 +142,7 @@ def admissible_arcs(task: FourBarByKTask) -> list[int]:
 
 
 def sample_arc(task: FourBarByKTask, side: int, count: int = 400) -> Any:
-    """Places w along an arc, close together where the mechanism changes fast, from end to end."""
+    """Return coordinates w along an arc from end to end, denser where the mechanism changes fast."""
     theta, most = float(task.theta), float(largest_w(task, side))
     first = END_MARGIN * min(1.0, most - 1)
     found = 1 + np.geomspace(first, most - 1, count)
@@ -150,9 +154,10 @@ def sample_arc(task: FourBarByKTask, side: int, count: int = 400) -> Any:
 
 
 def sample_whole_arc(task: FourBarByKTask, side: int, count: int = 121) -> Any:
-    """Places w of an arc with both its ends, closer together towards them, where the pressure angle changes fast.
+    """Return coordinates w of an arc including both ends, denser near them, where the pressure angle changes fast.
 
-    Even in the angle at C2 and in the logarithm of w alike: on arcs that are nearly straight the first says little.
+    Evenly spaced both in the angle at C2 and in the logarithm of w: on nearly straight arcs the angle alone resolves
+    little.
     """
     share = (1 - np.cos(np.linspace(0, np.pi, count))) / 2
     theta, most = float(task.theta), float(largest_w(task, side))
@@ -163,11 +168,12 @@ def sample_whole_arc(task: FourBarByKTask, side: int, count: int = 121) -> Any:
 
 
 def pivots_on_line(task: FourBarByKTask) -> list[Any]:
-    """Places w of the pivots A = t + i height, t real, from which C1C2 is seen under theta; D is the origin.
+    """Return the coordinates w of the pivots A = t + i height, t real, from which C1C2 is seen at theta; D is the
+    origin.
 
-    z = conj(C1 - A)(C2 - A): sin(theta) Re z = +- cos(theta) Im z, a quadratic in t: the line cuts each of both circles
-    twice. An upright line, through xA, is such a line of the task turned to the left. Whether a place is admissible is
-    not asked here.
+    z = conj(C1 - A)(C2 - A): sin(theta) Re z = +- cos(theta) Im z, a quadratic equation in t: the line cuts each of the
+    two circles twice. A vertical line, through xA, is such a line of the task rotated to the left. The pivots need not
+    be admissible.
     """
     l3, middle, half = task.l3, (task.psi1 + task.psi2) / 2, (task.psi2 - task.psi1) / 2
     sine, cosine = np.sin(task.theta), np.cos(task.theta)
@@ -188,5 +194,5 @@ def pivots_on_line(task: FourBarByKTask) -> list[Any]:
 
 
 def line_offset(task: FourBarByKTask) -> Any:
-    """The height of A, or its x, over that of D in the origin."""
+    """Return the required height of A, or its required x, relative to D."""
     return task.xA if task.choose == "xA" else task.yA if task.choose == "yA" else 0.0

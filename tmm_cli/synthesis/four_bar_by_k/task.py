@@ -57,7 +57,7 @@ CUT: Final = 4.0  # (and of the rocker); else rods up to this many of that
 def draw_construction(
     task: FourBarByKTask, found: FourBarByKSolution, family: Sequence[FourBarByKSolution]
 ) -> GeometricConstruction:
-    """Both extreme positions, the circles on which C1C2 is seen under theta, and the pivots that may be A."""
+    """Draw both extreme positions, the circles from which C1C2 is seen at theta, and the admissible arcs of A."""
     d, a = complex(task.support), complex(found.a)
     c1, c2 = (complex(d + task.l3 * np.exp(1j * psi)) for psi in (task.psi1, task.psi2))
     way1, way2 = (c1 - a) / abs(c1 - a), (c2 - a) / abs(c2 - a)
@@ -120,7 +120,7 @@ def draw_construction(
 def draw_diagrams(
     task: FourBarByKTask, found: FourBarByKSolution, family: Sequence[FourBarByKSolution]
 ) -> tuple[Diagram, Diagram]:
-    """Largest pressure angle, and the lengths of crank and frame, over that of the coupler along the arcs."""
+    """Draw the largest pressure angle, and the lengths of crank and frame, over the coupler length along the arcs."""
     size, most = max(float(found.l2), float(task.l3)), max(float(np.max(f.l2)) for f in family)
     if most > LONGEST * size:
         most = CUT * size
@@ -150,7 +150,7 @@ def draw_diagrams(
 
 
 def tabulate_family(family: Sequence[FourBarByKSolution]) -> Listing:
-    """The family in numbers, from end to end of every arc, where the rocker is dead."""
+    """Tabulate the four-bars along every arc, including its ends, where the rocker is in a dead position."""
     columns = (
         ("side", N_("arc"), "word"),
         ("beta", N_("place on the arc, angle AC2C1"), "angle"),
@@ -173,7 +173,7 @@ def tabulate_family(family: Sequence[FourBarByKSolution]) -> Listing:
 
 
 def side_name(found: FourBarByKSolution) -> str:
-    """Which of the two arcs it is on."""
+    """Return the name of the arc on which the pivot lies."""
     return N_("beyond C1C2") if int(found.side) > 0 else N_("on D's side of C1C2")
 
 
@@ -210,7 +210,7 @@ def _distance_to_near(found: FourBarByKSolution, task: FourBarByKTask) -> Any:
 
 
 def _pressure_slope(f: FourBarByKSolution, task: FourBarByKTask) -> Any:
-    """Proportional to the rise of the sine of the largest pressure angle over w."""
+    """Return a multiple of the derivative of sin(largest pressure angle) with respect to w."""
     half, theta, l3 = task.swing / 2, task.theta, task.l3
     h, s, c = l3 * np.sin(half), np.sin(theta / 2), np.cos(theta / 2)
     l1_rise = -f.w * (h * s / c) ** 2 / f.l1
@@ -243,7 +243,7 @@ EQUATIONS: Final[Mapping[str, Callable[[FourBarByKSolution, FourBarByKTask], Any
 
 
 def _find_crossings(task: FourBarByKTask, side: int, function: Any) -> list[Any]:
-    """Where a function of what is found vanishes along an arc."""
+    """Return the coordinates w along an arc at which a function of the four-bar vanishes."""
     if task.choose in ON_LINE:
         fair = [w for w in pivots_on_line(task) if 1 < w < largest_w(task, side)]
         return [w for w in fair if abs(function(f := four_bar_at(task, w, side), task)) < SAME * (f.l2 + task.l3)]
@@ -256,7 +256,7 @@ def _find_crossings(task: FourBarByKTask, side: int, function: Any) -> list[Any]
 
 
 def _find_minimum(task: FourBarByKTask, side: int, choice: str) -> Any:
-    """Where something of what is found is least along an arc: where its slope vanishes, or an end of the arc."""
+    """Return the coordinate w of the smallest value of an objective: a zero of its slope, or an end of the arc."""
     w = sample_arc(task, side)
     here = int(np.argmin(OBJECTIVES[choice](four_bar_at(task, w, side), task)))
     if here in (0, len(w) - 1):
@@ -266,9 +266,9 @@ def _find_minimum(task: FourBarByKTask, side: int, choice: str) -> Any:
 
 
 def choose_pivot(task: FourBarByKTask) -> FourBarByKSolution:
-    """The pivot that was asked for; the one of best transmission where several are. Raises Infeasible.
+    """Find the pivot that meets the task; of several the one with the best transmission angle. Raises Infeasible.
 
-    It is looked for with D in the origin: a support that is far away takes no digits.
+    The search has D in the origin: a distant support costs no digits.
     """
     _refuse_numbers(task)
     beside = {
@@ -301,7 +301,7 @@ def choose_pivot(task: FourBarByKTask) -> FourBarByKSolution:
 
 
 def _pressure_refusal(task: FourBarByKTask) -> Infeasible:
-    """The refusal of a largest pressure angle that no pivot of the admissible arcs has."""
+    """Return the refusal of a largest pressure angle that no pivot of the admissible arcs has."""
     least = min(
         float(four_bar_at(task, _find_minimum(task, side, "best"), side).pressure) for side in admissible_arcs(task)
     )
@@ -310,7 +310,7 @@ def _pressure_refusal(task: FourBarByKTask) -> Infeasible:
 
 
 def refuse(task: FourBarByKTask) -> None:
-    """Raises Infeasible with the reason where there is no such pivot."""
+    """Raise Infeasible, with the reason, if no such pivot exists."""
     choose_pivot(task)
 
 
@@ -346,7 +346,7 @@ def _refuse_numbers(task: FourBarByKTask) -> None:
 
 
 def solve(task: FourBarByKTask) -> SynthesisOutcome:
-    """The task of one file. Raises Infeasible."""
+    """Solve the task of one file. Raises Infeasible."""
     f = choose_pivot(task)
     demands = [
         Demand(N_("crank turns fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
@@ -399,7 +399,7 @@ def _given_values(task: FourBarByKTask) -> tuple[NamedValue, ...]:
 
 
 def _found_values(task: FourBarByKTask, f: FourBarByKSolution) -> tuple[NamedValue, ...]:
-    """The four-bar, where its pivot stands, what that means for the crank, and how far the admissible arcs reach."""
+    """Return the values of the solution: four-bar, pivot, its arc, sense of the crank, ends of the admissible arcs."""
     at_c2 = task.support + task.l3 * unit(task.psi2) - f.a
     found = [
         NamedValue("l1", f.l1, *QUANTITIES["l1"]),
@@ -470,7 +470,7 @@ BLOCK = FourBarByKBlock
 
 
 def read(shape: FourBarByKBlock, values: ValueReader) -> FourBarByKTask:
-    """The task in SI. Raises ProblemError."""
+    """Read the task into SI. Raises ProblemError."""
     ways = [name for name in CHOICE_KEYS if getattr(shape, name) is not None]
     if len(ways) > 1:
         raise ProblemError(
