@@ -56,7 +56,7 @@ def solve(
 
 
 def structure_of(problem: Problem | TaskProblem) -> Results:
-    """Compute the structure alone; a synthesis task is solved only if the structure needs lengths. Raises ProblemError."""
+    """Compute the structure alone; a synthesis task is solved only if lengths are needed. Raises ProblemError."""
     draft = problem.draft() if isinstance(problem, TaskProblem) else None
     if draft is not None:
         try:

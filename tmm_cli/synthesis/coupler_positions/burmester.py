@@ -1,12 +1,13 @@
-"""Pivots that guide a plane through 2, 3 or 4 positions: centres of circles through the places of one of its points.
+"""Pivots that guide a plane through 2, 3 or 4 positions: centres of circles through the positions of one of its points.
 
-Positions: places P (complex, m) of the plane's origin and angles theta (rad) of its axis. A dyad AB has its pivot A on
-the frame and its pin B in the plane (b, in the plane's axes). For 4 positions B lies on the circle-point curve and A on
-the centre-point curve (L. Burmester, Lehrbuch der Kinematik, 1888); by the turn beta2 of AB from position 1 to 2,
+A position is a point P (complex, m), the origin of the plane, and an angle theta (rad) of its axis. A dyad AB has its
+pivot A on the frame and its pin B in the plane (b, in the plane's axes). For 4 positions B lies on the circle-point
+curve and A on the centre-point curve (L. Burmester, Lehrbuch der Kinematik, 1888); with the rotation beta2 of AB from
+position 1 to 2,
     W (e^(i beta_j) - 1) + Z (e^(i alpha_j) - 1) = P_j - P_1,
-W = AB and Z = BP in position 1, alpha_j = theta_j - theta_1; its determinant is a closed four-bar of the unknown turns
-(G. N. Sandor, A. G. Erdman, Advanced Mechanism Design 2, 1984). Extended precision throughout; leading axes are many
-dyads or tasks.
+where W = AB and Z = BP in position 1, alpha_j = theta_j - theta_1. The determinant of these equations is a closed four-
+bar of the unknown rotations (G. N. Sandor, A. G. Erdman, Advanced Mechanism Design 2, 1984). Extended precision
+throughout; leading axes of arrays are dyads or tasks.
 """
 
 from __future__ import annotations
@@ -27,22 +28,25 @@ COMPLEX: Final = np.clongdouble
 
 @dataclass(frozen=True)
 class CouplerPoses:
-    """Places (m) and angles (rad), positions on the last axis."""
+    """Positions of the coupler: points (m, complex) and angles (rad), positions on the last axis."""
 
     places: Any
     angles: Any
 
     def on_frame(self, local: Any) -> Any:
-        """Places of points of the plane, positions on a last axis more."""
+        """Transform points of the plane to the frame, in every position; positions on an added last axis."""
         return self.places + np.asarray(local, COMPLEX)[..., None] * unit_vector(self.angles)
 
     def in_plane(self, fixed: Any) -> Any:
-        """Points of the frame in the plane's axes, in every position."""
+        """Transform points of the frame to the plane's axes, in every position."""
         return (np.asarray(fixed, COMPLEX)[..., None] - self.places) * unit_vector(-np.asarray(self.angles))
 
     @cached_property
     def loop(self) -> tuple[Any, ...]:
-        """Of the closed four-bar of four positions: P_j - P_1, e^(i alpha_j) - 1, d2, d3, |d3|, |d4|, d2 + d3 + d4."""
+        """Coefficients of the closed four-bar of four positions.
+
+        P_j - P_1, e^(i alpha_j) - 1, d2, d3, |d3|, |d4|, d2 + d3 + d4.
+        """
         places, angles = np.asarray(self.places, COMPLEX), np.asarray(self.angles, EXACT)
         d, a = places[..., 1:] - places[..., :1], unit_vector(angles[..., 1:] - angles[..., :1]) - 1
         d2, d3, d4 = (
@@ -65,18 +69,18 @@ class Dyads:
 
 
 def unit_vector(angle: Any) -> Any:
-    """e^(i angle) in extended precision."""
+    """Return e^(i angle) in extended precision."""
     angle = np.asarray(angle, EXACT)
     return np.cos(angle) + 1j * np.sin(angle)
 
 
 def equal_angles(angles: Any) -> bool:
-    """Whether the plane does not turn between positions of these angles (rad)."""
+    """Return True if the plane does not rotate between positions with these angles (rad)."""
     return bool(np.all(np.abs(unit_vector(np.asarray(angles) - angles[0]) - 1) < NO_TURN))
 
 
 def circle_centre(places: Any) -> Any:
-    """Centre of the circle through three places (last axis); infinite or nan where they lie on a line."""
+    """Return the centre of the circle through three points (last axis); infinite or nan if they lie on a line."""
     first, second = places[..., 1] - places[..., 0], places[..., 2] - places[..., 0]
     with np.errstate(all="ignore"):
         area = (np.conj(first) * second).imag
@@ -85,7 +89,9 @@ def circle_centre(places: Any) -> Any:
 
 
 def point_at_distance(places: Any, radius: Any, side: float) -> Any:
-    """The point at a distance from two places (last axis), to the left (1) or right (-1) of the way between them."""
+    """Return the point at distance `radius` from two points (last axis), on the left (1) or right (-1) of the line from
+    the first to the second.
+    """
     way = places[..., 1] - places[..., 0]
     half = np.abs(way) / 2
     with np.errstate(all="ignore"):
@@ -94,9 +100,12 @@ def point_at_distance(places: Any, radius: Any, side: float) -> Any:
 
 
 def dyads_by_rotation(poses: CouplerPoses, turn: Any, branch: Any, ends: bool = False) -> Dyads:
-    """Dyads through four positions, AB turning by `turn` (rad) from 1 to 2; branch: 0 or 1; nan where there is none.
+    """Return the dyads through four positions whose link AB rotates by `turn` (rad) from position 1 to 2; nan if there
+    is none.
 
-    ends: turns are known to have dyads, and are not outside the last ones but for rounding.
+    Args:
+        branch: 0 or 1, which of the two solutions.
+        ends: True if the rotations are known to have dyads, and exceed the limits only by rounding.
     """
     places, (d, a, d2, d3, size3, size4, total) = np.asarray(poses.places, COMPLEX), poses.loop
     second = unit_vector(turn)
@@ -116,10 +125,13 @@ def dyads_by_rotation(poses: CouplerPoses, turn: Any, branch: Any, ends: bool = 
 
 @dataclass(frozen=True)
 class GuidanceQuality:
-    """Of four-bars ABCD driven by AB from the first to the last position.
+    """Quality of four-bars ABCD driven by AB from the first to the last position.
 
-    defect: 0 none, 1 positions on two assemblies, 2 not in order, 3 AB locks; least: transmission angle (rad); turn: of
-    AB (rad, signed); worst: the angle of AB from AD where transmission is least.
+    Attributes:
+        defect: 0 none, 1 positions on two assemblies, 2 positions not in order, 3 AB locks.
+        least: smallest transmission angle (rad).
+        turn: rotation of AB (rad, signed).
+        worst: angle of AB from AD where the transmission angle is smallest.
     """
 
     defect: Any
@@ -129,7 +141,7 @@ class GuidanceQuality:
 
 
 def rate_guidance(poses: CouplerPoses, first: Dyads, second: Dyads) -> GuidanceQuality:
-    """Marks of the four-bars of dyads AB and DC (broadcast together)."""
+    """Rate the four-bars formed by dyads AB and DC (broadcast together)."""
     b, c = poses.on_frame(first.pin), poses.on_frame(second.pin)
     a, d = np.asarray(first.pivot)[..., None], np.asarray(second.pivot)[..., None]
     b, c, a, d = (np.asarray(x, complex) for x in (b, c, a, d))
@@ -162,8 +174,11 @@ SIDES: Final = {"left": 1.0, "right": -1.0}
 
 @dataclass(frozen=True)
 class DyadData:
-    """What is given of a dyad: its pin (coupler's axes) or its pivot (m); length (m) and side with two positions; with
-    four the turn from position 1 to 2 (rad) and branch (0 or 1), or a place (m) that its pivot shall be near to."""
+    """Given data of a dyad: its pin (m, coupler's axes) or its pivot (m).
+
+    With two positions also its length (m) and side; with four positions instead the rotation `turn` from position 1 to
+    2 (rad) and the branch (0 or 1), or a point `near` (m) to which its pivot shall be nearest.
+    """
 
     pin: Any = None
     pivot: Any = None
@@ -176,9 +191,10 @@ class DyadData:
 
 @dataclass(frozen=True)
 class CouplerPositionsTask:
-    """Places (m) and angles (rad) of the coupler; what is given of AB and of DC; keep: defects are put up with.
+    """Positions (m, rad) of the coupler and the given data of the dyads AB and DC.
 
-    within: opposite corners (m) of a box in which pivots lie that are free with four positions.
+    keep: True if solutions with defects are accepted. within: opposite corners (m) of a box that contains the free
+    pivots of four positions.
     """
 
     places: tuple[Any, ...]
@@ -193,13 +209,16 @@ class CouplerPositionsTask:
 
     @property
     def still(self) -> bool:
-        """Whether the coupler does not turn between four positions."""
+        """True if the coupler does not rotate between four positions."""
         return len(self.angles) == 4 and equal_angles(self.poses.angles)
 
     @property
     def size(self) -> float:
-        """The largest distance between positions, or of what is given of the coupler, m; where all that is nothing, of
-        pivots that are given, or a length."""
+        """Characteristic length of the task, m.
+
+        The largest distance between positions, or of a given pin from the coupler's origin; if these are zero, the
+        largest distance of a given pivot, or a given length.
+        """
         places = np.asarray(self.places, complex)
         given = [abs(complex(s.pin)) for s in self.sides.values() if s.pin is not None]
         found = float(max(np.max(np.abs(places[:, None] - places)), *given, 0.0))
@@ -209,7 +228,7 @@ class CouplerPositionsTask:
         return found
 
     def outside(self, places: Any) -> Any:
-        """How far places lie outside the box (m), 0 within."""
+        """Return the distance (m) of points from the box, 0 inside it."""
         if self.within is None:
             return np.zeros(np.shape(places))
         (x, y), (u, v) = ((corner.real, corner.imag) for corner in self.within)

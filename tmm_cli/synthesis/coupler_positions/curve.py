@@ -1,8 +1,10 @@
-"""Burmester's curves of four positions with a parameter that is smooth all along, and their parts of sensible links.
+"""Burmester's curves of four positions with a parameter along which they are smooth, and their parts with sensible
+links.
 
-The closed four-bar d2 e^(i b2) + d3 e^(i b3) + d4 e^(i b4) = d2 + d3 + d4 of the turns (see `by_turn`) has one loop of
-places where b2 turns fully, for each branch, or one or two where it rocks: b2 = middle + half cos(t), the branch being
-the sign of sin(t), passes from branch to branch without a stop. Three positions of one angle leave a circle of pins.
+The closed four-bar d2 e^(i b2) + d3 e^(i b3) + d4 e^(i b4) = d2 + d3 + d4 of the rotations (see `dyads_by_rotation`)
+has one loop of solutions for each branch if b2 rotates fully; if b2 rocks, it has one or two loops: b2 = middle + half
+cos(t), where the branch is the sign of sin(t), so that t passes smoothly from one branch to the other. Three positions
+with equal angles leave a circle of pins.
 """
 
 from __future__ import annotations
@@ -33,7 +35,9 @@ FULL: Final = 4 * HALF
 
 @dataclass(frozen=True)
 class RotationLoops:
-    """Loops of b2 (rad): its middle, half its way (nan: it turns fully) and the branch of those that turn fully."""
+    """Loops of the rotation b2 (rad): middle, half range (nan: b2 rotates fully), and branch of those that rotate
+    fully.
+    """
 
     poses: CouplerPoses
     middle: Any
@@ -41,7 +45,7 @@ class RotationLoops:
     branch: Any
 
     def at(self, loop: Any, t: Any) -> Dyads:
-        """Dyads at parameters t (0 to 2 pi) of loops of these numbers (broadcast together)."""
+        """Return dyads at parameters t (0 to 2 pi) of the loops with these indices (broadcast together)."""
         t = np.asarray(t, EXACT)
         middle, half, branch = (np.asarray(x)[loop] for x in (self.middle, self.half, self.branch))
         turns = np.isnan(half)
@@ -54,7 +58,7 @@ class RotationLoops:
 
 @dataclass(frozen=True)
 class PinCircle:
-    """Pins on a circle, all with the same arm (complex, m) in the position `of`: three positions of one angle."""
+    """Pins on a circle, if three positions have equal angles: all have one arm (complex, m) in the position `of`."""
 
     poses: CouplerPoses
     of: int
@@ -72,7 +76,7 @@ class PinCircle:
 
 @dataclass(frozen=True)
 class GivenDyad:
-    """A dyad that is given."""
+    """A given dyad, in place of a curve."""
 
     dyad: Dyads
 
@@ -88,7 +92,10 @@ DyadCurve = RotationLoops | PinCircle | GivenDyad
 
 @dataclass(frozen=True)
 class CurveSamples:
-    """Parts of a curve end to end: places t of all, about evenly apart, loops of each, ends of its part as numbers."""
+    """Samples along the parts of a curve, joined end to end and about evenly spaced.
+
+    t, loop: parameter and loop of each sample; low, high: indices of the first and last sample of its part.
+    """
 
     curve: DyadCurve
     t: Any
@@ -97,14 +104,14 @@ class CurveSamples:
     high: Any
 
     def at(self, x: Any) -> Dyads:
-        """Dyads at places x, whole numbers or between them."""
+        """Return the dyads at sample indices x, which may lie between two samples."""
         here = np.minimum(np.floor(x).astype(int), len(self.t) - 1)
         beyond = np.minimum(here + 1, len(self.t) - 1)
         return self.curve.at(self.loop[here], self.t[here] + (x - here) * (self.t[beyond] - self.t[here]))
 
 
 def burmester_curve(poses: CouplerPoses) -> DyadCurve:
-    """Burmester's curve of four positions that do not all have one angle."""
+    """Return Burmester's curve of four positions whose angles are not all equal."""
     for odd in range(4):
         rest = [k for k in range(4) if k != odd]
         if equal_angles(poses.angles[rest]):
@@ -128,7 +135,7 @@ def burmester_curve(poses: CouplerPoses) -> DyadCurve:
 
 
 def _pin_circle(poses: CouplerPoses, equal: list[int], odd: int) -> PinCircle:
-    """|B - A| is the same in the odd position: |c + m g| = |arm| for the pin m."""
+    """Return the circle of pins: |B - A| is equal in the odd position too, |c + m g| = |arm| for the pin m."""
     first = equal[0]
     arm = poses.places[first] - circle_centre(poses.places[equal])
     turned = unit_vector(poses.angles[[first, odd]])
@@ -137,14 +144,18 @@ def _pin_circle(poses: CouplerPoses, equal: list[int], odd: int) -> PinCircle:
 
 
 def scan_curve(found: DyadCurve, size: float) -> list[Any]:
-    """Parameters all round every loop, nearer to each other where dyads of a sensible place change fast."""
+    """Return parameters around every loop, denser where nearby dyads change fast."""
     return [] if isinstance(found, GivenDyad) else [_scan_loop(found, loop, size) for loop in range(len(found))]
 
 
 def sample_parts(
     found: DyadCurve, scans: list[Any], good: Callable[[Dyads], Any], size: float, count: int
 ) -> CurveSamples | None:
-    """The parts where dyads are good, with about `count` places in all; their ends are exact but for few halvings."""
+    """Sample the parts of a curve on which dyads are `good`, about `count` samples in all; the ends are found by
+    bisection.
+
+    None if there are no such parts.
+    """
     if isinstance(found, GivenDyad):
         return CurveSamples(found, np.zeros(1), *np.zeros((3, 1), dtype=int))
     rows = []
@@ -187,7 +198,7 @@ def _scan_loop(found: RotationLoops | PinCircle, loop: int, size: float) -> Any:
 
 
 def refine_parameters(wide: Callable[[Any], Any], first: int, rounds: int) -> Any:
-    """Parameters all round a loop: so many steps first, then more in the middle of those that are too wide."""
+    """Return parameters around a loop: `first` equal steps, then repeatedly midpoints of steps that are too wide."""
     t = FULL * np.linspace(0, 1, first + 1, dtype=EXACT)
     for _ in range(rounds):
         here = wide(t)
@@ -198,7 +209,7 @@ def refine_parameters(wide: Callable[[Any], Any], first: int, rounds: int) -> An
 
 
 def _relative_gaps(dyads: Dyads, size: float) -> Any:
-    """How far neighbours are from each other, over the size of the task."""
+    """Return the distances of neighbouring dyads over the size of the task."""
     with np.errstate(all="ignore"):
         return (np.abs(np.diff(dyads.pivot)) + np.abs(np.diff(dyads.pin))) / size
 
@@ -221,7 +232,10 @@ Places = tuple[complex, ...]
 
 
 def burmester_lines(poses: CouplerPoses, about: Sequence[complex]) -> tuple[list[Places], list[Places]]:
-    """Centre points and circle points in position 1 (m), near places of a mechanism; none where all angles are one."""
+    """Return centre points, and circle points in position 1 (m), near the points `about` of a mechanism.
+
+    Empty lists if all angles are equal.
+    """
     if equal_angles(poses.angles):
         return [], []
     found, box = burmester_curve(poses), np.array(about)
@@ -240,7 +254,7 @@ def burmester_lines(poses: CouplerPoses, about: Sequence[complex]) -> tuple[list
 
 
 def _split_pieces(found: DyadCurve, at: Callable[[int, Any], Any]) -> Iterator[Any]:
-    """Pieces of a curve (sizes of the mechanism, its middle at 0): from edge to edge, or whole loops."""
+    """Yield the pieces of a curve in the drawn area, or whole loops; unit: size of the mechanism, its middle at 0."""
     for loop in range(len(found)):
         with np.errstate(all="ignore"):
             places = _sample_densely(lambda t, loop=loop: at(loop, t))  # type: ignore[misc]
@@ -253,7 +267,7 @@ def _split_pieces(found: DyadCurve, at: Callable[[int, Any], Any]) -> Iterator[A
 
 
 def _sample_densely(at: Callable[[Any], Any]) -> Any:
-    """Places all round a loop, as near to each other as a drawing needs."""
+    """Return points around a loop, as dense as a drawing needs."""
 
     def wide(t: Any) -> Any:
         places = at(t)
@@ -274,7 +288,10 @@ def _is_near(places: Any) -> Any:
 
 
 def sheet_extent(bar: Sequence[complex], found: Sequence[Places]) -> Places:
-    """Places (m) that the sheet of the curves holds: a four-bar, curves beside it, and ways of these that come back."""
+    """Return two corners (m) of the area of the curves' sheet.
+
+    It contains the four-bar, the curves near it, and pieces of curves that leave it only a little before they return.
+    """
     places = np.array(bar)
     low, high = (complex(f(places.real), f(places.imag)) for f in (np.min, np.max))
     size = max((high - low).real, (high - low).imag)

@@ -1,10 +1,10 @@
-"""The four-bar of best transmission with both dyads on Burmester's curves, wherever on them it is.
+"""Dyads AB and DC of a four-bar that guides its coupler: from given data, or the best pair on Burmester's curves.
 
-Parts of the curves whose links are sensible (for AB: that turns one way through the positions) are laid out with places
-about evenly apart, all pairs of places are compared, and every pair that is better than its neighbours is a start: a
-pair with a defect too, for what is sound may be a strip between the places. Starts are improved together, the best of
-them then by a search of the best DC for every AB: the best transmission is often on a ridge, where two places of the
-mechanism are equally bad.
+The parts of the curves with links of sensible length (for AB: that reaches the positions in order by rotating one way)
+are sampled about evenly, and all pairs of samples are rated. Every pair that is better than its neighbours is a
+starting point, pairs with a defect too, as feasible pairs may lie in a narrow strip between samples. The starting
+points are improved together; then, for the best of them, the best DC is found for every AB: the best transmission angle
+often lies on a ridge, where two positions of the mechanism are equally bad.
 """
 
 from __future__ import annotations
@@ -50,7 +50,9 @@ APART, REACH = 0.05, 2.0  # steps between places: what differs; how far from the
 
 @dataclass(frozen=True)
 class LinkLimits:
-    """Shortest and longest of the links, of the frame and of the coupler (m); how far pivots are outside a box (m)."""
+    """Limits of lengths (m): shortest link, longest link, frame and coupler; outside: distance of pivots from a box
+    (m).
+    """
 
     shortest: float
     link: float
@@ -62,8 +64,10 @@ class LinkLimits:
 def best_on_curves(
     poses: CouplerPoses, size: float, limits: LinkLimits, given: dict[str, Dyads], loose: bool = False
 ) -> tuple[Dyads, Dyads, float] | None:
-    """Dyads AB and DC and how good they are: the least transmission angle (rad), or less than zero where there is a
-    defect, or the coupler or frame is not sensible. None where no link is sensible. loose: branches are not asked for.
+    """Return the best dyads AB and DC on Burmester's curves and their rating; None if no link is sensible.
+
+    The rating is the smallest transmission angle (rad); negative with a defect, or if coupler or frame is not sensible.
+    loose: positions may be on different assemblies.
     """
     whole = burmester_curve(poses)
     scans = scan_curve(whole, size)
@@ -109,8 +113,9 @@ def _sample_sensible(
 
 
 def rate_pairs(poses: CouplerPoses, one: Dyads, other: Dyads, limits: LinkLimits, loose: bool = False) -> Any:
-    """Least transmission angles (rad) of four-bars (broadcast together) on the way through the positions; less than
-    zero where that cannot be, and the less the farther it is from what can.
+    """Rate four-bars of dyads AB and DC (broadcast together): smallest transmission angle (rad) through the positions.
+
+    Negative if the four-bar is not feasible; the further from feasible, the lower.
     """
     b, c = (np.asarray(poses.on_frame(x.pin), complex) for x in (one, other))
     a, d = (np.asarray(x.pivot, complex) for x in (one, other))
@@ -136,7 +141,7 @@ def rate_pairs(poses: CouplerPoses, one: Dyads, other: Dyads, limits: LinkLimits
 
 
 def _local_peaks(table: Any, one: CurveSamples, other: CurveSamples) -> tuple[Any, Any]:
-    """Places (numbers) of pairs that are not worse than their neighbours on the same parts, the best first."""
+    """Return the indices of the pairs not worse than their neighbours on the same parts, best first."""
     top = np.ones(table.shape, bool)
     for axis, rows in enumerate((one, other)):
         values, peak = np.moveaxis(table, axis, 0), np.moveaxis(top, axis, 0)
@@ -149,7 +154,7 @@ def _local_peaks(table: Any, one: CurveSamples, other: CurveSamples) -> tuple[An
 
 
 def _climb(score: Any, x: Any, y: Any, one: CurveSamples, other: CurveSamples) -> tuple[Any, Any, Any]:
-    """Starts improved together: a small table round each, smaller where its middle is best."""
+    """Improve all starting points together: rate a small grid around each, and shrink it where its middle is best."""
     shifts = np.linspace(-1.5, 1.5, 7)
     ends = [(rows.low[at.astype(int)], rows.high[at.astype(int)]) for rows, at in ((one, x), (other, y))]
     step = np.ones(len(x))
@@ -171,7 +176,7 @@ def _climb(score: Any, x: Any, y: Any, one: CurveSamples, other: CurveSamples) -
 def _refine_best(
     score: Any, x: Any, y: Any, value: Any, one: CurveSamples, other: CurveSamples
 ) -> tuple[Any, Any, Any]:
-    """The best places that differ, improved: of the best place of DC for every place of AB the best."""
+    """Refine the best distinct pairs: for every AB take the best DC."""
     kept: list[int] = []
     for k in np.argsort(-value, kind="stable").tolist():
         if len(kept) < LAST and all(abs(x[k] - x[m]) + abs(y[k] - y[m]) > APART for m in kept):
@@ -179,7 +184,9 @@ def _refine_best(
     (low, high), (first, last) = (_search_interval(rows, at[kept]) for rows, at in ((one, x), (other, y)))
 
     def of_best(x: Any) -> tuple[Any, Any]:
-        """The best places of DC for places of AB, those of all starts again and again; how bad they are."""
+        """Return the best positions of DC for positions of AB (all starting points repeated), and their negative
+        rating.
+        """
         again = len(x) // len(kept)
         return find_minima(lambda y: -score(np.resize(x, len(y)), y), np.tile(first, again), np.tile(last, again))
 
@@ -188,7 +195,7 @@ def _refine_best(
 
 
 def _search_interval(rows: CurveSamples, at: Any) -> tuple[Any, Any]:
-    """Ends of the ways to both sides of places within which their peak is looked for."""
+    """Return the ends of the interval around each index in which its peak is searched."""
     here = at.astype(int)
     return np.maximum(at - REACH, rows.low[here]), np.minimum(at + REACH, rows.high[here])
 
@@ -212,7 +219,7 @@ NO_LINKS: Final = N_("Burmester's curves have no links of sensible length (0.15 
 
 
 def find_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads, GuidanceQuality]:
-    """Dyads AB and DC, and what they are worth. Raises Infeasible."""
+    """Return the dyads AB and DC and their quality. Raises Infeasible."""
     one, other = solve_both_dyads(task)
     if not min(abs(one.pivot - other.pivot), abs(one.pin - other.pin)) > SAME_POINTS * task.size:
         raise Infeasible(_given_key(task, "DC"), _("AB and DC have a pin or a pivot in common: that is no four-bar"))
@@ -223,19 +230,19 @@ def find_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads, GuidanceQualit
 
 
 def _search_is_quick(task: CouplerPositionsTask) -> bool:
-    """Whether other values can be tried: not where a link is free on Burmester's curves, which takes long."""
+    """Return True if other values can be tried; False if a link is free on Burmester's curves, which takes long."""
     return len(task.places) < 4 or len(task.sides) == 2 or task.still
 
 
 def _given_key(task: CouplerPositionsTask, name: str) -> str:
-    """What is given of a link."""
+    """Return the key of the file that specifies a link (pin, pivot, turn or near); `positions` if none is given."""
     side = task.sides.get(name, DyadData())
     keys = {name[1]: side.pin, name[0]: side.pivot, f"{name}_turn": side.turn, f"{name[0]}_near": side.near}
     return next((key for key, value in keys.items() if value is not None), "positions")
 
 
 def solve_both_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
-    """Dyads AB and DC. Raises Infeasible."""
+    """Return the dyads AB and DC. Raises Infeasible."""
     if len(task.places) < 4:
         return solve_dyad(task, "AB"), solve_dyad(task, "DC")
     if task.still:
@@ -245,7 +252,7 @@ def solve_both_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
 
 
 def solve_dyad(task: CouplerPositionsTask, name: str) -> Dyads:
-    """The dyad of two or three positions. Raises Infeasible."""
+    """Return the dyad of two or three positions. Raises Infeasible."""
     side, poses = task.sides[name], task.poses
     pin_given = side.pin is not None
     point = name[1] if pin_given else name[0]
@@ -267,7 +274,10 @@ def solve_dyad(task: CouplerPositionsTask, name: str) -> Dyads:
 
 
 def given_dyads(task: CouplerPositionsTask) -> dict[str, Dyads]:
-    """The dyads of four positions that are given, by a turn or by a place near the pivot. Raises Infeasible."""
+    """Return the dyads of four positions that the task specifies by a rotation or by a point near the pivot.
+
+    Raises Infeasible.
+    """
     found = {
         name: dyads_by_rotation(task.poses, np.asarray(side.turn, np.longdouble), side.branch)
         if side.near is None
@@ -285,7 +295,7 @@ def given_dyads(task: CouplerPositionsTask) -> dict[str, Dyads]:
 
 
 def nearest_dyad(task: CouplerPositionsTask, name: str) -> Dyads:
-    """The dyad of four positions whose pivot is the place of the centre-point curve nearest to the wanted one."""
+    """Return the dyad of four positions whose pivot, on the centre-point curve, is nearest to the required point."""
     wanted = complex(task.sides[name].near)
 
     def away(turns: Any, branch: int) -> Any:
@@ -306,7 +316,7 @@ def nearest_dyad(task: CouplerPositionsTask, name: str) -> Dyads:
 
 
 def are_sensible(task: CouplerPositionsTask, found: Dyads) -> Any:
-    """Whether there are such dyads, with ends that are not far from place 1 and links of some length."""
+    """Return True for dyads that exist, with ends not far from position 1 and a length greater than zero."""
     with np.errstate(all="ignore"):
         reach = np.maximum(np.abs(found.pivot - task.poses.places[0]), np.abs(found.pin))
         length = np.abs(task.poses.on_frame(found.pin)[..., 0] - found.pivot)
@@ -314,7 +324,10 @@ def are_sensible(task: CouplerPositionsTask, found: Dyads) -> Any:
 
 
 def best_dyads(task: CouplerPositionsTask, given: dict[str, Dyads]) -> tuple[Dyads, Dyads]:
-    """Dyads on Burmester's curves with the best transmission, without defects if there are such. Raises Infeasible."""
+    """Return the dyads on Burmester's curves with the best transmission angle, without defects if possible.
+
+    Raises Infeasible.
+    """
     first, size = task.poses.places[0], task.size
     frame = max((float(abs(one.pivot - first)) for one in given.values()), default=0.0)
     coupler = max((float(abs(one.pin)) for one in given.values()), default=0.0)
@@ -335,9 +348,10 @@ def best_dyads(task: CouplerPositionsTask, given: dict[str, Dyads]) -> tuple[Dya
 
 
 def parallelogram_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
-    """Four positions of one angle: the coupler of any parallelogram whose arms are that of P on its circle.
+    """Return the dyads for four positions of equal angle: the coupler of a parallelogram whose arms follow P on its
+    circle.
 
-    AD, which is free, stands across the arms in the middle of their way. Raises Infeasible.
+    AD is free; it is taken perpendicular to the arms in the middle of their range. Raises Infeasible.
     """
     places, angles = task.poses.places, task.poses.angles
     centres = [circle_centre(np.delete(places, out)) for out in range(4)]

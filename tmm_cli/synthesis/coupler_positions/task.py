@@ -52,11 +52,12 @@ BY_PIVOT: Final = N_("dashed: bisectors of the pivot and its places ′, turned 
 def draw_construction(
     poses: CouplerPoses, one: Dyads, other: Dyads, by_pivot: tuple[bool, bool] = (False, False)
 ) -> tuple[GeometricConstruction, ...]:
-    """The four-bar in its first position, the others thin, arcs of pins, and how its dyads were found.
+    """Draw the four-bar in position 1, the other positions thin, the arcs of the pins, and the construction of its
+    dyads.
 
-    by_pivot: of each dyad, whether its pivot was given: then the pivot's places seen from the plane in position 1 lie
-    on a circle about its pin (inversion). Else the places of its pin lie on a circle about its pivot. With four
-    positions the curves, near the mechanism and on a sheet of their own.
+    by_pivot: for each dyad, True if its pivot is given: then the positions of the pivot seen from the plane in position
+    1 lie on a circle about the pin (inversion); else the positions of the pin lie on a circle about the pivot. With
+    four positions Burmester's curves are drawn near the mechanism, and as a whole on a second sheet.
     """
     rows = [(np.asarray(poses.on_frame(x.pin), complex), complex(x.pivot)) for x in (one, other)]
     count = len(poses.places)
@@ -193,12 +194,12 @@ LISTED: Final = 360  # turns that are listed of each branch of Burmester's curve
 
 
 def refuse(task: CouplerPositionsTask) -> None:
-    """Raises Infeasible with the reason where no four-bar guides the coupler."""
+    """Raise Infeasible, with the reason, if no four-bar guides the coupler."""
     find_dyads(task)
 
 
 def solve(task: CouplerPositionsTask) -> SynthesisOutcome:
-    """The task of one file. Raises Infeasible."""
+    """Solve the task of one file. Raises Infeasible."""
     one, other, mark = find_dyads(task)
     numbers = _parameter_values(task, one, other)
     values = [NamedValue(name, float(numbers[name]), kind, NAMES[name]) for name, kind in PARAMETERS.items()]
@@ -228,7 +229,7 @@ def solve(task: CouplerPositionsTask) -> SynthesisOutcome:
 
 
 def _parameter_values(task: CouplerPositionsTask, one: Dyads, other: Dyads) -> dict[str, Any]:
-    """All parameters in extended precision."""
+    """Return all parameters in extended precision."""
     b, c = (task.poses.on_frame(x.pin)[..., 0] for x in (one, other))
     a, d = one.pivot, other.pivot
     size = task.size + np.max(np.abs(np.asarray(task.places))) + np.abs(a) + np.abs(d)
@@ -241,7 +242,7 @@ def _parameter_values(task: CouplerPositionsTask, one: Dyads, other: Dyads) -> d
 
 
 def _curve_values(task: CouplerPositionsTask, name: str, found: Dyads) -> Iterator[NamedValue]:
-    """Where a dyad is on Burmester's curves, as it can be given again."""
+    """Yield rotation and branch of a dyad on Burmester's curves, as a file can specify them."""
     side = task.sides.get(name, DyadData())
     if side.turn is None:
         pins = task.poses.on_frame(found.pin)
@@ -255,7 +256,7 @@ def _curve_values(task: CouplerPositionsTask, name: str, found: Dyads) -> Iterat
 
 
 def _tabulate_curve(task: CouplerPositionsTask) -> Listing:
-    """Pivots and circle points of Burmester's curves by the turn of their link and its branch."""
+    """Tabulate pivots and pins of Burmester's curves by the rotation of the link and the branch."""
     columns = (
         ("branch", N_("branch"), "name"),
         ("turn", N_("turn from 1 to 2"), "angle"),
@@ -281,7 +282,7 @@ def _tabulate_curve(task: CouplerPositionsTask) -> Listing:
 
 
 def _position_names(k: int) -> tuple[str, str, str]:
-    """What x, y and angle of a position are called."""
+    """Return the descriptions of x, y and angle of a position."""
     return (
         Phrase("position {number}: x of P", number=k + 1),
         Phrase("position {number}: y of P", number=k + 1),
@@ -306,7 +307,7 @@ def _demands(task: CouplerPositionsTask, one: Dyads, other: Dyads, mark: Guidanc
 
 
 def _measured_pose(part: str, at: dict[str, Any], results: Any) -> float:
-    """A coordinate of the coupler's position where AB stands at an angle from AD."""
+    """Measure a coordinate of the coupler at the angle of AB from AD that belongs to a position."""
     found = four_bar.pin_positions(results, np.array([at["phi"]]))
     if found is None:
         return float("nan")
@@ -383,7 +384,7 @@ BLOCK = CouplerPositionsBlock
 
 
 def read(shape: CouplerPositionsBlock, values: ValueReader) -> CouplerPositionsTask:
-    """The task in SI. Raises ProblemError."""
+    """Read the task into SI. Raises ProblemError."""
     count = len(shape.positions)
     poses = [
         (
@@ -411,7 +412,7 @@ def read(shape: CouplerPositionsBlock, values: ValueReader) -> CouplerPositionsT
 def _read_box(
     shape: CouplerPositionsBlock, values: ValueReader, count: int, sides: dict[str, DyadData]
 ) -> tuple[complex, complex] | None:
-    """Corners of the box for free pivots."""
+    """Read the corners of the box for free pivots; None if none is given."""
     if shape.pivots_within is None:
         return None
     if count != 4 or len(sides) == 2:
@@ -428,7 +429,7 @@ def _read_box(
 
 
 def _read_dyad(shape: CouplerPositionsBlock, values: ValueReader, name: str, count: int) -> DyadData | None:
-    """What is given of a dyad, which must be just what the count of positions needs."""
+    """Read the data of a dyad, which must be exactly those that the number of positions requires."""
     pivot, pin, turn, near = name[0], name[1], f"{name}_turn", f"{name[0]}_near"
     sets = {2: ((pin, name), (pivot, name)), 3: ((pin,), (pivot,)), 4: ((turn,), (near,), ())}[count]
     refusal = _("these keys do not determine {link} with {count} positions").format(link=name, count=count)

@@ -1,4 +1,4 @@
-"""Optimal synthesis: keys of the task."""
+"""Keys of an optimal synthesis, read into an OptimalTask."""
 
 from __future__ import annotations
 
@@ -69,13 +69,13 @@ class QuantityKeys(Strict):
 
 
 class ObjectiveKeys(QuantityKeys):
-    """What is made least (a margin: largest), or brought near to a target."""
+    """Objective: the quantity to be minimised (a margin: maximised), or brought near to a target."""
 
     target: Value | None = Field(default=None, description="come near to this instead")
 
 
 class ConstraintKeys(QuantityKeys):
-    """What must be kept."""
+    """A constraint: bounds of a quantity."""
 
     least: Value | None = None
     most: Value | None = None
@@ -87,7 +87,7 @@ def _expand_short(found: Any) -> Any:
 
 
 class OptimalBlock(TaskBlock):
-    """Parameters within bounds that make an objective least and keep constraints; the driver goes its whole way."""
+    """Parameters within bounds that minimise an objective and satisfy constraints over the range of the driver."""
 
     task: Literal["optimal"]
     vary: dict[Name, Range] = Field(
@@ -114,12 +114,12 @@ BLOCK = OptimalBlock
 
 
 def parameters(shape: OptimalBlock) -> dict[str, str]:
-    """Names of what is found; their kinds follow from the bounds."""
+    """Return the names of the parameters to be found; their kinds follow from the bounds later."""
     return dict.fromkeys(shape.vary, "length")
 
 
 def read(shape: OptimalBlock, sense: ValueReader, file_with: FileWith) -> OptimalTask:
-    """The task in SI. Raises ProblemError."""
+    """Read the task into SI. Raises ProblemError."""
     parameters = read_ranges(shape.vary, sense, shape.names, file_with)
     files = _FileVariants(parameters, shape, sense, file_with)
     middles = nearest_allowed([(p.low + p.high) / 2 for p in parameters], parameters).tolist()
@@ -153,7 +153,7 @@ def read(shape: OptimalBlock, sense: ValueReader, file_with: FileWith) -> Optima
 
 
 class _FileVariants:
-    """The file with other numbers (SI, or TracedNumbers) of what varies."""
+    """Variants of the file with other values (SI, or TracedNumbers) of the varied parameters."""
 
     def __init__(
         self, parameters: Sequence[Parameter], shape: OptimalBlock, sense: ValueReader, file_with: FileWith
@@ -166,7 +166,7 @@ class _FileVariants:
         self.goals += [(("constraints", n), given) for n, given in enumerate(shape.constraints)]
 
     def plain(self, numbers: Sequence[Any]) -> Problem:
-        """Raises OfTheFile."""
+        """Build the problem with these values. Raises TriedFileError."""
         return self.file_with(*self._given(numbers))
 
     def _given(self, numbers: Sequence[Any]) -> tuple[dict[str, PhysicalValue], UnitSystem]:
@@ -177,8 +177,10 @@ class _FileVariants:
         return found, self.varied if any(isinstance(x, TracedNumber) for x in numbers) else self.units
 
     def asked(self, given: QuantityKeys, path: Path, numbers: Sequence[Any], variant: Variant) -> DriverTargets:
-        """Places of the driver that a quantity is asked at, and what is wanted of a link there; both may rest on what
-        varies. Raises ProblemError.
+        """Return the driver coordinates of a quantity and the values required of a link there; both may depend on the
+        parameters.
+
+        Raises ProblemError.
         """
         found, units = self._given(numbers)
         sense, linkage = ValueReader({**self.own, **found}, units), variant.linkage
@@ -189,7 +191,12 @@ class _FileVariants:
         return places, tuple(sense.number(v, dimension, (*path, "values", n)) for n, v in enumerate(given.values))
 
     def variant(self, numbers: Sequence[Any]) -> Variant:
-        """Raises OfTheFile, which tells the numbers that the file is refused with, and ProblemError."""
+        """Build the variant with these values.
+
+        Raises:
+            TriedFileError: the file is invalid with these values, which the message lists.
+            ProblemError: a driver coordinate or required value of the task is invalid.
+        """
         try:
             variant = with_driver_range(self.plain(numbers), self.over)
             asked = [self.asked(given, path, numbers, variant) for path, given in self.goals]
@@ -207,7 +214,7 @@ class _FileVariants:
             raise TriedFileError(refused) from None
 
     def accepts(self, numbers: Sequence[float]) -> bool:
-        """Whether the file takes them."""
+        """Return True if the file is valid with these values."""
         try:
             self.variant(numbers)
         except (TriedFileError, ProblemError):
@@ -216,7 +223,9 @@ class _FileVariants:
 
 
 def _check_mobility(variant: Variant) -> None:
-    """What has passive links moves with exact dimensions only, which a parameter may spoil. Raises ProblemError."""
+    """Raise ProblemError for redundant constraints: such a linkage moves only with exact dimensions, which a parameter
+    spoils.
+    """
     try:
         analyse_mobile_structure(variant.linkage)
     except MobilityError as refusal:
@@ -293,7 +302,7 @@ def _read_quantity(
 
 
 def _progress_bar() -> Callable[[int, int], None]:
-    """Progress on a terminal."""
+    """Return a function that shows the progress on a terminal."""
     if not sys.stderr.isatty():
         return lambda at, of: None
     from rich.console import Console

@@ -1,4 +1,4 @@
-"""Candidates of an optimal synthesis: variants of a file's linkage, evaluated a whole generation at once."""
+"""Candidates of an optimal synthesis: variants of a file's linkage, evaluated a whole generation at a time."""
 
 from __future__ import annotations
 
@@ -48,9 +48,9 @@ LOST = 10.0  # violation of what cannot be assembled, above all others
 
 
 class Candidates:
-    """Of a task; x (variants, n) are shares of the ranges, 0..1. The first constraint is that all is assembled.
+    """Candidates of a task; x (variants, n) are fractions 0..1 of the ranges of the parameters.
 
-    Raises Infeasible.
+    The first constraint is that the linkage can be assembled over the whole range. Raises Infeasible.
     """
 
     def __init__(self, task: OptimalTask) -> None:
@@ -67,7 +67,7 @@ class Candidates:
         self._set_positions()
 
     def _build_program(self) -> None:
-        """What gives all quantities of candidates at places of the driver."""
+        """Build the program that computes all quantities of candidates at driver coordinates."""
         self.program: TracedVariants | SequentialVariants = make_variants(
             self.task.make,
             self.first,
@@ -81,7 +81,7 @@ class Candidates:
         self.single = tuple(f"1.{SIDE}{k}" for k in range(kinds.count(1)))
 
     def _set_positions(self) -> None:
-        """Where the driver goes, and at which of its places candidates are looked at in the search."""
+        """Determine the range of the driver and the positions at which the search evaluates candidates."""
         ranges = self.program.driver_range(np.array([self.first]))
         self.closed, self.cycle = ranges.closed, float(ranges.span[0, 0])
         self.ends = float(ranges.low[0, 0]), float(ranges.low[0, 0] + ranges.span[0, 0])
@@ -123,45 +123,50 @@ class Candidates:
         return self.task.generations or max(LEAST_GENERATIONS, GENERATIONS * len(self.low) ** 2)
 
     def numbers(self, x: Real) -> Real:
-        """SI numbers of shares of the ranges."""
+        """Convert fractions of the ranges to parameter values (SI)."""
         return nearest_allowed(self.low + x * (self.high - self.low), self.task.parameters)
 
     def shares(self, numbers: Real) -> Real:
-        """Shares of the ranges at which numbers lie."""
+        """Convert parameter values (SI) to fractions of the ranges."""
         found: Real = (numbers - self.low) / (self.high - self.low)
         return found
 
     def shares_over(self, count: int) -> Real:
-        """Shares of the driver range: of a closed one without its end, but after it where forces are others there."""
+        """Return `count` fractions of the driver range.
+
+        Of a closed range without its end; the end is appended if forces differ there.
+        """
         shares = np.arange(count) / (count if self.closed else count - 1)
         return np.append(shares, 1.0) if self.jumps else shares
 
     def shares_of(self, n: int, count: int) -> slice:
-        """Which of these shares count for a quantity."""
+        """Return the slice of the sample points (see `shares_over`) that quantity `n` uses."""
         return slice(0, count + 1 if self.jumps and not self.overs[n].closed else count)
 
     def own_places(self, count: int) -> list[slice | None]:
-        """Where a quantity has places of its own, after so many shares."""
+        """Return, for each quantity, the slice of its own driver coordinates after `count` sample points; None if it
+        has none.
+        """
         ends = count + np.cumsum([0, *(len(quantity.places) for quantity in self.quantities)])
         return [slice(first, last) if first < last else None for first, last in pairwise(ends.tolist())]
 
     def quantity(self, n: int, numbers: Real) -> MechanismQuantity:
-        """A quantity with its places in the candidate of these numbers (SI), and what it wants of the link there."""
+        """Return quantity `n` with its driver coordinates and required values in the candidate `numbers` (SI)."""
         first, own = sum(len(quantity.places) for quantity in self.quantities[:n]), self.quantities[n]
         variant, last = self.task.make(numbers.tolist()), first + len(own.places)
         own = replace(own, places=tuple(map(float, variant.asked[first:last])))
         return replace(own, wanted=tuple(map(float, variant.wanted[first:last]))) if own.given == "values" else own
 
     def with_sketch(self, driver: Real) -> Real:
-        """Places of the driver, and that of the sketch, where it counts."""
+        """Append the driver coordinate of the sketch, if the sign of a determinant there matters."""
         return np.append(driver, self.linkage.sketch.at) if self.single else driver
 
     def run(self, x: Real, places: DriverSamples) -> Mapping[str, Real]:
-        """All outputs."""
+        """Compute all outputs."""
         return self.program(self.numbers(x), places)
 
     def evaluate(self, x: Real) -> tuple[Real, Real]:
-        """Objective and violation of candidates, block by block, so that all of a block stays in the cache."""
+        """Return objective and constraint violation of candidates, computed in blocks that fit the cache."""
         block = FOLLOWED if isinstance(self.program, TracedVariants) and self.program.marches else BLOCK
         blocks = [self._evaluate(part) for part in np.array_split(x, -(-len(x) * self.turns // block))]
         return np.concatenate([f for f, __ in blocks]), np.concatenate([v for __, v in blocks])
@@ -180,20 +185,22 @@ class Candidates:
     def evaluate_coarsely(
         self, x: Real
     ) -> tuple[Mapping[str, Real], list[tuple[MechanismQuantity, Read, QuantityRange]]]:
-        """Outputs at the places of the search, and of every quantity what reads its own of them."""
+        """Return the outputs at the positions of the search, and each quantity with the function that reads its own
+        outputs.
+        """
         found = self.coarse(self.numbers(x), self.places)
         own = enumerate(zip(self.quantities, self.exact, self.overs, strict=True))
         return found, [(quantity, quantity_reader(found, n, where), over) for n, (quantity, where, over) in own]
 
     def values(self, x: Real) -> list[Real]:
-        """Objective and constrained quantities, coarsely."""
+        """Return coarse values of the objective and of the constrained quantities."""
         found, parts = self.evaluate_coarsely(x)
         values = [quantity.coarse(read, over) for quantity, read, over in parts]
         values[1] = np.where(self.passes_dead_position(found, self.count), -1.0, values[1])
         return values
 
     def passes_dead_position(self, found: Mapping[str, Real], count: int) -> Real:
-        """Which variants pass a dead position that they do not stop at, (variants,), from so many shares."""
+        """Return True for variants (variants,) that pass a dead position without stopping there, in `count` samples."""
         over: Any = False
         for name in self.single:
             det = np.hstack([found[name][:, :count], found[name][:, -1:]])
@@ -201,13 +208,15 @@ class Candidates:
         return np.asarray(over)
 
     def objective_value(self, value: Real) -> Real:
-        """What is made least: of a margin its opposite, of a target the distance from it."""
+        """Return the value to be minimised: of a margin its negative, of a target the relative distance from it."""
         if self.task.target is not None:
             return np.abs(value - self.task.target) / (abs(self.task.target) or 1.0)
         return -value if self.task.objective.lowest else value
 
     def sketch(self, x: Real) -> Sketch | None:
-        """How a candidate looks at the place of the sketch, where the file's own sketch does not show its assembly."""
+        """Return the assembly of a candidate at the sketch position, if the sketch of the file does not show it; else
+        None.
+        """
         numbers = self.numbers(x)
         own = self.program.sketch(numbers)
         try:
@@ -219,5 +228,5 @@ class Candidates:
 
 
 def quantity_reader(found: Mapping[str, Real], n: int, where: slice) -> Callable[[str], Real]:
-    """Outputs of a quantity by name, at some of the places."""
+    """Return a function that reads outputs of quantity `n` by name, at some of the positions."""
     return lambda name: found[name if name == WANTED else f"{n}.{name}"][:, where]

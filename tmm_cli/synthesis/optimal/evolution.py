@@ -1,8 +1,8 @@
-"""Differential evolution with constraints: a global search over a box, by scipy.
+"""Differential evolution with constraints, a global search over a box by scipy; parameters with discrete values.
 
 R. Storn, K. Price, Differential Evolution, Journal of Global Optimization 11 (1997); constraints by the rules of K.
-Deb, Comput. Methods Appl. Mech. Engrg. 186 (2000), for equalities with a tolerance that shrinks (T. Takahama, S.
-Sakai, 2006).
+Deb, Comput. Methods Appl. Mech. Engrg. 186 (2000), for equalities with a shrinking tolerance (T. Takahama, S. Sakai,
+2006).
 """
 
 from __future__ import annotations
@@ -25,10 +25,15 @@ FORBIDDEN = 1e30  # times a violation: above every objective
 
 @dataclass(frozen=True)
 class EvolutionResult:
-    """population (variants, n): the first candidates and the best of each generation, best first, with objective and
-    violation; history: objective and violation of the one that led in each generation.
+    """Result of an evolution.
 
-    stopped: by hand, before its end. every: nothing evolved, all were tried, and history is of each of them.
+    Attributes:
+        population: the first candidates and the best of each generation, best first, (variants, n), with their
+            objective
+            and violation.
+        history: objective and violation of the leading candidate in each generation.
+        stopped: True if stopped by the user.
+        every: True if all candidates were evaluated without evolution; history is then of each candidate.
     """
 
     population: Real
@@ -40,7 +45,7 @@ class EvolutionResult:
 
 
 class _Generations:
-    """What scipy calls with a generation (n, variants); keeps the first one and the best of each."""
+    """The function that scipy calls with a generation (n, variants); keeps the first and the best of each."""
 
     def __init__(self, evaluate: Evaluate, generations: int, progress: Callable[[int, int], None]) -> None:
         self.evaluate, self.generations, self.progress = evaluate, generations, progress
@@ -54,7 +59,9 @@ class _Generations:
         return self.generations - len(self.history)
 
     def judged(self, f: Real, v: Real) -> Real:
-        """Deb's rules as one number: less violation, or both allowed and a smaller objective."""
+        """Return Deb's ranking as one number: smaller violation first, then, among feasible ones, the smaller
+        objective.
+        """
         return np.where(v > self.tolerance, FORBIDDEN * v, np.where(np.isfinite(f), f, np.inf))
 
     def __call__(self, columns: Real) -> Real:
@@ -82,7 +89,10 @@ def evolve(
     equalities: bool = False,
     progress: Callable[[int, int], None] = lambda at, of: None,
 ) -> EvolutionResult:
-    """Search 0..1 in `size` dimensions; the same seed gives the same answer. One that gathers early is begun anew."""
+    """Search the unit cube of `size` dimensions; the same seed gives the same result.
+
+    A population that converges early is replaced by a new one.
+    """
     from scipy.optimize import differential_evolution
 
     chance = np.random.default_rng(seed)
@@ -140,9 +150,9 @@ NEAR = 0.3  # a violation that the polish may take away
 
 
 class DiscreteChoices:
-    """Called as candidates.evaluate is; keeps the best candidate of each choice that it has seen.
+    """Wrapper of `candidates.evaluate` that keeps the best candidate of each combination of discrete values.
 
-    Evolution gathers about one choice early, and another may lead farther once the others' numbers are polished.
+    Evolution soon gathers around one combination, although another may be better once its other parameters are refined.
     """
 
     def __init__(self, candidates: Candidates) -> None:
@@ -165,7 +175,7 @@ class DiscreteChoices:
         return f, v
 
     def every(self) -> EvolutionResult:
-        """Every candidate, best first."""
+        """Evaluate all candidates, best first."""
         task = self.candidates.task
         x = self.candidates.shares(np.array(list(product(*(p.values for p in task.parameters)))))
         found, stopped = np.zeros((2, 0)), False
@@ -184,7 +194,9 @@ class DiscreteChoices:
         return EvolutionResult(x[order], f, v, found.T, stopped, every=True)
 
     def starts(self) -> list[Real]:
-        """Of the choices that are nearest to keep all constraints, and of those with the least objectives beside."""
+        """Return starting points: the combinations nearest to feasible, and of the others those with the smallest
+        objective.
+        """
         half = (POLISHED if self.candidates.traced else FEW) // 2
         found = sorted(self.best.values(), key=lambda one: one[:2])
         near = NEAR if self.free else ERROR

@@ -1,9 +1,9 @@
-"""Levenberg-Marquardt from many starts at once, within bounds and constraints.
+"""Levenberg-Marquardt from many starting points at once, within bounds and constraints.
 
-Each step has the least squares of the linearised residuals (K. Levenberg 1944, D. Marquardt 1963), tried with how they
-bend along it too (M. Transtrum, J. Sethna 2012), as minima lie at the ends of long bent valleys. Constraints and bounds
-that a step would break are residuals beside the others, with a weight. Slopes are differences: a start and its
-neighbours are variants of one evaluation.
+Each step minimises the squares of the linearised residuals (K. Levenberg 1944, D. Marquardt 1963); a step with second-
+order correction is tried too (M. Transtrum, J. Sethna 2012), as minima lie at the ends of long curved valleys.
+Constraints and bounds that a step would violate become weighted residuals. Derivatives are differences: a starting
+point and its neighbours are variants of one evaluation.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ GAIN = 1e-14  # of the sum of squares: what a step must bring
 
 @dataclass(frozen=True)
 class ResidualRows:
-    """Of variants: residuals (v, n), and what is to stay above zero (v, m)."""
+    """Residuals of variants (v, n), and quantities that must stay above zero (v, m)."""
 
     off: Real
     least: Real
 
     def cost(self) -> Real:
-        """Sum of squares, (v,); inf where something cannot be assembled."""
+        """Return the sums of squares, (v,); inf for variants that cannot be assembled."""
         total = np.sum(self.off**2, axis=1) + WEIGHT**2 * np.sum(np.minimum(self.least, 0) ** 2, axis=1)
         return np.where(np.isfinite(total), total, np.inf)
 
@@ -44,7 +44,7 @@ Evaluate = Callable[[Real, int], ResidualRows]  # variants (v, n) in 0..1, in se
 
 
 def minimize_squares(evaluate: Evaluate, x: Real, steps: int) -> tuple[Real, Real]:
-    """Places (starts, n) to which starts lead, and their sums of squares."""
+    """Return the end points (starts, n) of a descent from each starting point, and their sums of squares."""
     n = x.shape[1]
     x, damping = x.copy(), np.full(len(x), FIRST)
     cost = evaluate(x, 1).cost()
@@ -66,7 +66,9 @@ def minimize_squares(evaluate: Evaluate, x: Real, steps: int) -> tuple[Real, Rea
 
 
 def _step_ends(evaluate: Evaluate, rows: ResidualRows, slopes: ResidualRows, x: Real, dampings: Real) -> Real:
-    """Where steps lead, (s, 2 d, n): one of each damping (s, d), and the same with what residuals bend along it."""
+    """Return the ends of steps (s, 2 d, n): for each damping (s, d) one step without and one with second-order
+    correction.
+    """
     rows, slopes = (ResidualRows(one.off[:, None], one.least[:, None]) for one in (rows, slopes))
     x = x[:, None]
     step = damped_step(rows, slopes, x, dampings)
@@ -79,7 +81,7 @@ def _step_ends(evaluate: Evaluate, rows: ResidualRows, slopes: ResidualRows, x: 
 
 
 def _difference_slopes(evaluate: Evaluate, x: Real) -> tuple[ResidualRows, ResidualRows]:
-    """Rows at places (s, n), and their slopes: (s, rows, n). A slope that is not known counts as none."""
+    """Return the rows at points (s, n), and their derivatives (s, rows, n); an unknown derivative counts as zero."""
     s, n = x.shape
     run = np.where(x > 0.5, -STEP, STEP)
     ends = np.repeat(x[:, None], n + 1, axis=1)
@@ -95,7 +97,7 @@ def _difference_slopes(evaluate: Evaluate, x: Real) -> tuple[ResidualRows, Resid
 
 
 def damped_step(rows: ResidualRows, slopes: ResidualRows, x: Real, damping: Any) -> Real:
-    """The step of each start, (..., n), within bounds 0..1."""
+    """Return the damped step of each starting point, (..., n), within the bounds 0..1."""
     n = x.shape[-1]
     square = slopes.off.mT @ slopes.off
     steep = np.einsum("...ii->...i", square)
@@ -132,7 +134,7 @@ SETTLED_AT_ONCE = 250  # candidates at once
 
 
 class LinearParameters:
-    """Called with candidates (variants, n) in 0..1, that can be assembled; gives better ones."""
+    """Solver for the parameters on which the motion depends linearly; improves candidates (variants, n) in 0..1."""
 
     def __init__(self, candidates: Candidates) -> None:
         self.candidates = candidates
@@ -171,13 +173,13 @@ class LinearParameters:
         return settled
 
     def _curve(self, x: Real) -> Any:
-        """What is compared with what is wanted, (variants, places)."""
+        """Return the path or motion of candidates that is compared with the required one, (variants, positions)."""
         one = self.candidates
         found = one.coarse(one.numbers(x), one.places)
         return self.objective.curve(quantity_reader(found, 0, one.exact[0]))
 
     def _linear(self) -> list[int]:
-        """Those whose changes add up, with one another and with themselves."""
+        """Return the parameters whose changes superpose, with themselves and with one another."""
         x = np.random.default_rng(0).random((DRAWN, len(self.candidates.low)))
         x = x[self.candidates.evaluate(x)[1] < LOST][:SHOWN]
 
@@ -199,7 +201,7 @@ class LinearParameters:
 
 
 def _as_real(rows: Any) -> Real:
-    """Complex rows as two real ones each, (variants, rows, ...)."""
+    """Split each complex row into two real ones, (variants, rows, ...)."""
     return np.concatenate([rows.real, rows.imag], axis=1) if np.iscomplexobj(rows) else rows
 
 
@@ -224,7 +226,10 @@ BLOCK = 400  # variants at once
 
 @dataclass(frozen=True)
 class IndependentEnds:
-    """Where independent starts ended: how many, at the least, and within NEAR of it; met: nothing is less than it."""
+    """Ends of independent descents.
+
+    count: all; same: at the minimum; near: within NEAR of it; met: the minimum is zero.
+    """
 
     count: int
     same: int
@@ -240,13 +245,13 @@ class IndependentEnds:
 
     @property
     def agree(self) -> bool:
-        """Whether another seed is likely to lead to the same."""
+        """True if another seed is likely to give the same minimum."""
         return self.met or self.same >= AGREED
 
 
 @dataclass(frozen=True)
 class ManyStartsResult:
-    """starts: best first; ends: None where nothing was assembled; stopped: by hand."""
+    """Result of the search. starts: best first; ends: None if no candidate can be assembled; stopped: by the user."""
 
     starts: list[Real]
     ends: IndependentEnds | None
@@ -254,14 +259,14 @@ class ManyStartsResult:
 
 
 def is_applicable(candidates: Candidates) -> bool:
-    """Whether the objective is a sum of squares, and all numbers may have all values."""
+    """Return True if the objective is a sum of squares without a target and no parameter has discrete values."""
     task = candidates.task
     squares = isinstance(task.objective, Deviation) and task.objective.norm == "least squares"
     return squares and task.target is None and candidates.traced and len(task.free) == len(task.parameters)
 
 
 def search_from_many(candidates: Candidates, evolved: Sequence[Real]) -> ManyStartsResult:
-    """Where the search from many starts ends; evolved: starts of the first round beside the random ones."""
+    """Search from many starting points; evolved: starting points of the first round besides the random ones."""
     chance = np.random.default_rng(candidates.task.seed)
     evaluate, settle = residual_function(candidates), LinearParameters(candidates)
     won: list[tuple[float, Real]] = []
@@ -292,7 +297,7 @@ def search_from_many(candidates: Candidates, evolved: Sequence[Real]) -> ManySta
 
 
 def _random_starts(candidates: Candidates, chance: np.random.Generator) -> Real:
-    """Starts at random; every second one by the ratios of its numbers, as bounds far apart leave the size open."""
+    """Return random starting points; every second one is uniform in ratio, as wide bounds leave the size open."""
     x = chance.random((SAMPLES, len(candidates.low)))
     ratio = candidates.low > 0
     low, high = candidates.low[ratio], candidates.high[ratio]
@@ -303,10 +308,10 @@ def _random_starts(candidates: Candidates, chance: np.random.Generator) -> Real:
 def _run_tournament(
     candidates: Candidates, evaluate: Evaluate, settle: LinearParameters, x: Real
 ) -> list[tuple[float, Real]]:
-    """The sums of squares to which a tournament leads, and where."""
+    """Run a tournament: return the sums of squares and the end points of its last stage, best first."""
 
     def settled(x: Real) -> Real:
-        """Those that it makes better: it knows no constraints."""
+        """Solve the linear parameters, and keep only improvements, as that solver ignores constraints."""
         ends = settle(x)
         return np.where((evaluate(ends, 1).cost() < evaluate(x, 1).cost())[:, None], ends, x)
 
@@ -322,7 +327,7 @@ def _run_tournament(
 def _shake_best(
     evaluate: Evaluate, won: list[tuple[float, Real]], chance: np.random.Generator
 ) -> list[tuple[float, Real]]:
-    """Where the best end that are shaken, a little or a lot, again and again."""
+    """Perturb the best end points by small and large amounts, and descend again, as long as this brings a gain."""
     (count, __), last = SHAKEN[0], SHAKEN[-1][0]
     found = sorted(won, key=lambda one: one[0])[:last]
     for __ in range(SHAKES):
@@ -338,12 +343,12 @@ def _shake_best(
 
 
 def _best_first(x: Real, cost: Real) -> list[tuple[float, Real]]:
-    """Best first."""
+    """Pair costs and points, best first."""
     return sorted(zip(cost.tolist(), x, strict=True), key=lambda one: one[0])
 
 
 def residual_function(candidates: Candidates) -> Evaluate:
-    """What is made least in squares; equalities stand beside it with a weight."""
+    """Return the function that computes the residuals of the objective; equality constraints are weighted residuals."""
     objective, constraints = candidates.task.objective, candidates.constraints
     assert isinstance(objective, Deviation)
     unit = objective.spread * np.sqrt(len(objective.wanted))

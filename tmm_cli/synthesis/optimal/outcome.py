@@ -1,5 +1,5 @@
-"""Drawings of an optimal synthesis: the search by generation, and what was wanted of a path or a law of motion beside
-what the best candidate reaches, with its table.
+"""Outcome of an optimal synthesis: best candidate, constraints, diagram of the search, required and reached path or
+law.
 """
 
 from __future__ import annotations
@@ -32,11 +32,16 @@ Read = Callable[[DriverSamples, str], Real]
 def draw_history(
     evolved: EvolutionResult, shown: Callable[[Real], Real], polished: float, quantity: str, kind: str
 ) -> Diagram:
-    """shown: an objective as users read it; polished: the one that was found; quantity: what it is called.
+    """Draw the search by generation.
 
-    Above: the best so far of those that keep the constraints, and behind it the candidate that led in each generation
-    (early on it misses them: the tolerance shrinks). Below: by how much that one misses them, where it does. Where all
-    were tried, each of them that keeps the constraints, and the best so far.
+    Args:
+        shown: converts objectives to the values that users read.
+        polished: objective of the solution.
+        quantity, kind: description and kind of the objective.
+
+    Above: the best objective so far among feasible candidates, and behind it the leading candidate of each generation
+    (early on it violates constraints: the tolerance shrinks). Below: the violation of that candidate. If all candidates
+    were evaluated, every feasible one, and the best so far.
     """
     objective, violation = evolved.history.T
     if evolved.every:
@@ -66,7 +71,7 @@ def draw_history(
 
 
 def compare_reached(candidates: Candidates, x: Real, n: int) -> tuple[Listing, Diagram]:
-    """Of the n-th quantity, for shares x of the ranges."""
+    """Tabulate and draw required and reached values of quantity `n`, for fractions x of the ranges."""
     two = x[None]
 
     def read(places: DriverSamples, key: str) -> Real:
@@ -167,7 +172,7 @@ def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, r
 
 
 def _closest_shares(path: Callable[[Real], Vector], wanted: Vector, closed: bool) -> Real:
-    """Shares of the way at which a path comes nearest to points."""
+    """Return the fractions of the driver range at which a path is nearest to points."""
     shares, step = np.linspace(0, 1, CURVE), 1 / (CURVE - 1)
     near = shares[np.argmin(np.abs(path(shares) - wanted[:, None]), axis=1)]
     low, high = near - step, near + step
@@ -183,7 +188,7 @@ ACTIVE = 1e-6  # of its scale: a constraint this near to its bound holds the opt
 
 
 def outcome_of(candidates: Candidates, found: BestCandidate) -> SynthesisOutcome:
-    """The outcome of a search whose constraints are kept."""
+    """Return the outcome of a search that satisfies the constraints."""
     task, evolved, linkage = candidates.task, found.evolved, candidates.linkage
     kinds = [quantity.kind(linkage, candidates.groups) for quantity in candidates.quantities]
     ends = task.make(found.numbers.tolist()).ends
@@ -257,7 +262,7 @@ def outcome_of(candidates: Candidates, found: BestCandidate) -> SynthesisOutcome
 
 
 def _given_values(candidates: Candidates, ends: tuple[float, float] | None) -> tuple[NamedValue, ...]:
-    """Bounds of what varies, and of the driver."""
+    """Return the bounds of the parameters and of the driver."""
     given = []
     for p in candidates.task.parameters:
         given.append(NamedValue(p.name, p.low, p.kind, N_("varies from")))
@@ -275,7 +280,7 @@ def _given_values(candidates: Candidates, ends: tuple[float, float] | None) -> t
 
 
 def _found_values(candidates: Candidates, found: BestCandidate) -> tuple[NamedValue, ...]:
-    """The parameters, and whether they lie at a bound."""
+    """Return the parameters, with a remark if they lie at a bound."""
     numbers = []
     for p, number, share in zip(candidates.task.parameters, found.numbers.tolist(), found.x.tolist(), strict=True):
         if share < ACTIVE:
@@ -305,7 +310,7 @@ def _source(candidates: Candidates, found: BestCandidate) -> str:
 
 
 def _tabulate_constraints(candidates: Candidates, found: BestCandidate, kinds: list[str]) -> Listing:
-    """The objective and every constraint: bound, value, margin, whether it is active."""
+    """Tabulate the objective and every constraint: bound, value, margin, state."""
     linkage, objective, target = candidates.linkage, candidates.task.objective, candidates.task.target
     side = N_("near") if target is not None else N_("largest") if objective.lowest else N_("least")
     first = (
@@ -351,7 +356,7 @@ def _subject(quantity: MechanismQuantity) -> str:
 
 
 def _in_objective_unit(candidates: Candidates, f: Real) -> Real:
-    """The history of the objective in its own unit; of a target as far above it as the best candidate is from it."""
+    """Convert values of the search to the unit of the objective; a target is added to the distance from it."""
     target = candidates.task.target
     if target is not None:
         return target * (1 + f) if target else f

@@ -32,13 +32,13 @@ FileWith = Callable[[dict[str, PhysicalValue], UnitSystem], Problem]
 def read_ranges(
     vary: Mapping[str, Range], sense: ValueReader, names: Mapping[str, str], file_with: FileWith
 ) -> tuple[Parameter, ...]:
-    """names: those of the file for names of the task. Raises ProblemError."""
+    """Read the ranges of the varied parameters. names: their names in the file. Raises ProblemError."""
     kinds = _find_kinds({name: _range_values(own) for name, own in vary.items()}, sense, names, file_with)
     return tuple(_read_parameter(name, own, kinds[name], sense) for name, own in vary.items())
 
 
 def _range_values(own: Range) -> list[Any]:
-    """Every value of a range as the file has it."""
+    """Return every value of a range as written in the file."""
     return (own.among or [own.from_, own.to, own.step]) if isinstance(own, Chosen) else own
 
 
@@ -83,10 +83,11 @@ def _read_parameter(name: str, own: Range, kind: str, sense: ValueReader) -> Par
 def _find_kinds(
     given: Mapping[str, list[Any]], sense: ValueReader, names: Mapping[str, str], file_with: FileWith
 ) -> dict[str, str]:
-    """The dimension of each: of its values, else the first that the file takes them for, lengths before others.
+    """Return the dimension of each parameter: that of its values, or else the first that the file accepts, length
+    first.
 
-    A bare number is a number where the file takes it for a length too (a share of the way between two points). Of what
-    the file refuses whatever it is, the first whose dimension it does not mind.
+    A bare number that the file accepts both as a length and as a number is a number (a fraction of a distance). If the
+    file is invalid in any case, the first kind whose dimension is not the reason is taken.
     """
     found = {name: next((k for v in own if (k := _dimension_name(v, sense))), "") for name, own in given.items()}
 
@@ -97,7 +98,9 @@ def _find_kinds(
         return PhysicalValue(float(sense.number(given[name][0], dimension, ())), dimension)
 
     def minded(kinds: Mapping[str, str]) -> int:
-        """2: the file minds the dimension of a first value; 1: it refuses them for another reason; 0: for none."""
+        """Return 2 if the file refuses the dimensions of the first values, 1 if it refuses the values otherwise, 0 if
+        it accepts.
+        """
         try:
             file_with({names.get(name, name): value(name, kind) for name, kind in kinds.items()}, sense.units)
         except TriedFileError as error:
@@ -107,7 +110,9 @@ def _find_kinds(
         return 0
 
     def is_share(name: str, kinds: Mapping[str, str]) -> bool:
-        """True if the file takes a number for it, and not whatever it is, as of what it uses nowhere."""
+        """Return True if the file accepts a number for the parameter, but not an angle: parameters not used accept
+        anything.
+        """
         return not minded({**kinds, name: "number"}) and bool(minded({**kinds, name: "angle"}))
 
     lengths = {name: kind or "length" for name, kind in found.items()}
@@ -138,7 +143,7 @@ RangeChoice = str | tuple[float, float]
 
 
 def read_over(over: Any, driver: Driver, sense: ValueReader) -> RangeChoice:
-    """What the key `over` says, with places in SI; what is usual where it is left out. Raises ProblemError."""
+    """Read the key `over`, with driver coordinates in SI; the default if it is omitted. Raises ProblemError."""
     turns, stroked = driver.kind == "turn", driver.stroke is not None
     ways = {"cycle": turns and not stroked, "stroke": stroked, "positions": True}
     possible = [way for way, has in ways.items() if has]
@@ -165,7 +170,7 @@ def read_over(over: Any, driver: Driver, sense: ValueReader) -> RangeChoice:
 
 
 def with_driver_range(problem: Problem, over: RangeChoice) -> Variant:
-    """The linkage of a file with the way of its driver. Raises ProblemError."""
+    """Return the linkage of a file with the range of its driver. Raises ProblemError."""
     ends, stroke = _driver_ends(problem, over), problem.linkage.driver.stroke
     if ends is not None and stroke is not None and not (stroke[0] <= ends[0] and ends[1] <= stroke[1]):
         raise _out_of_range(("over",), over, problem.linkage.driver, stroke, problem.units)
@@ -194,7 +199,7 @@ def _driver_ends(problem: Problem, over: RangeChoice) -> Ends:
 
 
 def read_position(value: Any, variant: Variant, sense: ValueReader, path: Path) -> Any:
-    """A place on the driver's way, whole turns away where that brings it there. Raises ProblemError."""
+    """Read a driver coordinate; whole turns are added if that brings it into the range. Raises ProblemError."""
     driver = variant.linkage.driver
     place: Any = sense.number(value, _driver_dimension(driver), path)
     if variant.ends is None:

@@ -29,7 +29,7 @@ WEIGHT = 10.0  # of what is violated beside the objective, where steps are compa
 
 @dataclass(frozen=True)
 class LocalValues:
-    """What a problem gives for variants (v): pieces of the objective, inequalities >= 0, equalities, each (v, n)."""
+    """Values of a problem for variants (v): peaks of the objective, inequalities >= 0, equalities, each (v, n)."""
 
     pieces: Real
     least: Real
@@ -37,11 +37,11 @@ class LocalValues:
 
 
 class _End(Exception):  # noqa: N818  where the steps end
-    """The first candidate cannot be assembled, or steps bring no more."""
+    """The first candidate cannot be assembled, or further steps bring no gain."""
 
 
 class _Differences:
-    """Values and slopes of a Local's parts at a place, each (values,) and (values, n), kept for the next call."""
+    """Values (values,) and derivatives (values, n) of the parts of LocalValues at a point, cached for the next call."""
 
     def __init__(self, evaluate: Callable[[Real], LocalValues], size: int) -> None:
         self.evaluate, self.size = evaluate, size
@@ -49,7 +49,9 @@ class _Differences:
         self.found: tuple[tuple[Real, Real], ...] = ()
 
     def __call__(self, x: Real) -> tuple[tuple[Real, Real], ...]:
-        """Where something cannot be assembled, a step too far: values out of all proportion. Raises _End at once."""
+        """Return values and derivatives; beyond the assembly limit huge values. Raises _End if the first point is
+        there.
+        """
         n = self.size
         if not np.array_equal(x, self.at):
             ends = np.clip(x + np.vstack([np.zeros(n), STEP * np.eye(n), -STEP * np.eye(n)]), 0, 1)
@@ -67,7 +69,7 @@ class _Differences:
 
 
 def minimize_locally(evaluate: Callable[[Real], LocalValues], x: Real) -> Real:
-    """The nearest best place in 0..1 from x (n,)."""
+    """Return the nearest local minimum in 0..1 from x (n,)."""
     from scipy.optimize import minimize
 
     n, differences = len(x), _Differences(evaluate, len(x))
@@ -82,7 +84,7 @@ def minimize_locally(evaluate: Callable[[Real], LocalValues], x: Real) -> Real:
         return tuple((values, scale * slopes) for values, slopes in differences(place(z)))
 
     def take(z: Real) -> None:
-        """Notes a step; raises _End."""
+        """Record a step. Raises _End."""
         nonlocal idle
         f, c, e = (values for values, slopes in near(z))
         bad = float(np.max(f) + WEIGHT * (np.sum(np.maximum(-c, 0)) + np.sum(np.abs(e))))
@@ -92,7 +94,7 @@ def minimize_locally(evaluate: Callable[[Real], LocalValues], x: Real) -> Real:
             raise _End
 
     def above(z: Real) -> Real:
-        """t over every piece, and the inequalities."""
+        """Return t minus every peak, and the inequalities."""
         pieces, least, __ = near(z)
         return np.append(z[n] - pieces[0], least[0])
 
@@ -141,9 +143,13 @@ SETTLED = 1e-9  # shares of the ranges: a polish that moves a candidate by less 
 
 @dataclass(frozen=True)
 class BestCandidate:
-    """The best candidate: its numbers (SI), objective and constrained quantities, by how much it misses constraints.
+    """The best candidate.
 
-    ends: of independent starts, where there were such.
+    Attributes:
+        x, numbers: fractions of the ranges, and parameter values (SI).
+        values: objective and constrained quantities.
+        missed: constraint violation.
+        ends: ends of independent descents; None if there were none.
     """
 
     x: Real
@@ -155,12 +161,14 @@ class BestCandidate:
 
     @property
     def agree(self) -> bool:
-        """Whether independent starts led to it."""
+        """True if independent starting points led to it."""
         return self.ends is None or self.ends.agree
 
 
 def evaluate_exactly(candidates: Candidates, x: Real) -> list[float]:
-    """Objective and constrained quantities of x in 0..1, as exactly as they will be measured; nan: it has none."""
+    """Return objective and constrained quantities of x in 0..1 as accurately as they are measured later; nan:
+    undefined.
+    """
     with np.errstate(all="ignore"):
         found, coarse = _exact_pieces(candidates, x)(x), candidates.values(x[None])
         values = [float(_value(candidates, n, pieces)[0]) for n, pieces in enumerate(found)]
@@ -183,11 +191,11 @@ def evaluate_exactly(candidates: Candidates, x: Real) -> list[float]:
 
 
 def refine_candidate(candidates: Candidates, x: Real) -> Real:
-    """The best place near x, whose numbers that have some values only stay as they are."""
+    """Return the best point near x; parameters with discrete values stay unchanged."""
     whole, free = x, candidates.task.free
 
     def all_of(some: Real) -> Real:
-        """Candidates with all their numbers."""
+        """Return candidates with all their parameters, from the continuous ones."""
         found = np.repeat(whole[None], len(some), axis=0)
         found[:, free] = some
         return found
@@ -204,9 +212,9 @@ def refine_candidate(candidates: Candidates, x: Real) -> Real:
 
 
 def _exact_pieces(candidates: Candidates, x: Real, narrow: float = 0.0) -> Callable[[Real], list[Real]]:
-    """Pieces of every quantity near x, exactly: windows are where x has its peaks.
+    """Return the function that computes the peaks of every quantity near x exactly, from windows around the peaks of x.
 
-    narrow: their width against that for the first steps of the polish; they are never narrower than the scan needs.
+    narrow: width of the windows relative to those of the first steps; never less than the scan requires.
     """
     scan = candidates.shares_over(candidates.scan)
     found = candidates.run(x[None], DriverSamples(scan, np.zeros(0)))
@@ -243,13 +251,13 @@ def _exact_pieces(candidates: Candidates, x: Real, narrow: float = 0.0) -> Calla
 
 
 def _value(candidates: Candidates, n: int, pieces: Real) -> Real:
-    """A quantity from its pieces, (variants,)."""
+    """Return a quantity from its peaks, (variants,)."""
     found: Real = (np.min if candidates.quantities[n].lowest else np.max)(pieces, axis=1)
     return found
 
 
 def _objective_pieces(candidates: Candidates, pieces: Real) -> Real:
-    """What is made least, with derivatives where it is zero."""
+    """Return the values to be minimised, differentiable where they are zero."""
     target, objective = candidates.task.target, candidates.task.objective
     if target is not None:
         off = (_value(candidates, 0, pieces)[:, None] - target) / (abs(target) or 1.0)
@@ -258,7 +266,7 @@ def _objective_pieces(candidates: Candidates, pieces: Real) -> Real:
 
 
 def _local_values(candidates: Candidates, found: list[Real], top: float) -> LocalValues:
-    """What the polish needs of the pieces of some candidates."""
+    """Return the objective and the constraints in the form that the local minimisation needs."""
     least, equal = [], []
     for n, (constraint, pieces) in enumerate(zip(candidates.constraints, found[1:], strict=True), 1):
         low = high = _value(candidates, n, pieces)[:, None]

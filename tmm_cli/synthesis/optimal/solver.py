@@ -1,4 +1,4 @@
-"""Optimal synthesis: task -> candidates -> differential evolution -> polish of the best -> outcome."""
+"""Optimal synthesis: task -> candidates -> differential evolution -> refinement of the best -> outcome."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ NEVER: Final = N_("no mechanism within these bounds can go the whole way of its 
 
 
 def solve(task: OptimalTask) -> SynthesisOutcome:
-    """The task of one file. Raises Infeasible."""
+    """Solve the task of one file. Raises Infeasible."""
     candidates = Candidates(task)
     found = find_best(candidates)
     if found.missed:
@@ -38,7 +38,7 @@ def solve(task: OptimalTask) -> SynthesisOutcome:
 
 
 def find_best(candidates: Candidates) -> BestCandidate:
-    """Search and polish. Raises Infeasible."""
+    """Search and refine. Raises Infeasible."""
     task = candidates.task
     choices = DiscreteChoices(candidates) if len(task.free) < len(task.parameters) else None
     if choices is not None and choices.few:
@@ -63,7 +63,7 @@ def find_best(candidates: Candidates) -> BestCandidate:
 
 
 def _distinct_starts(candidates: Candidates, evolved: EvolutionResult) -> list[Real]:
-    """The best candidates that differ, in the values that they may have."""
+    """Return the best candidates that differ from one another, with admissible discrete values."""
     starts: list[Real] = []
     first = evolved.objective[0]
     population = candidates.shares(candidates.numbers(evolved.population))
@@ -77,7 +77,7 @@ def _distinct_starts(candidates: Candidates, evolved: EvolutionResult) -> list[R
 
 
 def _refine_starts(candidates: Candidates, starts: Iterable[Real], evolved: EvolutionResult) -> BestCandidate:
-    """The best of what the polish leads to from some starts, and of themselves."""
+    """Return the best candidate among the starting points and the points that refinement reaches from them."""
     found: list[tuple[float, float, Real, list[float]]] = []
 
     def take(x: Real) -> None:
@@ -117,7 +117,7 @@ def _refine_starts(candidates: Candidates, starts: Iterable[Real], evolved: Evol
 
 
 def _no_quantity_reason(candidates: Candidates, quantity: MechanismQuantity) -> str:
-    """Words on a quantity that no candidate has: forces are lost where an accelerated driver does not come by."""
+    """Return why no candidate has a quantity; forces are undefined if an accelerated driver does not arrive."""
     if quantity.forces and candidates.variant.accelerated:
         return N_(
             "the driver does not come to all places of its way with this acceleration: it stops before, or they "
@@ -127,7 +127,7 @@ def _no_quantity_reason(candidates: Candidates, quantity: MechanismQuantity) -> 
 
 
 def _missed_constraint(candidates: Candidates, found: BestCandidate) -> Infeasible:
-    """The constraint that is farthest from being met, and how near to it the polish comes while the others are kept."""
+    """Return the refusal for the most violated constraint, with its nearest value under the other constraints."""
     misses = [float(c.missed(value)) for c, value in zip(candidates.constraints, found.values[1:], strict=True)]
     n = int(np.argmax(misses))
     constraint, value = candidates.constraints[n], found.values[n + 1]

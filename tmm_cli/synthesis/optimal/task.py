@@ -1,4 +1,4 @@
-"""Optimal synthesis: what is asked."""
+"""Optimal synthesis: the task, and its checks before the search."""
 
 from __future__ import annotations
 
@@ -23,7 +23,9 @@ Keys = tuple[str | int, ...]  # of the block, down to what stands there
 
 @dataclass(frozen=True)
 class Parameter:
-    """What varies (SI), and its dimension; values: all that it may have, rising, where these are some only."""
+    """A varied parameter (SI) and its dimension; values: its discrete values in ascending order, () if it is
+    continuous.
+    """
 
     name: str
     low: float
@@ -34,7 +36,7 @@ class Parameter:
 
 @dataclass(frozen=True)
 class QuantityConstraint:
-    """least <= quantity <= most (SI); equal where they are the same. at: its place among those asked for."""
+    """least <= quantity <= most (SI); equality if both are equal. at: its path in the block."""
 
     quantity: MechanismQuantity
     least: float | None = None
@@ -47,21 +49,22 @@ class QuantityConstraint:
 
     @property
     def scale(self) -> float:
-        """What a miss is measured against."""
+        """Reference of its relative violation."""
         if self.quantity.lowest:
             return 1.0
         return max(abs(self.least or 0.0), abs(self.most or 0.0)) or 1.0
 
     def missed(self, value: Any) -> Any:
-        """By how much, in shares of the scale; 0 where it is kept, inf where there is no such quantity."""
+        """Return the violation relative to the scale; 0 if satisfied, inf if the quantity is undefined."""
         low = 0.0 if self.least is None else self.least - value
         high = 0.0 if self.most is None else value - self.most
         missed = np.maximum(np.maximum(low, high), 0.0) / self.scale
         return np.where(np.isnan(missed), np.inf, missed)
 
     def rows(self, low: Any, high: Any) -> tuple[list[Any], list[Any]]:
-        """What must not be below zero, and what must be zero, in shares of the scale; low, high: what its bounds are
-        compared with.
+        """Return inequalities (>= 0) and equalities (= 0), relative to the scale.
+
+        low, high: values compared with the lower and with the upper bound.
         """
         if self.equal:
             return [], [(low - self.least) / self.scale]
@@ -69,7 +72,7 @@ class QuantityConstraint:
         return [*least, *([] if self.most is None else [(self.most - high) / self.scale])], []
 
     def broken(self, value: float) -> tuple[float, Keys]:
-        """The bound that a value lies beyond, and where it stands."""
+        """Return the bound that a value violates, and its path."""
         low = self.least is not None and value < self.least
         bound = self.least if low else self.most
         assert bound is not None
@@ -79,9 +82,14 @@ class QuantityConstraint:
 
 @dataclass(frozen=True)
 class OptimalTask:
-    """make: the linkage for numbers of the parameters (SI), with its driver range. target: the objective is to come
-    near to this. positions: round the cycle, in the search. accepts: whether the file takes such numbers. population,
-    generations: 0 for as many as the number of parameters wants.
+    """An optimal synthesis.
+
+    Attributes:
+        make: builds the linkage, with its driver range, for parameter values (SI).
+        target: value that the objective must approach; None: it is minimised.
+        positions: positions in a cycle during the search.
+        population, generations: 0: chosen by the number of parameters.
+        accepts: returns True if the file is valid with these values.
     """
 
     parameters: tuple[Parameter, ...]
@@ -98,17 +106,17 @@ class OptimalTask:
 
     @property
     def free(self) -> list[int]:
-        """Which parameters may have all values within their bounds."""
+        """Indices of the continuous parameters."""
         return [k for k, parameter in enumerate(self.parameters) if not parameter.values]
 
     def with_one(self, first: Sequence[float], k: int, numbers: Sequence[float]) -> list[list[float]]:
-        """First numbers with others for parameter k, those that the file takes."""
+        """Return parameter lists with other values of parameter k, without those that the file refuses."""
         tried = ([*first[:k], float(number), *first[k + 1 :]] for number in numbers)
         return [one for one in tried if self.accepts(one)]
 
 
 def nearest_allowed(numbers: Any, parameters: Sequence[Parameter]) -> Real:
-    """The nearest numbers (..., n) that parameters may have."""
+    """Return the nearest values (..., n) that the parameters may have."""
     found = np.array(numbers, dtype=float)
     for k, parameter in enumerate(parameters):
         if parameter.values:
@@ -126,7 +134,8 @@ MOST_LOOKED = 100  # of its values, where it has some only
 
 
 def find_first(task: OptimalTask) -> list[float]:
-    """Numbers (SI) of a linkage that can be assembled as the file sketches it: the middle of the bounds, or others.
+    """Return parameter values (SI) whose linkage can be assembled as sketched: the middle of the bounds, or random
+    ones.
 
     Raises Infeasible.
     """
@@ -144,7 +153,8 @@ def find_first(task: OptimalTask) -> list[float]:
 
 
 def check_task(task: OptimalTask, first: Sequence[float]) -> None:
-    """Every parameter changes something, the linkage has what is asked of it, its cycle is that of all candidates.
+    """Check that every parameter has an effect, that the linkage has all quantities, and that all candidates have one
+    cycle.
 
     Raises Infeasible.
     """
@@ -165,9 +175,9 @@ def check_task(task: OptimalTask, first: Sequence[float]) -> None:
 
 
 def _check_cycle(task: OptimalTask, first: Sequence[float], linkage: Linkage) -> None:
-    """All candidates come round again after as many turns of the crank. Raises Infeasible.
+    """Raise Infeasible if the cycle is not the same number of crank turns for all candidates.
 
-    Toothed wheels and further drivers come round together only where their ratios are those of whole numbers.
+    Gears and further drivers have a common cycle only if their ratios are those of whole numbers.
     """
     geared = any(mesh.kind == "gear" for mesh in linkage.meshes) or linkage.others
     moves = any(quantity.moves for quantity in (task.objective, *(c.quantity for c in task.constraints)))
@@ -186,13 +196,13 @@ def _check_cycle(task: OptimalTask, first: Sequence[float], linkage: Linkage) ->
 
 
 def _speed_ratios(linkage: Linkage) -> tuple[str, ...]:
-    """Of speeds of wheels and drivers, to 12 digits: what they come round together hangs on."""
+    """Return the speed ratios of gears and drivers, to 12 digits, on which their common cycle depends."""
     wheels = [mesh.ratio for mesh in linkage.meshes if mesh.kind == "gear"]
     return tuple(f"{ratio:.12g}" for ratio in (*wheels, *(o.rate / linkage.driver.rate for o in linkage.others)))
 
 
 def has_one_sense(task: OptimalTask, first: Sequence[float]) -> bool:
-    """Whether no driver goes forth in some candidates and back in others."""
+    """Return True if no driver moves forward in some candidates and backward in others."""
     senses = set()
     for k, p in enumerate(task.parameters):
         for numbers in task.with_one(first, k, (p.low, p.high)):

@@ -1,1 +1,1 @@
-"""Structural synthesis: schemes built of Assur groups."""
+"""Structural synthesis: kinematic chains, schemes of mechanisms from Assur groups, and problem files for them."""

@@ -1,8 +1,8 @@
-"""When two structures are the same: a canonical form of small graphs with coloured vertices and edges.
+"""Enumeration of kinematic chains, and a canonical form of small graphs with coloured vertices and edges.
 
-Colours are refined by those of the neighbours until nothing changes; where vertices of one colour are left, each in
-turn is given a colour of its own, and the least of all the forms is kept. Two graphs are isomorphic exactly when their
-forms are equal. Source of the method: B. D. McKay, Practical graph isomorphism, Congressus Numerantium 30 (1981).
+Colours are refined by those of the neighbours until nothing changes. If vertices of equal colour remain, each of them
+in turn is given a colour of its own, and the smallest of all forms is kept. Two graphs are isomorphic exactly if their
+forms are equal. Source: B. D. McKay, Practical graph isomorphism, Congressus Numerantium 30 (1981).
 """
 
 from __future__ import annotations
@@ -20,7 +20,9 @@ GraphForm = tuple[tuple[int, ...], tuple[tuple[int, int, int], ...]]
 
 
 def canonical_form(colours: Sequence[int], edges: Mapping[tuple[int, int], int]) -> GraphForm:
-    """The form of a simple graph on the vertices 0 .. len(colours) - 1; an edge joins two of them and has a kind."""
+    """Return the canonical form of a simple graph on the vertices 0 .. len(colours) - 1; edges: kind by pair of
+    vertices.
+    """
     beyond = 2 * max(len(colours), *colours) + 2  # all colours that there can be: one number tells kind and colour
     beside: list[list[tuple[int, int]]] = [[] for _ in colours]
     for (i, j), kind in edges.items():
@@ -55,7 +57,7 @@ def _forms(
 
 
 def _refine_colours(colours: list[int], beside: list[list[tuple[int, int]]]) -> list[int]:
-    """Colours 0, 1, ... that tell apart what the neighbours, their neighbours, ... tell apart."""
+    """Return colours 0, 1, ... that distinguish vertices by their neighbours, the neighbours of these, and so on."""
     count = 0
     while True:
         keys = [
@@ -91,14 +93,14 @@ Bundle = tuple[int, int, int]
 
 @dataclass(frozen=True)
 class KinematicChain:
-    """A kinematic chain: links 0 .. n - 1 (those with most pairs first) and its turning pairs (i, j), i < j."""
+    """A kinematic chain: links 0 .. n - 1 (those with most pairs first) and its revolute pairs (i, j), i < j."""
 
     links: int
     pairs: tuple[tuple[int, int], ...]
 
     @property
     def mobility(self) -> int:
-        """3(n - 1) - 2p: with one of the links held."""
+        """3(n - 1) - 2p, with one link fixed."""
         return 3 * (self.links - 1) - 2 * len(self.pairs)
 
     @cached_property
@@ -109,23 +111,25 @@ class KinematicChain:
 
     @cached_property
     def fractionated(self) -> bool:
-        """Whether taking away one link separates the rest (a pair whose removal does so has such a link beside it)."""
+        """True if removing one link separates the rest (a pair with this property has such a link beside it)."""
         return any(not _is_connected(set(range(self.links)) - {link}, self.pairs) for link in range(self.links))
 
     @cached_property
     def form(self) -> GraphForm:
-        """Canonical form: equal for isomorphic chains and for no others."""
+        """Canonical form: equal exactly for isomorphic chains."""
         return canonical_form([0] * self.links, dict.fromkeys(self.pairs, 0))
 
 
 def independent_contours(links: int, mobility: int) -> int | None:
-    """Independent contours of a closed chain; None when there is no such chain."""
+    """Return the number of independent contours of a closed chain; None if there is no such chain."""
     twice = links - mobility - 1
     return twice // 2 if mobility >= 1 and twice >= 2 and twice % 2 == 0 else None
 
 
 def enumerate_chains(links: int, mobility: int = 1) -> tuple[KinematicChain, ...]:
-    """All chains of so many links, no two isomorphic, by assortment of links; links are at most MOST_LINKS."""
+    """Enumerate all non-isomorphic chains with so many links (at most MOST_LINKS_OF_CHAIN), ordered by assortment of
+    links.
+    """
     if links > MOST_LINKS_OF_CHAIN:
         raise ValueError(f"chains of at most {MOST_LINKS_OF_CHAIN} links are listed")
     loops = independent_contours(links, mobility)
@@ -142,7 +146,7 @@ def enumerate_chains(links: int, mobility: int = 1) -> tuple[KinematicChain, ...
 
 
 def _multigraphs(loops: int) -> Iterator[tuple[int, tuple[Bundle, ...]]]:
-    """Connected multigraphs with so many independent contours and all degrees 3 and more: vertices, bundles."""
+    """Yield connected multigraphs with so many independent contours and all degrees 3 or more: vertices, bundles."""
     seen = set()
     for extra in _partitions(2 * (loops - 1)):
         degrees = [2 + k for k in extra]
@@ -166,7 +170,7 @@ def _partitions(total: int, most: int | None = None) -> Iterator[list[int]]:
 
 
 def _fill_degrees(left: list[int], i: int, j: int) -> Iterator[list[Bundle]]:
-    """All ways to use up the degrees that are left, from the bundle (i, j) on."""
+    """Yield all ways to use up the remaining degrees, from the bundle (i, j) on."""
     if i == len(left):
         yield []
         return
@@ -186,10 +190,10 @@ def _fill_degrees(left: list[int], i: int, j: int) -> Iterator[list[Bundle]]:
 def _distribute_binary_links(
     vertices: int, bundles: Sequence[Bundle], binary: int
 ) -> Iterator[tuple[tuple[int, ...], ...]]:
-    """Ways to put binary links on the edges, one of each isomorphism class: their numbers, bundle by bundle.
+    """Yield the ways to put binary links on the edges, one of each isomorphism class: their numbers, bundle by bundle.
 
-    A part with the vertices S, all its edges that carry fewer than two binary links (each such edge with m of them
-    takes 2 - m freedoms) and no others has the least mobility of all sub-chains about S.
+    Of all sub-chains around a set S of vertices, the one with all edges that carry fewer than two binary links has the
+    smallest mobility (an edge with m of them removes 2 - m freedoms).
     """
     inside = [
         (3 * (size - 1), [k for k, (i, j, _) in enumerate(bundles) if i in part and j in part])
@@ -209,7 +213,7 @@ def _distribute_binary_links(
 
 
 def _spread_binary_links(bundles: Sequence[Bundle], binary: int) -> Iterator[tuple[tuple[int, ...], ...]]:
-    """Binary links on the edges of each bundle, so that no contour of one bundle is rigid."""
+    """Yield numbers of binary links on the edges of each bundle, such that no contour of a bundle is rigid."""
     if not bundles:
         if binary == 0:
             yield ()
@@ -225,12 +229,12 @@ def _spread_binary_links(bundles: Sequence[Bundle], binary: int) -> Iterator[tup
 
 
 def _fewest_binary_links(loop: bool, count: int) -> int:
-    """The fewest binary links that a bundle can do with: a contour has four links."""
+    """Return the smallest number of binary links that a bundle needs: a contour has at least four links."""
     return 3 * count if loop else max(0, 2 * (count - 1))
 
 
 def _ascending_tuples(count: int, most: int, least: int) -> Iterator[tuple[int, ...]]:
-    """Ascending rows of so many numbers from `least` on, with a sum of at most `most`."""
+    """Yield ascending tuples of `count` numbers from `least` on, with a sum of at most `most`."""
     if count == 0:
         yield ()
         return
@@ -240,7 +244,7 @@ def _ascending_tuples(count: int, most: int, least: int) -> Iterator[tuple[int, 
 
 
 def _automorphisms(vertices: int, bundles: Sequence[Bundle]) -> list[list[int]]:
-    """Every renumbering of the vertices that leaves the multigraph as it is: whose place each bundle takes."""
+    """Return all automorphisms of the multigraph, each as the indices of the images of its bundles."""
     counts = {(i, j): count for i, j, count in bundles}
     number = {(i, j): k for k, (i, j, _) in enumerate(bundles)}
     found = []
@@ -252,7 +256,7 @@ def _automorphisms(vertices: int, bundles: Sequence[Bundle]) -> list[list[int]]:
 
 
 def _insert_binary_links(bundles: Sequence[Bundle], binaries: Sequence[Sequence[int]], links: int) -> KinematicChain:
-    """The chain with its binary links in their edges, those with most pairs first."""
+    """Build the chain with binary links in its edges, links with most pairs first."""
     after = 1 + max(j for _, j, _ in bundles)
     pairs = []
     for (i, j, _), numbers in zip(bundles, binaries, strict=True):
@@ -265,7 +269,7 @@ def _insert_binary_links(bundles: Sequence[Bundle], binaries: Sequence[Sequence[
 
 
 def _is_connected(links: set[int], pairs: Iterable[tuple[int, int]]) -> bool:
-    """Whether the links hold together by the pairs between them."""
+    """Return True if the links are connected by the pairs between them."""
     beside: dict[int, list[int]] = {link: [] for link in links}
     for i, j in pairs:
         if i in links and j in links:

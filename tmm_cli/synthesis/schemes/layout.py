@@ -1,7 +1,7 @@
-"""One pose of a scheme in the making: where its points are, what chance gives, and its dimensions in the end.
+"""Layout of a scheme: random positions of its groups that assemble, rounded to dimensions for a problem file.
 
-Everything is in mm and degrees here, as in the problem file; an angle in radians is called turn. The crank stands at
-CRANK_AT and is short, so that it has a chance to turn fully.
+Everything is in mm and degrees, as in the problem file; only axis angles are in radians. The crank stands at CRANK_AT
+and is short, so that it is likely to rotate fully.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ WEIGHT = 3.0  # metres of links that a transmission angle of 0 is as bad as
 
 @dataclass(frozen=True)
 class PrismaticLayout:
-    """A sliding pair: the runner's point stays on the line through `through` at `angle`, in the carrier's axes."""
+    """A prismatic pair: the runner's point stays on the line through `through` at `angle` (deg), in carrier axes."""
 
     carrier: int
     runner: int
@@ -38,8 +38,12 @@ class PrismaticLayout:
 class SchemeLayout:
     """Dimensions of a scheme and its sketch.
 
-    points: of every link, in its own axes (of the frame: in the drawing); places: where those of the moving links are
-    in the sketch, angles: of the links that slide on one another and are hung on two others; cranks: where they stand.
+    Attributes:
+        points: points of every link in its own axes (of the frame: in the drawing).
+        places: points of the moving links in the sketch.
+        angles: sketch angles of links that slide on one another while hinged to two others.
+        cranks: crank angles (deg) in the sketch.
+        cost: lower is better.
     """
 
     points: dict[int, dict[str, complex]]
@@ -51,12 +55,12 @@ class SchemeLayout:
 
 
 class UnfitLayout(Exception):  # noqa: N818
-    """This pose is no good."""
+    """This layout is not usable."""
 
 
 @dataclass
 class LayoutDraft:
-    """Places of points (mm) and directions of axes (rad), link by link; groups are put down by who makes the pose."""
+    """Points (mm) and axis angles (rad) of the links, link by link; a subclass places the groups."""
 
     scheme: Scheme
     random: Random
@@ -72,13 +76,13 @@ class LayoutDraft:
         return range(1, self.scheme.cranks + 1)
 
     def pivot(self, crank: int) -> complex:
-        """Where a crank stands on the frame."""
+        """Return the pivot of a crank on the frame."""
         return next(iter(self.points[crank].values()))
 
     # --- chance
 
     def random_vector(self, shortest: float, longest: float, low: float = 0.0, high: float = 360.0) -> complex:
-        """A vector of a length (mm) and direction (deg) between bounds."""
+        """Return a random vector with length (mm) and direction (deg) between bounds."""
         angle = math.radians(self.random.uniform(low, high))
         return cmath.rect(self.random.uniform(shortest, longest), angle)
 
@@ -88,16 +92,16 @@ class LayoutDraft:
     # --- links
 
     def place_link(self, link: int, turn: float, **points: complex) -> None:
-        """A link with axes in the direction `turn`, its origin in its first point."""
+        """Place a link with its axes in the direction `turn` (rad) and its origin in its first point."""
         self.axis_angle[link] = turn
         self.points[link] = dict(points)
 
     def place_bar(self, link: int, first: str, A: complex, second: str, B: complex) -> None:
-        """A link of two hinges, its axis from the first to the second."""
+        """Place a link with two hinges, its axis from the first to the second."""
         self.place_link(link, cmath.phase(B - A), **{first: A, second: B})
 
     def new_hinge(self, link: int) -> complex | None:
-        """Where a link may get one more hinge; None: anywhere, the frame is everywhere."""
+        """Return a point for one more hinge of a link; None for the frame, where any point will do."""
         points = list(self.points[link].values())
         if link == 0:
             return None
@@ -115,12 +119,12 @@ class LayoutDraft:
         return (A + B) / 2 + 1j * along * self.random_side() * self.random.uniform(60, 140)
 
     def centre_of(self, link: int) -> complex | None:
-        """The middle of a link's points, None for the frame."""
+        """Return the mean of a link's points; None for the frame."""
         points = list(self.points[link].values())
         return None if link == 0 else sum(points) / len(points)
 
     def new_hinges(self, X: int, Y: int, shortest: float, longest: float) -> tuple[complex, complex]:
-        """Outer hinges on two links; one on the frame is so far from the other."""
+        """Return external hinges on two links; one on the frame is placed at a random distance from the other."""
         A, B = self.new_hinge(X), self.new_hinge(Y)
         if A is None:
             assert B is not None
@@ -130,7 +134,9 @@ class LayoutDraft:
         return A, B
 
     def guide_direction(self, carrier: int, turn: float, spread: float) -> float:
-        """A guide's direction (rad) about `turn`; on the frame in steps of 15 degrees, elsewhere in whole ones."""
+        """Return a guide direction (rad) around `turn`: on the frame in steps of 15 degrees, on other links of 1
+        degree.
+        """
         turn += math.radians(self.random.uniform(-spread, spread))
         step = math.radians(15 if carrier == 0 else 1)
         return self.axis_angle[carrier] + step * round((turn - self.axis_angle[carrier]) / step)
@@ -139,17 +145,17 @@ class LayoutDraft:
         self.slides.append((carrier, runner, through, turn, point))
 
     def add_transmission_penalty(self, transmission: float) -> None:
-        """Count a group by the sine of its transmission angle."""
+        """Add the penalty of a group for the sine of its transmission angle."""
         if abs(transmission) < 0.5:
             raise UnfitLayout
         self.penalties.append((1 - min(1.0, abs(transmission))) ** 2)
 
     def add_reserve_penalty(self, way: float) -> None:
-        """Count a group by how far (mm) it can still give way before it is stretched: a crank's diameter is enough."""
+        """Add the penalty of a group for the distance (mm) by which it can still move; a crank diameter is enough."""
         self.penalties.append((1 - max(0.0, min(1.0, way / (2 * CRANK)))) ** 2)
 
     def name_hinge(self, link: int, place: complex) -> str:
-        """A new hinge of a link that is there."""
+        """Add a named hinge to an existing link, and return its name."""
         name = next(self.names)
         self.points[link][name] = complex(round(place.real), round(place.imag)) if link == 0 else place
         return name
@@ -157,7 +163,7 @@ class LayoutDraft:
     # --- dimensions
 
     def to_layout(self) -> SchemeLayout:
-        """The pose in numbers, if links are neither too long nor their points too close to one another."""
+        """Return the layout in whole numbers. Raises UnfitLayout if links are too long or points too close together."""
         places = {name: place for points in self.points.values() for name, place in points.items()}
         if any(abs(p - q) < NEAREST for p, q in combinations(places.values(), 2)):
             raise UnfitLayout
@@ -188,18 +194,18 @@ class LayoutDraft:
         return SchemeLayout(points, slides, moving, angles, cranks, sum(spans) / 1000 + WEIGHT * sum(self.penalties))
 
     def to_link_axes(self, link: int, place: complex) -> complex:
-        """A place in a link's axes, in whole millimetres."""
+        """Return a point in a link's axes, in whole millimetres."""
         origin = next(iter(self.points[link].values())) if link else 0j
         return round_to_mm((place - origin) * cmath.rect(1, -self.axis_angle[link]))
 
 
 def round_to_mm(place: complex) -> complex:
-    """The nearest place in whole millimetres."""
+    """Round a point to whole millimetres."""
     return complex(round(place.real), round(place.imag))
 
 
 def _wrap_line_angle(angle: int) -> int:
-    """The same line, its direction from -90 (not included) to 90 degrees."""
+    """Return the direction of a line in -90 (not included) to 90 degrees."""
     return 90 - (90 - angle) % 180
 
 
@@ -213,14 +219,14 @@ TRIALS = 250
 
 
 def find_layouts(scheme: Scheme, seed: int = 1) -> tuple[SchemeLayout, ...]:
-    """Poses of a scheme, the best first."""
+    """Return layouts of a scheme, best first."""
     random = Random(seed)
     found = (_GroupPlacer(scheme, random).place_groups() for _ in range(TRIALS))
     return tuple(sorted((x for x in found if x is not None), key=lambda layout: layout.cost))
 
 
 class _GroupPlacer(LayoutDraft):
-    """A pose of the whole scheme, its groups put down one after another."""
+    """A layout of the whole scheme, its groups placed one after another."""
 
     def place_groups(self) -> SchemeLayout | None:
         self.points, self.axis_angle = {0: {}}, {0: 0.0}
@@ -371,7 +377,7 @@ class _GroupPlacer(LayoutDraft):
 
 
 def _supporting_links(group: PlacedGroup) -> list[int]:
-    """The links that a group is attached to, in the order of its outer pairs."""
+    """Return the links to which a group is attached, in the order of its external pairs."""
     return [known for known, _, _ in group.outer]
 
 

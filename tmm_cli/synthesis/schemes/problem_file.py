@@ -10,7 +10,7 @@ from tmm_cli.synthesis.schemes.schemes import Scheme
 
 
 def problem_text(scheme: Scheme, layout: SchemeLayout, title: str) -> str:
-    """The file, as a student would write it."""
+    """Return the text of the problem file, as a student would write it."""
     return "\n".join([*_head(scheme, title), *_links(layout), *_driven(scheme, layout), ""])
 
 
@@ -37,7 +37,7 @@ def _links(layout: SchemeLayout) -> Iterable[str]:
 
 
 def _points(link: int, points: dict[str, complex], layout: SchemeLayout) -> Iterable[str]:
-    """Names and a length where they say it all; coordinates in the link's axes otherwise."""
+    """Yield names and a length if these suffice; else coordinates in the link's axes."""
     places = list(points.values())
     if len(points) == 1:
         yield f"points: [{next(iter(points))}]"
@@ -79,7 +79,7 @@ def _driven(scheme: Scheme, layout: SchemeLayout) -> Iterable[str]:
 
 
 def _mass(points: list[complex]) -> Iterable[str]:
-    """A kilogram for every 100 mm, as of a slender bar."""
+    """Yield mass and inertia of a slender bar with 1 kg for every 100 mm, and its centre."""
     span = max(abs(p - q) for p in points for q in points) / 1000
     mass = max(1.0, round(10 * span, 1))
     yield f"mass: {_number(mass)} kg"
@@ -90,7 +90,7 @@ def _mass(points: list[complex]) -> Iterable[str]:
 
 
 def _load(scheme: Scheme, layout: SchemeLayout) -> tuple[int, str]:
-    """The output, the last link that is joined to the frame (a slider before others), or 0; and the load on it."""
+    """Return the output, the last link joined to the frame (sliders first), or 0; and the load on it."""
     guided = {slide.runner: slide.angle for slide in layout.slides if slide.carrier == 0}
     for group in reversed(scheme.groups):
         held = [own for known, own, __ in group.outer if known == 0]

@@ -1,17 +1,17 @@
-"""Structural synthesis: all schemes of mechanisms that come of attaching Assur groups one after another.
+"""Structural synthesis: all schemes of mechanisms formed by attaching Assur groups one after another.
 
-A scheme begins with driving cranks hinged to the frame; every group is joined by its outer pairs to the frame and to
-links that are there already (L. V. Assur; I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 3). The mobility
-is then the number of cranks, and no part is over-held by count: a group adds no freedom and takes none. Admissible is
-what moves as its scheme says:
+A scheme begins with driving cranks hinged to the frame; every group is attached by its external pairs to the frame and
+to links that are already there (L. V. Assur; I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 3). The
+mobility is then the number of cranks, and no part is overconstrained by count: a group neither adds nor removes
+freedom. A scheme is admissible if it can move:
 
-- the outer pairs of a group do not all lie on one and the same link, with which the group would be a rigid body;
-- every hinge turns: two links that keep their directions to one another (joined by sliding pairs alone) have no hinge
-  between them, as a contour with a single turning pair has;
-- every crank drives something, and the mechanism does not fall into two when the frame is taken away.
+- the external pairs of a group are not all on one link, with which the group would form a rigid body;
+- every hinge rotates: two links that keep their relative direction (joined by prismatic pairs alone) have no hinge
+  between them, as in a contour with a single revolute pair;
+- every crank drives something, and the mechanism stays connected when the frame is removed.
 
-All pairs are simple: a compound hinge is two hinges of a link at one place, a matter of dimensions. Two schemes are
-the same when their links correspond, the frame to the frame, cranks to cranks and every pair to one of its kind.
+All pairs are simple: a compound hinge is two hinges of a link at one point, which is a matter of dimensions. Two
+schemes are equal if their links correspond, the frame to the frame, cranks to cranks and every pair to one of its kind.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ MOST_SCHEMES = 2000
 
 @dataclass(frozen=True)
 class GroupType:
-    """An Assur group as a building block: inner pairs between its links 0, 1, ...; outer pairs of its links."""
+    """An Assur group as a building block: internal pairs between its links 0, 1, ...; external pairs of its links."""
 
     name: str
     grade: int
@@ -47,7 +47,7 @@ class GroupType:
 
     @property
     def title(self) -> str:
-        """II RRP: class and type; the class alone where only one type of it is known here."""
+        """Class and type, as II RRP; the class alone if only one type of it is enumerated."""
         return f"{ROMAN[self.grade]} {self.name}" if self.grade == 2 else self.name
 
 
@@ -70,12 +70,12 @@ GROUP_CLASSES = {"II": ("RRR", "RRP", "RPR", "PRP", "RPP"), "III": ("III",), "IV
 
 
 class TooManySchemes(Exception):  # noqa: N818  what is asked for is too much, not wrong
-    """There are more schemes than are listed."""
+    """There are more schemes than MOST_SCHEMES."""
 
 
 @dataclass(frozen=True)
 class PlacedGroup:
-    """A group of a scheme: its type, its links, and the pairs that hold it, the outer ones in the type's order."""
+    """A group of a scheme: its type, its links, its internal pairs, and its external pairs in the order of the type."""
 
     type: GroupType
     links: tuple[int, ...]
@@ -84,25 +84,25 @@ class PlacedGroup:
 
     @property
     def title(self) -> str:
-        """II(2,3), as the formula of structure writes it."""
+        """II(2,3), as in the structural formula."""
         return f"{ROMAN[self.type.grade]}({','.join(map(str, self.links))})"
 
 
 @dataclass(frozen=True)
 class Scheme:
-    """A scheme: links 0 (the frame), 1 .. cranks, then those of the groups, in the order in which they are attached."""
+    """A scheme: link 0 is the frame, then the cranks from 1, then the links of the groups in order of attachment."""
 
     cranks: int
     groups: tuple[PlacedGroup, ...] = ()
 
     @property
     def mobility(self) -> int:
-        """Chebyshev: 3n - 2 p1."""
+        """Mobility by Chebyshev's formula, 3n - 2 p1."""
         return 3 * self.links - 2 * len(self.joints)
 
     @property
     def links(self) -> int:
-        """Moving links."""
+        """Number of moving links."""
         return self.cranks + sum(len(group.links) for group in self.groups)
 
     @cached_property
@@ -124,30 +124,37 @@ class Scheme:
 
     @property
     def types(self) -> tuple[str, ...]:
-        """II RRR, II RRP, III: class and type of each group."""
+        """Class and type of each group: II RRR, II RRP, III."""
         return tuple(group.type.title for group in self.groups)
 
     @property
     def name(self) -> str:
-        """II-RRR-II-RRP, for the name of a file."""
+        """Name for a file: II-RRR-II-RRP."""
         return "-".join(title.replace(" ", "-") for title in self.types)
 
     @cached_property
     def form(self) -> GraphForm:
-        """Canonical form: equal for the same scheme, whichever way its links are numbered, and for no other."""
+        """Canonical form: equal for one scheme however its links are numbered, and different for different schemes."""
         colours = [0, *[1] * self.cranks, *[2] * (self.links - self.cranks)]
         return canonical_form(colours, {(min(i, j), max(i, j)): "RP".index(kind) for i, j, kind in self.joints})
 
     @cached_property
     def directions(self) -> tuple[int, ...]:
-        """For every link the first of those that keep their direction to it: joined by sliding pairs alone."""
+        """For every link, the first link that keeps its direction relative to it (joined by prismatic pairs alone)."""
         return _first_joined_links(self.links, [(i, j) for i, j, kind in self.joints if kind == "P"])
 
 
 def enumerate_schemes(links: int, mobility: int = 1, types: Sequence[str] = tuple(GROUP_TYPES)) -> tuple[Scheme, ...]:
-    """All admissible schemes with so many moving links and driving cranks, of the given types of groups.
+    """Enumerate all admissible schemes, ordered by the types of their groups.
 
-    No two are the same. They are in the order of the types of their groups. Raises TooManySchemes.
+    Args:
+        links: number of moving links.
+        mobility: number of driving cranks.
+        types: names of the group types to use.
+
+    Raises:
+        TooManySchemes: more than MOST_SCHEMES.
+        ValueError: links or mobility out of range.
     """
     if not (mobility <= links <= MOST_LINKS_OF_SCHEME and 1 <= mobility <= MOST_CRANKS):
         raise ValueError(f"1 to {MOST_CRANKS} cranks and at most {MOST_LINKS_OF_SCHEME} moving links")
@@ -169,7 +176,7 @@ def enumerate_schemes(links: int, mobility: int = 1, types: Sequence[str] = tupl
 
 
 def attach_group(scheme: Scheme, kind: GroupType) -> Iterator[Scheme]:
-    """Every way to attach one more group of this type (some of them the same scheme)."""
+    """Yield every way to attach one more group of this type; some of the schemes may be equal."""
     first = scheme.links + 1
     own = tuple(range(first, first + kind.links))
     inner = tuple((own[a], own[b], pair) for a, b, pair in kind.inner)
@@ -183,12 +190,12 @@ def attach_group(scheme: Scheme, kind: GroupType) -> Iterator[Scheme]:
 
 
 def _is_connected_without_frame(scheme: Scheme) -> bool:
-    """Whether the moving links, every crank among them, hold together without the frame."""
+    """Return True if the moving links, including every crank, are connected without the frame."""
     return len(set(_first_joined_links(scheme.links, [(i, j) for i, j, _ in scheme.joints if i and j])[1:])) == 1
 
 
 def _first_joined_links(links: int, pairs: Iterable[tuple[int, int]]) -> tuple[int, ...]:
-    """For every link, 0 to `links`, the first of those that these pairs join it to, itself among them."""
+    """Return, for every link 0 to `links`, the first link that these pairs connect with it, itself included."""
     first = list(range(links + 1))
     for i, j in pairs:
         low, high = sorted((first[i], first[j]))

@@ -1,4 +1,4 @@
-"""What a mechanism can be optimised for or held to: one class a quantity, and its name here."""
+"""Quantities that may be an objective or a constraint: one class each, registered here by name."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """A quantity of a mechanism over its cycle, for many variants at once.
 
-It is written on the tape with the linkage (`outputs`), and then read off coarsely, from places all round the cycle
-(`coarse`), or finely, from windows of places about its peaks and zeros (`windows`, `fine`), where it is exact to some
-1e-12; and it is measured on a mechanism that was analysed by the ordinary stages (`measure`).
+It is traced together with the linkage (`outputs`), then evaluated coarsely from positions around the cycle (`coarse`),
+or finely from windows of positions around its peaks and zeros (`windows`, `fine`), to about 1e-12; and it is measured
+on a mechanism that the ordinary stages have analysed (`measure`).
 """
 
 from __future__ import annotations
@@ -35,10 +35,14 @@ Windows = list[tuple[Any, float, Read]]  # what a window is of, its first place,
 
 @dataclass(frozen=True)
 class QuantityRange:
-    """What a quantity is read over: closed when the driver turns on and on; cycle: of the driver (rad).
+    """Range of the driver over which a quantity is evaluated.
 
-    swings: the output's run is an angle. rough: forces may jump, so that there is nothing smooth about their peaks.
-    traced: many places cost little.
+    Attributes:
+        swings: True if the motion of the output is an angle.
+        closed: True if the driver rotates continuously.
+        cycle: length of the cycle (rad).
+        rough: True if forces may jump, so that their peaks are not smooth.
+        traced: True if evaluating many positions is cheap.
     """
 
     linkage: Linkage
@@ -51,10 +55,17 @@ class QuantityRange:
 
 @dataclass(frozen=True)
 class MechanismQuantity(ABC):
-    """What a task asks of it. name: of the pair, the point or the link; links: those whose lengths count.
+    """A quantity and the data that a task gives for it.
 
-    places: of the driver (rad or m), with the wanted values there; a path without places is to pass through the points
-    in any of its positions. norm: how deviations are counted.
+    Attributes:
+        name: the pair, point or link.
+        links: the links whose lengths count.
+        places: driver coordinates (rad or m) of the required values; without them a path may pass through the points at
+            any
+            position.
+        wanted: required values.
+        norm: how deviations are combined.
+        relative: True if a law counts from its first value.
     """
 
     name: str = ""
@@ -76,76 +87,82 @@ class MechanismQuantity(ABC):
 
     @abstractmethod
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
-        """What is to be written down for it."""
+        """Return the traced outputs that the quantity needs, by name."""
 
     @abstractmethod
     def coarse(self, read: Read, over: QuantityRange) -> Real:
-        """From places all over the driver range (for `places`: from those), (variants,)."""
+        """Return the coarse value from positions over the driver range, or from the quantity's own `places`;
+        (variants,).
+        """
 
     @abstractmethod
     def fine(self, parts: Windows, exact: Read, over: QuantityRange, step: float) -> Real:
-        """Pieces of the quantity, (variants, pieces); the largest counts (of `lowest`: the least).
+        """Return candidate peaks of the quantity, (variants, peaks); the largest counts, with `lowest` the smallest.
 
-        exact: outputs at the quantity's own places; step: of places in windows. Places are shares of the range.
+        Args:
+            parts: windows around the peaks.
+            exact: outputs at the quantity's own `places`.
+            step: distance of the positions in a window, as a fraction of the driver range.
         """
 
     @abstractmethod
     def measured(self, results: Results, ends: DriverEnds) -> float:
-        """On an analysed mechanism that goes its whole way, see `measure`."""
+        """Measure the quantity on an analysed mechanism that completes its range; see `measure`."""
 
     def measure(self, results: Results, ends: DriverEnds) -> float:
-        """On an analysed mechanism (SI, rad), over the driver range between two ends, else over its cycle.
+        """Measure the quantity on an analysed mechanism (SI, rad) between two ends of the driver range, or over the
+        cycle.
 
-        nan where the mechanism has none.
+        nan if the mechanism has no such quantity.
         """
         return self.measured(results, ends) if measures.completes_range(results, ends) else measures.NO_VALUE
 
     def windows(self, read: Read, over: QuantityRange) -> list[tuple[Any, int]]:
-        """What to look at closely, and about which place of a scan of one variant."""
+        """Return the windows to evaluate finely: what each shows, and its central index in a scan of one variant."""
         return []
 
     def refine_value(self, value: float, curve: Curve, scan: Real, over: QuantityRange) -> float:
-        """The quantity of one candidate where windows may not be exact enough; value: from those."""
+        """Refine the value of one candidate where windows are not accurate enough; value: the one from windows."""
         return value
 
     def smooth(self, pieces: Real) -> Real:
-        """Of pieces what is made least in their place, with derivatives where they are zero."""
+        """Return a function of the peaks to be minimised instead of them, differentiable where they are zero."""
         return pieces
 
     def open(self, results: Results) -> float:
-        """By how much of it rounding leaves the measured value open."""
+        """Return the uncertainty of the measured value from rounding."""
         return 0.0
 
     def kind(self, linkage: Linkage, groups: Any) -> str:
-        """Its dimension by name."""
+        """Return the name of its dimension."""
         return self.dimension
 
     def title(self, linkage: Linkage) -> str:
-        """What it is called."""
+        """Return its description."""
         return self.text
 
     def unfit(self, linkage: Linkage, groups: Any, *, closed: bool) -> str | None:
-        """Why a linkage has no such quantity."""
+        """Return the reason why a linkage has no such quantity, or None."""
         return None
 
     def output(self, linkage: Linkage, groups: Any) -> str | None:
-        """The link whose run it rests on."""
+        """Return the link whose motion the quantity depends on."""
         return output_link(linkage, groups)
 
     def slides(self, linkage: Linkage, groups: Any) -> bool:
-        """Whether that link slides."""
+        """Return True if that link slides."""
         link = self.output(linkage, groups)
         return link is not None and not linkage.output_swings(link)
 
     def outputs_of(self, results: Results, q: Real) -> Mapping[str, Any]:
-        """What is written down for it at places of an analysed mechanism."""
+        """Return the outputs at driver coordinates q of an analysed mechanism."""
         motion = motion_at(results, q)
         plan = solve_forces(motion, results.structure, results.strokes) if self.forces else None
         return self.outputs(motion, plan)
 
 
 class ConstantQuantity(MechanismQuantity):
-    """The same in all positions, its `value`."""
+    """A quantity that is equal in all positions."""
 
     moves = False
 
@@ -160,12 +177,12 @@ class ConstantQuantity(MechanismQuantity):
 
 
 class PeakQuantity(MechanismQuantity):
-    """The largest value of a curve in a cycle, or the sum of those of several."""
+    """The largest value of a curve in a cycle, or the sum of the largest values of several curves."""
 
     curves: ClassVar[tuple[str, ...]] = ("y",)
 
     def from_curve(self, y: Any) -> Any:
-        """The quantity of a place from its curve, whose opposite it is for `lowest`."""
+        """Convert values of the curve to the quantity (with `lowest`, to its negative)."""
         return y
 
     def coarse(self, read: Read, over: QuantityRange) -> Real:
@@ -195,12 +212,12 @@ class PeakQuantity(MechanismQuantity):
 
 
 def motion_at(results: Results, q: Real) -> Motion:
-    """Of an analysed mechanism at other places of its driver."""
+    """Return the motion of an analysed mechanism at other driver coordinates."""
     return motion_at_positions(results, np.atleast_1d(q))
 
 
 def highest_over_range(curve: Callable[[Real], Real], results: Results, ends: DriverEnds) -> float:
-    """The largest value of a curve over the driver range: in a cycle from position 0 on."""
+    """Return the largest value of a curve over the driver range; of a cycle from position 0 on."""
     assert results.driver_range is not None
     driver, turns = results.linkage.driver, results.driver_range.turns
     if ends is None and not results.driver_range.full:

@@ -1,4 +1,4 @@
-"""How far a motion is from what is wanted of it at several places: a path, a law of motion."""
+"""Deviation of a motion from required values at several positions: path of a point, law of motion of a link."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ FOOT = 1e-3  # sine against the normal, above which the nearest place of a path 
 
 
 class Deviation(MechanismQuantity):
-    """Root mean square, or the largest."""
+    """Root mean square or largest deviation."""
 
     largest: str  # what that is called
 
@@ -40,28 +40,31 @@ class Deviation(MechanismQuantity):
 
     @abstractmethod
     def deviations(self, read: Read, over: QuantityRange) -> Real:
-        """From all that is wanted, (variants, wanted), m or rad."""
+        """Return the deviations from all required values, (variants, required values), m or rad."""
 
     @abstractmethod
     def deviations_on(self, results: Results, ends: DriverEnds) -> Real:
-        """The same of an analysed mechanism."""
+        """Return the deviations of an analysed mechanism, (required values,)."""
 
     @abstractmethod
     def residuals(self, read: Read, over: QuantityRange, each: int) -> Real:
-        """What is least in squares, (variants, residuals); of sets of so many variants the first one leads."""
+        """Return the residuals whose squares are minimised, (variants, residuals).
+
+        each: variants in a set; the first one of a set determines the nearest positions.
+        """
 
     @abstractmethod
     def curve(self, read: Read) -> Any:
-        """What is compared with what is wanted, (variants, places): real, or x + iy."""
+        """Return the path or motion compared with the required values, (variants, positions): real, or x + iy."""
 
     @property
     def spread(self) -> float:
-        """What residuals are measured against."""
+        """Standard deviation of the required values, the unit of the residuals."""
         wanted = np.array(self.wanted)
         return float(np.sqrt(np.mean(np.abs(wanted - np.mean(wanted)) ** 2))) or 1.0
 
     def aggregate(self, off: Real) -> Real:
-        """Root mean square, or the largest, (variants,)."""
+        """Return the root mean square or the largest deviation, (variants,)."""
         if self.norm == "largest":
             off = np.max(np.abs(off), axis=1, keepdims=True)
         found: Real = np.sqrt(np.mean(off * off, axis=1))
@@ -82,7 +85,7 @@ class Deviation(MechanismQuantity):
 
 
 class LawDeviation(Deviation):
-    """Of a link, metres or radians; relative: from the first place on."""
+    """Deviation of a link's motion from a required law, m or rad; relative: from the first position on."""
 
     of, text = "law", N_("root mean square deviation from the wanted law")
     largest = N_("largest deviation from the wanted law")
@@ -116,7 +119,7 @@ class LawDeviation(Deviation):
 
 
 class PathDeviation(Deviation):
-    """Of a point from wanted points, metres; without places it is to pass through them in any of its positions."""
+    """Distance of a point's path from required points, m; without `places` it may pass through them at any position."""
 
     of, text = "path", N_("root mean square distance from the wanted points")
     largest = N_("largest distance from the wanted points")
@@ -168,9 +171,10 @@ class PathDeviation(Deviation):
 
 
 def _distances_across(place: Any, wanted: Real, closed: bool) -> Real:
-    """Distances across the path (sets, variants, corners) where its first variant is nearest to points; (..., points).
+    """Return distances across the path where the first variant of each set is nearest to the points.
 
-    They change their sign where the path goes through a point, so that they are smooth there.
+    Shapes: place (sets, variants, corners), result (..., points). The distances change sign where the path passes
+    through a point, so they are smooth there.
     """
     sets, __, count = place.shape
     lead = np.where(np.isnan(place[:, 0]), AWAY, place[:, 0])
@@ -198,9 +202,9 @@ def _distances_across(place: Any, wanted: Real, closed: bool) -> Real:
 
 
 def distances_to_points(x: Real, y: Real, wanted: Real, *, closed: bool = True) -> Real:
-    """Distances of a polygon (variants, corners) from points, (variants, points).
+    """Return the distances of polygons (variants, corners) from points, (variants, points).
 
-    Of the corner that is nearest, and of the sides that meet there.
+    The distance is that of the nearest corner or of the two sides that meet there.
     """
     x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
     near, rows, count = nearest_corners(x, y, wanted), np.arange(len(x)), x.shape[1]
@@ -218,7 +222,7 @@ def distances_to_points(x: Real, y: Real, wanted: Real, *, closed: bool = True) 
 
 
 def nearest_corners(x: Real, y: Real, wanted: Real) -> Any:
-    """Of polygons (variants, corners), those that are nearest to points, (points, variants)."""
+    """Return the corners of polygons (variants, corners) that are nearest to points, (points, variants)."""
     square, near = (x * x + y * y) / 2, np.empty((len(wanted), len(x)), dtype=int)
     work, other = np.empty_like(x), np.empty_like(x)
     for k, w in zip(near, wanted, strict=True):  # half the square of the distance, but for w^2, is least there

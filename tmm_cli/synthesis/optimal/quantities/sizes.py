@@ -1,4 +1,4 @@
-"""Sizes: link lengths, mass, the box that the moving points need."""
+"""Sizes: link lengths, mass, bounding box of the moving points."""
 
 from __future__ import annotations
 
@@ -29,8 +29,9 @@ OF_A_SIDE = 3  # points that may come to bear on a side
 
 
 class LinkLengthSum(ConstantQuantity):
-    """Sum of link lengths, m, of all links or of some: of each the largest distance of its points, of the frame that of
-    its hinges.
+    """Sum of link lengths, m, of all links or of some.
+
+    The length of a link is the largest distance of its points; of the frame, of its hinges.
     """
 
     of, text, keys = "length", N_("sum of link lengths"), ("links",)
@@ -46,7 +47,7 @@ class LinkLengthSum(ConstantQuantity):
 
 
 class MovingMass(ConstantQuantity):
-    """Of the moving links, kg."""
+    """Mass of the moving links, kg."""
 
     of, text, dimension = "mass", N_("mass of the moving links"), "mass"
 
@@ -56,7 +57,9 @@ class MovingMass(ConstantQuantity):
 
 
 class MotionBox(PeakQuantity):
-    """Width + height of the moving points, m. A curve to look at closely is a side and a point: its path is smooth."""
+    """Width + height of the bounding box of the moving points, m. A window shows one point on one side: its path is
+    smooth.
+    """
 
     of, text = "box", N_("box of the moving points, width + height")
     curves = ("y0", "y1", "y2", "y3")
@@ -81,7 +84,7 @@ class MotionBox(PeakQuantity):
         return found
 
     def fine(self, parts: Windows, exact: Read, over: QuantityRange, step: float) -> Real:
-        """Sums of one peak of each side, in all ways: the largest is the sum of the largest ones."""
+        """Return the sums of one peak of each side, in all combinations: the largest is the sum of the largest ones."""
         runs = [SIDES[side][1] * read(f"{CLOSELY}{SIDES[side][0]}{k}") for (side, k), __, read in parts]
         sides: list[list[Real]] = [[], [], [], []]
         for ((side, __), *__), top in zip(parts, window_peak(np.vstack(runs)).reshape(len(runs), -1), strict=True):
@@ -90,7 +93,7 @@ class MotionBox(PeakQuantity):
 
 
 def _moving_points(linkage: Linkage) -> list[str]:
-    """Points of moving links, those on the frame first."""
+    """Return the points of moving links, those on the frame first."""
     fixed = linkage.links[FRAME].points
     points = {point for name in linkage.moving for point in linkage.links[name].points}
     return sorted(points, key=lambda point: (point not in fixed, point))

@@ -1,4 +1,4 @@
-"""Strokes of the output, which end where its slope changes its sign: their size, times, mean speed."""
+"""Strokes of the output, which end where its slope changes sign: length, time ratio, mean speed."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FOUR = 4  # ends of strokes in a cycle: of more the highest and the lowest may b
 
 
 class StrokeQuantity(MechanismQuantity):
-    """A quantity of the output's strokes. A window is about an end of a stroke, of the angle there, followed."""
+    """A quantity of the output's strokes. Windows lie around the ends of strokes; an angle is unwrapped there."""
 
     of_a_cycle: ClassVar[bool] = False
 
@@ -54,11 +54,11 @@ class StrokeQuantity(MechanismQuantity):
 
     @abstractmethod
     def between(self, parts: Windows, over: QuantityRange, step: float) -> Real:
-        """Its pieces from windows about the ends of all strokes, (variants, pieces)."""
+        """Return candidate values from windows around the ends of all strokes, (variants, values)."""
 
 
 class OutputStroke(StrokeQuantity):
-    """Metres, or radians; the longest of several."""
+    """Stroke of the output, m or rad; the longest of several."""
 
     of, text = "stroke", N_("stroke of the output")
 
@@ -92,7 +92,7 @@ class OutputStroke(StrokeQuantity):
 
 
 class TimeRatio(StrokeQuantity):
-    """Coefficient of change of mean speed, the longer stroke over the shorter in time: 1 and more."""
+    """Time ratio k, duration of the longer stroke over that of the shorter: 1 or more."""
 
     of, text, dimension, of_a_cycle = "k", N_("k, the longer stroke over the shorter"), "number", True
 
@@ -118,7 +118,7 @@ class TimeRatio(StrokeQuantity):
 
 
 class MeanOutputSpeed(StrokeQuantity):
-    """Mean speed of a sliding output over a cycle, m/s; of an accelerated crank over its first from position 0 on."""
+    """Mean speed of a sliding output over a cycle, m/s; with an accelerated crank over the first cycle."""
 
     of, text, dimension, of_a_cycle = "speed", N_("mean speed of the output"), "speed", True
 
@@ -150,7 +150,7 @@ class MeanOutputSpeed(StrokeQuantity):
 
 
 def coarse_travel(read: Read, over: QuantityRange) -> Real:
-    """How far the run goes, coarsely, (variants,); nan where the output turns on and on."""
+    """Return the range of the output's motion, coarsely, (variants,); nan for an output that rotates continuously."""
     run = read("run")
     travel: Real = np.max(run, axis=1) - np.min(run, axis=1)
     if over.swings and np.any(past := travel > np.pi):  # angles are within -pi..pi, and nearer than pi to the next ones
@@ -161,9 +161,9 @@ def coarse_travel(read: Read, over: QuantityRange) -> Real:
 
 
 def longest_stroke(run: Real, travel: Real, *, turns: bool) -> Real:
-    """The longest stroke of a closed curve that goes to and fro several times, (variants,); travel: its whole range.
+    """Return the longest stroke of a closed curve with several reversals, (variants,); travel: its total range.
 
-    turns: it is an angle that is told within -pi..pi.
+    turns: True if the curve is an angle wrapped to -pi..pi.
     """
     step = np.diff(run, axis=1, append=run[:, :1])
     step = (step + np.pi) % (2 * np.pi) - np.pi if turns else step
@@ -176,14 +176,14 @@ def longest_stroke(run: Real, travel: Real, *, turns: bool) -> Real:
 
 
 def count_reversals(slope: Real) -> Real:
-    """How often a curve turns back in a cycle, (variants,); what rests may count twice."""
+    """Return how often a curve reverses in a cycle, (variants,); a standstill may count twice."""
     sign = np.sign(slope)
     found: Real = np.sum(sign != np.roll(sign, 1, axis=1), axis=1)
     return found
 
 
 def followed_runs(parts: Windows, over: QuantityRange) -> list[Real]:
-    """The run in each window, followed."""
+    """Return the motion of the output in each window; an angle is unwrapped."""
     runs = []
     for angle, __, read in parts:
         run = read("run")
@@ -192,7 +192,7 @@ def followed_runs(parts: Windows, over: QuantityRange) -> list[Real]:
 
 
 def stroke_lengths(runs: list[Real]) -> Real:
-    """Lengths of the strokes between windows, (strokes, variants)."""
+    """Return the lengths of the strokes between windows, (strokes, variants)."""
     ends = [
         np.where(run[:, 0] + run[:, -1] < 2 * np.mean(run, axis=1), window_peak(run), -window_peak(-run))
         for run in runs
@@ -201,7 +201,9 @@ def stroke_lengths(runs: list[Real]) -> Real:
 
 
 def forward_share(slope: Real) -> Real:
-    """Share of the time it moves in which a curve rises, from its slope at equal steps; in a dwell that is zero."""
+    """Return the fraction of the moving time in which a curve rises, from its slope at equal steps; dwells have zero
+    slope.
+    """
     after = np.roll(slope, -1, axis=1)
     up, down = np.maximum(slope, 0) + np.maximum(after, 0), np.maximum(-slope, 0) + np.maximum(-after, 0)
     with np.errstate(all="ignore"):
@@ -211,13 +213,13 @@ def forward_share(slope: Real) -> Real:
 
 
 def time_ratio_of_share(share: Real) -> Real:
-    """k from the share of one of two strokes: the longer over the shorter."""
+    """Return k from the fraction of time of one of two strokes."""
     with np.errstate(all="ignore"):
         found: Real = np.maximum(share, 1 - share) / np.minimum(share, 1 - share)
     return found
 
 
 def mean_crank_speed(read: Read, over: QuantityRange) -> Real:
-    """The crank's mean speed in the first cycle from position 0 on: half the sum of those at its ends, (variants,)."""
+    """Return the mean crank speed in the first cycle, (variants,): half the sum of the speeds at its ends."""
     rate, gain = (read(name)[:, 0] for name in ("rate", "gain"))
     return (rate + np.sqrt(rate * rate + 2 * gain * over.cycle)) / 2

@@ -1,4 +1,6 @@
-"""Transmission of motion: whether it is assembled in all positions, how far from a dead one, under which pressure."""
+"""Transmission of motion and forces: assembly, distance from dead positions, pressure angle, balancing moment,
+reactions.
+"""
 
 from __future__ import annotations
 
@@ -22,9 +24,9 @@ SIDE: Final = "side"  # outputs whose sign tells on which side of a dead positio
 
 
 class AssemblyReserve(PeakQuantity):
-    """How far from its end the assembly of a group is, in sizes of the group; below zero it cannot be assembled.
+    """Reserve of a group before it can no longer be assembled, over the size of the group; negative: not assembled.
 
-    Every candidate must have it in all positions.
+    Every candidate must be assembled in all positions.
     """
 
     of, text, dimension, lowest = "assembles", N_("driver goes its whole way (1: yes)"), "number", True
@@ -38,7 +40,7 @@ class AssemblyReserve(PeakQuantity):
 
 
 class DeadPositionMargin(PeakQuantity):
-    """Least distance of a group from a dead position, 1 at best."""
+    """Smallest distance of a group from a dead position, 1 at best."""
 
     of, text, dimension, lowest = "margin", N_("least distance from a dead position"), "number", True
 
@@ -73,7 +75,7 @@ class LargestPressureAngle(PeakQuantity):
 
 
 class LargestBalancingMoment(PeakQuantity):
-    """On the driver, N m, or N where it slides."""
+    """Largest balancing moment on the driver, N m; on a sliding driver the balancing force, N."""
 
     of, text, forces = "moment", N_("largest balancing moment"), True
 
@@ -89,7 +91,7 @@ class LargestBalancingMoment(PeakQuantity):
 
 
 class LargestReaction(PeakQuantity):
-    """In a pair, N; of a compound hinge the largest of its pairs."""
+    """Largest reaction in a pair, N; of a compound hinge the largest of its pairs."""
 
     of, text, forces, dimension = "reaction", N_("largest reaction in the pair"), True, "force"
     keys, named = ("pair",), "pair"
