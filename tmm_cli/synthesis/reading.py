@@ -199,7 +199,9 @@ class TaskFile:
             raw, found = self.shape.parameters, self.placeholders()
             resting = self._dependent_parameters(set(found))
             self.dependent = {name: raw[name] for name in raw if name in resting}
-            self.independent = build_parameters({name: raw[name] for name in raw if name not in resting}, self.units, found)
+            self.independent = build_parameters(
+                {name: raw[name] for name in raw if name not in resting}, self.units, found
+            )
             self._check_independence()
 
     def _find_kinds(self) -> dict[str, str]:
