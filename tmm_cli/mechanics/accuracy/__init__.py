@@ -1,4 +1,4 @@
-"""How many digits are to be trusted."""
+"""Accuracy of results: bounds by rounding, and sensitivity to the lengths of the file."""
 
 from tmm_cli.interfaces import lazy
 

@@ -1,4 +1,4 @@
-"""The lengths that a linkage is given by, each of them changed alone; and a linkage of double-doubles."""
+"""Sensitivity to the lengths of a linkage, each of them changed alone; and linkages of double-doubles."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from tmm_cli.mechanics.numerics import NO_COORDINATE, ROUNDOFF, Real, Record, ma
 
 @dataclass(frozen=True)
 class LengthCoordinate:
-    """A coordinate that is not zero (m) in the axes of one link: what has it moves with it when it is changed.
+    """Nonzero coordinate (m) in the axes of one link; all vectors that contain it change together.
 
-    along: its axis, 1 or i. Angles of guides (rad) are changed in the same way; their axis is 1.0. paths: where it
-    stands in the linkage (vectors.mapped).
+    along: its axis, 1 or i. Directions of guides change in the same way, with the axis 1.0. paths: places in
+    the linkage that contain it (paths as in `mapped`).
     """
 
     link: str
@@ -31,7 +31,7 @@ class LengthCoordinate:
 
 
 def list_lengths(linkage: Linkage) -> tuple[LengthCoordinate, ...]:
-    """Every coordinate of every link that is not zero. The same number on the same link is one length."""
+    """List the nonzero coordinates of all links; the same number on the same link counts as one length."""
     found: dict[tuple[str, complex, float], list[str]] = {}
     vectors = list(_link_vectors(linkage))
     least = NO_COORDINATE * max((abs(complex(value)) for _, _, value in vectors), default=0.0)
@@ -45,17 +45,17 @@ def list_lengths(linkage: Linkage) -> tuple[LengthCoordinate, ...]:
 
 
 def largest_on_link(data: Sequence[LengthCoordinate]) -> Real:
-    """The largest length of the same link, of each length (m)."""
+    """For each length, return the largest length of the same link (m)."""
     return np.array([max(abs(other.value) for other in data if other.link == length.link) for length in data])
 
 
 def change_length(linkage: Linkage, length: LengthCoordinate, by: Any) -> Linkage:
-    """The same linkage with one of its lengths longer by so much (m), in the precision of its numbers."""
+    """Return the linkage with one length increased by `by` (m), in the precision of its numbers."""
     return change_lengths(linkage, [(length, by)])
 
 
 def change_lengths(linkage: Linkage, changes: Iterable[tuple[LengthCoordinate, Any]]) -> Linkage:
-    """The same with several of its lengths longer, each by so much."""
+    """Return the linkage with several lengths increased, each by its own amount (m)."""
     more: dict[str, Any] = {}
     for length, by in changes:
         for path in length.paths:
@@ -64,7 +64,7 @@ def change_lengths(linkage: Linkage, changes: Iterable[tuple[LengthCoordinate, A
 
 
 def _link_vectors(linkage: Linkage) -> Iterator[tuple[str, str, Any]]:
-    """Every vector in axes of a link: that link, where it stands, its value."""
+    """Yield every vector in axes of a link: the link, its path in the linkage, its value."""
     for name, link in linkage.links.items():
         for point, value in link.points.items():
             yield name, f"links.{name}.points.{point}", value
@@ -83,7 +83,7 @@ def _link_vectors(linkage: Linkage) -> Iterator[tuple[str, str, Any]]:
 
 
 def as_double_doubles(record: Record) -> Record:
-    """The same record with every float and complex number as a double-double, as it stands."""
+    """Convert every float and complex number of a record to a double-double of the same value."""
 
     def wide(path: str, value: Any) -> Any:
         return to_double_double(value) if isinstance(value, float | complex) else value
@@ -115,9 +115,20 @@ LEAST_SYMMETRY = (
 
 
 def search_sensitivities(results: Results, data: tuple[LengthCoordinate, ...]) -> Mapping[str, Real]:
-    """How far each number that was searched for goes a metre of each length, (lengths,), by its path in results.
+    """Compute the derivative by each length of every number that was found by a search.
 
-    What tells nothing is 0: a place where it is flat, a length that passive constraints do not leave free.
+    Derivatives follow from the function beside the place that was found, without another search. For an
+    extreme (f' = 0) the place moves by -(df'/dp) / f'', and its value as f does. At an end of the driver's
+    range the driver turns back while the group that stops it moves on, so the end moves as the driver does
+    with that group held.
+
+    Args:
+        results: results with a motion.
+        data: the lengths.
+
+    Returns:
+        Derivatives (lengths,) per metre, by path in `results`; 0 for a place that is not determined (flat
+        function, length not left free by redundant constraints).
     """
     assert results.driver_range is not None
     beside = _LocalRates(results, results.driver_range, data)
@@ -147,7 +158,7 @@ def search_sensitivities(results: Results, data: tuple[LengthCoordinate, ...]) -
 
 
 def range_end_paths(driver_range: DriverRange) -> tuple[list[str], list[str]]:
-    """Where the start of the driver's way and its end stand in results."""
+    """Return the paths in results that hold the start, and those that hold the end, of the driver's range."""
     limits = [(f"driver_range.limits[{k}].place", limit.place) for k, limit in enumerate(driver_range.limits)]
     named = (("start", driver_range.start), ("end", driver_range.end))
     start, end = ([f"driver_range.{name}", *(path for path, at in limits if at == place)] for name, place in named)
@@ -155,23 +166,24 @@ def range_end_paths(driver_range: DriverRange) -> tuple[list[str], list[str]]:
 
 
 def stroke_paths(results: Results) -> dict[str, Strokes]:
-    """The outputs that have strokes, by their paths in results."""
+    """Return the outputs that have strokes, by their paths in results."""
     every = {"strokes": results.strokes} | {f"further[{k}]": strokes for k, strokes in enumerate(results.further)}
     return {path: strokes for path, strokes in every.items() if strokes is not None and strokes.strokes}
 
 
 @dataclass(frozen=True)
 class _LocalRates:
-    """Functions of the links beside places of the driver; what it gives are rates a metre, (..., lengths)."""
+    """Functions of the links near driver coordinates, and their derivatives per metre of each length."""
 
     results: Results
     driver_range: DriverRange
     data: tuple[LengthCoordinate, ...]
 
     def values(self, places: Real, aside: Real | float, of: Function, change: float) -> tuple[Real, Real]:
-        """A function before, at and after each place (..., 3, places), and its rates a metre (..., 3, places, lengths).
+        """Return a function before, at and after each place, (..., 3, places), and its derivatives (..., 3, places,
+        lengths).
 
-        change: of the largest length of the same link.
+        change: step, relative to the largest length of the same link.
         """
         q = places + aside * np.array([[-1], [0], [1]])
         by = change * largest_on_link(self.data)
@@ -184,7 +196,9 @@ class _LocalRates:
         return found[..., 0], (found[..., 1:] - found[..., :1]) / by
 
     def extremes(self, places: Real, of: Function) -> tuple[Real, Real]:
-        """Of places where a function is extreme, and of its values there, both (places, lengths)."""
+        """Return derivatives of the places where a function is extreme, and of its values there, both (places,
+        lengths).
+        """
         slider = self.results.linkage.driver.kind == "slide"
         aside = EXTREME_STEP * (self.driver_range.end - self.driver_range.start if slider else 1.0)
         values, rates = self.values(places, aside, of, LENGTH_STEP)
@@ -195,7 +209,9 @@ class _LocalRates:
         return np.where(bends[:, None], moved, 0.0), rates[1]
 
     def by_end(self, k: int, of: Function) -> tuple[Real, Real]:
-        """A function's slopes by the driver's place (..., 3) and rates (..., 3, lengths) beside an end."""
+        """Return derivatives of a function near an end: by the driver (..., 3), and by the lengths (..., 3,
+        lengths).
+        """
         span = self.driver_range.end - self.driver_range.start
         left = END_DISTANCES * span
         places = self.driver_range.end - left if k else self.driver_range.start + left
@@ -206,7 +222,7 @@ class _LocalRates:
 
     @cached_property
     def ends(self) -> tuple[Real, Real]:
-        """Of the driver's places beside both ends, with the group held that stops it there, each (3, lengths)."""
+        """Derivatives of driver coordinates near both ends with the limiting group held, each (3, lengths)."""
         return self._end(0, self.driver_range.start), self._end(1, self.driver_range.end)
 
     def _end(self, k: int, place: float) -> Real:
@@ -219,11 +235,11 @@ class _LocalRates:
         return moved
 
     def stops(self, place: float) -> set[str]:
-        """The group that stops the driver at an end."""
+        """Return the titles of the groups that limit the driver at an end."""
         return {limit.group for limit in self.driver_range.limits if limit.place == place}
 
     def travel(self, places: Real, of: Function) -> tuple[Real, Real]:
-        """As extremes, of places some of which are the first or the last that was asked for."""
+        """Return derivatives as `extremes` does, for places some of which are the first or the last requested one."""
         asked, driver_range = self.results.asked, self.driver_range
         moved, rates = self.extremes(places, of)
         start, end = map(_extrapolate_to_end, self.ends)
@@ -233,9 +249,9 @@ class _LocalRates:
         return np.where(inner[:, None], moved, edges), rates
 
     def pressure(self, pressure: PressureAngle) -> tuple[Real, Real]:
-        """Of the place of a largest pressure angle, and of that angle, each (lengths,).
+        """Return derivatives of the place of a largest pressure angle, and of that angle, each (lengths,).
 
-        At an end where a group stops the driver and it is a right angle it stays one, whatever the lengths.
+        A right angle at a limit position stays a right angle, whatever the lengths.
         """
         driver_range = self.driver_range
         of, close = _pressure_function(pressure), AT_END * (driver_range.end - driver_range.start)
@@ -251,13 +267,15 @@ class _LocalRates:
 
 
 def _extrapolate_to_end(rates: Real) -> Real:
-    """Rates at an end from those inside, (3, lengths): polynomials of roots of what is left to it, 1 to 2 to 4."""
+    """Extrapolate rates (3, lengths), polynomials in roots of the distance, from distances of 1, 2 and 4 root
+    units.
+    """
     found: Real = (8 * rates[0] - 6 * rates[1] + rates[2]) / 3
     return found
 
 
 def _link_coordinates(states: LinkStates, links: tuple[str, ...]) -> Real:
-    """All places and directions of some links."""
+    """Return coordinates and direction components of some links, stacked."""
     poses = [states.poses[link] for link in links]
     vectors = [part for pose in poses for part in (pose.x, pose.z)]
     return np.stack([part for vector in vectors for part in (vector.real, vector.imag)])
@@ -272,7 +290,7 @@ def _pressure_function(pressure: PressureAngle) -> Function:
 
 
 def _margin_function(group: str) -> Function:
-    """The square of a group's margin, which is smooth through a dead position."""
+    """Return a function for the squared margin of a group, which is smooth through a dead position."""
 
     def of(states: LinkStates) -> Real:
         titles = [kernel.group.title for kernel in states.kernels]

@@ -1,12 +1,13 @@
-"""How far each value may be from the truth by rounding, and how far the data carry it.
+"""Bounds of the rounding error of each value, and its sensitivity to the data.
 
-Every value is computed once more by the same stages in double-doubles, from the decimals of the file. The difference is
-the error of float64 itself; values near dead positions were taken from double-doubles already, and are off by their
-last rounding alone:
+Every value is computed again by the same stages in double-doubles, from the decimals of the file. The
+difference is the error of float64; values near dead positions were already computed in double-doubles,
+and have their last rounding as error:
 
     bound = |y - y_exact| + u |y| + w kappa,    u = 2^-53, w = 2^-102
 
-with kappa, the response of y per unit relative change of every length: the rounding of double-doubles themselves.
+with kappa, the change of y per unit relative change of every length: the rounding error of double-doubles
+themselves.
 """
 
 from __future__ import annotations
@@ -66,10 +67,10 @@ Cells = Mapping[Hashable, Real]  # one value a position
 
 @dataclass
 class Digits:
-    """For each value: its bound by rounding, its change when every length changes by 0.1 % and by 0.5 mm on paper.
+    """Accuracy of values: bound by rounding, change when all lengths change by 0.1 %, and by 0.5 mm on paper.
 
-    Changes are sums of the absolute changes by every single length: the worst case, to first order. Of the same keys
-    and shapes as the values, in their units. mu: m a millimetre of paper, nan when nothing is drawn.
+    Changes are sums of the absolute changes by every single length: the worst case, to first order. Keys,
+    shapes and units are those of the values. mu: scale of the drawing (m per mm), nan if nothing is drawn.
     """
 
     bound: dict[Hashable, Real] = field(default_factory=dict)
@@ -85,10 +86,13 @@ def judge_values(
     mu: float = float("nan"),
     blur: Real | float = 0.0,
 ) -> Digits:
-    """Digits of what `of` reads out of results with a motion, at all their positions.
+    """Compute the accuracy of the values that `of` reads from results, at all their positions.
 
-    mu: scale of the drawing (m a mm). blur: how far each place of the driver may be from the one that was asked for
-    (rad or m).
+    Args:
+        results: results with a motion.
+        of: reads values from results, each (positions,), by key.
+        mu: scale of the drawing (m per mm).
+        blur: uncertainty of each driver coordinate (rad or m).
     """
     motion = results.motion
     assert motion is not None
@@ -109,12 +113,19 @@ def judge_values(
 
 
 def is_angle(key: Hashable) -> bool:
-    """Whether a value is an angle, a full turn from itself: its key begins with True or with its name."""
+    """Return True if a value is an angle, modulo a full turn: its key begins with True or with `angle`."""
     return isinstance(key, tuple) and key[0] in (True, "angle")
 
 
 def solve_bare_linkage(linkage: Linkage, q: Real, structure: Structure, kernels: tuple[GroupSolver, ...]) -> Results:
-    """Motion and reactions of a linkage without a file, at places q of its driver (position 0 first)."""
+    """Solve motion and reactions of a linkage without a file.
+
+    Args:
+        linkage: its numbers are exact as they stand.
+        q: driver coordinates (rad or m), that of position 0 first.
+        structure: structure of the linkage.
+        kernels: its groups in their assemblies.
+    """
     law = driver_motion(linkage, float(q[0]))
     motion = compute_motion(linkage, kernels, q, law)
     where = is_near_dead(motion)
@@ -137,16 +148,16 @@ def solve_bare_linkage(linkage: Linkage, q: Real, structure: Structure, kernels:
 
 
 def bound_values(results: Results) -> tuple[Cells, Digits]:
-    """Values and their digits, of a linkage whose numbers are exact as they stand when it has no file (see `bare`).
+    """Return values and their accuracy; without a file (`solve_bare_linkage`) the numbers count as exact.
 
-    Keys are (quantity, name, component): x, v, a of points ("A") and centres of mass ("S1"), angle, omega, epsilon of
-    links, force and couple of pairs, balancing of drivers.
+    Keys are (quantity, name, component): x, v, a of points ("A") and centres of mass ("S1"), angle, omega,
+    epsilon of links, force and couple of pairs, balancing of drivers.
     """
     return list_values(results), judge_values(results, list_values)
 
 
 def list_values(results: Results) -> Cells:
-    """The motion and reactions of results, by quantity, name and component."""
+    """Return motion and reactions of results by quantity, name and component."""
     assert results.motion is not None
     found: dict[Hashable, Real] = {}
     for quantity, name, value in leading_values(results.motion, results.reactions):
@@ -157,7 +168,7 @@ def list_values(results: Results) -> Cells:
 
 @dataclass(frozen=True)
 class _ValueJudge:
-    """Judges values read out of results, at some positions together; arrays are (values, positions)."""
+    """Computes the accuracy of values at some positions together; arrays are (values, positions)."""
 
     results: Results
     of: Callable[[Results], Cells]
@@ -165,7 +176,9 @@ class _ValueJudge:
     blur: Real
 
     def at(self, chosen: Real, near: bool, mu: float) -> Real:
-        """Bounds and both sensitivities at the chosen positions, all of which are near a dead one or none is."""
+        """Return bounds and both sensitivities at the chosen positions, all of which are near a dead position, or
+        none.
+        """
         results, motion = self.results, self.results.motion
         assert motion is not None
         q, first, blur = to_double_double(motion.q[chosen]), results.start, self.blur[chosen]
@@ -185,10 +198,10 @@ class _ValueJudge:
         return np.stack([np.where(np.isfinite(values), bound, np.nan), share, paper * mu])
 
     def responses(self, linkage: Linkage, q: Real, first: float, chosen: Real, rows: Real, step: float) -> Any:
-        """How much values change by 0.1 % of all lengths, by 0.5 m of each, and by the driver's place.
+        """Return changes of values by 0.1 % of all lengths, by 0.5 m of each, and their derivative by the driver.
 
-        All in one run: its positions are those at q once for each number that is changed there, the place first. rows:
-        the values at q; step: the relative change of a length.
+        All in one run: the positions q are repeated once for each number that is changed, the driver coordinate
+        first. rows: values at q. step: relative change of a length.
         """
         count, data = len(q), list_lengths(self.results.linkage)
         sizes = largest_on_link(data)
@@ -208,20 +221,20 @@ class _ValueJudge:
         )
 
     def rows(self, cells: Cells) -> Real:
-        """The values one below the other; those that are not there are 0."""
+        """Stack values as rows; missing ones are 0."""
         nothing = np.zeros(np.shape(next(iter(cells.values()))))
         found: Real = array([cells.get(key, nothing) for key in self.values])
         return found
 
     def gap(self, one: Real, other: Real) -> Real:
-        """How far values are from others; of angles the way round."""
+        """Distance between values; between angles, modulo a full turn."""
         away: Real = np.abs(one - other)
         turning = np.array([[is_angle(key)] for key in self.values])
         return np.where(turning, np.minimum(away, np.abs(2 * np.pi - away)), away)
 
 
 def _length_step(results: Results) -> float:
-    """The relative change of a length for derivatives near dead positions: small against what is left to them."""
+    """Relative step of lengths for derivatives near dead positions, small against the margin."""
     motion = results.motion
     assert motion is not None
     least = min(float(np.nanmin(np.where(motion.moving, at.margin, 1.0))) for at in motion.placements)
@@ -229,7 +242,7 @@ def _length_step(results: Results) -> float:
 
 
 def exact_linkage(results: Results) -> Linkage:
-    """The linkage with the decimals of its file; without a file, with its numbers as they stand."""
+    """Return the linkage with the decimals of its file; without a file, with its numbers as they stand."""
     extended = results.inputs.extended
     return as_double_doubles(results.linkage) if extended is None else extended().linkage
 
@@ -237,9 +250,14 @@ def exact_linkage(results: Results) -> Linkage:
 def results_with_linkage(
     results: Results, linkage: Linkage, q: Real, first: float, chosen: Real | None = None
 ) -> Results:
-    """The same results at places q with the numbers of another linkage in the same assembly.
+    """Recompute results at driver coordinates q with other numbers of the linkage, in the same assembly.
 
-    first: the place of position 0. chosen: which of the positions these are; all of them when left out.
+    Args:
+        results: results with a motion, perhaps with forces.
+        linkage: the linkage with other numbers, perhaps double-doubles.
+        q: driver coordinates (rad or m).
+        first: driver coordinate of position 0.
+        chosen: indices of the positions; None: all.
     """
     assert results.motion is not None
     kernels = tuple(kernel.rebind(linkage) for kernel in results.motion.kernels)
@@ -265,8 +283,7 @@ def results_with_linkage(
 
 
 def _strokes_with_linkage(strokes: Strokes, linkage: Linkage, kernels: tuple[GroupSolver, ...], q: Real) -> Strokes:
-    """Strokes whose output begins and ends where it really is there: tables against the stroke are counted from there,
-    and in shares of its run."""
+    """Strokes with the ends of the output recomputed, as tables against the stroke are counted from there."""
     still, law = np.zeros(np.shape(q)), DriverMotion(0.0, 1.0, 0.0, 1)
     lows: list[Any] = [
         output_coordinate(compute_motion(linkage, kernels, still + s.start, law, 0), strokes.link)
@@ -305,9 +322,12 @@ SIX_FIGURES = 0.5e-6  # of the largest value: where so much is open, six figures
 
 
 def relative_bound(results: Results, blur: float = 0.0) -> Real:
-    """How far numbers at each position may be from the truth, in shares of the largest of their kind.
+    """Bound of the error at each position, relative to the largest value of each kind.
 
-    blur: how far places of the driver may be from those that were asked for (rad or m).
+    A group with the margin m gives positions to u/m and velocities, accelerations and forces to u/m^2 (u:
+    unit roundoff), and passes its errors on to the groups after it, so bound = LOSS_FACTOR u (1 + |q|)
+    product(1/m)^2. It needs no extended precision and is wide: it promises 10 to 13 digits where 15 are
+    right. blur: uncertainty of driver coordinates (rad or m).
     """
     motion = results.motion
     assert motion is not None
@@ -326,7 +346,7 @@ def relative_bound(results: Results, blur: float = 0.0) -> Real:
 
 
 def error_growth(results: Results) -> Real:
-    """How much errors grow on their way through the groups, at each position."""
+    """Growth factor of errors through the groups, at each position."""
     motion = results.motion
     assert motion is not None
     lost = np.ones(np.shape(motion.q))
@@ -337,13 +357,15 @@ def error_growth(results: Results) -> Real:
 
 
 def slenderness(results: Results) -> float:
-    """The size of the mechanism over its shortest link: errors of places turn that by so much more."""
+    """Size of the mechanism over its shortest link, the factor by which position errors rotate that link."""
     short = [link_extent(results.linkage, link) for link in results.linkage.moving]
     return _mechanism_size(results) / min((size for size in short if size > 0), default=1.0)
 
 
 def largest_values(results: Results) -> Mapping[Dimension, float]:
-    """The largest value of each kind that the mechanism has, SI; of plain numbers that of transfer functions."""
+    """Return the largest value of each dimension in the mechanism, SI; for plain numbers that of transfer
+    functions.
+    """
     motion = results.motion
     assert motion is not None
     size = _mechanism_size(results)
@@ -380,7 +402,7 @@ def largest_values(results: Results) -> Mapping[Dimension, float]:
 
 
 def _mechanism_size(results: Results) -> float:
-    """How far points of the links, and what acts on them, are from one another and from the origin, m."""
+    """Largest distance of points of links, and of loads on them, from one another and from the origin, m."""
     assert results.motion is not None
     linkage = results.linkage
     spreads = (link_extent(linkage, link) for link in linkage.links)
@@ -392,6 +414,6 @@ def _mechanism_size(results: Results) -> float:
 
 
 def _largest_magnitude(values: object) -> float:
-    """The largest size of arrays, nan left out."""
+    """Largest absolute value in arrays, nan ignored."""
     found = [np.max(np.abs(v), where=np.isfinite(v), initial=0.0) for v in map(np.asarray, values)]  # type: ignore
     return float(max(found, default=0.0))

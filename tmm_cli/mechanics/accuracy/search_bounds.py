@@ -1,6 +1,6 @@
-"""Roots and extremes: how far from where they were found the signs of their functions are sure.
+"""Bounds of roots and extremes: how far from the result the sign of their function is certain.
 
-In double-doubles, or coarsely in float64.
+In double-doubles, or with less precision in float64.
 """
 
 from __future__ import annotations
@@ -49,9 +49,9 @@ DEAD_POSITION_ERROR = 1e-9  # of the way: dead positions where a margin is least
 
 
 class PreciseLinkage:
-    """The linkage of results at any places of its driver, with the decimals of its file.
+    """Linkage of results at any driver coordinates, with the decimals of its file in double-doubles.
 
-    growth: how much rounding of the data may grow; then the linkage is as it is, in float64.
+    growth: growth of rounding errors of the data; if given, the linkage is used as it is, in float64.
     """
 
     def __init__(self, results: Results, growth: float | None = None) -> None:
@@ -63,12 +63,14 @@ class PreciseLinkage:
         self.known: dict[str, tuple[Real, Real]] = {}  # of strokes, by the output
 
     def at(self, q: Real, links: Iterable[str], order: int = 0) -> LinkStates:
-        """Some links there, and those they hang on."""
+        """Return the states of some links, and of those they depend on, at driver coordinates q."""
         kernels = solvers_towards(self.kernels, links)
         return link_states(self.linkage, kernels, q if isinstance(q, DoubleDouble) else self.kind(q), order)
 
     def sides(self, places: Real) -> tuple[Real, Real]:
-        """Growing distances from each place, the last bit first, and the places on both sides at them."""
+        """Return increasing distances from each place, beginning with its last bit, and the places on both sides at
+        them.
+        """
         steps = 2.0 ** np.arange(DOUBLINGS) * np.spacing(np.maximum(np.abs(places), 1e-3))[:, None] / 2
         there = self.kind(places)[:, None]
         return steps, np.stack([there - steps, there + steps])
@@ -76,10 +78,17 @@ class PreciseLinkage:
     def brackets(
         self, places: Real, of: Callable[[LinkStates], Real], links: Iterable[str], size: float | None = None
     ) -> tuple[Real, LinkStates, Real]:
-        """The least distance from each place at which a function has different signs on both sides for sure, or inf.
+        """Find the least distance from each place at which a function certainly has different signs on both sides,
+        or inf.
 
-        With the links, at these places first, and how large the function may be there. links: those it is about. size:
-        its largest value; when left out that over the driver's way.
+        Args:
+            places: driver coordinates.
+            of: the function of the link states.
+            links: links that the function depends on.
+            size: largest value of the function; None: over the driver's range.
+
+        Returns:
+            The distances, the states (at these places first), and bounds of the function at the places.
         """
         steps, both = self.sides(places)
         driver_range = self.results.mechanism.driver_range
@@ -93,9 +102,9 @@ class PreciseLinkage:
         return distance, states, np.abs(there) + self.noise * size
 
     def turns(self, places: Real, runs: Real, link: str, inner: Real | bool = True) -> tuple[Real, Real]:
-        """Of places where an output turns back, and of where it is told to be then.
+        """Return bounds of places where an output reverses, and of its values there.
 
-        inner: which of them are such; the others were asked for.
+        inner: mask of places that are reversals; the others were requested.
         """
         carrier = self.linkage.output_carrier(link)
         bounds, states, slope = self.brackets(places, lambda states: output_slope(states, link), [carrier])
@@ -107,20 +116,20 @@ class PreciseLinkage:
         return bounds, 2 * off + 4 * (ROUNDOFF + self.noise) * np.abs(runs)
 
     def strokes(self, strokes: Strokes) -> tuple[Real, Real]:
-        """Of the driver's places at the ends of strokes, and of where the output is then."""
+        """Return bounds of driver coordinates at the ends of strokes, and of the output there."""
         if strokes.link not in self.known:
             places, lows = (np.array([getattr(s, name) for s in strokes.strokes]) for name in ("start", "low"))
             self.known[strokes.link] = self.turns(places, lows, strokes.link)
         return self.known[strokes.link]
 
     def travel(self, travel: OutputTravel) -> tuple[Real, Real]:
-        """Of the driver's places at the least and the largest run of an output, and of these runs."""
+        """Return bounds of driver coordinates at the least and the largest output, and of these outputs."""
         places, asked = np.array([travel.low_at, travel.high_at]), self.results.asked
         inner = (np.min(asked) < places) & (places < np.max(asked))
         return self.turns(places, np.array([travel.low, travel.high]), travel.link, inner)
 
     def end(self, place: float, towards: int, group: str, span: float) -> float:
-        """Of an end of the driver's way: inside of it the group can be placed, outside it cannot."""
+        """Return the bound of an end of the driver's range: the group can be placed inside it, and not outside."""
         kernel = next((k for k in self.kernels if k.group.title == group), None)
         if not isinstance(kernel, ClosedFormSolver):
             return FOLLOWED_END_ERROR * span + 4 * ROUNDOFF * abs(place)
@@ -130,7 +139,7 @@ class PreciseLinkage:
         return (sure if np.isfinite(sure) else FOLLOWED_END_ERROR * span) + self.noise * span
 
     def dead(self, place: float, group: str, span: float) -> float:
-        """Of a dead position inside the way: there the gap of the group stops growing."""
+        """Return the bound of a dead position inside the range: the gap of the group stops growing there."""
         kernel = next(kernel for kernel in self.kernels if kernel.group.title == group)
         if not isinstance(kernel, ClosedFormSolver):
             return DEAD_POSITION_ERROR * span
@@ -143,9 +152,11 @@ class PreciseLinkage:
         return min(float(distance[0]), DEAD_POSITION_ERROR * span)
 
     def pressure(self, group: str, link: str, place: float, largest: float, span: float) -> tuple[float, float]:
-        """Of an extreme pressure angle, and of the driver's place there: where it is flat, half the digits only.
+        """Return bounds of an extreme pressure angle, and of its place; for a flat extreme the place has half the
+        digits.
 
-        At an end of the way it is where the end is; where it is the same all the way, no place is known (infinity).
+        At an end of the range the place is the end; if the angle is constant, the place is undetermined
+        (infinity).
         """
         if largest < NO_PRESSURE:
             return largest + 4 * ROUNDOFF, np.inf
@@ -174,14 +185,16 @@ class PreciseLinkage:
 
 
 def choose_precision(results: Results) -> PreciseLinkage:
-    """In float64, with the rounding of the data as it may grow on its way through the groups, if that tells enough."""
+    """Return the linkage in float64 if rounding errors grow little enough through the groups, else in
+    double-doubles.
+    """
     grown = error_growth(results)
     most = slenderness(results) * float(np.max(grown, where=np.isfinite(grown), initial=1.0))
     return PreciseLinkage(results, most if NOISE * ROUNDOFF * most < MOST_NOISE else None)
 
 
 def _first_sure_step(sure: Real, steps: Real) -> Real:
-    """The first of its steps at which each place is sure, or inf."""
+    """First step at which each place is certain, or inf."""
     return np.where(sure.any(axis=1), steps[np.arange(len(steps)), sure.argmax(axis=1)], np.inf)
 
 
@@ -198,8 +211,10 @@ LARGEST_SHIFT = 1e-6  # rad or m: no shift is larger, so that it stays one to fi
 
 
 class SearchedNumber(NamedTuple):
-    """A number of the mechanism that was searched for: where it stands, its bound, the results with it shifted by so
-    much; sense: to which side they are.
+    """Number of the mechanism that was found by a search.
+
+    path: where it is held in results. bound: bound of its error. shifted: returns the results with it
+    shifted. sense: side to which they are shifted.
     """
 
     path: str
@@ -211,9 +226,16 @@ class SearchedNumber(NamedTuple):
 def judge_searched(
     results: Results, of: Callable[[Results], Cells], wide: PreciseLinkage, mu: float = float("nan")
 ) -> Digits:
-    """Judge what `of` reads out of results that belongs to no position.
+    """Compute the accuracy of the values that `of` reads from results and that belong to no position.
 
-    mu: scale of the drawing (m a mm); nan: no sensitivities are wanted.
+    A root is known as well as the sign of its function. A value that depends on several searched numbers is
+    computed with each of them shifted by its bound in turn.
+
+    Args:
+        results: results with a motion.
+        of: reads values from results, by key.
+        wide: the linkage in higher precision.
+        mu: scale of the drawing (m per mm); nan: no sensitivities.
     """
     values, data = of(results), list_lengths(results.linkage)
     here = _value_row(values, values)
@@ -239,7 +261,7 @@ def judge_searched(
 
 
 def _value_row(moved: Cells, values: Cells) -> Real:
-    """All numbers in a row; what is not there any more has not moved."""
+    """All numbers in one row; numbers that are missing in `moved` count as unchanged."""
     kept = (
         moved[key] if key in moved and np.shape(moved[key]) == np.shape(value) else value
         for key, value in values.items()
@@ -248,14 +270,14 @@ def _value_row(moved: Cells, values: Cells) -> Real:
 
 
 def _value_changes(moved: Real, here: Real) -> Real:
-    """How far numbers have moved, and to which side; a full turn is no way, nor is one from or to nowhere."""
+    """Changes of numbers with sign; a change by a full turn, or from or to nan, is none."""
     way: Real = moved - here
     turn = np.copysign(2 * np.pi, way)
     return np.where(np.abs(way - turn) < 1e-3, way - turn, np.where(np.isnan(way), 0.0, way))
 
 
 def searched_numbers(results: Results, wide: PreciseLinkage) -> Iterator[SearchedNumber]:
-    """Everything that was searched for."""
+    """Yield all numbers that were found by searches."""
     driver_range = results.driver_range
     if driver_range is None:
         return
@@ -304,7 +326,7 @@ def searched_numbers(results: Results, wide: PreciseLinkage) -> Iterator[Searche
 
 
 def _range_end_bounds(results: Results, driver_range: DriverRange, wide: PreciseLinkage) -> Iterator[float]:
-    """Bounds of both ends of the driver's way."""
+    """Yield bounds of both ends of the driver's range."""
     span = driver_range.end - driver_range.start
     for sense, place in ((-1, driver_range.start), (1, driver_range.end)):
         limit = None if driver_range.full else _limiting_group(results, place)
@@ -312,7 +334,7 @@ def _range_end_bounds(results: Results, driver_range: DriverRange, wide: Precise
 
 
 def start_uncertainty(results: Results, wide: PreciseLinkage) -> float:
-    """How far position 0 may be from where it was asked for, rad or m."""
+    """Uncertainty of the driver coordinate of position 0, rad or m."""
     request, driver_range = results.inputs.request, results.driver_range
     if driver_range is None or request.places:
         return 0.0
@@ -324,9 +346,9 @@ def start_uncertainty(results: Results, wide: PreciseLinkage) -> float:
 
 
 def _shifted_results(results: Results, by: Mapping[str, float]) -> Results:
-    """The results with numbers of the mechanism shifted by so much; paths: travels[0].low, as vectors.mapped has them.
+    """Return results with numbers of the mechanism shifted by path, such as travels[0].low.
 
-    Pressure angles at the positions are no searched ones: they stay.
+    Pressure angles at positions are not found by searches and stay.
     """
 
     def moved(part: str) -> Any:
@@ -339,6 +361,6 @@ def _shifted_results(results: Results, by: Mapping[str, float]) -> Results:
 
 
 def _limiting_group(results: Results, place: float) -> str | None:
-    """The group that stops the driver at a place."""
+    """Title of the group that limits the driver at a place, or None."""
     assert results.driver_range is not None
     return next((limit.group for limit in results.driver_range.limits if limit.place == place), None)

@@ -1,4 +1,4 @@
-"""Which stage needs which, and what they found."""
+"""Stages of the analysis of a mechanism, and their results."""
 
 from tmm_cli.interfaces import lazy
 

@@ -1,6 +1,6 @@
-"""What of a mechanism is worth a second look: each check with its number, the limit and where it is nearest to it.
+"""Checks of a mechanism: each with its value, its limit and the position where it is nearest to it.
 
-What the positions alone would not show is looked for over the whole of what is asked: a cycle, or first to last.
+They cover the whole range: a cycle, or from the first to the last position, not just the positions.
 """
 
 from __future__ import annotations
@@ -24,12 +24,13 @@ CheckKind = Literal["slot", "pressure", "load", "near dead", "lever"]
 
 @dataclass(frozen=True)
 class Check:
-    """A number against its limit. of: the thing, by its name in the file; at: the driver's place (rad or m), if any.
+    """Value of a check against its limit. of: name of the object in the file; at: driver coordinate (rad or m),
+    if any.
 
-    slot: how far beyond the point `detail` of its slot a link is (m; negative: what is left), at most 0. pressure: the
-    largest pressure angle on a link (rad), at most the limit. load: the work (J) with which a load that acts always
-    drives in one stroke (`detail`: working or idle) while it resists in the other, at most 0. near dead: least
-    margin of a group, at least the limit. lever: its largest difference from the force plan, at most the limit.
+    slot: distance of a link beyond the end `detail` of its slot (m; negative: distance left), at most 0.
+    pressure: largest pressure angle on a link (rad). load: work (J) by which a permanent load drives in one
+    stroke (`detail`: working or idle) although it resists in the other, at most 0. near dead: least margin of
+    a group, at least the limit. lever: largest difference of the lever from the force plan.
     """
 
     kind: CheckKind
@@ -43,7 +44,7 @@ class Check:
 
 @lru_cache(maxsize=1)
 def run_checks(results: Results) -> tuple[Check, ...]:
-    """All checks of results with forces, which have a motion and are whole."""
+    """Return all checks of results with forces; none without them, or if only some names were requested."""
     if results.lever is None or results.of or results.driver_range is None:
         return ()
     closely = motion_at_positions(results, results.closely(SCAN * results.driver_range.turns + 1), 1)
@@ -62,7 +63,7 @@ def run_checks(results: Results) -> tuple[Check, ...]:
 
 
 def _slot_checks(results: Results) -> Iterable[Check]:
-    """The end of each slot to which its link comes nearest, or beyond which it goes farthest."""
+    """Yield, for each slot, the end that its link comes nearest to, or goes farthest beyond."""
     for name in dict.fromkeys(excess.slide.name for excess in results.slots):
         worst = max((excess for excess in results.slots if excess.slide.name == name), key=lambda excess: excess.far)
         yield Check("slot", name, worst.place, worst.far, 0.0, not worst.ways, worst.point)
@@ -75,7 +76,7 @@ def _pressure_checks(results: Results) -> Iterable[Check]:
 
 
 def _load_checks(results: Results, motion: Motion) -> Iterable[Check]:
-    """Loads that act always, and are constant or tabulated against the stroke, which comes and goes."""
+    """Yield checks of permanent loads that are constant or tabulated against the stroke."""
     strokes, loads = results.strokes, results.linkage.loads
     if strokes is None or not strokes.strokes:
         return
@@ -105,7 +106,7 @@ def _load_checks(results: Results, motion: Motion) -> Iterable[Check]:
 
 
 def _dead_position_checks(results: Results, motion: LinkStates) -> Iterable[Check]:
-    """The least margin of each group: in its dead or change positions, or where it comes nearest to one."""
+    """Yield the least margin of each group: in its dead or change positions, or where it is nearest to one."""
     step = abs(float(motion.q[1] - motion.q[0]))
     for kernel, placement in zip(motion.kernels, motion.placements, strict=True):
         title = kernel.group.title
@@ -124,13 +125,13 @@ def _dead_position_checks(results: Results, motion: LinkStates) -> Iterable[Chec
 
 
 def _last_margin(results: Results, upto: tuple[GroupSolver, ...], q: Real) -> Real:
-    """Of the last group."""
+    """Margin of the last group."""
     there = link_states(results.linkage, upto, q, 0)
     return np.where(there.placed, there.placements[-1].margin, np.inf)
 
 
 def _lever_checks(results: Results) -> Iterable[Check]:
-    """The position where the lever differs most from the force plan."""
+    """Yield the position where the lever differs most from the force plan."""
     assert results.lever is not None and results.motion is not None
     counted = results.motion.moving & ~results.locked
     if bool(np.any(counted)):

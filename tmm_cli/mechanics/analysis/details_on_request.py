@@ -1,4 +1,4 @@
-"""Which positions are drawn in full: those the file names, or where the driver is balanced hardest."""
+"""Results for selected positions: detailed positions, instantaneous centres, all assemblies."""
 
 from __future__ import annotations
 
@@ -18,10 +18,11 @@ from tmm_cli.mechanics.structure import Group
 
 
 def detailed_positions(results: Results) -> tuple[int, ...]:
-    """Indices of the positions in detail, among those computed; none where nothing moves.
+    """Return indices of the detailed positions among those computed; none if nothing moves.
 
-    A single position is always one. Where the file names none it is the one of the largest balancing moment or force
-    of the first driver; where nothing acts, the one after position 0, in which the output often rests.
+    A single position is always detailed. Where the file names none, it is the position of the largest
+    balancing moment or force of the first driver; without loads, the one after position 0, where the output
+    often rests.
     """
     computed = _solved_positions(results)
     wanted = results.inputs.request.detail if len(results.numbers) > 1 else results.numbers
@@ -36,12 +37,14 @@ def detailed_positions(results: Results) -> tuple[int, ...]:
 
 
 def detail_chosen_by_program(results: Results) -> bool:
-    """Whether the file leaves it to the program which position is drawn in full."""
+    """Return True if the file leaves the choice of the detailed position to the program."""
     return len(results.numbers) > 1 and not results.inputs.request.detail
 
 
 def balancing_magnitude(results: Results) -> Real:
-    """The size of the first driver's balancing moment (N m) or force (N) at each position; zero where there is none."""
+    """Magnitude of the first driver's balancing moment (N m) or force (N) at each position; zero where there is
+    none.
+    """
     computed = _solved_positions(results)
     if results.reactions is None:
         return np.zeros(len(computed))
@@ -59,7 +62,7 @@ def _solved_positions(results: Results) -> Real:
 
 
 def with_centres(results: Results) -> Results:
-    """Kinematics with the centres, in positions that were asked for one by one or are in detail."""
+    """Add instantaneous centres, at positions that were requested one by one or are detailed."""
     motion = results.motion
     assert motion is not None
     every = len(results.numbers) < len(results.asked)
@@ -71,9 +74,17 @@ def with_centres(results: Results) -> Results:
 
 
 def with_assemblies(inputs: Inputs, positions: Sequence[int] | None, problem: Any = None) -> Results:
-    """Kinematics with all assemblies at the positions, or at the first in detail; problem: see Results.
+    """Compute kinematics with all real assemblies at the positions, or at the first detailed one.
 
-    Where the sketch does not decide, the structure with the assemblies. Raises LinkageError as `solve`.
+    If the sketch does not determine the assembly, the results are the structure with the assemblies.
+
+    Args:
+        inputs: the mechanism and its positions.
+        positions: numbers of positions; None: the first detailed one.
+        problem: kept in the results, see `Results`.
+
+    Raises:
+        LinkageError: as `solve`.
     """
     try:
         results = solve(inputs, "kinematics", positions, problem=problem)
@@ -90,7 +101,7 @@ def with_assemblies(inputs: Inputs, positions: Sequence[int] | None, problem: An
 
 
 def _undecided_assemblies(inputs: Inputs, group: Group, positions: Sequence[int], problem: Any) -> Results:
-    """The groups before the one that is not decided, and this one, at the sketch's place or those of the file."""
+    """Assemblies of the groups up to the undetermined one, at the position of the sketch or those of the file."""
     results = solve(inputs, "structure", problem=problem)
     order = [g.links for g in results.structure.solved]
     kernels = assemble(inputs.linkage, results.structure, results.structure.solved[: order.index(group.links)])

@@ -1,4 +1,4 @@
-"""The least and the largest of quantities over the cycle, and where the driver then stands."""
+"""Least and largest values of quantities over the cycle, with the driver coordinates there."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FULL_TURN = 2 * np.pi - 1e-6  # rad: what turns by that has no extreme angles
 
 @dataclass(frozen=True)
 class QuantityExtreme:
-    """The least and the largest value of a quantity of a thing (SI), and the driver's places there."""
+    """Least and largest value of a quantity (SI), and the driver coordinates there (rad or m)."""
 
     kind: str
     name: str
@@ -35,7 +35,7 @@ class QuantityExtreme:
 
 @dataclass(frozen=True)
 class SampledQuantity:
-    """A quantity over places; its values are angles if `turns`."""
+    """Quantity sampled over driver coordinates; its values are angles if `turns`."""
 
     kind: str
     name: str
@@ -48,7 +48,9 @@ class SampledQuantity:
 
 
 def with_extremes(results: Results) -> Results:
-    """With extreme places of all points, links and stones; where there are forces with the sizes of these instead."""
+    """Add extreme positions of all points, links and sliding blocks; to results with forces, extreme forces
+    instead.
+    """
 
     def sample(q: Real) -> list[SampledQuantity]:
         there = results_at(results, q)
@@ -95,9 +97,14 @@ def _sample_forces(reactions: Reactions, linkage: Linkage) -> list[SampledQuanti
 def find_extremes(
     sample: Callable[[Real], Sequence[SampledQuantity]], q: Real, *, cyclic: bool
 ) -> tuple[QuantityExtreme, ...]:
-    """Of all that is sampled, over places q close together; links that turn fully have no extreme angles.
+    """Find the extremes of sampled quantities; links that rotate fully have no extreme angles.
 
-    About each place of a grid that is extreme, finer grids are laid, one in another. cyclic: the ends of q are one.
+    Finer and finer grids are laid around each extreme place of the first one.
+
+    Args:
+        sample: returns the quantities at driver coordinates.
+        q: closely spaced driver coordinates.
+        cyclic: the ends of q are the same position.
     """
     courses = list(sample(q))
     rows, turning = _value_rows(courses, q), np.array([c.turns for c in courses])
@@ -133,12 +140,12 @@ def find_extremes(
 
 
 def _value_rows(courses: Iterable[SampledQuantity], q: Real) -> Real:
-    """Their values, a row a quantity."""
+    """Values of quantities, one row each."""
     return np.stack([np.broadcast_to(to_float(np.asarray(c.values)), q.shape) for c in courses]).astype(float)
 
 
 def _unwrapped(rows: Real) -> Real:
-    """Angles followed along each row; across places that are not there they go on as they are."""
+    """Unwrap angles along each row, skipping missing positions."""
     found = rows.copy()
     for row in found:
         there = np.isfinite(row)

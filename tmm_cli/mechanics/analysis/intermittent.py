@@ -1,4 +1,8 @@
-"""What is asked of intermittent motion: a wheel that a link takes along on some strokes and that stands on others."""
+"""Intermittent motion: a wheel that a link drives on some strokes and that rests on others.
+
+A ratchet, a one-way clutch, or a pin in the slots of a flange couples the wheel to the link while the
+link moves in one sense; what holds the wheel in between is not modelled.
+"""
 
 from __future__ import annotations
 
@@ -33,9 +37,9 @@ DrivenWhen = Literal["forward", "backward", "working stroke", "idle stroke"]
 
 @dataclass(frozen=True)
 class WheelSetting:
-    """The linkage of one of the settings that take turns; values: of parameters, as they are written.
+    """Linkage of one setting; settings alternate from cycle to cycle. values: parameters as written in the file.
 
-    linkage: None where it is that of the file.
+    linkage: None for that of the file.
     """
 
     values: Mapping[str, str] = field(default_factory=dict)
@@ -44,10 +48,10 @@ class WheelSetting:
 
 @dataclass(frozen=True)
 class WheelTask:
-    """A wheel (or a shaft, a flange) on the axis of `link`, which turns on the frame and takes it along.
+    """Wheel (or shaft, flange) on the axis of `link`, which rotates on the frame and drives it.
 
-    when: the link turns forward (counterclockwise) or backward, or in strokes of the output; settings: one a cycle of
-    the driver, in turn.
+    when: the link drives it while it rotates forward (counterclockwise) or backward, or in strokes of the
+    output. settings: one per cycle of the driver, in turn.
     """
 
     name: str
@@ -68,9 +72,10 @@ MOST_CYCLES = 1000  # that are looked at for whole turns of the wheel
 
 @dataclass(frozen=True)
 class OneWayMotion:
-    """The link goes one way while the driver goes from `start` on by `way` in the sense +1 or -1 (rad or m).
+    """Part of a cycle in which the link moves in one sense: the driver moves from `start` by `way` (rad or m) in
+    a sense.
 
-    driven: whether it takes the wheel along.
+    driven: the link drives the wheel.
     """
 
     start: float
@@ -85,10 +90,11 @@ class OneWayMotion:
 
 @dataclass(frozen=True)
 class WheelMotion:
-    """A ride as the wheel has it: its angle, omega and epsilon at driver's ways (from the cycle's beginning).
+    """Motion of the wheel in one part of the cycle.
 
-    setting: which of the task's. time: that it takes, nan where the driver's speed changes. omega, epsilon: the largest
-    sizes in it, found between those places. Rad and s.
+    ways: driver travel from the beginning of the cycle. angles, omegas, epsilons: motion of the wheel there.
+    setting: index of the setting. time: duration, nan if the driver speed changes. omega, epsilon: largest
+    magnitudes, also between these points. Rad and s.
     """
 
     ride: OneWayMotion
@@ -108,7 +114,7 @@ class WheelMotion:
 
 @dataclass(frozen=True)
 class IntermittentMotion:
-    """A wheel over a cycle of all its settings: parts in their order."""
+    """Motion of a wheel over a cycle of all its settings: parts in their order."""
 
     task: WheelTask
     parts: tuple[WheelMotion, ...]
@@ -119,61 +125,66 @@ class IntermittentMotion:
 
     @property
     def turn(self) -> float:
-        """Of the wheel in a cycle (rad)."""
+        """Rotation of the wheel in a cycle (rad)."""
         return sum(part.step for part in self.parts)
 
     def of_setting(self, number: int) -> float:
-        """The same with one of the settings."""
+        """Rotation of the wheel with one of the settings (rad)."""
         return sum(part.step for part in self.parts if part.setting == number)
 
     @property
     def way(self) -> float:
-        """Of the driver in a cycle (rad, or m there and back)."""
+        """Travel of the driver in a cycle (rad, or m forward and back)."""
         return sum(part.ride.way for part in self.parts)
 
     @property
     def standing(self) -> float:
-        """Share of the driver's way on which the wheel stands."""
+        """Fraction of the driver's travel during which the wheel rests."""
         return sum(part.ride.way for part in self.parts if not part.ride.driven) / self.way
 
     def time(self, *, driven: bool) -> float:
-        """In which it is driven in a cycle, or stands (s)."""
+        """Time in a cycle in which the wheel is driven, or rests (s)."""
         return sum(part.time for part in self.parts if part.ride.driven == driven)
 
     @cached_property
     def cycles(self) -> int | None:
-        """After how many cycles the wheel has made whole turns; None: after none of very many."""
+        """Number of cycles after which the wheel has made whole turns; None if it exceeds MOST_CYCLES."""
         turns = np.arange(1, MOST_CYCLES + 1) * self.turn / (2 * np.pi)
         whole = np.abs(turns - np.round(turns)) < WHOLE_TURNS
         return int(np.argmax(whole)) + 1 if self.turn and bool(np.any(whole)) else None
 
     @property
     def omega(self) -> float:
-        """Largest angular speed (rad/s)."""
+        """Largest angular velocity (rad/s)."""
         return float(np.max([part.omega for part in self.driven], initial=0.0))
 
     @property
     def epsilon(self) -> float:
-        """Largest angular acceleration while it is driven (rad/s2)."""
+        """Largest angular acceleration while driven (rad/s2)."""
         return float(np.max([part.epsilon for part in self.driven], initial=0.0))
 
     @cached_property
     def jumps(self) -> tuple[float, ...]:
-        """Of omega where each part begins, after the one before it; the first one comes after the last (rad/s)."""
+        """Jumps of omega at the beginning of each part (rad/s); the first part follows the last one."""
         before = (self.parts[-1], *self.parts[:-1])
         found = [float(own.omegas[0] - last.omegas[-1]) for last, own in zip(before, self.parts, strict=True)]
         return tuple(0.0 if abs(jump) <= SHOCKLESS * self.omega else jump for jump in found)
 
     @property
     def shock(self) -> float:
-        """The largest jump of omega (rad/s); zero where the wheel is taken up and let go without shock."""
+        """Largest jump of omega (rad/s); zero for motion without shock."""
         return float(np.max(np.abs(self.jumps)))
 
 
 def one_way_motions_of_rotation(task: WheelTask, strokes: Strokes, sense: int, start: float) -> list[OneWayMotion]:
-    """Over the strokes of a driver that turns fully in a sense, from that which begins first at `start` or after it.
+    """Divide the cycle of a fully rotating driver into one-way motions, beginning with the first one at or after
+    `start`.
 
-    strokes: of the task's link, or of the output where the task asks for those.
+    Args:
+        task: the wheel.
+        strokes: strokes of the task's link, or of the output if the task refers to those.
+        sense: sense of the driver, +1 or -1.
+        start: driver coordinate of position 0 (rad).
     """
     if task.when in ("forward", "backward"):
         chosen = [s.run > 0 if task.when == "forward" else s.run < 0 for s in strokes.strokes]
@@ -194,7 +205,7 @@ def one_way_motions_of_rotation(task: WheelTask, strokes: Strokes, sense: int, s
 def one_way_motions_of_stroke(
     linkage: Linkage, kernels: Sequence[GroupSolver], task: WheelTask, driver_range: DriverRange
 ) -> list[OneWayMotion]:
-    """Over the stroke of a driver, forth in its sense and back: cut where the link turns back."""
+    """Divide the stroke of a driver, forward and back, into one-way motions of the link."""
     sense, curve = linkage.driver.sense, OutputCurve(linkage, solvers_towards(kernels, [task.link]), task.link)
     q = np.linspace(driver_range.start, driver_range.end, SCAN + 1)
     slope = curve.slope(q)
@@ -225,9 +236,9 @@ def wheel_motions(
     setting: int,
     before: Sequence[WheelMotion],
 ) -> list[WheelMotion]:
-    """The wheel in the rides with one of the settings, after the parts before them.
+    """Return the motion of the wheel in one-way motions with one of the settings, after the parts before them.
 
-    A driver that goes back is as fast at each place as it was on its way there.
+    On its way back the driver has the same speed at each place as on its way forward.
     """
     way, angle = (float(before[-1].ways[-1]), float(before[-1].angles[-1])) if before else (0.0, 0.0)
     rate = law.rate if isinstance(law, DriverMotion) and law.acceleration == 0 else float("nan")
@@ -255,7 +266,7 @@ def wheel_motions(
 
 
 def _join_rests(rides: Sequence[OneWayMotion]) -> list[OneWayMotion]:
-    """Rides one after another in which the wheel stands, and the driver does not turn back, are one."""
+    """Join consecutive motions in which the wheel rests and the driver does not reverse."""
     found: list[OneWayMotion] = []
     for (driven, sense), group in groupby(rides, attrgetter("driven", "sense")):
         first, *others = group
@@ -264,7 +275,7 @@ def _join_rests(rides: Sequence[OneWayMotion]) -> list[OneWayMotion]:
 
 
 def _largest_value(size: Callable[[Real], Real], places: Real) -> float:
-    """The largest size over places close together, found between them."""
+    """Largest value of a function near closely spaced places, refined between them."""
     values = size(places)
     if not bool(np.all(np.isfinite(values))):
         return float("nan")
@@ -280,8 +291,17 @@ LawOf = Callable[[Linkage], LawOfMotion]  # how the driver of a linkage moves
 
 
 def compute_intermittent(mechanism: Mechanism, start: float, law_of: LawOf) -> tuple[IntermittentMotion, ...]:
-    """All wheels of the file, from the driver's place `start` on. Raises NoCycleError, MissingStrokesError,
-    SettingError.
+    """Compute the motion of all wheels of the file, beginning at the driver coordinate `start`.
+
+    Args:
+        mechanism: the mechanism with its wheels.
+        start: driver coordinate of position 0 (rad or m).
+        law_of: gives the law of motion of the driver for a linkage.
+
+    Raises:
+        NoCycleError: the driver has no cycle.
+        MissingStrokesError: the link or the output has no strokes.
+        SettingError: a setting cannot be assembled or moved.
     """
     return tuple(_wheel_cycle(mechanism, task, start, law_of) for task in mechanism.inputs.wheels)
 

@@ -1,6 +1,7 @@
-"""What is true of a linkage whatever positions are computed: assembly, range, strokes, dead positions, names of links.
+"""Properties of a mechanism that do not depend on the positions: assembly, range, strokes, dead positions,
+link names.
 
-A Mechanism finds each of them when it is first asked for, so the structure alone moves nothing.
+A Mechanism computes each of them when it is first requested, so the structure alone moves nothing.
 """
 
 from __future__ import annotations
@@ -58,12 +59,12 @@ CACHED_PARTS = (
 
 @dataclass(frozen=True)
 class Inputs:
-    """A linkage, the positions asked for, and what is allowed.
+    """Linkage, requested positions and limits.
 
-    pressure_limits: largest pressure angles on sliding and on turning links (rad); lever_limit: allowed difference of
-    the lever, a share of one. extended: makes the same as double-doubles from the decimals that the file has;
-    None where there are no others than the numbers themselves. sized: False while lengths are still to be found,
-    as the structure alone does not need them. dynamics, balancing, wheels: what is asked of them.
+    pressure_limits: allowed pressure angles on sliding and on rotating links (rad). lever_limit: allowed
+    relative difference of the lever. extended: makes the same inputs in double-doubles from the decimals of
+    the file; None if there are none. sized: False while lengths are still unknown, as they are not needed for
+    the structure. dynamics, balancing, wheels: tasks.
     """
 
     linkage: Linkage
@@ -79,10 +80,10 @@ class Inputs:
 
 @dataclass(frozen=True, eq=False)
 class Mechanism:
-    """A linkage with its structure.
+    """A linkage with its structure; further properties are computed on request.
 
-    What needs the assembly raises AssemblyError, AmbiguousSketchError, SketchMismatchError, GroupTooLargeError,
-    ChangePointSearchError.
+    Those that need the assembly raise AssemblyError, AmbiguousSketchError, SketchMismatchError,
+    GroupTooLargeError, ChangePointSearchError.
     """
 
     inputs: Inputs
@@ -93,23 +94,23 @@ class Mechanism:
         return self.inputs.linkage
 
     def known(self, **parts: Any) -> Mechanism:
-        """A mechanism of which these parts are known; it finds the others itself."""
+        """Return a mechanism with these properties given; it computes the others itself."""
         other = Mechanism(self.inputs, self.structure)
         other.__dict__.update(parts)
         return other
 
     def changed(self, **parts: Any) -> Mechanism:
-        """The mechanism with other parts; those that are not given are as they were found."""
+        """Return the mechanism with some properties replaced; the others keep their computed values."""
         return self.known(**{name: getattr(self, name) for name in CACHED_PARTS} | parts)
 
     @cached_property
     def kernels(self) -> tuple[GroupSolver, ...]:
-        """The groups in the assemblies of the sketch, in solving order."""
+        """Groups in the assemblies of the sketch, in solution order."""
         return assemble(self.linkage, self.structure)
 
     @cached_property
     def assembles(self) -> bool:
-        """Whether there is such an assembly; there is none while lengths are still to be found."""
+        """True if the sketch can be assembled; False while lengths are still unknown."""
         if not self.inputs.sized:
             return False
         try:
@@ -119,22 +120,22 @@ class Mechanism:
 
     @cached_property
     def driver_range(self) -> DriverRange:
-        """How far the driver can go."""
+        """Range of the driver."""
         return find_range(self.linkage, self.kernels)
 
     @cached_property
     def dead(self) -> tuple[DeadPosition, ...]:
-        """Dead positions inside that range."""
+        """Dead positions inside the range of the driver."""
         return find_dead_positions(self.linkage, self.kernels, self.driver_range)
 
     @cached_property
     def output(self) -> str | None:
-        """The main output link."""
+        """Name of the main output link, or None."""
         return output_link(self.linkage, self.structure.groups)
 
     @cached_property
     def outputs(self) -> tuple[str, ...]:
-        """All output links."""
+        """Names of all output links."""
         return tuple(o.link for o in self.linkage.outputs) or tuple(x for x in (self.output,) if x)
 
     @cached_property
@@ -159,14 +160,14 @@ class Mechanism:
 
     @cached_property
     def asked(self) -> Real:
-        """The driver's places of all positions that are asked for, whether they are computed or not (rad or m)."""
+        """Driver coordinates of all requested positions, whether they are computed or not (rad or m)."""
         request = self.inputs.request
         strokes = self.strokes if request.start == "working stroke" else None
         return driver_positions(request, self.driver_range, strokes, self.linkage.driver.sense)
 
     @cached_property
     def travels(self) -> tuple[OutputTravel, ...]:
-        """How far the outputs go between the ends of what is asked for, where the driver does not turn fully."""
+        """Travels of the outputs over the requested positions, for a driver that does not rotate fully."""
         if self.driver_range.full:
             return ()
         found = [find_travel(self.linkage, self.kernels, self.asked, link) for link in self.outputs]
@@ -179,13 +180,14 @@ class Mechanism:
 
     @cached_property
     def slots(self) -> tuple[SlotExcess, ...]:
-        """How stones come to the ends of their guides, and beyond."""
+        """Distances of sliding blocks from the ends of their slots, or beyond them."""
         return find_slot_excess(self.linkage, self.kernels, self.driver_range, self.inputs.request.places)
 
     @cached_property
     def roles(self) -> dict[str, str]:
-        """What each link is called. A crank differs from a rocker by a full turn: where a name hangs on that the
-        linkage is moved, and where it cannot be assembled yet names come from the pairs alone."""
+        """Name of each link: crank, rocker, ... A crank differs from a rocker by a full rotation, so the linkage is
+        moved where a name depends on it; if it cannot be assembled, names follow from the pairs alone.
+        """
 
         def turns(link: str) -> bool:
             if not self.assembles:
@@ -196,12 +198,12 @@ class Mechanism:
 
     @property
     def turned(self) -> bool:
-        """Whether the names took a turn of the linkage."""
+        """True if the link names required moving the linkage."""
         return bool(self.roles) and "_turning" in vars(self)
 
     @cached_property
     def _turning(self) -> dict[str, bool]:
-        """Which links turn through 360 degrees while the driver goes its way."""
+        """Links that rotate through 360 degrees over the driver's range."""
         linkage, driver_range = self.linkage, self.driver_range
         turned = {d.link: driver_range.full and d.kind == "turn" for d in linkage.cranks}
         groups = [k.group for k in self.kernels]
@@ -220,10 +222,13 @@ class Mechanism:
 
 
 def with_driver(linkage: Linkage, link: str) -> Linkage:
-    """Driven by a link on the frame instead of the first driver, in the assembly of the sketch.
+    """Return the linkage driven by another link on the frame, in the assembly of the sketch.
 
-    Where the linkage cannot be assembled with its own driver the new one's place in the sketch is not known; the
-    structure does not need it. Raises NotOnFrameError.
+    If the linkage cannot be assembled with its own driver, the coordinate of the new one stays that of the
+    sketch; the structure does not need it.
+
+    Raises:
+        NotOnFrameError: the link is not connected to the frame.
     """
     pivots = [h.point for h in linkage.hinges if FRAME in h.links and link in h.links]
     runs = [s.name for s in linkage.slides if {s.carrier, s.runner} == {FRAME, link}]

@@ -1,4 +1,4 @@
-"""A quantity by the name that the tables give it, and how it is read from what was solved."""
+"""Quantities of a linkage by name, and functions that read them from solved states."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ STAGES: tuple[QuantityStage, ...] = ("structure", "places", "velocities", "accel
 
 
 class SolvedState(Protocol):
-    """What quantities are read from: one linkage at its positions, or many variants at once."""
+    """Source of quantities: one linkage at its positions, or many variants at once."""
 
     @property
     def linkage(self) -> Any: ...
@@ -54,14 +54,14 @@ class SolvedState(Protocol):
 
 @dataclass(frozen=True)
 class NamedQuantity:
-    """A quantity of this linkage, by name.
+    """Quantity of a linkage by name.
 
-    read: its values in SI, (positions) or (variants, positions), complex where it is a vector; (1) or (variants, 1)
-    where it belongs to the mechanism as a whole (`whole`). against: what an error of it is a share of: its largest size
-    in the cycle, its range there (of a place), a radian (of an angle, taken modulo 360 degrees: the end of a link is
-    then off by that share of its length), or nothing (it is exact, as a class is). thing: the link, point or pair that
-    it is of; on: the link on which a reaction acts. otherwise: the same reaction if the links of its compound hinge are
-    attached to the other of its two links, as students may do.
+    read: returns its values in SI, (positions,) or (variants, positions), complex for a vector; (1,) or
+    (variants, 1) if it belongs to the whole mechanism (`whole`). against: reference of relative errors: its
+    largest magnitude in the cycle, its range there (coordinates), one radian (angles, modulo 360 degrees), or
+    none (exact, such as the class). thing: link, point or pair. on: link on which a reaction acts. otherwise:
+    the same reaction if the links of its compound hinge are attached to the other of its two links, as
+    students may do.
     """
 
     name: str
@@ -77,7 +77,7 @@ class NamedQuantity:
 
     @property
     def order(self) -> int:
-        """In which order the work is done."""
+        """Index of its stage in the order of computation."""
         return STAGES.index(self.stage)
 
 
@@ -88,8 +88,12 @@ QuantityMaker = Callable[["Linkage", "Structure"], "dict[str, NamedQuantity]"]  
 
 
 def mechanism_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
-    """W, class, numbers of links, pairs, passive constraints and strokes; H of an output (where it swings: the
-    arc psi l of its first point), psi, k."""
+    """Quantities of the whole mechanism: W, class, numbers of links, pairs, redundant constraints and strokes;
+    H, psi, k.
+
+    H is the stroke of the output, for a rocker the arc psi l of its first point; psi is the swing angle, k
+    the time ratio.
+    """
     exact = {
         "W": structure.mobility + structure.redundant,
         "class": structure.mechanism_class,
@@ -125,7 +129,7 @@ def _read_stroke(solution: SolvedState) -> Any:
 
 
 def _read_arc(output: str, solution: SolvedState) -> Any:
-    """H = psi l of an output that swings, m."""
+    """Arc H = psi l of an oscillating output, m."""
     arm = solution.linkage.output_arm(output)
     return _read_stroke(solution) * (np.nan if arm is None else arm[1])
 
@@ -147,7 +151,9 @@ def _read_stroke_count(solution: SolvedState) -> Any:
 
 
 def motion_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
-    """x, y, v, a of points and centres of mass; phi, omega, epsilon of links; v, a and Coriolis in sliding pairs."""
+    """x, y, v, a of points and centres of mass; phi, omega, epsilon of links; v, a and Coriolis in prismatic
+    pairs.
+    """
     found: dict[str, NamedQuantity] = {}
 
     def put(quantity: NamedQuantity) -> None:
@@ -247,7 +253,7 @@ def motion_quantities(linkage: Linkage, structure: Structure) -> dict[str, Named
 
 
 def relative_angles(linkage: Linkage) -> dict[str, NamedQuantity]:
-    """`phi of 5 on 4`: rotation of a link relative to another one that moves and is hinged to it, rad."""
+    """`phi of 5 on 4`: rotation of a link relative to another moving link that is hinged to it, rad."""
     found = {}
     for hinge in linkage.hinges:
         for link, base in permutations([name for name in hinge.links if name != FRAME], 2):
@@ -292,7 +298,7 @@ NEARLY_ZERO = 0.05  # of a reaction's largest size: then where it acts cannot be
 
 
 def force_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
-    """U3 and M3 of inertia; R_34, the force of link 3 on link 4; R_A, the whole pin of a compound hinge; M_b or F_b."""
+    """Inertia U3 and M3; R_34, force of link 3 on link 4; R_A, pin of a compound hinge; M_b or F_b."""
     found: dict[str, NamedQuantity] = {}
 
     def put(quantity: NamedQuantity) -> None:
@@ -350,7 +356,7 @@ def force_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQ
 
 
 def _common_links(linkage: Linkage, structure: Structure) -> dict[str, str]:
-    """For the point of each compound hinge the link to which the others are attached."""
+    """For the point of each compound hinge, the link to which the others are attached."""
     found = {}
     for hinge in linkage.hinges:
         ends = [{pair.i, pair.j} for pair in structure.pairs if pair.kind == "R" and pair.point == hinge.point]
@@ -364,7 +370,7 @@ def _reaction_name(by: str, on: str) -> str:
 
 
 def _read_pin_force(point: str, link: str, sense: int, solution: SolvedState) -> Any:
-    """The force of the pin of a compound hinge on one of its links, or its opposite."""
+    """Force of the pin of a compound hinge on one of its links, or its opposite."""
     return sense * solution.reactions.pin_force(point, link)
 
 
@@ -377,7 +383,7 @@ def _read_reaction(pair: str, on: str, solution: SolvedState) -> Any:
 
 
 def _read_arm(pair: str, solution: SolvedState) -> Any:
-    """Where a guide's force acts, along the guide from its running point; nothing where the force is nearly zero."""
+    """Arm of a guide reaction from the sliding point; nan where the force is nearly zero."""
     reaction = solution.reactions.of(pair)
     size = np.abs(reaction.force)
     assert reaction.arm is not None
@@ -403,7 +409,7 @@ WHEEL_READERS: tuple[tuple[str, Dimension, WheelReader], ...] = (
 
 
 def wheel_quantities(tasks: Iterable[WheelTask]) -> dict[str, NamedQuantity]:
-    """Sizes of a wheel's turn in a cycle and of each step; share of standing, cycles to whole turns, speeds."""
+    """Rotation of wheels in a cycle and in each step, fraction of rest, cycles to whole turns, largest speeds."""
     found = []
     for number, task in enumerate(tasks):
         for name, dimension, of in WHEEL_READERS:
@@ -428,5 +434,5 @@ QUANTITY_MAKERS: tuple[QuantityMaker, ...] = (mechanism_quantities, motion_quant
 
 
 def list_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
-    """All quantities of a linkage by name, in the order of the kinds."""
+    """Return all quantities of a linkage by name: those that students may be asked and a file can show."""
     return {name: quantity for kind in QUANTITY_MAKERS for name, quantity in kind(linkage, structure).items()}

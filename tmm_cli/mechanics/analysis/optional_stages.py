@@ -1,4 +1,4 @@
-"""What few files ask for: each is imported when it is asked for, and scipy for single runs alone."""
+"""Stages that few files need; their modules are imported when they run, scipy for single runs only."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ if TYPE_CHECKING:
 
 
 def driver_motion(linkage: Linkage, start: float) -> LawOfMotion:
-    """The first driver's motion: its speed is that of position 0, or with several drivers that of the sketch."""
+    """Return the law of motion of the first driver.
+
+    Its speed is given at position 0, or with several drivers at the position of the sketch.
+    """
     driver = linkage.driver
     if driver.law is not None:
         from tmm_cli.mechanics.dynamics import SpeedTableLaw
@@ -35,7 +38,9 @@ def driver_motion(linkage: Linkage, start: float) -> LawOfMotion:
 
 
 def law_of_motion(mechanism: Mechanism, task: SteadyTask | RunTask) -> SteadyRunning | SingleRun:
-    """From position 0 on. Raises what `running` and `single_run` raise."""
+    """Compute the law of motion from position 0. Raises the errors of `find_running_law` and
+    `compute_single_run`.
+    """
     if task.cyclic:
         from tmm_cli.mechanics.dynamics import find_running_law
 
@@ -47,15 +52,18 @@ def law_of_motion(mechanism: Mechanism, task: SteadyTask | RunTask) -> SteadyRun
 
 
 def balancing_stage(mechanism: Mechanism, q: Real, task: BalancingTask) -> BalancingResults:
-    """Over the cycle from position 0 on, and at places of the driver. Raises what `analysis.balancing` raises."""
+    """Balance the mechanism over the cycle from position 0, and at driver coordinates q. Raises as
+    `balance_machine`.
+    """
     from tmm_cli.mechanics.dynamics import balance_machine as found
 
     return found(mechanism, float(mechanism.asked[0]), q, task)
 
 
 def intermittent_stage(mechanism: Mechanism, running: LawOfMotion | None) -> tuple[IntermittentMotion, ...]:
-    """Wheels over a cycle from position 0 on; running: a law of motion that was found, which then holds with every
-    setting. Raises what `analysis.intermittent` raises.
+    """Compute the wheels over a cycle from position 0. Raises as `compute_intermittent`.
+
+    running: law of motion of the machine, used for every setting; None: the law of the file.
     """
     from tmm_cli.mechanics.analysis.intermittent import compute_intermittent as found
 

@@ -1,8 +1,9 @@
-"""Positions near a dead one are computed once more in double-doubles, with the data as they are written.
+"""Stages of the analysis: structure -> assembly -> range and strokes -> motion -> forces -> lever.
 
-At a distance eps (rad) from a dead position the nearest double to a length of the file already changes velocities by
-1e-16/eps of themselves, whatever the method; with 31 digits that is nothing. The results are rounded to float64 again;
-a position is treated so or not by itself alone.
+Only requested stages are computed. Positions near a dead position are computed again in double-doubles:
+at a distance eps (rad) from it the nearest double to a length of the file changes velocities by 1e-16/eps
+relatively, whatever the method; with 31 digits this does not matter. The results are rounded to float64
+again.
 """
 
 from __future__ import annotations
@@ -68,7 +69,9 @@ if TYPE_CHECKING:
 
 
 def is_near_dead(motion: Motion) -> Real:
-    """Positions where a group is so near to a dead position that float64 blurs its motion, but not in it."""
+    """Mark positions where a group is so near to a dead position that float64 is not precise enough, but not in
+    it.
+    """
     near = np.zeros(np.shape(motion.q), dtype=bool)
     for kernel, at in zip(motion.kernels, motion.placements, strict=True):
         near |= at.margin < kernel.blurred
@@ -76,9 +79,14 @@ def is_near_dead(motion: Motion) -> Real:
 
 
 def refine_near_dead(motion: Motion, linkage: Linkage, q: Real, law: LawOfMotion, where: Real) -> Motion:
-    """A motion with some of its positions taken from that of the same linkage with numbers in double-doubles.
+    """Replace some positions of a motion by those computed with a linkage in double-doubles.
 
-    q: the driver's places there, in double-doubles. The assemblies are those of the motion's own groups.
+    Args:
+        motion: the motion in float64; its assemblies are kept.
+        linkage: the linkage in double-doubles.
+        q: driver coordinates of these positions in double-doubles.
+        law: law of motion of the driver.
+        where: mask of these positions, (positions,).
     """
     closer = compute_motion(linkage, tuple(kernel.rebind(linkage) for kernel in motion.kernels), q, law)
     if not bool(np.all(closer.moving)):
@@ -90,14 +98,18 @@ def refine_near_dead(motion: Motion, linkage: Linkage, q: Real, law: LawOfMotion
 
 
 def refuse_missing_data(mechanism: Mechanism) -> None:
-    """Raises MissingStrokesError, NoTurnError, TableBeyondCycleError, SpeedsEndError."""
+    """Refuse inputs whose loads, positions or tables depend on strokes, rotations or speeds that do not exist.
+
+    Raises:
+        MissingStrokesError, NoTurnError, TableBeyondCycleError, SpeedsEndError.
+    """
     _refuse_missing_strokes(mechanism)
     _refuse_long_load_tables(mechanism)
     _refuse_short_speed_table(mechanism)
 
 
 def _refuse_missing_strokes(mechanism: Mechanism) -> None:
-    """Strokes of the output, of which positions are counted, or in which loads act."""
+    """Refuse positions counted from strokes, and loads in strokes, if the output has none."""
     request, driver_range = mechanism.inputs.request, mechanism.driver_range
     loads = [x for x in mechanism.linkage.loads if x.working_stroke_only or (x.table and x.table.against == "stroke")]
     if request.start != "working stroke" and not loads:
@@ -118,7 +130,7 @@ def _refuse_missing_strokes(mechanism: Mechanism) -> None:
 
 
 def _refuse_long_load_tables(mechanism: Mechanism) -> None:
-    """A crank that comes to all rows of a load's table, rather than a table that is quietly cut."""
+    """Refuse a load table that extends beyond the cycle."""
     turns = mechanism.linkage.turns
     if turns > 1 and not mechanism.driver_range.full:
         raise NoTurnError(turns)
@@ -134,7 +146,7 @@ def _refuse_long_load_tables(mechanism: Mechanism) -> None:
 
 
 def _refuse_short_speed_table(mechanism: Mechanism) -> None:
-    """A table of the driver's speeds that reaches over all positions."""
+    """Refuse a speed table of the driver that does not cover all positions."""
     law, asked = mechanism.linkage.driver.law, mechanism.asked
     if law is None:
         return
@@ -160,12 +172,12 @@ Stage = Literal["structure", "kinematics", "forces"]
 
 @dataclass(frozen=True, eq=False)
 class Results:
-    """What the stages found; a stage that was not asked for is None. numbers: those of the positions in the cycle.
+    """Results of the stages; those of stages that were not requested are None.
 
-    of: names of what alone is asked for (points, links, centres of mass); all there is when empty. What does not depend
-    on the positions is found when it is asked for. centres: by the index of a position; these, extremes and assemblies
-    are there where they are asked for by name. wheels: those of the block intermittent. problem: whatever the caller
-    wants to find here again.
+    numbers: numbers of the positions in the cycle. of: names of requested points, links, centres of mass;
+    empty for all. What does not depend on the positions is computed on request. centres: by index of the
+    position; centres, extremes and assemblies only if requested. wheels: those of the block intermittent.
+    problem: any object of the caller.
     """
 
     inputs: Inputs
@@ -198,7 +210,7 @@ class Results:
 
     @property
     def kernels(self) -> tuple[GroupSolver, ...]:
-        """All groups in solving order; none where the sketch cannot be assembled."""
+        """Groups in solution order; none if the sketch cannot be assembled."""
         return self.mechanism.kernels if self.mechanism.assembles else ()
 
     @property
@@ -219,7 +231,7 @@ class Results:
 
     @property
     def swinging(self) -> tuple[Strokes, ...]:
-        """Strokes of outputs that go there and back."""
+        """Strokes of reciprocating outputs."""
         return tuple(one for one in (self.strokes, *self.further) if one is not None and one.strokes)
 
     @property
@@ -242,28 +254,32 @@ class Results:
 
     @property
     def asked(self) -> Real:
-        """The driver's places of all positions that are asked for, whether they were computed or not (rad or m)."""
+        """Driver coordinates of all requested positions, whether they were computed or not (rad or m)."""
         return self.mechanism.asked
 
     @property
     def start(self) -> float:
-        """The driver's place at position 0."""
+        """Driver coordinate of position 0."""
         return float(self.asked[0])
 
     @property
     def turns(self) -> int:
-        """Of the driver, after which all comes again; 0 where it goes to and fro."""
+        """Revolutions of the driver after which the motion repeats; 0 for a reciprocating driver."""
         reach = self.driver_range
         return reach.turns if reach is not None and reach.full and self.linkage.driver.kind == "turn" else 0
 
     @property
     def counts_strokes(self) -> bool:
-        """Whether strokes are counted from position 0 on: those of a longer cycle of loads, as of a four-stroke engine,
-        do not work by turns."""
+        """True if strokes are counted from position 0.
+
+        In a longer load cycle, as of a four-stroke engine, working and idle strokes do not alternate.
+        """
         return self.linkage.turns > 1 and not any(load.working_stroke_only for load in self.linkage.loads)
 
     def closely(self, count: int) -> Real:
-        """Places close together over the whole of what is asked: a turn from position 0 on, or first to last."""
+        """Return `count` closely spaced driver coordinates over the whole range: a cycle from position 0, or first
+        to last position.
+        """
         driver = self.linkage.driver
         if self.turns:
             return self.start + driver.sense * np.linspace(0, 2 * np.pi * self.turns, count)
@@ -272,28 +288,28 @@ class Results:
 
     @property
     def law(self) -> LawOfMotion:
-        """How the first driver moves."""
+        """Law of motion of the first driver."""
         return driver_motion(self.linkage, self.start) if self.running is None else self.running
 
     @property
     def steady(self) -> SteadyRunning | None:
-        """Steady running, where that is asked for."""
+        """Steady running, or None."""
         return self.running if self.running is not None and self.running.task.cyclic else None
 
     @property
     def single(self) -> SingleRun | None:
-        """A single run, where that is asked for."""
+        """Single run, or None."""
         return self.running if self.running is not None and not self.running.task.cyclic else None
 
     @property
     def locked(self) -> Real:
-        """Positions where friction locks the mechanism."""
+        """Mask of positions where friction locks the mechanism."""
         assert self.motion is not None
         return np.zeros(np.shape(self.motion.q), dtype=bool) if self.friction is None else self.friction.locked
 
     @property
     def lever_holds(self) -> bool:
-        """Whether the lever agrees with the force plan within the limit, wherever it could be computed."""
+        """True if the lever agrees with the force plan within the limit at all computed positions."""
         if self.lever is None or self.motion is None:
             return True
         difference = self.lever.difference[self.motion.moving & ~self.locked]
@@ -307,11 +323,18 @@ def solve(
     of: Sequence[str] = (),
     problem: Any = None,
 ) -> Results:
-    """Run the stages up to the one asked for, at all positions of the inputs or at those numbered.
+    """Run the stages up to the requested one.
 
-    of: points, links, centres of mass; then kinematics solves the groups on the way to them only. problem: see Results.
-    Raises LinkageError: MobilityError, UnknownPositionError, UnknownNameError, MissingStrokesError, and what assembly
-    raises.
+    Args:
+        inputs: linkage, positions and limits.
+        stage: last stage.
+        positions: numbers of positions; None: all.
+        of: points, links, centres of mass; only the groups that they depend on are solved.
+        problem: kept in the results, see `Results`.
+
+    Raises:
+        LinkageError: MobilityError, UnknownPositionError, UnknownNameError, MissingStrokesError, and errors
+            of assembly.
     """
     structure = analyse_mobile_structure(inputs.linkage)
     results = Results(inputs, structure, Mechanism(inputs, structure), of=tuple(of), problem=problem)
@@ -340,7 +363,7 @@ def solve(
 
 
 def _solve_motion(results: Results, kernels: tuple[GroupSolver, ...], numbers: tuple[int, ...]) -> Motion:
-    """The motion, its positions near dead ones in extended precision where the machine has it."""
+    """Solve the motion; positions near dead ones in extended precision, if the inputs allow it."""
     law = results.law
     motion = compute_motion(results.linkage, kernels, results.asked[list(numbers)], law)
     where = is_near_dead(motion)
@@ -353,7 +376,9 @@ def _solve_motion(results: Results, kernels: tuple[GroupSolver, ...], numbers: t
 
 
 def with_forces(results: Results, *, cycle: bool = True) -> Results:
-    """Add loads, the force plan and the lever to kinematics; with friction its losses over the cycle, if asked."""
+    """Add loads, reactions, lever and energy to kinematics; with friction, and if `cycle`, its losses over the
+    cycle.
+    """
     motion = results.motion
     assert motion is not None
     strokes = results.strokes if results.linkage.by_strokes else None
@@ -385,7 +410,9 @@ def with_forces(results: Results, *, cycle: bool = True) -> Results:
 
 
 def cycle_losses(results: Results, places: int = CYCLE_SAMPLES, *, ranges: bool = True) -> FrictionLosses:
-    """What friction takes over the cycle, summed up over so many places; ranges: with those in which it locks."""
+    """Integrate friction losses over the cycle with `places` steps; ranges: also find the ranges in which it
+    locks.
+    """
     whole = motion_at_positions(results, results.closely(places + 1))
     rubbed = _solve_friction_at(results, whole)
     found = compute_losses(rubbed, whole)
@@ -408,11 +435,11 @@ def _solve_friction_at(results: Results, motion: Motion) -> FrictionSolution:
 
 
 def motion_at_positions(results: Results, q: Real, order: int = 2) -> Motion:
-    """The same motion at other places of the driver (trajectories)."""
+    """Return the motion of results at other driver coordinates, (positions,), rad or m."""
     return fill_in_limits(compute_motion(results.linkage, results.kernels, q, results.law, order))
 
 
 def results_at(results: Results, q: Real) -> Results:
-    """The same results at other places of the driver (diagrams); with forces if they have them."""
+    """Return results at other driver coordinates; with forces if they have them."""
     moved = replace(results, motion=motion_at_positions(results, q), numbers=tuple(range(len(q))))
     return moved if results.reactions is None else with_forces(moved, cycle=False)

@@ -1,4 +1,4 @@
-"""Points, links, centres of mass (S3 of link 3) by name: which carries each, how they move, all their values."""
+"""Points, links and centres of mass (S3 of link 3) by name: their links, their motion, their values."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PointOnLink = tuple[str, complex]  # a link and a place in its axes, m
 
 
 def named_points(linkage: Linkage) -> dict[str, PointOnLink]:
-    """Every named point of a moving link, once, with its link and place on it."""
+    """Return every named point of the moving links with its link and its place on it."""
     return {
         point: (link, local)
         for link in reversed(linkage.moving)
@@ -28,13 +28,13 @@ def named_points(linkage: Linkage) -> dict[str, PointOnLink]:
 
 
 def mass_centres(linkage: Linkage) -> dict[str, PointOnLink]:
-    """Centres of mass of the links that have one, named S3 after the link."""
+    """Return the centres of mass of links with mass, named S3 after the link."""
     links = linkage.links
     return {f"S{name}": (name, links[name].centre) for name in linkage.moving if np.any(links[name].mass != 0)}
 
 
 def refuse_unknown_names(linkage: Linkage, names: Sequence[str]) -> None:
-    """Raises UnknownNameError."""
+    """Raise UnknownNameError for a name that is no point, centre of mass or moving link."""
     known = {**named_points(linkage), **mass_centres(linkage), **dict.fromkeys(linkage.moving)}
     for name in names:
         if name not in known:
@@ -42,7 +42,7 @@ def refuse_unknown_names(linkage: Linkage, names: Sequence[str]) -> None:
 
 
 def point_places(linkage: Linkage, kernels: Sequence[GroupSolver], names: Sequence[str]) -> Mapping[str, PointOnLink]:
-    """The points and centres of mass among the names; a point on the link that takes the fewest groups to reach."""
+    """Return the places of the named points and centres of mass, on the link that needs the fewest groups."""
     points, centres = named_points(linkage), mass_centres(linkage)
     found: dict[str, PointOnLink] = {}
     for name in names:
@@ -58,13 +58,13 @@ def point_places(linkage: Linkage, kernels: Sequence[GroupSolver], names: Sequen
 
 
 def moving_points(linkage: Linkage, motion: Motion, names: Sequence[str] = ()) -> dict[str, PointMotion]:
-    """Motion of all named points, or of those among the names."""
+    """Return the motion of all named points, or of those among the names."""
     known = named_points(linkage)
     return {name: motion.named(name) for name in (dict.fromkeys(names) if names else known) if name in known}
 
 
 def moving_centres(linkage: Linkage, motion: Motion, names: Sequence[str] = ()) -> dict[str, PointMotion]:
-    """Motion of all centres of mass, or of those among the names."""
+    """Return the motion of all centres of mass, or of those among the names."""
     known = mass_centres(linkage)
     points = named_points(linkage)
     chosen = [name for name in dict.fromkeys(names) if name not in points] if names else known
@@ -72,7 +72,9 @@ def moving_centres(linkage: Linkage, motion: Motion, names: Sequence[str] = ()) 
 
 
 def select_links(linkage: Linkage, names: Sequence[str]) -> tuple[str, ...]:
-    """The links among the names, in the order of the file; a point of the same name comes first. All without names."""
+    """Return the links among the names in the order of the file, all if there are no names; points come before
+    links.
+    """
     points = {**named_points(linkage), **mass_centres(linkage)}
     if not names:
         return linkage.moving
@@ -80,17 +82,17 @@ def select_links(linkage: Linkage, names: Sequence[str]) -> tuple[str, ...]:
 
 
 def carrying_links(linkage: Linkage, kernels: Sequence[GroupSolver], names: Sequence[str]) -> set[str]:
-    """All links that must be placed for what is asked."""
+    """Return all links that must be placed for the requested names."""
     return {link for link, _ in point_places(linkage, kernels, names).values()} | set(select_links(linkage, names))
 
 
 def leading_values(
     motion: Motion, reactions: Reactions | None, *, first: bool = False
 ) -> Iterator[tuple[Quantity, str, Any]]:
-    """The leading quantities of named points, centres of mass, links, pairs and drivers: which, of what, its values.
+    """Yield the main quantities of points, centres of mass, links, pairs and drivers: quantity, name, values.
 
-    first: a point of several links is taken as one of the first of them, not of the one on which least is lost (which
-    depends on numbers, and a tape has none).
+    first: take a shared point as a point of its first link, not of the one with the least loss of digits
+    (which depends on numbers that a trace does not have).
     """
     linkage, told = motion.linkage, set(motion.linkage.links[FRAME].points)
     for name in linkage.moving:

@@ -1,4 +1,4 @@
-"""What is asked of balancing: numbers alone, as a problem file gives them; and the shaft with masses in planes.
+"""Balancing of mechanisms and of shafts with masses in several planes.
 
 I. I. Artobolevsky, Theory of Mechanisms and Machines (1988), ch. 13.
 """
@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class CounterweightPlace:
-    """Where a counterweight sits: on a link, `radius` from a point of it (its axes, m); 0: the radius is not told."""
+    """Position of a counterweight: on a link, at `radius` from a point of it (its axes, m); 0 if the radius is
+    not given.
+    """
 
     link: str
     about: complex
@@ -32,7 +34,7 @@ class CounterweightPlace:
 
 @dataclass(frozen=True)
 class CorrectionPlane:
-    """A plane across a shaft `at` a place along it, with a mass at a radius (m; 0: its size alone counts)."""
+    """Plane across a shaft at the axial position `at` (m), with a mass at a radius (m; 0 if it is not given)."""
 
     at: float
     radius: float = 0.0
@@ -40,14 +42,21 @@ class CorrectionPlane:
 
 @dataclass(frozen=True)
 class UnbalancedShaft:
-    """Masses on a shaft: mass times radius at an angle (complex, kg m), where along it (m); planes for two others."""
+    """Shaft with unbalanced masses.
+
+    sizes: mass times radius as complex numbers (kg m). at: axial positions (m). planes: planes of one or two
+    correction masses.
+    """
 
     sizes: Vector
     at: Real
     planes: tuple[CorrectionPlane, ...]
 
     def corrections(self) -> Vector:
-        """In one plane what leaves no force, in two planes what leaves no couple either (kg m, complex)."""
+        """Return mass times radius of the corrections (kg m, complex).
+
+        One plane removes the resultant force; two planes remove the resultant couple as well.
+        """
         force, (first, *more) = -np.sum(self.sizes), self.planes
         if not more:
             return np.array([force])
@@ -55,8 +64,10 @@ class UnbalancedShaft:
         return np.array([force - second, second])
 
     def unbalance(self, added: Vector | None = None) -> tuple[complex, complex]:
-        """Sum of mass times radius (kg m), and of its moments about the first plane (kg m2): times the square of the
-        speed force and couple on the bearings. added: corrections.
+        """Return the sum of mass times radius (kg m) and of its moments about the first plane (kg m2).
+
+        Times the square of the angular velocity they are the force and the couple on the bearings. added:
+        corrections.
         """
         sizes, at = self.sizes, self.at
         if added is not None:
@@ -66,10 +77,11 @@ class UnbalancedShaft:
 
 @dataclass(frozen=True)
 class BalancingTask:
-    """Counterweights that are sought, and a shaft.
+    """Counterweights to be found, and a shaft to be balanced.
 
-    share: how much the force along the direction `along` counts, the rest of one across it. Of a crank-slider it is the
-    share of the reciprocating masses that a counterweight on the crank balances.
+    share: weight of the force component along the direction `along`; the other component has the weight 1 -
+    share. For a crank-slider it is the fraction of the reciprocating masses that a counterweight on the crank
+    balances.
     """
 
     counterweights: tuple[CounterweightPlace, ...] = ()
@@ -94,7 +106,9 @@ SETTLED = 1e-15  # of the largest counterweight
 
 @dataclass(frozen=True)
 class ShakingLoads:
-    """What the links do to the frame by their inertia, at every position: force (N), couple about `about` (N m)."""
+    """Inertia load of the links on the frame at every position: shaking force (N), shaking moment about `about`
+    (N m).
+    """
 
     force: Vector
     moment: Real
@@ -103,7 +117,7 @@ class ShakingLoads:
 
 @dataclass(frozen=True)
 class CounterweightSolution:
-    """At its place: mass times radius (kg m) at an angle from the x axis of the link (rad)."""
+    """Counterweight at its place: mass times radius (kg m) at an angle from the x axis of the link (rad)."""
 
     place: CounterweightPlace
     size: float
@@ -111,13 +125,16 @@ class CounterweightSolution:
 
     @property
     def mass(self) -> float | None:
-        """kg; None where the radius is not told."""
+        """Mass in kg; None if the radius is not given."""
         return self.size / self.place.radius if self.place.radius else None
 
 
 @dataclass(frozen=True)
 class BalancedCycle:
-    """Counterweights, what shakes before and after over a whole cycle; alike: some of them do the same as others."""
+    """Counterweights, and the shaking loads before and after balancing over a whole cycle.
+
+    alike: some counterweights have the same effect as others, so their sizes are not unique.
+    """
 
     counterweights: tuple[CounterweightSolution, ...]
     before: ShakingLoads
@@ -126,20 +143,26 @@ class BalancedCycle:
 
     @property
     def shakes(self) -> bool:
-        """Whether anything does without counterweights."""
+        """True if there is a shaking force without counterweights."""
         return bool(np.any(np.nan_to_num(self.before.force) != 0))
 
     @property
     def left(self) -> float:
-        """Largest shaking force after, over that before."""
+        """Largest shaking force after balancing, relative to that before."""
         most = float(np.nanmax(np.abs(self.before.force)))
         return float(np.nanmax(np.abs(self.after.force))) / most if most > 0 else 0.0
 
 
 def compute_shaking(motion: Motion, about: complex = 0j, weights: Sequence[CounterweightSolution] = ()) -> ShakingLoads:
-    """Of all links with mass, and of counterweights.
+    """Compute the shaking force and moment of all links with mass and of counterweights.
 
-    Of one whose radius is not told mass times radius alone counts: not the mass on its pivot, nor its own inertia.
+    A counterweight without a radius counts by its mass times radius alone: neither the mass on its pivot nor
+    its own moment of inertia is included.
+
+    Args:
+        motion: solved motion.
+        about: point of the frame for moments (m).
+        weights: counterweights to include.
     """
     force, moment = np.zeros(np.shape(motion.q), complex), np.zeros(np.shape(motion.q))
     for name in motion.linkage.moving:
@@ -163,11 +186,20 @@ def compute_shaking(motion: Motion, about: complex = 0j, weights: Sequence[Count
 
 
 def balance_cycle(motion: Motion, task: BalancingTask, about: complex = 0j) -> BalancedCycle:
-    """Counterweights that leave the least shaking force. Raises UnsettledError.
+    """Find the counterweights that leave the least shaking force.
 
-    motion: over a whole cycle at even steps, without its end twice; dead positions are left out. A radius that is told
-    gives a mass, which loads the pivot: where this moves, the counterweights are found again with that mass, until they
-    stay.
+    The shaking force is F = -sum m a of all links, and a counterweight on a link adds c z to sum m r, with c
+    = mr exp(i angle) in its axes and z their direction, so counterweights follow from linear least squares. A
+    given radius gives a mass, which loads the pivot; if the pivot moves, the counterweights are found again
+    with that mass until they no longer change.
+
+    Args:
+        motion: a whole cycle at equal steps, without the repeated end; dead positions are skipped.
+        task: counterweights to be found.
+        about: point of the frame for moments (m).
+
+    Raises:
+        UnsettledError: the counterweights do not converge.
     """
     before = compute_shaking(motion, about)
     if not task.counterweights:
@@ -198,7 +230,9 @@ def balance_cycle(motion: Motion, task: BalancingTask, about: complex = 0j) -> B
 
 
 def _least_squares(columns: Vector, force: Vector, task: BalancingTask) -> tuple[Vector, int]:
-    """Counterweights (kg m, complex) that leave the least force, and how many of their parts differ in what they do."""
+    """Counterweights (kg m, complex) that leave the least force, and the rank: the number of independent
+    components.
+    """
     own, rest = columns * task.along.conjugate(), -force * task.along.conjugate()
     share, other = np.sqrt(task.share), np.sqrt(1 - task.share)
     matrix = np.block([[share * own.real, -share * own.imag], [other * own.imag, other * own.real]])
@@ -208,12 +242,12 @@ def _least_squares(columns: Vector, force: Vector, task: BalancingTask) -> tuple
 
 
 def _direction(c: complex) -> float:
-    """Its angle, rad; straight back it is pi, not -pi."""
+    """Angle of a counterweight, rad; for a direction straight back pi, not -pi."""
     return float(np.angle(c if abs(c.imag) > NO_ANGLE * abs(c) else complex(c.real)))
 
 
 def _direction_acceleration(motion: Motion, link: str) -> Vector:
-    """Second derivative by time of the direction of a link's x axis, 1/s2."""
+    """Second time derivative of the direction of a link's x axis, 1/s2."""
     turning, z = motion.link(link), motion.poses[link].z
     found: Vector = (1j * turning.epsilon - turning.omega**2) * z
     return found
@@ -227,8 +261,10 @@ STEPS_PER_TURN = 720  # in a turn
 
 @dataclass(frozen=True)
 class BalancingResults:
-    """What was asked, over the whole cycle at places q of the driver, and at the positions; pivot: what moments are
-    about. corrections: of the shaft with masses, kg m.
+    """Results of a balancing task over the whole cycle (driver coordinates q) and at the positions of the
+    problem.
+
+    pivot: point for moments. corrections: mass times radius of the corrections of a shaft, kg m.
     """
 
     task: BalancingTask
@@ -240,12 +276,23 @@ class BalancingResults:
     corrections: Vector = field(default_factory=lambda: np.empty(0, complex))
 
     def at(self, mechanism: Mechanism, q: Real) -> tuple[ShakingLoads, ShakingLoads]:
-        """What shakes at other places of the driver, without counterweights and with them."""
+        """Return the shaking loads at other driver coordinates, without and with counterweights."""
         return _shaking_at(mechanism, self.cycle, q)
 
 
 def balance_machine(mechanism: Mechanism, start: float, places: Real, task: BalancingTask) -> BalancingResults:
-    """Over the cycle from the driver's place `start` on, and at places. Raises NoCycleError, UnsettledError."""
+    """Balance a mechanism over the cycle that begins at the driver coordinate `start`.
+
+    Args:
+        mechanism: the mechanism; its driver runs at constant speed.
+        start: driver coordinate of position 0 (rad).
+        places: driver coordinates of the positions (rad).
+        task: balancing task.
+
+    Raises:
+        NoCycleError: the driver is not a fully rotating crank, or not the only one.
+        UnsettledError: the counterweights do not converge.
+    """
     linkage, whole = mechanism.linkage, mechanism.driver_range
     driver = linkage.driver
     if driver.kind != "turn" or not whole.full or linkage.others:
@@ -261,19 +308,19 @@ def balance_machine(mechanism: Mechanism, start: float, places: Real, task: Bala
 
 
 def _shaking_at(mechanism: Mechanism, found: BalancedCycle, q: Real) -> tuple[ShakingLoads, ShakingLoads]:
-    """What shakes at places of the driver, without counterweights and with them."""
+    """Shaking loads at driver coordinates, without and with counterweights."""
     motion, about = constant_speed_motion(mechanism, q), found.before.about
     return compute_shaking(motion, about), compute_shaking(motion, about, found.counterweights)
 
 
 def constant_speed_motion(mechanism: Mechanism, q: Real) -> Motion:
-    """The motion at constant speed of the driver."""
+    """Return the motion at constant speed of the driver."""
     driver = mechanism.linkage.driver
     law = DriverMotion(float(q[0]), driver.rate, 0.0, driver.sense)
     return compute_motion(mechanism.linkage, mechanism.kernels, q, law)
 
 
 def _crank_pivot(linkage: Linkage) -> str:
-    """Where the crank turns on the frame; empty where it has no such point."""
+    """Name of the crank's pivot on the frame; empty if it has no such point."""
     link = linkage.driver.link
     return next((h.point for h in linkage.hinges if {FRAME, link} <= set(h.links)), "")

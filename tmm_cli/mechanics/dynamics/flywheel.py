@@ -1,19 +1,20 @@
-"""The flywheel that keeps the fluctuation of speed: exactly, by Wittenbauer and by Mertsalov.
+"""Flywheel for a given fluctuation of speed: exact, by Wittenbauer and by Mertsalov.
 
-With E(x) the work of all moments from the beginning of the cycle, T0 the energy there and J the inertia without the
-flywheel Jf, the speed is w^2 = 2 (T0 + E) / (Jf + J). That its largest value is w1 and its least w2 are two conditions,
-linear in T0 and Jf, so the flywheel is found without trial:
+With E(x) the work of all moments from the beginning of the cycle, T0 the energy there and J the inertia
+without the flywheel Jf, the speed is w^2 = 2 (T0 + E) / (Jf + J). The conditions that its largest value
+is w1 and its least w2 are linear in T0 and Jf, so the flywheel follows without iteration:
 
     Jf = (max(w2^2 J / 2 - E) - min(w1^2 J / 2 - E)) / ((w1^2 - w2^2) / 2).
 
-These are the tangents to the energy-mass diagram (J, E) of slopes w1^2 / 2 and w2^2 / 2: F. Wittenbauer, Graphische
-Dynamik (1923); I. I. Artobolevsky, Theory of Mechanisms and Machines (1988), ch. 19. In the course one takes
-w^2 (1 +- delta) for w1^2 and w2^2.
+These are the tangents to the energy-mass diagram (J, E) with slopes w1^2 / 2 and w2^2 / 2: F.
+Wittenbauer, Graphische Dynamik (1923); I. I. Artobolevsky, Theory of Mechanisms and Machines (1988), ch.
+19. In the course one takes w^2 (1 +- delta) for w1^2 and w2^2.
 
-N. I. Mertsalov divides the machine into a first group, the flywheel and the links with a constant speed ratio to the
-driver (inertia Jc), and a second group, all other links (inertia J - Jc). The energy of the second group is taken at
-the mean speed, so the first group has the inertia J_I = (largest less least of E - (J - Jc) w^2 / 2) / (delta w^2), and
-the flywheel Jf = J_I - Jc: K. V. Frolov (ed.), Theory of Mechanisms and Machines (1987).
+N. I. Mertsalov divides the machine into a first group, the flywheel and the links with a constant speed
+ratio to the driver (inertia Jc), and a second group, all other links (inertia J - Jc). The energy of the
+second group is taken at the mean speed, so the first group has the inertia J_I = (largest less least of E
+- (J - Jc) w^2 / 2) / (delta w^2), and the flywheel Jf = J_I - Jc: K. V. Frolov (ed.), Theory of
+Mechanisms and Machines (1987).
 """
 
 from __future__ import annotations
@@ -32,10 +33,10 @@ REFINEMENT_WIDTH = 1e-4  # rad (or m): so near to the point of a tangent the lea
 
 @dataclass(frozen=True)
 class Tangent:
-    """A line that touches the energy-mass diagram from one side.
+    """Tangent to the energy-mass diagram, which lies on one side of it.
 
-    x: where on the way; inertia, energy: of that point (kg m2, J); slope: w^2 / 2 (J / kg m2); offset: energy that it
-    has on the axis where the inertia is zero (J).
+    x: driver travel of the point of contact. inertia, energy: coordinates of that point (kg m2, J). slope:
+    w^2 / 2 (J / kg m2). offset: energy at zero inertia (J).
     """
 
     x: float
@@ -50,9 +51,10 @@ class Tangent:
 
 @dataclass(frozen=True)
 class FlywheelSolution:
-    """A flywheel on the driver. inertia: kg m2, below zero where none is needed; energy: T0 at the beginning (J).
+    """Flywheel on the driver. inertia: kg m2, negative if none is needed; energy: kinetic energy T0 at the
+    beginning (J).
 
-    upper, lower: tangents of the largest and of the least speed, for this inertia.
+    upper, lower: tangents of the largest and the least speed for this inertia.
     """
 
     inertia: float
@@ -62,19 +64,28 @@ class FlywheelSolution:
 
 
 def exact_flywheel(machine: ReducedMachine, work: PanelCurve, mean: float, delta: float) -> FlywheelSolution:
-    """Speeds between w (1 - delta/2) and w (1 + delta/2), which are both come to; work: of all moments, J."""
+    """Find the flywheel that keeps the speed between w (1 - delta/2) and w (1 + delta/2), both of which are
+    reached.
+
+    Args:
+        machine: the reduced machine.
+        work: work of all moments from the beginning of the cycle (J).
+        mean: mean speed w (rad/s).
+        delta: coefficient of fluctuation of speed.
+    """
     return _flywheel_between(machine, work, mean * (1 - delta / 2), mean * (1 + delta / 2))
 
 
 def wittenbauer_flywheel(machine: ReducedMachine, work: PanelCurve, mean: float, delta: float) -> FlywheelSolution:
-    """By tangents of slopes w^2 (1 +- delta) / 2, as a course draws them."""
+    """Find the flywheel by tangents of slopes w^2 (1 +- delta) / 2, as drawn in courses."""
     return _flywheel_between(machine, work, mean * np.sqrt(max(1 - delta, 0.0)), mean * np.sqrt(1 + delta))
 
 
 def mertsalov_inertia(machine: ReducedMachine, work: PanelCurve, mean: float, delta: float) -> float:
-    """Inertia J_I of the first group (kg m2), the flywheel with the links of constant speed ratio.
+    """Inertia J_I of the first group (kg m2): the flywheel and the links with a constant speed ratio.
 
-    The energy of the other links is taken at the mean speed; what is constant in the inertia cancels in the difference.
+    The energy of the other links is taken at the mean speed; a constant part of the inertia cancels in the
+    difference.
     """
     slope = mean**2 / 2
     upper, lower = find_tangent(machine, work, slope, top=True), find_tangent(machine, work, slope, top=False)
@@ -84,16 +95,17 @@ def mertsalov_inertia(machine: ReducedMachine, work: PanelCurve, mean: float, de
 def energy_at_mean_speed(
     machine: ReducedMachine, work: PanelCurve, mean: float, flywheel: float = 0.0
 ) -> tuple[float, float]:
-    """Energy at the beginning (J) at which the mean of largest and least speed is this, and the fluctuation delta then.
+    """Find the initial energy (J) at which the mean of the largest and the least speed is `mean`, and the
+    fluctuation.
 
-    nan where the machine does not come round at that mean speed, or has no inertia at some place.
+    Both are nan if the machine does not run through at that speed, or has no inertia somewhere.
     """
     places = work.places()
     if flywheel + float(np.min(machine.inertia(places))) <= 0:
         return float("nan"), float("nan")
 
     def speeds(energy: Real) -> Real:
-        """The least and the largest speed, of an energy at the beginning each."""
+        """Least and largest speed for each initial energy."""
         square = [
             (find_minimum(of, places)[1], -find_minimum(partial(_negated, of), places)[1])
             for of in (partial(_squared_speed, machine, work, flywheel, float(e)) for e in np.ravel(energy))
@@ -118,7 +130,7 @@ def _flywheel_between(machine: ReducedMachine, work: PanelCurve, low: float, hig
 
 
 def find_tangent(machine: ReducedMachine, work: PanelCurve, slope: float, *, top: bool) -> Tangent:
-    """The tangent of this slope above the diagram, or below it."""
+    """Return the tangent of this slope above the diagram, or below it."""
     sign = -1.0 if top else 1.0
 
     def height(x: Real) -> Real:
@@ -136,7 +148,6 @@ def find_tangent(machine: ReducedMachine, work: PanelCurve, slope: float, *, top
 
 
 def _squared_speed(machine: ReducedMachine, work: PanelCurve, inertia: float, energy: float, x: Real) -> Real:
-    """Of the speed."""
     return 2 * (energy + work(x)) / (inertia + machine.inertia(x))
 
 
@@ -145,8 +156,9 @@ def _negated(function: Callable[[Real], Real], x: Real) -> Real:
 
 
 def refine_minimum(rate: Callable[[Real], Real], x: float, length: float) -> float:
-    """The place of a minimum that is near x, between 0 and a length, to all digits: where the rate changes its sign,
-    as it does where a load jumps too. Values alone tell it to half the digits only.
+    """Refine a minimum near x, inside 0..length, to full precision from the sign change of the rate.
+
+    Values alone give only half the digits. The sign may also change at a jump of the load.
     """
     ends = np.clip([x - REFINEMENT_WIDTH, x + REFINEMENT_WIDTH], 0.0, np.nextafter(length, 0.0))
     below, above = rate(ends)
@@ -154,7 +166,7 @@ def refine_minimum(rate: Callable[[Real], Real], x: float, length: float) -> flo
 
 
 def find_minimum(function: Callable[[Real], Real], places: Real) -> tuple[float, float]:
-    """Place and value of the least of a function whose minima are farther apart than these places."""
+    """Return argument and value of the minimum of a function whose minima are farther apart than `places`."""
     values = function(places)
     best = int(np.argmin(values))
     x, value = find_minima(function, float(places[max(best - 1, 0)]), float(places[min(best + 1, len(places) - 1)]))

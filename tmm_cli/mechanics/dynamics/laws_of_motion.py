@@ -1,6 +1,8 @@
-"""The law of motion of steady running: speed, acceleration and time along the way of the driver, the same every cycle.
+"""Laws of motion of steady running: speed, acceleration and time along the travel of the driver, the same
+every cycle.
 
-Under a constant driving moment Md the kinetic energy T by the way x is a sum: dT/dx = M(x) + Md, w^2 = 2 T / (Jf + J).
+Under a constant driving moment Md the kinetic energy T along the travel x is an integral: dT/dx = M(x) +
+Md, w^2 = 2 T / (Jf + J).
 """
 
 from __future__ import annotations
@@ -31,10 +33,10 @@ from tmm_cli.mechanics.numerics import LAST_STEP, SEAM, Real, to_float
 
 @dataclass(frozen=True)
 class SteadyLaw:
-    """Along the way x of a cycle (rad, or m of a slider). flywheel: its inertia on the driver (kg m2, or kg).
+    """Law of motion along the travel x of a cycle (rad, or m for a slider).
 
-    energy: kinetic energy (J), that of the flywheel with it; driving: moment of what drives (N m, or N); time: since
-    the beginning (s).
+    flywheel: inertia of the flywheel on the driver (kg m2, or kg). energy: kinetic energy (J), flywheel
+    included. driving: driving moment (N m, or N). time: time since the beginning (s).
     """
 
     machine: ReducedMachine
@@ -44,23 +46,33 @@ class SteadyLaw:
     time: PanelCurve
 
     def speed(self, x: Real) -> Real:
-        """rad/s, or m/s."""
+        """Speed at travel x, rad/s or m/s."""
         return np.sqrt(2 * self.energy(x) / (self.flywheel + self.machine.inertia(x)))
 
     def acceleration(self, x: Real) -> Real:
-        """rad/s2, or m/s2; where a load jumps, that after it."""
+        """Acceleration at travel x, rad/s2 or m/s2; at a jump of the load the value after it."""
         moment = self.driving(x) + self.machine.moment(x) - self.machine.slope(x) * self.speed(x) ** 2 / 2
         found: Real = moment / (self.flywheel + self.machine.inertia(x))
         return found
 
     @property
     def period(self) -> float:
-        """Time of a cycle, s."""
+        """Duration of a cycle, s."""
         return float(self.time(np.array([self.time.length]))[0])
 
 
 def constant_moment_law(machine: ReducedMachine, flywheel: float, energy: float, moment: float) -> SteadyLaw:
-    """From an energy (J) at the beginning of the cycle. Raises StandstillError."""
+    """Return the law of motion under a constant driving moment.
+
+    Args:
+        machine: the reduced machine.
+        flywheel: inertia of the flywheel (kg m2).
+        energy: kinetic energy at the beginning of the cycle (J).
+        moment: driving moment (N m).
+
+    Raises:
+        StandstillError: the energy falls to zero somewhere.
+    """
     work = fit_curves(lambda x: (energy + machine.work(x) + moment * x,), machine.work.edges)[0]
     places = work.places()
     values = work(places)
@@ -102,9 +114,10 @@ VALUES_TO_ENDS: Real = (
 
 @dataclass
 class _Panel:
-    """inertia without flywheel, slope of it by the way, moment of the loads: at the nodes between low and high.
+    """Panel of the cycle with inertia without flywheel, its slope, and load moment at the nodes between low and
+    high.
 
-    slips: found there last, from which the next search begins.
+    slips: last solution at the nodes, from which the next search starts.
     """
 
     low: float
@@ -122,9 +135,9 @@ class _Panel:
 
 @dataclass
 class MotorCycle:
-    """A cycle in panels, which are halved as it is run, for one flywheel after another.
+    """Cycle of a machine driven by a motor, on panels that are halved where needed, for any number of flywheels.
 
-    whole: before they are; slip: at the beginning of the cycle that was found last.
+    whole: panels before halving. slip: slip at the beginning of the cycle in the last solution.
     """
 
     machine: ReducedMachine
@@ -135,7 +148,12 @@ class MotorCycle:
 
     @classmethod
     def of(cls, machine: ReducedMachine, motor: MotorCharacteristic) -> MotorCycle:
-        """Raises WeakMotorError, RunawayError."""
+        """Prepare the cycle of a machine with a motor.
+
+        Raises:
+            WeakMotorError: the load exceeds the largest moment of the motor.
+            RunawayError: the load drives the machine harder than the motor can brake it.
+        """
         wanted = -machine.work_of_cycle / machine.length
         x = machine.moment.places()
         if wanted >= motor.most:
@@ -146,7 +164,13 @@ class MotorCycle:
         return cls(machine, motor, tuple(_Panel.of(machine, *ends) for ends in pairwise(edges)))
 
     def law(self, flywheel: float) -> SteadyLaw:
-        """The steady running with a flywheel (kg m2, or kg). Raises StandstillError, RunawayError, LostDigitsError."""
+        """Solve steady running with a flywheel (kg m2, or kg).
+
+        Raises:
+            StandstillError: the machine stops.
+            RunawayError: the machine runs away.
+            LostDigitsError: rounding leaves too few digits.
+        """
         slip, values, idle, self.panels = self.slip, np.zeros((NODES, 1)), self.motor.idle, list(self.whole)
         for _ in range(NEWTON_STEPS):
             end, slope, values = self._run(flywheel, slip)
@@ -175,7 +199,7 @@ class MotorCycle:
         return SteadyLaw(self.machine, flywheel, energy, driving, pace.summed())
 
     def _unsteady(self, values: Real) -> LinkageError:
-        """A machine that runs away, or comes to rest where its slip is largest."""
+        """Error for a machine that does not run steadily: it runs away, or stops where its slip is largest."""
         x, slips = panel_nodes(self._edges), values.T.ravel()
         if np.mean(values) < RUNAWAY:
             pushing, quickest = self.machine.work_of_cycle / self.machine.length, int(np.argmin(slips))
@@ -184,7 +208,7 @@ class MotorCycle:
         return StandstillError(float(x[np.argmax(slips)]))
 
     def _lost(self, values: Real, share: float) -> LinkageError:
-        """A machine of whose slip rounding leaves too few digits, if it does not run away."""
+        """Error for a slip with too few digits left by rounding, or for a machine that runs away."""
         return self._unsteady(values) if np.mean(values) < RUNAWAY else LostDigitsError(share)
 
     @property
@@ -192,7 +216,9 @@ class MotorCycle:
         return np.array([0.0, *(panel.high for panel in self.panels)])
 
     def _run(self, flywheel: float, begin: float) -> tuple[float, float, Real]:
-        """Slip after the cycle, its slope by that at the beginning, and slips at the nodes, (nodes, panels)."""
+        """Return the slip after the cycle, its derivative by the initial slip, and slips at the nodes (nodes,
+        panels).
+        """
         left, done, slope, size = self.panels[::-1], list[_Panel](), 1.0, abs(begin)
         while left:
             panel = left.pop()
@@ -214,7 +240,7 @@ class MotorCycle:
 
     @np.errstate(all="ignore")  # at rest the rate is not finite, and there is no solution
     def _solved(self, panel: _Panel, flywheel: float, begin: float) -> Real | None:
-        """Slips at the nodes, and their slopes by that at the beginning, (nodes, 2); None where there are none."""
+        """Slips at the nodes and their derivatives by the initial slip, (nodes, 2); None if there is no solution."""
         idle, sums = self.motor.idle, (panel.high - panel.low) / 2 * VALUES_TO_INTEGRALS[:-1]
         values = np.full(NODES, begin) if panel.slips is None else panel.slips
         inertia, right = idle * (flywheel + panel.inertia), np.ones((NODES, 2))
@@ -239,7 +265,7 @@ class MotorCycle:
 
 
 def _is_rough(values: Real, begin: float, size: float) -> bool:
-    """Whether slips are no polynomial that begins where it is to, beside the largest of all."""
+    """Return True if slips are not a polynomial that begins at `begin`, relative to the largest slip."""
     tail = max(
         float(np.abs(VALUES_TO_COEFFICIENTS[-2:] @ values).max()), abs(float(VALUES_TO_ENDS[0] @ values) - begin)
     )
@@ -257,7 +283,11 @@ LEAST_SQUARE = 1e-9  # of the largest square of the speed: with less somewhere t
 
 @dataclass(frozen=True)
 class SpeedTableLaw:
-    """Of a crank in its sense; start: its angle at t = 0 (rad); cycle: after which all comes again (rad)."""
+    """Law of motion of a crank from a table of its speeds.
+
+    start: crank angle at t = 0 (rad). sense: sense of rotation. cycle: angle after which the motion repeats
+    (rad).
+    """
 
     table: SpeedTable
     start: float
@@ -265,11 +295,11 @@ class SpeedTableLaw:
     cycle: float
 
     def speed(self, q: Real) -> Real:
-        """rad/s, with its sign; nan where the table does not reach."""
+        """Angular velocity, rad/s, with its sign; nan beyond the table."""
         return self.sense * np.sqrt(np.maximum(self._within(self.table.squares(self._angle(q)), q), 0.0))
 
     def accelerated(self, q: Real) -> Real:
-        """rad/s2, with its sign."""
+        """Angular acceleration, rad/s2, with its sign; nan beyond the table."""
         given = self.table.accelerations
         if given is not None:
             return self.sense * self._within(given(self._angle(q)), q)
@@ -278,25 +308,25 @@ class SpeedTableLaw:
         return self._within(self.table.squares.slope(self._angle(after)) / 2, q)
 
     def time(self, q: Real) -> Real:
-        """s, since the start; nan where the table has a rest, or does not reach."""
+        """Time since the start, s; nan beyond the table, or if the table contains a rest."""
         (laps, inner), (first, begun) = self._passed(to_float(q)), self._passed(to_float(self.start) + np.zeros(1))
         period = float(self._times(np.array([self._length]))[0]) if self.table.squares.closed else float("nan")
         return inner - begun + np.where(laps == first, 0.0, (laps - first) * period)
 
     def _angle(self, q: Real) -> Real:
-        """Within the cycle that begins with the table."""
+        """Reduce an angle to the cycle that begins with the table."""
         first, seam = self.table.squares.arguments[0], SEAM * (1 + np.abs(q))
         found: Real = first + np.maximum(np.mod(q - first + seam, self.cycle) - seam, 0.0)
         return found
 
     def _within(self, values: Real, q: Real) -> Real:
-        """Values where the table reaches."""
+        """Replace values beyond the table by nan."""
         last = self.table.squares.arguments[-1]
         return np.where(self._angle(q) <= last + SEAM * (1 + np.abs(last)), values, np.nan)
 
     @cached_property
     def _first(self) -> float:
-        """The end of the table that the driver comes to first."""
+        """End of the table that the driver reaches first."""
         return float(to_float(self.table.squares.arguments[0 if self.sense > 0 else -1]))
 
     @cached_property
@@ -306,7 +336,7 @@ class SpeedTableLaw:
 
     @cached_property
     def _times(self) -> PanelCurve:
-        """Time by the way from the first end of the table on, s."""
+        """Time as a function of the travel from the first end of the table, s."""
         squares = self.table.squares
         edges = [self.sense * (float(to_float(row)) - self._first) for row in squares.arguments]
 
@@ -319,7 +349,7 @@ class SpeedTableLaw:
         return fit_curves(pace, edges)[0].summed()
 
     def _passed(self, q: Real) -> tuple[Real, Real]:
-        """Whole cycles since the first end of the table, and the time in the one that is under way, s."""
+        """Whole cycles since the first end of the table, and the time in the current one, s."""
         way = self.sense * (q - self._first)
         laps = np.floor((way + SEAM * (1 + np.abs(way))) / self.cycle)
         rest = way - laps * self.cycle

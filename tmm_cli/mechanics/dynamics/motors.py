@@ -1,6 +1,8 @@
-"""What drives a machine: a moment by the speed of the driving link. A new characteristic is a class here.
+"""Motor characteristics: driving moment as a function of the speed of the input link. A new kind is a class
+here.
 
-S. A. Popov, G. A. Timofeev, Course project in the theory of mechanisms (2017), ch. 5: characteristics of motors.
+S. A. Popov, G. A. Timofeev, Course project in the theory of mechanisms (2017), ch. 5: characteristics of
+motors.
 """
 
 from __future__ import annotations
@@ -13,38 +15,38 @@ from tmm_cli.mechanics.numerics import Real
 
 
 class MotorCharacteristic(Protocol):
-    """A characteristic, reduced to the driving link, by the slip s = 1 - w / w0 under its speed without load w0.
+    """Characteristic reduced to the input link, as a function of the slip s = 1 - w / w0 (w0: no-load speed).
 
-    Of a motor that is strong for its load the slip has all digits of the moment, the speed only a few.
+    For a motor that is strong for its load the slip keeps all digits of the moment, the speed only a few.
     """
 
     @property
     @abstractmethod
     def idle(self) -> float:
-        """Its speed without load, rad/s, or m/s of a slider."""
+        """No-load speed, rad/s (m/s for a slider)."""
 
     @property
     @abstractmethod
     def most(self) -> float:
-        """Its largest moment from that speed down to rest, N m, or N."""
+        """Largest moment between standstill and no-load speed, N m (N for a slider)."""
 
     @property
     @abstractmethod
     def holds(self) -> float:
-        """The largest moment with which it holds a machine that is pushed beyond that speed, N m, or N."""
+        """Largest braking moment above the no-load speed, N m (N for a slider)."""
 
     @abstractmethod
     def at_slip(self, slip: Real) -> tuple[Real, Real]:
-        """N m (N of a slider), and its slope by the slip."""
+        """Return the moment, N m (N for a slider), and its derivative by the slip."""
 
     def moment(self, speed: Real) -> Real:
-        """N m at speeds (rad/s); of a slider N at m/s."""
+        """Return the moment (N m) at speeds (rad/s); N at m/s for a slider."""
         return self.at_slip(1 - speed / self.idle)[0]
 
 
 @dataclass(frozen=True)
 class LinearMotor(MotorCharacteristic):
-    """Direct current, shunt wound: from `stall` at rest down to nothing at `free` speed (rad/s)."""
+    """Shunt-wound direct-current motor: linear from `stall` (N m) at rest to zero at the speed `free` (rad/s)."""
 
     stall: float
     free: float
@@ -67,9 +69,10 @@ class LinearMotor(MotorCharacteristic):
 
 @dataclass(frozen=True)
 class KlossMotor(MotorCharacteristic):
-    """Asynchronous: M = 2 Mk / (s / sk + sk / s), s the slip under the synchronous speed (rad/s).
+    """Asynchronous motor by Kloss's formula: M = 2 Mk / (s / sk + sk / s).
 
-    M. Kloss, Archiv fuer Elektrotechnik 5 (1916). breakdown: Mk (N m) at the slip sk.
+    M. Kloss, Archiv fuer Elektrotechnik 5 (1916). synchronous: synchronous speed (rad/s). breakdown:
+    breakdown torque Mk (N m) at the slip sk (`slip`).
     """
 
     synchronous: float
@@ -78,7 +81,9 @@ class KlossMotor(MotorCharacteristic):
 
     @classmethod
     def rated(cls, synchronous: float, speed: float, moment: float, overload: float) -> KlossMotor:
-        """From rated speed and moment, and the breakdown moment over the rated one (at least 1)."""
+        """Build the characteristic from rated speed and torque; overload: breakdown torque over rated torque (at
+        least 1).
+        """
         own = 1 - speed / synchronous
         return cls(synchronous, overload * moment, own * (overload + (overload**2 - 1) ** 0.5))
 

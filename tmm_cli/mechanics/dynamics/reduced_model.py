@@ -1,8 +1,8 @@
-"""Functions of the driver's way, as polynomials on panels: what is summed up along the way is exact to rounding.
+"""The machine reduced to its driver: functions of the driver's travel as polynomials on panels.
 
-Panels end where a function may jump or bend (ends of strokes, rows of a table), and are halved until the polynomials
-have all digits; so a sum over a cycle needs a few hundred positions, not a fine grid. L. N. Trefethen, Approximation
-Theory and Approximation Practice (2013), ch. 3 and 19.
+Panels end where a function may jump or bend (ends of strokes, rows of a table), and are halved until the
+polynomials have full precision; so an integral over a cycle is exact to rounding with a few hundred
+positions. L. N. Trefethen, Approximation Theory and Approximation Practice (2013), ch. 3 and 19.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ VALUES_TO_INTEGRALS: Real = chebyshev.chebvander(np.append(NODE_POINTS, 1.0), NO
 
 @dataclass(frozen=True)
 class PanelCurve:
-    """A function on 0..length. edges: (panels + 1,); coefficients: (nodes, panels), of Chebyshev polynomials."""
+    """Function on 0..length. edges: (panels + 1,); coefficients: (nodes, panels), of Chebyshev polynomials."""
 
     edges: Real
     coefficients: Real
@@ -43,7 +43,7 @@ class PanelCurve:
         return float(self.edges[-1])
 
     def __call__(self, x: Real) -> Real:
-        """Its values; at an edge, where it may jump, those after it."""
+        """Return its values; at an edge, where it may jump, the value after it."""
         x = np.asarray(x, float)
         panel = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, len(self.edges) - 2)
         low, high = self.edges[panel], self.edges[panel + 1]
@@ -51,11 +51,11 @@ class PanelCurve:
         return found
 
     def slope(self) -> PanelCurve:
-        """Its derivative, panel by panel."""
+        """Return its derivative, panel by panel."""
         return PanelCurve(self.edges, chebyshev.chebder(self.coefficients) / (np.diff(self.edges) / 2))
 
     def summed(self) -> PanelCurve:
-        """Its integral from 0 on."""
+        """Return its integral from 0."""
         half = np.diff(self.edges) / 2
         own = chebyshev.chebint(self.coefficients, lbnd=-1) * half
         gone = np.concatenate([[0.0], np.cumsum(chebyshev.chebval(1.0, own))])
@@ -64,17 +64,17 @@ class PanelCurve:
 
     @property
     def total(self) -> float:
-        """Its integral over all of its length."""
+        """Integral over the whole length."""
         own = chebyshev.chebval(1.0, chebyshev.chebint(self.coefficients, lbnd=-1))
         return float(np.sum(np.diff(self.edges) / 2 * own))
 
     def places(self) -> Real:
-        """Places close together: both ends of each panel, just inside it, and its nodes."""
+        """Return closely spaced arguments: both ends of each panel, just inside it, and its nodes."""
         return panel_nodes(self.edges, ends=True)
 
 
 def panel_nodes(edges: Real, *, ends: bool = False) -> Real:
-    """Places of the panels at which functions are fitted, in order; ends: with the ends of each, just inside it."""
+    """Return the nodes of all panels in order; ends: with both ends of each panel, just inside it."""
     own = np.concatenate([[-1 + 1e-15], NODE_POINTS, [1 - 1e-15]]) if ends else NODE_POINTS
     low, high = edges[:-1, None], edges[1:, None]
     found: Real = ((low + high) / 2 + (high - low) / 2 * own).ravel()
@@ -82,9 +82,13 @@ def panel_nodes(edges: Real, *, ends: bool = False) -> Real:
 
 
 def fit_curves(function: Callable[[Real], Sequence[Real]], edges: Sequence[float] | Real) -> tuple[PanelCurve, ...]:
-    """Functions, computed together at many places x, on common panels; edges: where they may jump, both ends too.
+    """Fit functions, computed together, by polynomials on common panels.
 
-    A value that is not finite stays so in its panel, which is not halved.
+    Args:
+        function: returns the values of all functions at many arguments.
+        edges: arguments where they may jump, both ends included.
+
+    A panel with values that are not finite keeps them and is not halved.
     """
     at = _divide_wide_panels(np.unique(np.asarray(edges, float)))
     values = _node_values(function, at)
@@ -104,7 +108,7 @@ def fit_curves(function: Callable[[Real], Sequence[Real]], edges: Sequence[float
 
 
 def _divide_wide_panels(edges: Real) -> Real:
-    """The same with panels that are not too wide."""
+    """Divide panels that are wider than WIDEST_PANEL."""
     parts = [
         np.linspace(low, high, int(np.ceil((high - low) / WIDEST_PANEL - 1e-9)) + 1)[:-1]
         for low, high in pairwise(edges)
@@ -113,14 +117,14 @@ def _divide_wide_panels(edges: Real) -> Real:
 
 
 def _node_values(function: Callable[[Real], Sequence[Real]], edges: Real, wanted: Real | None = None) -> Real:
-    """(functions, nodes, panels), of all panels or of those wanted."""
+    """Values at the nodes, (functions, nodes, panels), of all panels or of the selected ones."""
     x = panel_nodes(edges).reshape(-1, NODES)
     x = x if wanted is None else x[wanted]
     return np.stack([np.asarray(part).reshape(x.shape).T for part in function(x.ravel())])
 
 
 def _rough_panels(values: Real) -> Real:
-    """Panels on which a function has a tail."""
+    """Mark panels on which the last coefficients of a function are not negligible."""
     tails = np.abs(VALUES_TO_COEFFICIENTS[-2:] @ values).max(axis=1)
     sizes = np.nanmax(np.abs(values), axis=(1, 2), initial=0.0, where=np.isfinite(values))
     found: Real = np.any(tails > TAIL * NODES * sizes[:, None], axis=0)
@@ -137,12 +141,13 @@ Sample = Callable[[Real], tuple[Real, Real, Real]]  # at ways x: inertia, its sl
 
 @dataclass(frozen=True)
 class ReducedMachine:
-    """Over a cycle, by the way x that the driver has gone in its sense (rad, or m of a slider).
+    """Machine reduced to its driver, over a cycle, as functions of the driver's travel x (rad, or m for a
+    slider).
 
-    inertia (kg m2, or kg), slope of it by x, moment of all loads but inertia (N m, or N) along the sense, and work of
-    these from the beginning on (J). With a slider as driver, speeds are m/s and moments forces.
-    constant: the inertia of the links with a constant speed ratio to the driver, and of the driver itself; with a
-    flywheel they are the first group of N. I. Mertsalov (kg m2).
+    inertia (kg m2, or kg). slope: its derivative by x. moment: moment of all loads except inertia, along the
+    sense of motion (N m, or N). work: work of these loads from the beginning (J). constant: inertia of the
+    driver and of the links with a constant speed ratio to it; with a flywheel they are the first group of N.
+    I. Mertsalov (kg m2). For a slider as driver, speeds are m/s and moments are forces.
     """
 
     inertia: PanelCurve
@@ -153,7 +158,7 @@ class ReducedMachine:
 
     @property
     def work_of_cycle(self) -> float:
-        """What the loads do in a cycle, J."""
+        """Work of the loads in a cycle, J."""
         return self.moment.total
 
     @property
@@ -162,6 +167,8 @@ class ReducedMachine:
 
 
 def reduce_machine(sample: Sample, edges: Sequence[float], constant: float = 0.0) -> ReducedMachine:
-    """Of a machine that can be computed at any place; edges: where loads may jump, the ends of the cycle too."""
+    """Build the reduced machine from a function that samples it; edges: where loads may jump, and the ends of
+    the cycle.
+    """
     inertia, slope, moment = fit_curves(sample, edges)
     return ReducedMachine(inertia, slope, moment, moment.summed(), constant)

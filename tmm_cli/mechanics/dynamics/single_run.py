@@ -1,9 +1,10 @@
 """A single run: starting, stopping, a press that works once, a cylinder under pressure.
 
-J w' + J' w^2 / 2 = M + Md along the way x of the driver, by time, until that is gone or the machine stands. Works are
-integrated beside it. By the method of Dormand and Prince of order 8, in pieces at whose ends moments may jump:
-E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993), II.10; with a motor too strong
-for its load by that of Petzold and Hindmarsh (LSODA), which is stiff.
+J w' + J' w^2 / 2 = M + Md is integrated over time until the travel x of the driver is complete or the
+machine stops; works are integrated with it. Method of Dormand and Prince of order 8, in pieces at whose
+ends moments may jump: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I
+(1993), II.10. With a motor too strong for its load the equation is stiff, and LSODA (Petzold, Hindmarsh)
+is used.
 """
 
 from __future__ import annotations
@@ -38,8 +39,11 @@ RunEnding = Literal["way", "standstill", "time"]
 
 @dataclass(frozen=True)
 class RunHistory:
-    """By steps: time (s), way, speed and acceleration of the driver; kinetic energy (J), and works (J) of what drives,
-    of the loads and of the brake. ending: what ended it; steps: what the integration gives between its times."""
+    """History of a run, one value per integration step.
+
+    time (s); way, speed and acceleration of the driver; kinetic energy (J); driven, loaded, braked: works (J)
+    of the drive, the loads and the brake. ending: what ended the run. steps: dense output of the integration.
+    """
 
     time: Real
     way: Real
@@ -54,14 +58,16 @@ class RunHistory:
 
     @property
     def balance(self) -> float:
-        """What the works leave of the change of kinetic energy, over the largest of these energies."""
+        """Largest error of the energy balance over all times, relative to the largest energy."""
         parts = (self.kinetic, self.driven, self.loaded, self.braked)
         size = max(float(np.max(np.abs(part))) for part in parts)
         left = self.kinetic - self.kinetic[0] - self.driven - self.loaded - self.braked
         return float(np.max(np.abs(left))) / size if size > 0 else 0.0
 
     def at(self, way: Real) -> tuple[Real, Real]:
-        """Time (s) and speed when the driver has come so far; nan where it does not."""
+        """Return time (s) and speed at which the driver has covered these distances; nan where it does not get
+        there.
+        """
         way = np.asarray(way, float)
         if self.steps:
             last = float(self.steps[-1](self.steps[-1].ts[-1])[0])
@@ -78,8 +84,11 @@ class RunHistory:
         return np.where(begins, self.time[0], time), np.where(begins, self.speed[0], speed)
 
     def closely(self, count: int) -> list[tuple[Real, Real]]:
-        """Times of each piece close together, just inside its ends, and there the way, the speed and the works of what
-        drives, of the loads and of the brake, (5, count)."""
+        """Return, for each piece, `count` times just inside its ends, and there the travel, speed and works, (5,
+        count).
+
+        Works are those of the drive, of the loads and of the brake.
+        """
         ends = [(step.ts[0], step.ts[-1]) for step in self.steps]
         inner = [
             np.linspace(low + END_OFFSET * (high - low), high - END_OFFSET * (high - low), count) for low, high in ends
@@ -88,9 +97,16 @@ class RunHistory:
 
 
 def integrate_run(machine: ReducedMachine, task: RunTask) -> RunHistory:
-    """From the beginning of the way to its end.
+    """Integrate a run from its beginning to its end.
 
-    Raises NoInertiaError, StandstillError where it does not start, and LongRunError.
+    Args:
+        machine: the reduced machine.
+        task: drive, brake, flywheel and initial speed.
+
+    Raises:
+        NoInertiaError: the machine has no inertia somewhere.
+        StandstillError: the machine does not start.
+        LongRunError: too many evaluations.
     """
     places = machine.inertia.places()
     inertia = task.flywheel + machine.inertia(places)
@@ -125,7 +141,10 @@ def _integrate_piece(
     state: Real,
     left: Iterator[int],
 ) -> Any:
-    """A piece, to its end, to rest, or as long as that. left: evaluations. Raises LongRunError where none is left."""
+    """Integrate one piece to its end, to rest, or to the end of the time span.
+
+    left: remaining evaluations. Raises LongRunError if there are none.
+    """
 
     last = float(np.nextafter(times[1], times[0]))  # at the end of a piece what drives may have jumped already
 
@@ -151,10 +170,10 @@ def _integrate_piece(
 
 
 def _with_last_step(done: Any, integrate: Callable[..., Any]) -> Any:
-    """The same integration, its last step done again up to the event that ended it.
+    """Repeat the last step of an integration up to the event that ended it.
 
-    The step went on beyond the end of the piece, where moments are no longer smooth, and this blurs what is
-    interpolated inside it.
+    The step went beyond the end of the piece, where moments are no longer smooth, and this would spoil its
+    interpolation.
     """
     if done.status != 1 or not done.t[-1] > done.t[-2]:
         return done
@@ -169,7 +188,7 @@ def _with_last_step(done: Any, integrate: Callable[..., Any]) -> Any:
 
 
 def _is_stiff(machine: ReducedMachine, task: RunTask) -> bool:
-    """Whether a motor changes the speed much more quickly than the machine goes its way."""
+    """Return True if the motor changes the speed much faster than the machine covers its travel."""
     if task.motor is None:
         return False
     inertia = task.flywheel + float(np.min(machine.inertia(machine.inertia.places())))
@@ -178,13 +197,13 @@ def _is_stiff(machine: ReducedMachine, task: RunTask) -> bool:
 
 
 def _distance_past(step: Any, way: Real, time: Real) -> Real:
-    """How much the way of a step of integration is beyond another one."""
+    """Travel of an integration step beyond a given travel."""
     found: Real = step(time)[0] - way
     return found
 
 
 def driver_acceleration(machine: ReducedMachine, task: RunTask, time: Real, way: Real, speed: Real) -> Real:
-    """Of the driver (rad/s2, or m/s2) at such times, ways and speeds."""
+    """Return the driver's acceleration (rad/s2, or m/s2) at these times, distances and speeds."""
     states = np.stack([way, speed, 0 * way, 0 * way, 0 * way], axis=-1)
     return np.array(
         [
@@ -195,7 +214,7 @@ def driver_acceleration(machine: ReducedMachine, task: RunTask, time: Real, way:
 
 
 def _rates(machine: ReducedMachine, task: RunTask, piece: tuple[float, float], t: float, state: Real) -> list[float]:
-    """Of way, speed, and the works of what drives, of the loads, of the brake."""
+    """Time derivatives of travel, speed, and the works of the drive, the loads and the brake."""
     speed = float(state[1])
     x = np.array([min(max(float(state[0]), piece[0]), np.nextafter(piece[1], piece[0]))])
     load, driving = float(machine.moment(x)[0]), _driving_moment(task, t, x, speed)
@@ -211,7 +230,7 @@ def _driving_moment(task: RunTask, t: float, x: Real, speed: float) -> float:
 
 
 def _pieces(moment: PanelCurve, way_edges: Sequence[float]) -> Iterator[tuple[float, float]]:
-    """Pieces of the way between which the moment of the loads jumps, or what drives may bend or jump."""
+    """Yield pieces of the travel between points where the load moment jumps, or the drive may bend or jump."""
     inner = moment.edges[1:-1]
     before, after = moment(np.nextafter(inner, 0.0)), moment(inner)
     jumps = inner[np.abs(after - before) > NO_JUMP * float(np.max(np.abs(moment(moment.places()))))]
@@ -232,11 +251,11 @@ def _run_history(machine: ReducedMachine, task: RunTask, time: Real, states: Rea
 
 @dataclass(frozen=True, eq=False)
 class SingleRun:
-    """A run from the driver's place `first` on (rad, or m), and the law of motion that it is.
+    """Single run of a mechanism from the driver coordinate `first` (rad, or m); it is also the driver's law of
+    motion.
 
-    task: its drive is positive along the run.
-
-    turn: after how much a crank is at the same place again, 2 pi; None of what does not turn fully.
+    task: its drive is positive along the run. turn: rotation after which a crank is at the same angle again,
+    2 pi; None if the driver does not rotate fully.
     """
 
     task: RunTask
@@ -247,11 +266,11 @@ class SingleRun:
     turn: float | None
 
     def evenly(self, count: int) -> Real:
-        """Places of the driver, from the beginning of the run to its end."""
+        """Return `count` evenly spaced driver coordinates from the beginning of the run to its end."""
         return self.first + self.sense * np.linspace(0, float(self.run.way[-1]), count)
 
     def way(self, q: Real) -> Real:
-        """How far the driver has gone at its place q."""
+        """Distance that the driver has covered at coordinate q."""
         gone: Real = self.sense * (to_float(q) - self.first)
         again = gone if self.turn is None else np.mod(gone + SAME_DRIVER_POSITION, self.turn) - SAME_DRIVER_POSITION
         gone = np.where(
@@ -260,44 +279,52 @@ class SingleRun:
         return np.clip(gone, 0.0, None) if self.turn else np.where(np.abs(gone) < SAME_DRIVER_POSITION, 0.0, gone)
 
     def driving(self, way: Real, speed: Real, accelerated: Real) -> Real:
-        """Moment (N m), or force, of what drives, where the driver moves like that on its way."""
+        """Driving moment (N m) or force (N) for a given motion of the driver."""
         machine = self.machine
         own = (self.task.flywheel + machine.inertia(way)) * accelerated + machine.slope(way) * speed**2 / 2
         found: Real = own + self.task.brake - machine.moment(way)
         return found
 
     def speed(self, q: Real) -> Real:
-        """rad/s, or m/s, with its sign; nan where the run does not come."""
+        """Speed with its sign, rad/s or m/s; nan where the run does not get."""
         return self.sense * self.run.at(self.way(q))[1]
 
     def time(self, q: Real) -> Real:
-        """s, since the beginning; nan where the run does not come."""
+        """Time since the beginning, s; nan where the run does not get."""
         return self.run.at(self.way(q))[0]
 
     def kinetic(self, q: Real) -> Real:
-        """Kinetic energy, J; nan where the run does not come."""
+        """Kinetic energy, J; nan where the run does not get."""
         return self.energy(self.way(q), self.speed(q))
 
     def energy(self, way: Real, speed: Real) -> Real:
-        """Kinetic energy of such a way and speed of the driver, J."""
+        """Kinetic energy at a distance and speed of the driver, J."""
         found: Real = (self.task.flywheel + self.machine.inertia(way)) * speed**2 / 2
         return found
 
     def acceleration(self, time: Real, way: Real, speed: Real) -> Real:
-        """Of the driver, at such times, ways and speeds in its sense."""
+        """Acceleration of the driver at these times, distances and speeds."""
         return driver_acceleration(self.machine, self.task, time, way, speed)
 
     def accelerated(self, q: Real) -> Real:
-        """rad/s2, or m/s2, with its sign; nan where the run does not come."""
+        """Acceleration with its sign, rad/s2 or m/s2; nan where the run does not get."""
         way = self.way(q)
         time, speed = self.run.at(way)
         return self.sense * self.acceleration(time, way, speed)
 
 
 def compute_single_run(mechanism: Mechanism, asked: Real, task: RunTask) -> SingleRun:
-    """Between the places of the task, or of the first and the last position asked for.
+    """Compute the run between the coordinates of the task, or between the first and the last requested position.
 
-    Raises NoCycleError, OutOfRangeError, StandstillError.
+    Args:
+        mechanism: the mechanism with its loads.
+        asked: driver coordinates of the requested positions (rad or m).
+        task: drive, brake, flywheel, initial speed, ends of the run.
+
+    Raises:
+        NoCycleError: the mechanism has several drivers.
+        OutOfRangeError: an end lies outside the driver's range.
+        StandstillError: the machine does not start.
     """
     first, last = (float(asked[k]) if end is None else end for k, end in ((0, task.first), (-1, task.last)))
     whole = mechanism.driver_range

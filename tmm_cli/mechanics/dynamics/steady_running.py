@@ -1,4 +1,4 @@
-"""Steady running: what drives the machine, the flywheel for a fluctuation of speed, and the law of motion with it."""
+"""Steady running: driving moment, flywheel for a fluctuation of speed, and the law of motion with it."""
 
 from __future__ import annotations
 
@@ -56,12 +56,13 @@ FLUCTUATION_TOLERANCE = 1e-12  # of a fluctuation: it is as wanted
 
 @dataclass(frozen=True)
 class SteadySolution:
-    """moment: mean of what drives over the cycle (N m, or N). own: fluctuation with the given flywheel alone, nan where
-    the machine comes to rest then. work: of all moments from the beginning of the cycle (J).
+    """Steady running of a reduced machine.
 
-    found: the flywheel by tangents, beside the given one; wittenbauer: its inertia (kg m2) by the tangents of a course;
-    first_group: inertia J_I by Mertsalov of the flywheel with the links of constant speed ratio (kg m2); of a motor
-    there are none.
+    moment: mean driving moment over the cycle (N m, or N). work: work of all moments from the beginning of
+    the cycle (J). own: fluctuation with the given flywheel alone, nan if the machine stops then. found: the
+    exact flywheel, given one included. wittenbauer: its inertia by the tangents of a course (kg m2).
+    first_group: inertia J_I by Mertsalov of the flywheel with the links of constant speed ratio (kg m2). With
+    a motor the last three do not exist.
     """
 
     task: SteadyTask
@@ -76,49 +77,51 @@ class SteadySolution:
 
     @property
     def mertsalov(self) -> float:
-        """Inertia of the flywheel by Mertsalov, J_I less the links of constant speed ratio (kg m2)."""
+        """Inertia of the flywheel by Mertsalov: J_I without the links of constant speed ratio (kg m2)."""
         return self.first_group - self.machine.constant
 
     @property
     def on_shaft(self) -> float:
-        """Inertia of the flywheel on its own shaft, kg m2: what is found, and a given one where nothing is."""
+        """Inertia of the flywheel on its own shaft, kg m2: the computed one, or the given one if none is computed."""
         return self.law.flywheel / self.task.ratio**2
 
     @property
     def errors(self) -> tuple[float, float]:
-        """Of Wittenbauer's way and of Mertsalov's, shares of the exact flywheel."""
+        """Relative errors of Wittenbauer's and Mertsalov's methods against the exact flywheel."""
         exact = float("nan") if self.found is None else self.found.inertia
         return self.wittenbauer / exact - 1, self.mertsalov / exact - 1
 
     @property
     def diameter(self) -> float:
-        """Of the flywheel, or the mean one of its rim, m."""
+        """Diameter of the flywheel, for a rim the mean diameter, m."""
         return self.task.size.diameter(self.on_shaft)
 
     @property
     def width(self) -> float:
-        """Of the flywheel, m."""
+        """Width of the flywheel, m."""
         return self.task.size.width * self.diameter
 
     @property
     def mass(self) -> float:
-        """Of the flywheel, kg."""
+        """Mass of the flywheel, kg."""
         return self.task.size.mass(self.diameter)
 
     @property
     def speeds(self) -> tuple[float, float]:
-        """The least and the largest speed of the driver, rad/s or m/s."""
+        """Least and largest speed of the driver, rad/s or m/s."""
         return speed_extremes(self.law)
 
     @property
     def delta(self) -> float:
-        """The fluctuation that there is."""
+        """Coefficient of fluctuation of speed that is reached."""
         return speed_fluctuation(self.law)
 
     @property
     def tangents(self) -> tuple[Tangent, Tangent]:
-        """To the energy-mass diagram, from where the inertia is -Jf and the energy -T0: of the largest and the least
-        speed, whatever drives."""
+        """Tangents to the energy-mass diagram for the largest and the least speed, whatever the drive.
+
+        They pass through the point with inertia -Jf and energy -T0.
+        """
         start = float(self.law.energy(np.zeros(1))[0])
         low, high = (self._touching(x, speed, start) for x, speed in speed_extreme_places(self.law))
         return high, low
@@ -129,8 +132,10 @@ class SteadySolution:
 
     @property
     def at_mean(self) -> tuple[Tangent, Tangent]:
-        """By Mertsalov: tangents of the mean speed above the diagram and below it; the inertia is that of the second
-        group, the links without a constant speed ratio."""
+        """Tangents of the mean speed above and below the diagram, by Mertsalov.
+
+        The inertia is that of the second group, the links without a constant speed ratio.
+        """
         slope = self.task.mean**2 / 2
         tangents = (find_tangent(self.machine, self.work, slope, top=top) for top in (True, False))
         upper, lower = (replace(line, inertia=line.inertia - self.machine.constant) for line in tangents)
@@ -138,7 +143,7 @@ class SteadySolution:
 
 
 def speed_extremes(law: SteadyLaw) -> tuple[float, float]:
-    """The least and the largest speed over the cycle, both searched for at once."""
+    """Return the least and the largest speed over the cycle."""
     places, signs = law.energy.places(), np.array([1.0, -1.0])
     values = law.speed(places)
     best = np.argmin(signs[:, None] * values, axis=1)
@@ -149,7 +154,7 @@ def speed_extremes(law: SteadyLaw) -> tuple[float, float]:
 
 
 def speed_extreme_places(law: SteadyLaw) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Where on the way the speed is least and largest, each with that speed."""
+    """Return travel and speed of the least and of the largest speed."""
     places = law.energy.places()
     (slowest, low), (quickest, high) = find_minimum(law.speed, places), find_minimum(lambda x: -law.speed(x), places)
     length = law.energy.length
@@ -160,13 +165,19 @@ def speed_extreme_places(law: SteadyLaw) -> tuple[tuple[float, float], tuple[flo
 
 
 def speed_fluctuation(law: SteadyLaw) -> float:
-    """The largest speed less the least, over the mean of both."""
+    """Coefficient of fluctuation: largest minus least speed, divided by the mean of both."""
     low, high = speed_extremes(law)
     return 2 * (high - low) / (high + low)
 
 
 def find_steady_running(machine: ReducedMachine, task: SteadyTask) -> SteadySolution:
-    """Steady running of a machine. Raises StandstillError, NoFlywheelError, NoInertiaError."""
+    """Solve steady running of a reduced machine.
+
+    Raises:
+        StandstillError: the machine stops.
+        NoFlywheelError: the given flywheel already keeps the fluctuation.
+        NoInertiaError: the machine has no inertia somewhere.
+    """
     if task.motor is not None:
         return _steady_with_motor(machine, task, task.motor)
     moment = -machine.work_of_cycle / machine.length
@@ -188,7 +199,7 @@ def find_steady_running(machine: ReducedMachine, task: SteadyTask) -> SteadySolu
 
 
 def _steady_with_motor(machine: ReducedMachine, task: SteadyTask, motor: MotorCharacteristic) -> SteadySolution:
-    """With a motor's characteristic: a flywheel changes what the motor does, so its size is searched for."""
+    """Steady running with a motor: a flywheel changes the driving moment, so its size is found iteratively."""
 
     cycle, places = MotorCycle.of(machine, motor), machine.inertia.places()
     inertia = machine.inertia(places)
@@ -225,9 +236,10 @@ def _steady_with_motor(machine: ReducedMachine, task: SteadyTask, motor: MotorCh
 
 
 def _search_flywheel(delta: float, delta_of: Callable[[float], float], low: float, unit: float) -> float:
-    """The inertia with which the fluctuation is delta; with the least one, low, it is larger.
+    """Find the flywheel inertia that gives the fluctuation delta; with the lower bound `low` the fluctuation is
+    larger.
 
-    One over the fluctuation grows with the flywheel nearly evenly, so that few trials are enough.
+    The reciprocal of the fluctuation grows almost linearly with the flywheel, so few trials are needed.
     """
 
     def over(flywheel: Real) -> Real:
@@ -249,9 +261,11 @@ CONSTANT_SAMPLES = 97  # positions of a cycle at which the reduced inertia of a 
 
 
 def reduce_mechanism(mechanism: Mechanism, start: float) -> ReducedMachine:
-    """Over a cycle from the driver's place `start` on (rad), by the way in its sense.
+    """Reduce a mechanism to its crank over a cycle that begins at the crank angle `start` (rad).
 
-    Raises NoCycleError, BySpeedError.
+    Raises:
+        NoCycleError: the driver is not a fully rotating crank, or not the only one.
+        BySpeedError: a load depends on speed.
     """
     linkage, whole = mechanism.linkage, mechanism.driver_range
     if linkage.driver.kind != "turn" or not whole.full:
@@ -262,9 +276,10 @@ def reduce_mechanism(mechanism: Mechanism, start: float) -> ReducedMachine:
 
 
 def _constant_inertia(mechanism: Mechanism, start: float, length: float) -> float:
-    """Reduced inertia of the links with a constant speed ratio to the driver over a cycle, kg m2.
+    """Reduced inertia of the links with a constant speed ratio to the driver, kg m2.
 
-    A link counts if its reduced inertia does not change: the crank, gears on the frame, links of parallelograms.
+    A link counts if its reduced inertia does not change over the cycle: the crank, gears on the frame, links
+    of parallelograms.
     """
     q = start + mechanism.linkage.driver.sense * np.linspace(0, length, CONSTANT_SAMPLES, endpoint=False)
     motion = compute_motion(
@@ -275,9 +290,11 @@ def _constant_inertia(mechanism: Mechanism, start: float, length: float) -> floa
 
 
 def reduce_between(mechanism: Mechanism, start: float, sense: int, length: float) -> ReducedMachine:
-    """Over a way of this length (rad, or m) of the driver from `start` on, in a sense.
+    """Reduce a mechanism to its driver over a travel `length` (rad, or m) from the coordinate `start`.
 
-    Raises NoCycleError, BySpeedError.
+    Raises:
+        NoCycleError: there are several drivers.
+        BySpeedError: a load depends on speed.
     """
     linkage = mechanism.linkage
     if linkage.others:
@@ -301,7 +318,7 @@ def reduce_between(mechanism: Mechanism, start: float, sense: int, length: float
 
 @dataclass(frozen=True)
 class SteadyRunning:
-    """Steady running of a mechanism, and the law of motion of its driver from the place `start` on (rad)."""
+    """Steady running of a mechanism; also the law of motion of its driver from the crank angle `start` (rad)."""
 
     steady: SteadySolution
     start: float
@@ -312,35 +329,39 @@ class SteadyRunning:
         return self.steady.task
 
     def way(self, q: Real) -> Real:
-        """How far the driver has gone in the cycle at its place q, rad."""
+        """Travel of the driver in the cycle at coordinate q, rad."""
         gone = np.mod(self.sense * (to_float(q) - self.start) + SEAM, self.steady.machine.length) - SEAM
         return np.asarray(np.maximum(gone, 0.0))
 
     def speed(self, q: Real) -> Real:
-        """rad/s, with its sign."""
+        """Angular velocity with its sign, rad/s."""
         return self.sense * self.steady.law.speed(self.way(q))
 
     def accelerated(self, q: Real) -> Real:
-        """rad/s2, with its sign."""
+        """Angular acceleration with its sign, rad/s2."""
         return self.sense * self.steady.law.acceleration(self.way(q))
 
     def time(self, q: Real) -> Real:
-        """s, since the beginning of the cycle."""
+        """Time since the beginning of the cycle, s."""
         return self.steady.law.time(self.way(q))
 
     def driving(self, q: Real) -> Real:
-        """Moment of what drives, along the sense of the driver, N m."""
+        """Driving moment along the sense of rotation, N m."""
         return self.steady.law.driving(self.way(q))
 
     def work(self, q: Real) -> Real:
-        """Of all moments since the beginning of the cycle, J."""
+        """Work of all moments since the beginning of the cycle, J."""
         return self.steady.work(self.way(q))
 
 
 def find_running_law(mechanism: Mechanism, start: float, task: SteadyTask) -> SteadyRunning:
-    """Of a mechanism with its loads, from the driver's place `start` on (rad).
+    """Solve steady running of a mechanism with its loads from the crank angle `start` (rad).
 
-    Raises NoCycleError, BySpeedError, StandstillError, NoFlywheelError.
+    Raises:
+        NoCycleError: the driver is not a fully rotating crank, or not the only one.
+        BySpeedError: a load depends on speed.
+        StandstillError: the machine stops.
+        NoFlywheelError: the given flywheel already keeps the fluctuation.
     """
     return SteadyRunning(
         find_steady_running(reduce_mechanism(mechanism, start), task), start, mechanism.linkage.driver.sense

@@ -1,7 +1,7 @@
-"""How large a flywheel is: a disk, or a rim whose spokes and hub are left out. A new form is a class here.
+"""Input data of dynamics: forms of flywheels, and the tasks of steady running and of a single run.
 
-J = m D^2 / 8 of a disk, m D^2 / 4 of a rim of mean diameter D: I. I. Artobolevsky, Theory of Mechanisms and Machines
-(1988), ch. 19.
+J = m D^2 / 8 for a disk, m D^2 / 4 for a rim of mean diameter D: I. I. Artobolevsky, Theory of Mechanisms
+and Machines (1988), ch. 19. A new form of flywheel is a class here.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from tmm_cli.mechanics.numerics import Real
 
 @dataclass(frozen=True)
 class DiskFlywheel:
-    """density: kg/m3; width over diameter. height is of rims alone."""
+    """Solid disk. density: kg/m3; width: relative to the diameter; height: unused."""
 
     shape: ClassVar[Literal["disk", "rim"]] = "disk"
     density: float
@@ -28,17 +28,17 @@ class DiskFlywheel:
     height: float = 0.0
 
     def diameter(self, inertia: float) -> float:
-        """m, of a disk of this inertia (kg m2)."""
+        """Return the diameter (m) of a disk of this moment of inertia (kg m2)."""
         return float((32 * inertia / (math.pi * self.density * self.width)) ** 0.2)
 
     def mass(self, diameter: float) -> float:
-        """kg."""
+        """Return the mass (kg) of a disk of this diameter (m)."""
         return math.pi / 4 * self.density * self.width * diameter**3
 
 
 @dataclass(frozen=True)
 class RimFlywheel:
-    """density: kg/m3; width and height of its section over its mean diameter."""
+    """Rim without spokes and hub. density: kg/m3; width and height of its section relative to its mean diameter."""
 
     shape: ClassVar[Literal["disk", "rim"]] = "rim"
     density: float
@@ -46,11 +46,11 @@ class RimFlywheel:
     height: float
 
     def diameter(self, inertia: float) -> float:
-        """Mean diameter, m, of a rim of this inertia (kg m2)."""
+        """Return the mean diameter (m) of a rim of this moment of inertia (kg m2)."""
         return float((4 * inertia / (math.pi * self.density * self.width * self.height)) ** 0.2)
 
     def mass(self, diameter: float) -> float:
-        """kg."""
+        """Return the mass (kg) of a rim of this mean diameter (m)."""
         return math.pi * self.density * self.width * self.height * diameter**3
 
 
@@ -62,11 +62,12 @@ FlywheelForm = DiskFlywheel | RimFlywheel
 
 @dataclass(frozen=True)
 class SteadyTask:
-    """What is wanted. mean: of the largest and the least speed of the driver (rad/s, or m/s), under a constant moment.
+    """Task of steady running.
 
-    delta: fluctuation that a flywheel is to keep. motor: for a constant moment; the speed is then what it comes to.
-    flywheel: a given one, reduced to the driver (kg m2, or kg); without a delta no other is sought. ratio: speed of the
-    flywheel's shaft over the driver's; size: how its form is told.
+    mean: mean of the largest and the least speed of the driver (rad/s, or m/s), used with a constant moment.
+    delta: required coefficient of fluctuation; None: no flywheel is computed. motor: drives instead of a
+    constant moment; the speed then follows. flywheel: inertia of a given flywheel, reduced to the driver (kg
+    m2, or kg). ratio: speed of the flywheel shaft over that of the driver. size: form of the flywheel.
     """
 
     mean: float
@@ -80,9 +81,9 @@ class SteadyTask:
 
 @dataclass(frozen=True)
 class DriveProfile:
-    """A moment (N m), or a force (N), by the time (s) or the way of the driver, linear between its rows.
+    """Driving moment (N m) or force (N) as a function of time (s) or travel, linear between its rows.
 
-    Two equal arguments are a jump: the second value holds from there on.
+    Two equal arguments mark a jump; the second value holds from there on.
     """
 
     against: Literal["time", "way"]
@@ -90,18 +91,18 @@ class DriveProfile:
     values: tuple[float, ...]
 
     def __call__(self, time: Real, way: Real) -> Real:
-        """Before the first row as there, after the last as there."""
+        """Return the values; before the first row and after the last one they are constant."""
         return np.interp(time if self.against == "time" else way, self.arguments, self.values)
 
 
 @dataclass(frozen=True)
 class RunTask:
-    """What drives a single run, and from what speed (rad/s, or m/s).
+    """Task of a single run.
 
-    first, last: places of the driver (rad, or m) between which it is; None: the ends of what the file asks for.
-    motor: by its characteristic, along the motion; drive: a profile, with it or alone, positive along the guide or
-    counterclockwise. brake: moment against the motion.
-    flywheel: kg m2, or kg. longest: time of a run (s).
+    speed: initial speed (rad/s, or m/s). first, last: driver coordinates of its ends (rad, or m); None: first
+    and last requested position. motor: drives along the motion by its characteristic. drive: profile, alone
+    or added to the motor, positive along the guide or counterclockwise. brake: moment against the motion.
+    flywheel: kg m2, or kg. longest: time limit (s).
     """
 
     speed: float = 0.0
@@ -115,7 +116,7 @@ class RunTask:
     cyclic: ClassVar[Literal[False]] = False
 
     def along(self, sense: int) -> RunTask:
-        """The same task with a drive that is positive along the run; sense: of the run, +1 or -1."""
+        """Return the task with a drive that is positive along the run; sense: of the run, +1 or -1."""
         drive = self.drive
         if sense > 0 or drive is None:
             return self
@@ -125,10 +126,10 @@ class RunTask:
 
     @property
     def edges(self) -> tuple[float, ...]:
-        """Times at which what drives may bend."""
+        """Times at which the drive may bend or jump."""
         return self.drive.arguments if isinstance(self.drive, DriveProfile) and self.drive.against == "time" else ()
 
     @property
     def way_edges(self) -> tuple[float, ...]:
-        """Distances that the driver has moved (rad, or m) at which what drives may bend or jump."""
+        """Distances of the driver (rad, or m) at which the drive may bend or jump."""
         return self.drive.arguments if isinstance(self.drive, DriveProfile) and self.drive.against == "way" else ()

@@ -1,9 +1,9 @@
 """Power balance, kinetic energy, and the mechanism reduced to its driver.
 
-With q the first driver's place: T = J q'^2 / 2, J = sum(m |dx/dq|^2 + I (dphi/dq)^2); M = sum(F dx/dq + M dphi/dq); the
-drivers give J q'' + J_q q'^2 / 2 - M. I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 15. It takes the
-lever's transfer functions another way (through the reduced inertia), so it checks accelerations, which the lever uses
-as given.
+With q the coordinate of the first driver: T = J q'^2 / 2, J = sum(m |dx/dq|^2 + I (dphi/dq)^2) and M =
+sum(F dx/dq + M dphi/dq); the drivers give J q'' + J_q q'^2 / 2 - M. I. I. Artobolevsky, Theory of
+Mechanisms and Machines, ch. 15. The Zhukovsky lever uses accelerations as given; here they enter through
+the derivative of the reduced inertia, so this balance checks them.
 """
 
 from __future__ import annotations
@@ -19,11 +19,12 @@ from tmm_cli.mechanics.numerics import Real, dot, squared_length
 
 @dataclass(frozen=True)
 class Energy:
-    """The mechanism reduced to its first driver, and its powers, at every position.
+    """Energy of the mechanism reduced to its first driver, and its powers, at every position.
 
-    Reduced inertia (kg m2, or kg for a cylinder) and its derivative by q, reduced moment (or force) of all loads but
-    inertia (N m, N), kinetic energy (J) and its rate (W), power (W) of drivers, weights, loads and friction. balance:
-    what is left when the rate of kinetic energy is taken from all powers, against the largest of them.
+    inertia: reduced inertia (kg m2; kg for a cylinder). slope: its derivative by q. moment: reduced moment (N
+    m) or force (N) of all loads except inertia. kinetic: kinetic energy (J). rate: its time derivative (W).
+    drivers, weights, loads, friction: powers (W). balance: sum of all powers minus the rate of kinetic
+    energy, divided by the largest of these powers.
     """
 
     inertia: Real
@@ -39,7 +40,13 @@ class Energy:
 
 
 def compute_energy(motion: Motion, loads: tuple[AppliedLoad, ...], drivers: Real) -> Energy:
-    """From the motion, the loads, and what the drivers do per unit of the first one's motion (N m, N)."""
+    """Compute the reduced inertia, the kinetic energy and the powers at every position.
+
+    Args:
+        motion: solved motion of the mechanism.
+        loads: all loads on the links; inertia loads are skipped.
+        drivers: work of all drivers per unit of the first driver's motion (N m or N), shape (positions,).
+    """
     still = np.zeros(np.shape(motion.q))
     inertia, slope = still, still
     for own, rate_of_own in reduced_inertias(motion).values():
@@ -61,7 +68,7 @@ def compute_energy(motion: Motion, loads: tuple[AppliedLoad, ...], drivers: Real
 
 
 def reduced_inertias(motion: Motion) -> dict[str, tuple[Real, Real]]:
-    """Of each moving link its inertia reduced to the first driver, and the derivative of it by q."""
+    """Return, for each moving link, its inertia reduced to the first driver and the derivative of that by q."""
     found = {}
     for name in motion.linkage.moving:
         link = motion.linkage.links[name]
@@ -72,6 +79,6 @@ def reduced_inertias(motion: Motion) -> dict[str, tuple[Real, Real]]:
 
 
 def reduced_moment(motion: Motion, load: AppliedLoad) -> Real:
-    """What a load does per unit of the first driver's motion, N m or N."""
+    """Work of a load per unit of the first driver's motion (N m or N)."""
     found: Real = dot(load.force, motion.point(load.link, load.at).first) + load.moment * motion.link(load.link).first
     return found

@@ -1,6 +1,8 @@
-"""Sums of forces along guides: what no equation of moments gives, the part of a reaction along a guide and what drives.
+"""Equilibrium equations of an Assur group or a driving link: moments about points, and sums of forces along
+guides.
 
-The guide itself does nothing along its direction, so the forces on one of its two links must come to nothing there.
+A sum along a guide gives what no moment equation gives: the part of a reaction along the guide, and the
+driving force. The guide itself has no reaction along its direction.
 """
 
 from __future__ import annotations
@@ -29,7 +31,7 @@ from tmm_cli.mechanics.structure import Group, Pair
 
 
 def distinct_letter(taken: Collection[str], letter: str) -> str:
-    """The letter, with as many primes as it needs not to be one of those taken."""
+    """Append primes to a letter until it is not among those taken."""
     while letter in taken:
         letter += "′"
     return letter
@@ -37,20 +39,23 @@ def distinct_letter(taken: Collection[str], letter: str) -> str:
 
 @dataclass(frozen=True)
 class GuideComponent:
-    """What acts, and its part along the guide (N)."""
+    """A force and its component along the guide (N)."""
 
     acting: ForceOrCouple
     along: float
 
     @property
     def cosine(self) -> float:
-        """Of the acute angle between the force and the guide."""
+        """Cosine of the acute angle between the force and the guide."""
         return min(1.0, abs(self.along) / self.acting.size)
 
 
 @dataclass(frozen=True)
 class ForceSum:
-    """The parts along a guide of all that acts on a link come to nothing; what is across it is left out."""
+    """Sum of forces along a guide: the components of all forces on one link add up to zero.
+
+    parts: components that are not zero. found: the one among them that the equation gives.
+    """
 
     link: str
     guide: str
@@ -60,7 +65,7 @@ class ForceSum:
 
     @property
     def value(self) -> float:
-        """Of what is found, from the others, N; it is along the guide."""
+        """Value of the unknown component from the others (N); its force is along the guide."""
         others = sum(part.along for part in self.parts if part is not self.found)
         return -others if self.found.along > 0 else others
 
@@ -68,7 +73,9 @@ class ForceSum:
 def sums_along_guides(
     here: LoadedPosition, group: Group, leads: Sequence[ExternalPair], axes: Mapping[str, complex]
 ) -> tuple[ForceSum, ...]:
-    """Normal parts of leads that slide on the group, then what drives a cylinder of it."""
+    """Return the sums that give normal reactions of sliding external pairs, then those that give cylinder
+    forces.
+    """
     found: list[ForceSum] = []
     for lead in leads:
         own = group.own(lead.pair)
@@ -82,7 +89,7 @@ def sums_along_guides(
 
 
 def sums_of_driver(here: LoadedPosition, pair: Pair) -> tuple[ForceSum, ...]:
-    """What drives a slider on the frame."""
+    """Return the sum that gives the driving force of a slider on the frame."""
     return tuple(_sum_along_guide(here, {}, pair.j if pair.i == FRAME else pair.i, pair, DRIVE, "reaction"))
 
 
@@ -93,7 +100,7 @@ def _is_driven(group: Group, guide: Pair) -> bool:
 def _sum_along_guide(
     here: LoadedPosition, axes: Mapping[str, complex], link: str, guide: Pair, pair: str, kind: str
 ) -> Iterable[ForceSum]:
-    """None where what is sought is nothing."""
+    """Yield the sum of forces on a link along a guide, or nothing if the unknown component is zero."""
     u = here.guide(guide)
     forces = [a for a in here.acting((link,), axes) if not a.couple]
     largest = max((a.size for a in forces), default=0.0)
@@ -117,9 +124,10 @@ MARKS = {"tangential": "τ", "normal": "n"}
 
 @dataclass(frozen=True)
 class MomentTerm:
-    """What acts, and its moment about the centre (N m); a force's arm (m) leads from there to the foot on its line.
+    """Moment of a force or couple about the centre of an equation (N m), with the moment arm of a force (m).
 
-    number: of the arm h₁, h₂, ...; zero of a couple.
+    foot: foot of the perpendicular from the centre on the line of action (m). number: index of the arm h₁,
+    h₂, ...; zero for a couple.
     """
 
     acting: ForceOrCouple
@@ -130,13 +138,13 @@ class MomentTerm:
 
     @property
     def letter(self) -> Symbol:
-        """Of its arm: h₁."""
+        """Symbol of the arm: h₁."""
         return Symbol("h", str(self.number))
 
 
 @dataclass(frozen=True)
 class EquationUnknown:
-    """What an equation gives: a part of the reaction in a pair (or the driver's), or the arm at which that acts."""
+    """Unknown of an equation: a component of a reaction (or of a driver), or with `arm` the arm of a reaction."""
 
     symbol: Symbol
     pair: str
@@ -146,10 +154,11 @@ class EquationUnknown:
 
 @dataclass(frozen=True)
 class MomentEquation:
-    """The moments about a point of all that acts on some links come to nothing; forces through it are left out.
+    """Moment equation of some links about a point; forces through the point are left out.
 
-    special: the point is one of Assur. sought: None where all reactions of the group are found at once. Its term is
-    missing where it has no moment: a part of a reaction is nothing then, and a guide's reaction goes through the point.
+    special: the point is an Assur point. sought: the unknown, None if all reactions of the group are found
+    together. The unknown may have no term: then a component of a reaction is zero, or the reaction of a guide
+    passes through the point.
     """
 
     links: tuple[str, ...]
@@ -161,13 +170,13 @@ class MomentEquation:
 
     @property
     def found(self) -> MomentTerm | None:
-        """The term of what is sought; of a guide that bears a couple, this."""
+        """Term of the unknown, or None; if a guide also carries a couple, the term of the couple."""
         own = [t for t in self.terms if self.sought and _is_unknown(t.acting, self.sought)]
         return min(own, key=lambda t: not t.acting.couple, default=None)
 
     @property
     def value(self) -> float:
-        """What it gives, from the moments of the other terms: N, N m or m; positive as it is drawn."""
+        """Value of the unknown (N, N m or m) from the moments of the other terms; positive in its drawn sense."""
         found = self.found
         assert found is not None and self.sought is not None
         others = sum(t.moment for t in self.terms if t is not found)
@@ -179,8 +188,9 @@ class MomentEquation:
 
 @dataclass(frozen=True)
 class FreeBody:
-    """A group, or a driving link, apart: all that acts on it from without, its equations of moments, and sums along
-    its guides."""
+    """Free body of an Assur group or a driving link: all external forces, its moment equations and sums along
+    guides.
+    """
 
     links: tuple[str, ...]
     acting: tuple[ForceOrCouple, ...]
@@ -190,7 +200,7 @@ class FreeBody:
 
 
 def list_free_bodies(motion: Motion, reactions: Reactions, k: int) -> tuple[FreeBody, ...]:
-    """Last group first, as force plans are drawn, and the driving links at the end."""
+    """Return the free bodies at position k: groups from the last one to the first, then driving links."""
     here = LoadedPosition.at(motion, reactions, k)
     groups = [_group_body(here, group) for group in reversed(reactions.groups)]
     return (*groups, *(_driving_link_body(here, frame) for frame in reactions.frames))
@@ -241,7 +251,7 @@ def _equations_of_external_pairs(
 def _equations_of_higher_pairs(
     here: LoadedPosition, group: Group, axes: Mapping[str, complex]
 ) -> Iterable[MomentEquation]:
-    """A wheel, or a follower of a cam, that hangs on one hinge: moments about it give what the teeth do."""
+    """Yield moments of a gear or cam follower about its only hinge, which give the reaction in the higher pair."""
     for pair in group.outer:
         own = group.own(pair)
         joined = [p for p in (*group.inner, *group.outer) if own in (p.i, p.j) and p != pair]
@@ -253,7 +263,10 @@ def _equations_of_higher_pairs(
 
 
 def _equations_of_guides(here: LoadedPosition, group: Group, axes: Mapping[str, complex]) -> Iterable[MomentEquation]:
-    """Moments of one of the two links of a sliding pair: where its reaction acts. An inner one where no hinge is."""
+    """Yield moments of one link of each prismatic pair, which give the arm of its reaction.
+
+    Inner prismatic pairs are included only where the group has no hinge of its own (type RPP).
+    """
     pairs = (*group.inner, *group.outer)
     inner = group.inner if group.type == "RPP" else ()
     for pair in (p for p in (*inner, *group.outer) if p.slide is not None):
@@ -264,7 +277,7 @@ def _equations_of_guides(here: LoadedPosition, group: Group, axes: Mapping[str, 
 
 
 def _driving_link_body(here: LoadedPosition, frame: Reaction) -> FreeBody:
-    """A crank about its pivot, which gives what balances it; a driven slider about its running point."""
+    """Free body of a driving link: moments of a crank about its pivot, of a slider about its sliding point."""
     link, pair = frame.on, frame.pair
     if pair.slide is not None:
         sought = EquationUnknown(reaction_symbol(frame.by, link), pair.name, arm=True)
@@ -283,7 +296,9 @@ def _unknown_component(group: Group, pair: Pair, kind: VectorKind) -> EquationUn
 
 
 def _moment_centre(here: LoadedPosition, group: Group, link: str, guide: Pair | None = None) -> tuple[str, complex]:
-    """About which point moments of a link are taken: a hinge, an inner one first; else the running point of a guide."""
+    """Name and place of the point for moments of a link: a hinge, inner ones first, else the sliding point of a
+    guide.
+    """
     own = [p for p in (*group.inner, *group.outer) if link in (p.i, p.j) and p.kind == "R"]
     pair = own[0] if own else guide or next(p for p in (*group.inner, *group.outer) if link in (p.i, p.j))
     return pair.point or pair.name, here.pair(pair)
@@ -302,14 +317,20 @@ def _moment_equation(
     sought: EquationUnknown | None = None,
     carried: Mapping[str, complex] | None = None,
 ) -> MomentEquation:
-    """Moments of all that acts on these links. carried: to which places guides' reactions go, each with a couple."""
+    """Moment equation of all forces on some links.
+
+    carried: places to which reactions of guides are moved, by name of the pair; moving one adds a couple.
+    """
     to = carried or {}
     acting = [one for given in here.acting(links, axes) for one in _moved_to(given, to.get(given.pair), here.size)]
     return MomentEquation(tuple(links), about, centre, moment_terms(acting, centre, here.size), sought)
 
 
 def moment_terms(acting: Iterable[ForceOrCouple], centre: complex, size: float) -> tuple[MomentTerm, ...]:
-    """Moments about a place; without what goes through it but for rounding: of a size (m), of the largest moment."""
+    """Compute moments of forces and couples about a centre, without those that are zero but for rounding.
+
+    size: size of the linkage (m), the scale for arms.
+    """
     found = []
     for one in acting:
         if one.couple:
@@ -335,7 +356,7 @@ def _moved_to(acting: ForceOrCouple, place: complex | None, size: float) -> Iter
 
 
 def number_arms(equations: Iterable[MomentEquation]) -> tuple[MomentEquation, ...]:
-    """Arms get numbers; the same ones of several forces (weight and inertia in one line) have one."""
+    """Number the moment arms; forces with the same line of action (weight and inertia) share a number."""
     found: list[MomentEquation] = []
     feet: list[tuple[complex, complex]] = []
     for equation in equations:

@@ -1,4 +1,4 @@
-"""What acts on some links of a position taken together: loads, reactions in pairs with other links, drivers."""
+"""Free bodies of one position: symbols of forces, loads, reactions in pairs and drivers on any set of links."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ VectorKind = Literal[
 
 @dataclass(frozen=True)
 class Symbol:
-    """A letter with its indices, as formulas have it: a, BA below, n above."""
+    """Letter of a quantity with its subscript and superscript, as in formulas: a, BA below, n above."""
 
     letter: str
     below: str = ""
@@ -29,23 +29,23 @@ class Symbol:
 
     @property
     def name(self) -> str:
-        """In one line: R₃₄ᵗ."""
+        """Symbol in one line of text: R₃₄ᵗ."""
         below = f"({self.below})" if "," in self.below else self.below.translate(SUBSCRIPTS)
         return self.letter + below + self.above.translate(_SUPERSCRIPTS)
 
     @property
     def plain(self) -> str:
-        """With its index on the line: U3."""
+        """Symbol with its index as plain figures: U3."""
         return self.letter + self.below
 
     @property
     def primed(self) -> Symbol:
-        """P′ of P."""
+        """Symbol with a prime: P′ for P."""
         return Symbol(f"{self.letter}′", self.below, self.above)
 
 
 class CourseSymbol(Symbol):
-    """A quantity by the letter that a course writes in the language that is spoken where it is read: M_d is M_д."""
+    """Symbol that depends on the current language or course notation: M_d, in Russian M_д."""
 
     mark: str
 
@@ -66,24 +66,27 @@ _SUPERSCRIPTS = str.maketrans("τn", "ᵗⁿ")
 
 
 def subscript(text: str) -> str:
-    """Figures below the line where the name is a number, else in brackets."""
+    """Return decimal figures as subscripts; put any other name in brackets."""
     return text.translate(SUBSCRIPTS) if text.isdecimal() and text.isascii() else f"({text})"
 
 
 def reaction_symbol(by: str, on: str, part: str = "", letter: str = "R") -> Symbol:
-    """R₃₄: from link 3 on link 4; part: τ tangential, n normal; letter: M of the couple that a guide or a cam bears."""
+    """Symbol of a reaction: R₃₄ is the force of link 3 on link 4.
+
+    part: τ tangential, n normal. letter: M for the couple in a guide or cam.
+    """
     by, on = printed(by), printed(on)
     return Symbol(letter, by + on if len(by) == len(on) == 1 else f"{by},{on}", part)
 
 
 def course_symbol(mark: str, index: str = "") -> Symbol:
-    """A quantity with an index by the letter that the course of the language gives it: U₃ is Φ₃ in Russian."""
+    """Symbol of an indexed quantity in the notation of the course: U₃, in Russian Φ₃."""
     letter, _, below = symbol(mark).partition("_")
     return Symbol(letter, below + index)
 
 
 def balance_symbol(link: str, several: bool, *, turns: bool = False) -> Symbol:
-    """Fb, or Fb₄ where there are several drivers: what balances the driven link 4; Mb where it turns."""
+    """Symbol of the balancing force Fb or, with `turns`, moment Mb; with `several` drivers indexed by link: Fb₄."""
     index = link if several else ""
     return course_symbol("M_b", index) if turns else course_symbol("F_b", index)
 
@@ -95,9 +98,9 @@ LONGEST_INDEX = 2  # letters after the first one of a name that is an index of i
 
 @dataclass(frozen=True)
 class ForceOrCouple:
-    """A force (N) at a place (m) of a link; or a couple (N m), which has no force.
+    """Force (N) at a point of a link (m), or a couple (N m), which has no force.
 
-    pair: the name of the pair, or DRIVE, that it comes from; empty of loads.
+    pair: name of the pair that it comes from, or DRIVE; empty for loads.
     """
 
     symbol: Symbol
@@ -114,17 +117,17 @@ class ForceOrCouple:
 
     @property
     def size(self) -> float:
-        """N, or N m of a couple."""
+        """Magnitude in N, for a couple in N m."""
         return abs(self.moment) if self.couple else abs(self.force)
 
     def about(self, centre: complex) -> float:
-        """Its moment about a place, N m, positive counterclockwise."""
+        """Moment about a point, N m, positive counterclockwise."""
         return self.moment + float(cross(self.at - centre, self.force))
 
 
 @dataclass(frozen=True)
 class LoadedPosition:
-    """A position under its forces; size of the linkage, m."""
+    """One position of a mechanism with its loads and reactions. size: size of the linkage (m)."""
 
     motion: Motion
     reactions: Reactions
@@ -133,9 +136,10 @@ class LoadedPosition:
 
     @classmethod
     def at(cls, motion: Motion, reactions: Reactions, k: int) -> LoadedPosition:
-        """A position by its index. Its size is that of the moving points, at least the longest link.
+        """Build the position with index k.
 
-        In one position all moving points may coincide but for rounding.
+        Its size is the largest distance between moving points or between points of one link, as in a single
+        position all moving points may coincide.
         """
         moving = [complex(motion.named(p).x[k]) for p in motion.linkage.moving_points]
         bodies = [moving, *([complex(p) for p in link.points.values()] for link in motion.linkage.links.values())]
@@ -144,29 +148,29 @@ class LoadedPosition:
         )
 
     def place(self, link: str, local: complex) -> complex:
-        """A point of a link, m."""
+        """Return the place (m) of a point given in the axes of a link."""
         return complex(local) if link == FRAME else complex(self.motion.poses[link].at(local)[self.k])
 
     def hinge(self, point: str) -> complex:
-        """A named point, m."""
+        """Return the place (m) of a named point."""
         link = self.motion.linkage.owner(point)
         return self.place(link, self.motion.linkage.local(link, point))
 
     def pair(self, pair: Pair) -> complex:
-        """A hinge, or the running point of a sliding pair, m."""
+        """Return the place (m) of a hinge, or of the sliding point of a prismatic pair."""
         return self.hinge(pair.point) if pair.slide is None else self.place(pair.slide.runner, pair.slide.at)
 
     def guide(self, pair: Pair) -> complex:
-        """The direction of a sliding pair's guide."""
+        """Return the direction of the guide of a prismatic pair."""
         assert pair.slide is not None
         carrier = pair.slide.carrier
         turned = 1.0 if carrier == FRAME else complex(self.motion.poses[carrier].z[self.k])
         return complex(turned * unit(pair.slide.direction))
 
     def acting(self, links: Collection[str], axes: Mapping[str, complex]) -> tuple[ForceOrCouple, ...]:
-        """All that acts on these links from without; what is zero beside the largest is left out.
+        """Return all external forces and couples on some links, without those negligible beside the largest.
 
-        axes: directions, by the names of hinges, along which and across which their reactions are parted.
+        axes: directions by names of hinges; reactions of these hinges are resolved along and across them.
         """
         found = [*self._loads(links), *self._drives(links)]
         for reaction in self.reactions.all:
@@ -176,7 +180,7 @@ class LoadedPosition:
         return drop_negligible(found, self.size)
 
     def given(self) -> tuple[ForceOrCouple, ...]:
-        """The loads of all links, and what balances each driver, on the link that it drives."""
+        """Return the loads on all links and the balancing force or couple of each driver on its driven link."""
         drives = [self._drive(balance, balance.driver.link, 1) for balance in self.reactions.balances]
         return drop_negligible([*self._loads(self.motion.linkage.moving), *drives], self.size)
 
@@ -209,7 +213,9 @@ class LoadedPosition:
         return ForceOrCouple(symbol, "reaction", link, complex(balance.at[k]), force, pair=DRIVE)
 
     def _reaction(self, reaction: Reaction, link: str, axis: complex | None) -> Iterable[ForceOrCouple]:
-        """On one of its two links: a guide's where it acts, a hinge's in two parts where it has an axis."""
+        """Yield the reaction on one link of a pair: of a guide at its line of action, of a hinge with an axis in two
+        parts.
+        """
         k, pair, own = self.k, reaction.pair, link == reaction.on
         by, at, force = reaction.by if own else reaction.on, complex(reaction.at[k]), complex(reaction.onto(link)[k])
         couple = 0.0
@@ -232,25 +238,28 @@ class LoadedPosition:
 
 
 def component_across(force: complex, axis: complex) -> complex:
-    """The part of a force that is across an axis."""
+    """Return the component of a force perpendicular to an axis."""
     across = axis * 1j / abs(axis)
     return across * float(dot(across, force))
 
 
 def drop_negligible(acting: Iterable[ForceOrCouple], size: float) -> tuple[ForceOrCouple, ...]:
-    """Without what is zero but for rounding beside the largest; size: of the linkage, m."""
+    """Drop forces and couples that are zero but for rounding beside the largest. size: size of the linkage (m)."""
     acting = tuple(acting)
     largest = max((a.size / size if a.couple else a.size for a in acting), default=0.0)
     return tuple(a for a in acting if a.size > NO_FORCE * largest * (size if a.couple else 1.0))
 
 
 def vector_kind(load: AppliedLoad) -> VectorKind:
-    """As vectors of plans have it."""
+    """Kind of a load as a vector of a plan: inertia or load."""
     return "inertia" if load.kind == "inertia" else "load"
 
 
 def load_symbols(load: AppliedLoad) -> tuple[Symbol, Symbol]:
-    """Of its force and of its couple: with the link, or of friction the pair, below the line if they are not given."""
+    """Return the symbols of a load's force and couple.
+
+    Weight and inertia have the link as subscript, friction the pair; a load of the file keeps its name.
+    """
     if load.kind == "weight":
         return course_symbol("G", load.link), course_symbol("G", load.link)
     if load.kind == "inertia":
@@ -264,7 +273,7 @@ def load_symbols(load: AppliedLoad) -> tuple[Symbol, Symbol]:
 
 
 def load_names(load: AppliedLoad) -> tuple[str, str]:
-    """The same on one line, as tables of the results have them; one that is given has its name of the file."""
+    """Return plain names of a load's force and couple, as used in tables; a load of the file keeps its name."""
     if load.kind == "load":
         return load.name, load.couple_name or load.name
     force, couple = load_symbols(load)
@@ -272,7 +281,7 @@ def load_names(load: AppliedLoad) -> tuple[str, str]:
 
 
 def symbol_of_name(name: str, letter: str) -> Symbol:
-    """F of F, F₅ of F5, F_c of Fc or F_c; of a word this letter with the word below it: P_press of press."""
+    """Turn a name into a symbol: F₅ for F5, F_c for Fc or F_c; a word becomes a subscript of `letter`: P_press."""
     base = name.rstrip("'")
     first, rest = base[:1], base[1:].removeprefix("_")
     short = not rest or rest.isdigit() or base[1] == "_" or (first.isupper() and len(rest) <= LONGEST_INDEX)
@@ -288,10 +297,11 @@ LEAST_SINE = 0.02  # sine: lines that meet under less have their special point o
 
 @dataclass(frozen=True)
 class ExternalPair:
-    """An outer pair with all links that turn as one with its own (they slide on one another).
+    """External pair of an Assur group, with all links that slide on its own link and so rotate with it.
 
-    axis: along which the normal part of a hinge's reaction is, if it is parted. about: the point about which moments of
-    these links give the tangential part. rest: a line (place and direction) that has what is not found by then.
+    axis: direction of the normal part of a hinge reaction, if it is resolved. about: point about which
+    moments of these links give the tangential part. rest: line (point and direction) of the part that is
+    still unknown then.
     """
 
     pair: Pair
@@ -302,19 +312,19 @@ class ExternalPair:
 
     @property
     def open_part(self) -> VectorKind:
-        """Which part of the reaction has its line in `rest`."""
+        """Part of the reaction whose line is `rest`."""
         if self.pair.slide is not None:
             return "reaction"
         return "tangential" if self.about is None else "normal"
 
 
 def external_pairs(here: LoadedPosition, group: Group) -> tuple[ExternalPair, ...]:
-    """Its outer lower pairs, in its own order."""
+    """Return the external lower pairs of a group, in its own order."""
     return tuple(_external_pair(here, group, pair) for pair in group.outer if pair.lower)
 
 
 def hinge_names(pairs: Iterable[Pair], links: Collection[str]) -> list[str]:
-    """Points in which these links are hinged to others."""
+    """Return the points at which these links are hinged to other links."""
     return list(dict.fromkeys(p.point for p in pairs if p.kind == "R" and len({p.i, p.j} & {*links}) == 1))
 
 
@@ -343,7 +353,7 @@ def _external_pair(here: LoadedPosition, group: Group, pair: Pair) -> ExternalPa
 
 
 def _sliding_together(group: Group, link: str) -> tuple[str, ...]:
-    """Links that turn as one with a link of the group."""
+    """Return the links of a group that rotate together with one of its links."""
     found = {link}
     for _ in group.links:
         for pair in group.inner:
@@ -355,7 +365,12 @@ def _sliding_together(group: Group, link: str) -> tuple[str, ...]:
 def find_assur_point(
     here: LoadedPosition, group: Group, leads: Sequence[ExternalPair]
 ) -> tuple[ExternalPair, complex] | None:
-    """The lead that moments of a group with three leads give next, and where what is open of the other two meets."""
+    """Find the Assur point of a group with three external pairs.
+
+    Returns:
+        The external pair whose reaction follows from moments about the point, and the point (m), where the
+        lines of the unknown parts of the other two meet; None if there is none near enough.
+    """
     if len(leads) != 3 or len(group.outer) != 3 or group.drivers or any(lead.rest is None for lead in leads):
         return None
     for lead in sorted(leads, key=lambda lead: lead.open_part == "normal"):

@@ -1,8 +1,9 @@
 """Coulomb friction in pairs: the force plan whose friction agrees with its own reactions.
 
-A hinge with a journal of radius r resists by the moment mu R r, a guide by the force mu N; both against the relative
-motion. I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 11. Where a greater reaction needs more friction than
-it can overcome there is no such plan: the mechanism locks itself.
+A journal of radius r resists with the moment mu R r, a guide with the force mu N, both against the
+relative motion. I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 11. Where the friction of a
+growing reaction grows faster than the driver can overcome, there is no solution: the mechanism is
+self-locking.
 """
 
 from __future__ import annotations
@@ -37,11 +38,11 @@ OUTER_ROUNDS = 30  # times that the plan is drawn again where it does not follow
 
 @dataclass(frozen=True)
 class FrictionSolution:
-    """Reactions with friction. locked: positions where the mechanism locks itself; pair: the one that rubs most there.
+    """Reactions with friction at every position.
 
-    Where it locks there are no forces with which it would move: they are nan.
-
-    work: power of friction per unit of the first driver's motion (N m or N, negative), pair by pair.
+    loads: all loads, friction included. locked: positions where the mechanism is self-locking; forces are nan
+    there. pair: pair with the largest friction work at each position. work: work of friction in each pair per
+    unit of the first driver's motion (N m or N, negative). drivers: the same for all drivers.
     """
 
     reactions: Reactions
@@ -54,7 +55,9 @@ class FrictionSolution:
 
 @dataclass(frozen=True)
 class LockedRange:
-    """Driver coordinates (rad or m, start < end) between which the mechanism locks itself; pair: with most friction."""
+    """Range of driver coordinates (rad or m, start < end) in which the mechanism locks; pair: the one with most
+    friction.
+    """
 
     start: float
     end: float
@@ -63,9 +66,9 @@ class LockedRange:
 
 @dataclass(frozen=True)
 class FrictionLosses:
-    """Work of the drivers and of friction, pair by pair (J, negative), over the cycle, or over the driver's way.
+    """Work of the drivers and of friction in each pair (J, negative) over a cycle or the driver's range.
 
-    Where the mechanism locks itself there is no work to be summed up, and no efficiency.
+    locked: the mechanism is self-locking somewhere, so the work and the efficiency are not defined.
     """
 
     drivers: float
@@ -75,7 +78,7 @@ class FrictionLosses:
 
     @property
     def efficiency(self) -> float | None:
-        """What is not lost of the drivers' work; None when they do none or are locked."""
+        """Useful share of the drivers' work; None if the drivers do no work or the mechanism locks."""
         if self.locked or not self.drivers > 0:
             return None
         useful = without_rounding(self.drivers + sum(self.pairs.values()), self.drivers)
@@ -83,14 +86,19 @@ class FrictionLosses:
 
 
 def compute_losses(rubbed: FrictionSolution, motion: Motion) -> FrictionLosses:
-    """Sums over the places of a motion: close together, the first one and the last one a cycle apart (or the ends)."""
+    """Integrate the work of drivers and friction over a motion.
+
+    motion: closely spaced positions; the first and the last are a cycle apart, or the ends of the range.
+    """
     pairs = {pair: _integrate(work, motion) for pair, work in rubbed.work.items()}
     drivers = without_rounding(_integrate(rubbed.drivers, motion), _integrate(np.abs(rubbed.drivers), motion))
     return FrictionLosses(float(drivers), pairs, bool(np.any(rubbed.locked)))
 
 
 def _integrate(work: Real, motion: Motion) -> float:
-    """Sum over the driver's way by trapezia, which are exact to rounding for a smooth cycle; gaps count nothing."""
+    """Integrate by the trapezoidal rule, exact to rounding for a smooth cycle; positions without values count as
+    zero.
+    """
     values = np.where(motion.moving & np.isfinite(work), work, 0.0)
     return float(np.sum((values[1:] + values[:-1]) / 2 * np.diff(motion.q)))
 
@@ -98,11 +106,14 @@ def _integrate(work: Real, motion: Motion) -> float:
 def find_locked_ranges(
     q: Real, rubbed: FrictionSolution, locked_at: Callable[[Real], Real], *, cyclic: bool
 ) -> tuple[LockedRange, ...]:
-    """Ranges of the driver in which the mechanism locks itself, their ends by bisection.
+    """Find the ranges of the driver in which the mechanism locks; their ends by bisection.
 
     Args:
-        q: rising driver coordinates (rad or m) of the solution; if cyclic, the last is the first of the next cycle.
-        locked_at: True for each driver coordinate at which it locks.
+        q: increasing driver coordinates (rad or m) of the solution; if cyclic, the last one begins the next
+            cycle.
+        rubbed: friction solution at these coordinates.
+        locked_at: returns True for each driver coordinate at which the mechanism locks.
+        cyclic: the motion repeats after the range.
     """
     locked, pairs = rubbed.locked, np.array(rubbed.pair)
     if not np.any(locked):
@@ -128,10 +139,17 @@ def find_locked_ranges(
 def solve_friction(
     motion: Motion, structure: Structure, loads: tuple[AppliedLoad, ...], free: Reactions
 ) -> FrictionSolution:
-    """The force plan whose friction is that of its own reactions.
+    """Solve the force plan with friction that agrees with its own reactions.
 
-    Reactions follow friction in proportion, so one plan for each pair's friction, of 1 N in its pair, tells all of it;
-    the sizes f of the pairs' forces then solve f = |R0 + sum f_k R_k|, position by position.
+    Reactions are linear in friction, so one plan for unit friction in each pair gives all of them; the
+    magnitudes f of the pair forces then solve f = |R0 + sum f_k R_k| position by position. Gear teeth are not
+    linear, and are met by repeating the plan.
+
+    Args:
+        motion: solved motion.
+        structure: structure of the linkage.
+        loads: all loads without friction.
+        free: reactions under these loads.
     """
     given = motion.linkage.friction
     names = [f.pair for f in given]
@@ -169,15 +187,16 @@ def solve_friction(
 
 
 def _pair_forces(reactions: Reactions, names: list[str]) -> Vector:
-    """Forces in the given pairs, (pair, position)."""
+    """Return the forces in the named pairs, shape (pairs, positions)."""
     found: Vector = array([reactions.of(name).force for name in names])
     return found
 
 
 def _solve_magnitudes(start: Vector, response: Vector) -> tuple[Real, Real]:
-    """Sizes f of f = |start + sum f_k response_k| (pair, position), and positions where there are none: it locks.
+    """Solve f = |start + sum f_k response_k| for the force magnitudes f, shape (pairs, positions).
 
-    Friction is let in little by little, and each time Newton's method starts from the last answer.
+    Friction is increased in steps; each step starts Newton's method from the last solution. Returns also a
+    mask of the positions without a solution, where the mechanism locks.
     """
     number, count = start.shape
     sizes = np.abs(start)
@@ -202,12 +221,14 @@ def _solve_magnitudes(start: Vector, response: Vector) -> tuple[Real, Real]:
 
 
 def _blank_locked(load: AppliedLoad, lost: Real) -> AppliedLoad:
-    """A load that is nothing where the mechanism does not move."""
+    """Set a load to nan at the positions where the mechanism locks."""
     return replace(load, force=np.where(lost, np.nan, load.force), moment=np.where(lost, np.nan, load.moment))
 
 
 def _relative_motion(pair: Reaction, motion: Motion) -> tuple[Real, Real]:
-    """Direction of the relative motion (+1, 0, -1) and its size per unit of the driver, of link `on` against `by`."""
+    """Return the sense (+1, 0, -1) and the magnitude per unit of the driver of the motion of link `on` relative
+    to `by`.
+    """
     largest = motion.largest
     if pair.pair.slide is not None:
         slide = pair.pair.slide
@@ -219,7 +240,7 @@ def _relative_motion(pair: Reaction, motion: Motion) -> tuple[Real, Real]:
 
 
 def _friction_loads(friction: Friction, motion: Motion, reactions: Reactions, force: Real) -> Iterable[AppliedLoad]:
-    """Friction on both links of a pair."""
+    """Yield the friction on both links of a pair."""
     pair = reactions.of(friction.pair)
     sign, _ = _relative_motion(pair, motion)
     still = np.zeros(np.shape(motion.q))

@@ -1,4 +1,6 @@
-"""Places of the driver where loads jump or bend: sums over the way are exact between them."""
+"""Driver coordinates at which loads jump or bend, between which integrals over the driver's range are
+smooth.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ if TYPE_CHECKING:
 
 
 def find_load_jumps(mechanism: Mechanism) -> Iterable[float]:
-    """Places of a crank that turns fully (rad), in any order and turn."""
+    """Yield coordinates (rad) of a fully rotating crank at which loads jump or bend, in any order and
+    revolution.
+    """
     linkage = mechanism.linkage
     sense, cycle = linkage.driver.sense, 2 * np.pi * linkage.turns
     main = mechanism.strokes
@@ -35,7 +39,7 @@ def find_load_jumps(mechanism: Mechanism) -> Iterable[float]:
 
 
 def find_table_jumps(mechanism: Mechanism) -> Iterable[float]:
-    """Driver coordinates (rad) at which tables of loads jump, in any order and turn."""
+    """Yield driver coordinates (rad) at which load tables jump, in any order and revolution."""
     for load in mechanism.linkage.loads:
         if load.table is not None and load.table.jumps:
             rows = [load.table.arguments[k] for k in load.table.jumps]
@@ -43,12 +47,12 @@ def find_table_jumps(mechanism: Mechanism) -> Iterable[float]:
 
 
 def _load_cycles(mechanism: Mechanism) -> range:
-    """Numbers of the cycles of the loads in the cycle of the motion."""
+    """Indices of the load cycles within one cycle of the motion."""
     return range(max(1, mechanism.driver_range.turns // mechanism.linkage.turns))
 
 
 def _coordinates_of_arguments(mechanism: Mechanism, table: LoadTable, arguments: Iterable[float]) -> Iterable[float]:
-    """Driver coordinates (rad) at which these arguments of a table are reached."""
+    """Yield driver coordinates (rad) at which the given arguments of a table are reached."""
     if table.against == "stroke":
         yield from _coordinates_in_strokes(mechanism, table, arguments)
         return
@@ -61,7 +65,7 @@ def _coordinates_of_arguments(mechanism: Mechanism, table: LoadTable, arguments:
 
 
 def _coordinates_in_strokes(mechanism: Mechanism, table: LoadTable, arguments: Iterable[float]) -> Iterable[float]:
-    """Driver coordinates (rad) at which a link reaches arguments of a table against its stroke, within strokes."""
+    """Yield driver coordinates (rad), inside strokes, at which the output reaches arguments of a table."""
     linkage, strokes = mechanism.linkage, mechanism.strokes
     strokes = strokes and strokes.of_link(table.stroke_link)
     if strokes is None or not strokes.strokes:
@@ -83,7 +87,9 @@ def _coordinates_in_strokes(mechanism: Mechanism, table: LoadTable, arguments: I
 
 
 def _distance_from_run(curve: OutputCurve, wanted: float, middle: float) -> Callable[[Real], Real]:
-    """How far the output is from a place; an angle is counted about the middle of its stroke."""
+    """Return a function of q: distance of the output from a value; angles are taken about the middle of the
+    stroke.
+    """
 
     def missed(q: Real) -> Real:
         place = curve.place(q)
@@ -95,7 +101,7 @@ def _distance_from_run(curve: OutputCurve, wanted: float, middle: float) -> Call
 
 
 def _find_reversals(mechanism: Mechanism, load: Load) -> Iterable[float]:
-    """Where what a friction resists turns back."""
+    """Yield driver coordinates at which the motion resisted by a load reverses."""
     linkage, whole = mechanism.linkage, mechanism.driver_range
     law = DriverMotion(whole.start, 1.0, 0.0, linkage.driver.sense)
 

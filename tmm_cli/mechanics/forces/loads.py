@@ -1,4 +1,4 @@
-"""One thing that acts on a link besides reactions."""
+"""Loads on the links: weights, inertia forces, loads of the problem file, springs."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from tmm_cli.mechanics.numerics import SAME_DRIVER_POSITION, SEAM, Real, Vector,
 
 @dataclass(frozen=True)
 class AppliedLoad:
-    """A force (N) at a point `at` of a link (its axes, m) and a couple (N m), for every position.
+    """Force (N) at a point `at` of a link (m, in its axes) and a couple (N m), at every position.
 
-    ambiguous: the name of a load of the task is also the symbol of another quantity, such as M3, the couple of inertia
-    of link 3: formulas then write the whole name below the line.
+    ambiguous: the name of a load of the file is also the symbol of another quantity (M3 is the inertia couple
+    of link 3); formulas then use the whole name as subscript.
     """
 
     name: str
@@ -32,7 +32,7 @@ class AppliedLoad:
 
     @property
     def has_force(self) -> bool:
-        """Somewhere; positions that are not come to, with nan, do not count."""
+        """True if the force is not zero at some position; nan (unreachable positions) does not count."""
         return bool(np.any(np.abs(self.force) > 0))
 
     @property
@@ -44,7 +44,7 @@ class AppliedLoad:
 
 
 def spring_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLoad]:
-    """The equal and opposite loads of each spring; on the frame they are left out."""
+    """Yield the equal and opposite loads of each spring on the moving links that it joins."""
     still = np.zeros(np.shape(motion.q))
     moving = motion.linkage.moving
     for spring in motion.linkage.springs:
@@ -66,14 +66,14 @@ def spring_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLoa
 
 
 def twist_angle(spring: Spring, motion: Motion) -> Real:
-    """Angle by which a torsion spring is turned from its free angle, within half a turn (rad)."""
+    """Return the twist of a torsion spring from its free angle, within half a turn (rad)."""
     turned = motion.poses[spring.j].z * np.conj(motion.poses[spring.i].z) * np.conj(unit(spring.free))
     found: Real = np.angle(turned)
     return found
 
 
 def _torsion_moment(spring: Spring, motion: Motion) -> Real:
-    """Moment of a torsion spring, N m, from the angle of j from i within half a turn of the free angle."""
+    """Return the moment of a torsion spring (N m)."""
     speed = motion.link(spring.j).omega - (motion.link(spring.i).omega if spring.i in motion.linkage.moving else 0.0)
     return spring.preload + spring.rate * twist_angle(spring, motion) + spring.damping * speed
 
@@ -86,9 +86,9 @@ BEYOND_END = 0.02  # of the stroke: likewise beyond it
 
 
 def problem_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLoad]:
-    """The loads of the task, each with its opposite on the other link if that moves.
+    """Yield the loads of the file and, where the other link moves, their opposites.
 
-    Those of working strokes act always where there are none.
+    Loads limited to working strokes act at all positions if there are no strokes.
     """
     for load in motion.linkage.loads:
         size = _load_factor(load, motion, strokes)
@@ -104,7 +104,7 @@ def problem_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLo
 
 
 def _load_factor(load: Load, motion: Motion, strokes: Strokes | None) -> Real:
-    """What its force and moment are multiplied by."""
+    """Factor of the force and moment of a load, from its table and the range in which it acts."""
     size = np.ones(np.shape(motion.q))
     if load.table is not None:
         size = load.table(table_argument(load.table, motion, strokes))
@@ -114,7 +114,7 @@ def _load_factor(load: Load, motion: Motion, strokes: Strokes | None) -> Real:
 
 
 def is_acting(load: Load, q: Real, linkage: Linkage, strokes: Strokes | None) -> Real:
-    """True at the positions of the driver in which a load acts, which is always if there are no strokes."""
+    """Return True at the driver coordinates at which a load acts; without strokes it acts at all of them."""
     if load.window is not None:
         return in_window(load.window, q, linkage)
     if always_acts(load, strokes):
@@ -124,14 +124,14 @@ def is_acting(load: Load, q: Real, linkage: Linkage, strokes: Strokes | None) ->
 
 
 def always_acts(load: Load, strokes: Strokes | None) -> bool:
-    """True if a load acts at all positions: it is limited neither to a window nor to working strokes that there are."""
+    """Return True if a load acts at all positions, limited neither to a window nor to existing working strokes."""
     if load.window is not None:
         return False
     return not load.working_stroke_only or strokes is None or not strokes.of_link(load.stroke_link).strokes
 
 
 def _opposite_load(load: Load, motion: Motion, force: Vector, moment: Real) -> AppliedLoad:
-    """What the other link has of it: at the point that both share, or along the same line."""
+    """Opposite load on the other link: at the shared point, or along the same line of action."""
     name, points = f"{load.name}'", motion.linkage.links[load.base].points
     if load.point in points:
         return AppliedLoad(name, "load", load.base, points[load.point], -force, -moment, name)
@@ -140,9 +140,10 @@ def _opposite_load(load: Load, motion: Motion, force: Vector, moment: Real) -> A
 
 
 def motion_direction(load: Load, motion: Motion) -> tuple[Vector, Real]:
-    """Direction in which the point of a load moves, and the sense in which its link turns, as its base sees them.
+    """Unit direction in which the point of a load moves, and sense of rotation of its link, relative to its
+    base.
 
-    In an end of its way a thing has the direction in which it sets off from there; what stays at rest has none: 0.
+    At the ends of a motion it is the direction in which the motion starts; for links at rest it is zero.
     """
     largest = motion.largest
     velocity, spin = motion_on_base(load, motion)
@@ -160,7 +161,9 @@ def motion_direction(load: Load, motion: Motion) -> tuple[Vector, Real]:
 
 
 def motion_on_base(load: Load, motion: Motion) -> tuple[Vector, Real]:
-    """Velocity of the point of a load and turning of its link on the base, in units of the driver's motion."""
+    """Velocity of the point of a load and angular velocity of its link relative to its base, per unit of the
+    driver.
+    """
     sense = np.where(motion.rate == 0, motion.linkage.driver.sense, np.sign(motion.rate))
     pose, first, base = motion.poses[load.link], motion.first[load.link], motion.first[load.base]
     far = pose.at(load.at) - motion.poses[load.base].x
@@ -168,7 +171,7 @@ def motion_on_base(load: Load, motion: Motion) -> tuple[Vector, Real]:
 
 
 def in_window(window: tuple[float, float], q: Real, linkage: Linkage) -> Real:
-    """Whether each place of the crank lies between two angles of it; that which is come to first does, the last not."""
+    """Return True for crank angles between two angles; the one reached first is included, the other is not."""
     low, high = window
     first = low if linkage.driver.sense > 0 else high
     cycle = 2 * np.pi * linkage.turns
@@ -178,9 +181,10 @@ def in_window(window: tuple[float, float], q: Real, linkage: Linkage) -> Real:
 
 
 def table_argument(table: LoadTable, motion: Motion, strokes: Strokes | None) -> Real:
-    """What a load is tabulated against: run of a link from where its working stroke starts, or the crank.
+    """Compute the argument of a load table at every position: crank angle, or run of a link in its working
+    stroke.
 
-    A run is in m or rad, or a share of the working stroke.
+    The run is in m or rad, or a fraction of the working stroke.
     """
     driver = motion.linkage.driver
     if table.against == "crank angle":
@@ -202,9 +206,10 @@ def table_argument(table: LoadTable, motion: Motion, strokes: Strokes | None) ->
 
 
 def table_lengths(linkage: Linkage, strokes: Strokes | None) -> Iterator[tuple[Load, Any, Any]]:
-    """Each load tabulated against the stroke in lengths or angles, its last row and the stroke (m or rad).
+    """Yield each load tabulated against the stroke in lengths or angles, its last argument and the stroke (m or
+    rad).
 
-    Both are arrays (variants, 1) where the linkage is one of many variants.
+    Both are arrays (variants, 1) if the linkage stands for many variants.
     """
     for load in () if strokes is None else linkage.loads:
         assert strokes is not None
@@ -214,13 +219,15 @@ def table_lengths(linkage: Linkage, strokes: Strokes | None) -> Iterator[tuple[L
 
 
 def ends_with_stroke(last: Any, stroke: Any) -> Any:
-    """Whether the last row of a table is at the end of the stroke, neither before nor beyond it."""
+    """Return True where the last row of a table coincides with the end of the stroke, within the tolerances."""
     return (last >= (1 - BEFORE_END) * stroke) & (last <= (1 + BEYOND_END) * stroke)
 
 
 def _angle_in_cycle(angle: Real, cycle: Real | float) -> Real:
-    """An angle within its cycle. A table may jump from its end to its beginning: rounding does not take a place there
-    to the other side."""
+    """Reduce an angle to its cycle; an angle that rounding puts just before the seam counts as the seam.
+
+    A table may jump between its end and its beginning, so rounding must not decide the side.
+    """
     seam = SEAM * (1 + np.abs(angle))
     return np.mod(angle + seam, cycle) - seam
 
@@ -232,7 +239,7 @@ BALANCING = ("Mb", "M_b", "Fb", "F_b")  # as the balancing moment and force are 
 
 
 def collect_loads(motion: Motion, strokes: Strokes | None) -> tuple[AppliedLoad, ...]:
-    """All that acts on each moving link but friction, in the order of the links."""
+    """Return all loads on the moving links except friction, in the order of the links."""
     order = {name: k for k, name in enumerate(motion.linkage.links)}
     found = [load for kind in LOAD_SOURCES for load in kind(motion, strokes)]
     symbols = {*BALANCING, *(name for load in found if load.kind != "load" for name in (load.name, load.couple_name))}
@@ -241,7 +248,7 @@ def collect_loads(motion: Motion, strokes: Strokes | None) -> tuple[AppliedLoad,
 
 
 def weights_and_inertia(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLoad]:
-    """Weights in the centres of mass, and inertia about them. Massless links carry nothing."""
+    """Yield weights and inertia forces at the centres of mass, with inertia couples; massless links have none."""
     still = np.zeros(np.shape(motion.q))
     for name in motion.linkage.moving:
         link = motion.linkage.links[name]

@@ -1,7 +1,8 @@
-"""Stage: the force plan. Groups are walked backward, each under its loads and the reactions found before it.
+"""Reactions in all pairs: Assur groups are solved from the last to the first, each under its loads and known
+reactions.
 
-Kinetostatics by d'Alembert: V. A. Chufistov, L. S. Shuvalova, Force analysis of lever mechanisms, MATI 2006,
-section 2.
+Kinetostatics by d'Alembert's principle: V. A. Chufistov, L. S. Shuvalova, Force analysis of lever
+mechanisms, MATI 2006, section 2.
 """
 
 from __future__ import annotations
@@ -22,12 +23,14 @@ from tmm_cli.mechanics.structure import Group, Pair, Structure
 
 @dataclass(frozen=True)
 class Reaction:
-    """What link `by` does to link `on` in a pair: force (N) at the place `at` (m), and couple (N m) if it slides.
+    """Force (N) of link `by` on link `on` in a pair, at the point `at` (m), with a couple (N m) in a prismatic
+    pair.
 
-    arm: where a guide's force really acts, along the guide from the running point (m; infinite for a pure couple).
-    signed: a guide's force, positive to the left of the guide. tangential, normal: parts of an outer hinge's force.
-    back: the couple on `by` where it is not the opposite (a swinging follower of a cam given by its law). angle: of the
-    force (rad), in `Reactions.directed` alone.
+    arm: distance of the line of action of a guide reaction from its sliding point, along the guide (m;
+    infinite for a pure couple). signed: reaction of a guide, positive to the left of the guide. tangential,
+    normal: components of an external hinge reaction. back: couple on `by` where it is not the opposite
+    (oscillating cam follower given by its law). angle: direction of the force (rad), set in
+    `Reactions.directed` only.
     """
 
     pair: Pair
@@ -44,13 +47,13 @@ class Reaction:
     angle: Real | None = None
 
     def onto(self, link: str) -> Vector:
-        """The force on one of the two links, N."""
+        """Return the force on one of the two links, N."""
         return self.force if link == self.on else -self.force
 
 
 @dataclass(frozen=True)
 class PinForce:
-    """What the pin of a compound hinge does to one of its links (N), however the hinge is counted as pairs."""
+    """Force of the pin of a compound hinge on one of its links (N), whatever pairs the hinge is counted as."""
 
     point: str
     link: str
@@ -60,7 +63,7 @@ class PinForce:
 
 @dataclass(frozen=True)
 class GroupForces:
-    """The force plan of a group: its reactions; loads and the reactions of later groups that it bears are inputs."""
+    """Reactions of a group. borne: reactions of later groups on its links, which are known loads here."""
 
     group: Group
     outer: tuple[Reaction, ...]
@@ -70,11 +73,11 @@ class GroupForces:
 
 @dataclass(frozen=True)
 class Balance:
-    """A driver: balancing moment (N m) or force (N, on the crank's end across it, or along the cylinder).
+    """Balancing moment (N m) or force (N) of a driver: at the crank end across the crank, or along the cylinder.
 
-    For a crank both are given, `force` being moment / arm; the frame's reaction belongs to the one asked for. It acts
-    on the driven link, and with the opposite sign on the base. `generalized` is what works with the driver's place: the
-    moment of a crank, the force of a cylinder.
+    For a crank both are given, force = moment / arm; the frame reaction belongs to the one chosen in the
+    file. It acts on the driven link and with opposite sign on the base. `generalized` is the one conjugate to
+    the driver coordinate: moment of a crank, force of a cylinder.
     """
 
     driver: Driver
@@ -92,7 +95,10 @@ class Balance:
 
 @dataclass(frozen=True)
 class Reactions:
-    """The whole force plan. frames: of the pairs in which cranks stand on the frame; balances: of all drivers."""
+    """Complete force solution. frames: reactions on links driven from the frame; balances: one for each driver.
+
+    borne: for each link, the reactions of later groups on it.
+    """
 
     applied: tuple[AppliedLoad, ...]
     groups: tuple[GroupForces, ...]
@@ -102,22 +108,24 @@ class Reactions:
 
     @property
     def balance(self) -> Balance:
-        """Of the first driver."""
+        """Balance of the first driver."""
         return self.balances[0]
 
     @property
     def loaded(self) -> bool:
-        """Whether anything acts: where nothing has weight, inertia or a load all reactions are zero."""
+        """True if any load acts; without weight, inertia and loads all reactions are zero."""
         return any(load.has_force or load.has_moment for load in self.applied)
 
     @property
     def all(self) -> tuple[Reaction, ...]:
-        """Every pair's reaction, the drivers' first, then groups in solving order."""
+        """Reactions in all pairs: drivers on the frame first, then groups in solution order."""
         return (*self.frames, *(r for g in self.groups for r in (*g.outer, *g.inner)))
 
     @cached_property
     def directed(self) -> tuple[Reaction, ...]:
-        """The same with the angles of their forces; one that is zero to rounding has neither angle nor arm (nan)."""
+        """Reactions with the directions of their forces; a force that is zero to rounding has neither angle nor arm
+        (nan).
+        """
         sizes = [np.abs(r.force) for r in self.all]
         least, found = NO_FORCE * reduce(np.maximum, sizes), []
         for r, size in zip(self.all, sizes, strict=True):
@@ -126,11 +134,11 @@ class Reactions:
         return tuple(found)
 
     def of(self, name: str) -> Reaction:
-        """The reaction in a pair, by the pair's name."""
+        """Return the reaction in the pair of this name."""
         return next(r for r in self.all if r.pair.name == name)
 
     def pins(self, linkage: Linkage) -> tuple[PinForce, ...]:
-        """The forces of the pins of compound hinges on each of their links; those of one pin come to nothing."""
+        """Return the forces of the pins of compound hinges on each of their links; those of one pin add up to zero."""
         return tuple(
             PinForce(
                 hinge.point,
@@ -144,7 +152,7 @@ class Reactions:
         )
 
     def pin_force(self, point: str, link: str) -> Vector:
-        """The force (N) of the pin of a compound hinge on one of its links."""
+        """Return the force (N) of the pin of a compound hinge on one of its links."""
         return reduce(np.add, [reaction.onto(link) for reaction in self._at_pin(point, link)])
 
     def _at_pin(self, point: str, link: str) -> list[Reaction]:
@@ -152,7 +160,13 @@ class Reactions:
 
 
 def solve_reactions(motion: Motion, structure: Structure, loads: tuple[AppliedLoad, ...]) -> Reactions:
-    """Reactions in all pairs and what balances the drivers, at every position of the motion."""
+    """Solve the reactions in all pairs and the balancing moments or forces of the drivers at every position.
+
+    Args:
+        motion: solved motion; its groups are solved from the last to the first.
+        structure: structure of the linkage.
+        loads: all loads on the moving links.
+    """
     linkage = motion.linkage
     applied = {
         name: Wrench(np.zeros(np.shape(motion.q), complex), np.zeros(np.shape(motion.q))) for name in linkage.links
@@ -195,7 +209,7 @@ def solve_reactions(motion: Motion, structure: Structure, loads: tuple[AppliedLo
 
 
 def _loads_by_point(loads: tuple[AppliedLoad, ...]) -> list[list[AppliedLoad]]:
-    """Loads that act at the same point of a link, such as weight and inertia, together."""
+    """Group loads that act at the same point of a link, such as weight and inertia."""
     found: dict[tuple[str, int], list[AppliedLoad]] = {}
     for load in loads:
         found.setdefault((load.link, id(load.at)), []).append(load)
@@ -203,7 +217,9 @@ def _loads_by_point(loads: tuple[AppliedLoad, ...]) -> list[list[AppliedLoad]]:
 
 
 def reduced_driving_moment(motion: Motion, reactions: Reactions) -> Real:
-    """What all drivers do per unit of the first one's motion; with one driver its balancing moment or force."""
+    """Work of all drivers per unit of the first driver's motion (N m or N); for one driver its balancing moment
+    or force.
+    """
     total = np.zeros(np.shape(motion.q))
     for balance in reactions.balances:
         total = total + balance.generalized * motion.drives[balance.driver.link].first
@@ -229,14 +245,14 @@ def _reaction(motion: Motion, pair: Pair, own: str, found: PairReaction) -> Reac
 
 
 def _guide_reaction_arm(motion: Motion, couple: Real, signed: Real) -> Real:
-    """Where a guide's force acts; infinitely far when it is only what rounding leaves of a pure couple."""
+    """Arm of a guide reaction (m); infinite if the force is only the rounding error of a pure couple."""
     far = INFINITELY_FAR * reduce(np.maximum, [kernel.size for kernel in motion.kernels] or [1.0])
     arm = couple / signed
     return np.where(np.abs(arm) > far, np.sign(arm) * np.inf, arm)
 
 
 def _opposite_wrench(reaction: Reaction, motion: Motion) -> Wrench:
-    """The same reaction on the other link, reduced to that link's origin."""
+    """Opposite of a reaction, on the other link, reduced to the origin of that link."""
     by, pair = motion.poses[reaction.by], reaction.pair
     own = pair.slide is None and pair.mesh is None
     arm = motion.linkage.local(reaction.by, pair.point) * by.z if own else reaction.at - by.x
@@ -249,7 +265,7 @@ def _opposite_wrench(reaction: Reaction, motion: Motion) -> Wrench:
 
 
 def _moving_driver_balance(motion: Motion, driver: Driver, size: Real) -> Balance:
-    """A driver between two moving links, from its row in their group."""
+    """Balance of a driver between two moving links, from its equation in the group."""
     linkage = motion.linkage
     if driver.kind == "turn":
         at = motion.poses[driver.link].at(linkage.local(driver.link, driver.joint))
@@ -259,14 +275,14 @@ def _moving_driver_balance(motion: Motion, driver: Driver, size: Real) -> Balanc
 
 
 def _cylinder_axis(motion: Motion, driver: Driver) -> tuple[Vector, Vector]:
-    """Along which direction a cylinder drives its link, and at which point (m)."""
+    """Direction in which a cylinder drives its link, and the point of its force (m)."""
     slide = motion.linkage.slide(driver.joint)
     u = motion.poses[slide.carrier].z * unit(slide.direction) * (1 if slide.runner == driver.link else -1)
     return u, motion.poses[slide.runner].at(slide.at)
 
 
 def _driver_wrench(motion: Motion, balance: Balance, link: str, sense: int) -> Wrench:
-    """What a driver does to its link (sense 1) or to its base (-1), reduced to that link's origin."""
+    """Wrench of a driver on its driven link (sense 1) or its base (-1), reduced to the origin of that link."""
     if balance.moment is not None:
         return Wrench(balance.moment * 0j, sense * balance.moment)
     force = sense * balance.vector
@@ -274,7 +290,7 @@ def _driver_wrench(motion: Motion, balance: Balance, link: str, sense: int) -> W
 
 
 def _frame_driver(motion: Motion, structure: Structure, driver: Driver, total: Wrench) -> tuple[Reaction, Balance]:
-    """A link driven from the frame, under all that acts on it."""
+    """Frame reaction and balance of a link driven from the frame, under the total wrench on it."""
     linkage = motion.linkage
     pair = structure.driving_pair(driver)
     pose = motion.poses[driver.link]
@@ -306,7 +322,9 @@ def _frame_driver(motion: Motion, structure: Structure, driver: Driver, total: W
 
 
 def _crank_end(linkage: Linkage, driver: Driver) -> complex:
-    """The crank's end in its axes: the point named for it, or the first that is not its pivot."""
+    """Point of the balancing force in the axes of the crank: the named end, or the first point that is not its
+    pivot.
+    """
     points = linkage.links[driver.link].points
     if driver.end:
         return points[driver.end]
@@ -319,10 +337,10 @@ def _crank_end(linkage: Linkage, driver: Driver) -> complex:
 
 @dataclass(frozen=True)
 class TransmittedForce:
-    """The reaction that drives a link and its component along the velocity of its point, both (positions,), N.
+    """Reaction that drives a link, and its component along the velocity of its point, both (positions,), N.
 
-    group, link, pair: names. driving: size P of the reaction in the pair. useful: size of its component Q along the
-    velocity; without weights, inertia and friction Q = P cos(pressure angle).
+    group, link, pair: names. driving: magnitude P of the reaction in the pair. useful: magnitude of its
+    component Q along the velocity; without weights, inertia and friction Q = P cos(pressure angle).
     """
 
     group: str
@@ -335,8 +353,7 @@ class TransmittedForce:
 def find_transmitted_forces(motion: Motion, reactions: Reactions) -> tuple[TransmittedForce, ...]:
     """Compute P and Q of every link that is driven in one pair.
 
-    The direction of the velocity is that of a rotation about the pivot that holds the link, or of its guide, so that it
-    is there where the link rests, too.
+    The direction of the velocity is taken from the pivot or the guide of the link, so it also exists at rest.
     """
     leads = [(kernel.group, lead) for kernel in motion.kernels for lead in driven_links(kernel.group)]
     return tuple(_transmitted(motion, reactions, group.title, lead) for group, lead in leads if len(lead[2]) == 1)

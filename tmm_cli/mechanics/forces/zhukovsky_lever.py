@@ -1,8 +1,9 @@
-"""Stage: the Zhukovsky lever. From velocities alone: it shares nothing with the force plan but the loads.
+"""The Zhukovsky lever: the balancing moment from velocities alone, independent of the force plan.
 
-The velocity plan turned through 90 degrees is a rigid lever on its pole; every force stands at the end of its point's
-velocity, a couple M on a link as a couple of forces; moments about the pole give what balances the driver. Taken per
-unit speed of the driver, so it exists at rest too. N. E. Zhukovsky 1909; I. I. Artobolevsky, ch. 16.
+The velocity plan rotated through 90 degrees is a rigid lever on its pole. Every force acts at the end of
+its point's velocity, a couple on a link as two forces; moments about the pole give the balancing moment.
+Taken per unit speed of the driver, so it also exists at rest. N. E. Zhukovsky 1909; I. I. Artobolevsky,
+ch. 16.
 """
 
 from __future__ import annotations
@@ -19,9 +20,12 @@ from tmm_cli.mechanics.numerics import NO_MOMENT, Real, Vector, dot
 
 @dataclass(frozen=True)
 class LeverItem:
-    """A force or couple on the lever. arm: of the force about the pole (m per unit of the driver's motion; nan where
-    there is no force), or the ratio omega_link / omega_driver for a couple; moment = size * arm (N m, or N for a
-    cylinder)."""
+    """Force or couple on the lever.
+
+    arm: arm of the force about the pole (m per unit of the driver's motion; nan without a force); for a
+    couple the ratio omega_link / omega_driver. moment = size * arm (N m, or N for a cylinder). end: end of
+    the velocity of its point on the plan.
+    """
 
     name: str
     link: str
@@ -33,15 +37,16 @@ class LeverItem:
 
     @property
     def key(self) -> tuple[str, str, bool]:
-        """By which it is known: a force and a couple may have one name."""
+        """Name, link, and True for a force: a force and a couple may have the same name."""
         return self.name, self.link, self.end is not None
 
 
 @dataclass(frozen=True)
 class ZhukovskyLever:
-    """Moments about the pole, what balances them, and how far the force plan's answer is from it.
+    """Moments about the pole and the balancing moment, compared with the force plan.
 
-    balancing: N m for a crank, N for a cylinder. difference: relative to the largest balancing value of all positions.
+    balancing: N m for a crank, N for a cylinder. difference: relative to the largest balancing value of all
+    positions.
     """
 
     items: tuple[LeverItem, ...]
@@ -49,10 +54,10 @@ class ZhukovskyLever:
     difference: Real
 
     def with_rows_of(self, other: ZhukovskyLever, motion: Motion) -> ZhukovskyLever:
-        """The same lever, computed from this motion, with the items of another one, each in its place.
+        """Return this lever with the items of another one, in the order of that one.
 
-        With other numbers a load may be zero everywhere, or no longer be, and has no item, or one more. A force that is
-        zero here has no arm; a couple has its ratio of speeds all the same.
+        With other numbers a load may become zero everywhere and lose its item, or gain one. A missing force has
+        no arm; a missing couple keeps its speed ratio.
         """
         own, zero = dict(zip(_numbered_keys(self.items), self.items, strict=True)), 0 * self.balancing
 
@@ -65,7 +70,9 @@ class ZhukovskyLever:
 
 
 def _numbered_keys(items: tuple[LeverItem, ...]) -> list[tuple[tuple[str, str, bool], int]]:
-    """Keys of items, each with its number among those of one key: a load may have the name of an inertia couple."""
+    """Return keys of items, each with its number among equal keys, as a load may have the name of an inertia
+    couple.
+    """
     seen: Counter[tuple[str, str, bool]] = Counter()
     keys = []
     for item in items:
@@ -75,7 +82,13 @@ def _numbered_keys(items: tuple[LeverItem, ...]) -> list[tuple[tuple[str, str, b
 
 
 def compute_lever(motion: Motion, loads: tuple[AppliedLoad, ...], plan: Real) -> ZhukovskyLever:
-    """The lever at every position, compared with the force plan's balancing moment (or force)."""
+    """Compute the lever at every position and compare it with the force plan.
+
+    Args:
+        motion: solved motion.
+        loads: all loads on the links.
+        plan: reduced driving moment (N m or N) of the force plan, shape (positions,).
+    """
     items = []
     for load in loads:
         if load.has_force:

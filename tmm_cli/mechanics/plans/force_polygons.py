@@ -1,4 +1,6 @@
-"""Force plans of a position: the closed polygon of each group in course order, and that of the driving link."""
+"""Force plans of a position: the closed force polygon of each Assur group and of the driving link, in course
+order.
+"""
 
 from __future__ import annotations
 
@@ -27,9 +29,9 @@ PolygonPart = tuple[Symbol, complex, VectorKind]
 
 @dataclass(frozen=True)
 class ForcePlan:
-    """The polygon of some links; it closes. driving: it is that of a link driven from the frame, not of a group.
+    """Closed force polygon of some links. driving: it belongs to a driving link on the frame, not to a group.
 
-    full: reactions whose parts the polygon has, from the start of the first part to the end of the other.
+    full: reactions drawn as two components, from the start of the first component to the end of the second.
     """
 
     links: tuple[str, ...]
@@ -39,9 +41,10 @@ class ForcePlan:
 
 
 def force_plans(reactions: Reactions, k: int, motion: Motion | None = None) -> tuple[ForcePlan, ...]:
-    """Last group first, as they are drawn, and the driving links at the end.
+    """Return the force polygons at position k: groups from the last one to the first, then driving links.
 
-    motion: where leads of groups of any class stand, so that their reactions are parted as those of dyads are.
+    motion: if given, reactions in external pairs of groups of any class are resolved into components, as
+    those of dyads are.
     """
     here = None if motion is None else LoadedPosition.at(motion, reactions, k)
     groups = [_group_plan(group, reactions, k, here) for group in reversed(reactions.groups)]
@@ -49,7 +52,9 @@ def force_plans(reactions: Reactions, k: int, motion: Motion | None = None) -> t
 
 
 def _group_plan(group: GroupForces, reactions: Reactions, k: int, here: LoadedPosition | None) -> ForcePlan:
-    """A group of any class: reactions of its leads and all that it bears, link by link; inner reactions cancel."""
+    """Polygon of a group of any class: external reactions and borne forces link by link; internal reactions
+    cancel.
+    """
     if len(group.group.links) == 2 and len(group.outer) == 2 and len(group.inner) == 1 and not group.group.drivers:
         return _dyad_plan(group, reactions, k)
     axes = {} if here is None else {lead.pair.name: lead.axis for lead in external_pairs(here, group.group)}
@@ -72,9 +77,10 @@ def _group_plan(group: GroupForces, reactions: Reactions, k: int, here: LoadedPo
 
 
 def _dyad_plan(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
-    """Tangential parts, what the links bear, then normal parts and guides; the inner reaction joins two corners.
+    """Polygon of a dyad: tangential components, borne forces, then normal components and guide reactions.
 
-    Link a's forces stand together and so do link b's: the inner reaction on b is the vector that closes b's part.
+    The forces of link a are consecutive, and so are those of link b; the internal reaction on b closes the
+    part of b.
     """
     first, last = group.outer
     a, b = group.group.links
@@ -94,7 +100,7 @@ def _dyad_plan(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
 
 
 def _whole_reaction(reaction: Reaction, parts: Sequence[NamedVector]) -> NamedVector:
-    """A reaction of which these are the parts."""
+    """Vector of a reaction from its consecutive components."""
     symbol = reaction_symbol(reaction.by, reaction.on)
     return NamedVector(symbol.name, parts[0].start, parts[-1].end, "reaction", symbol)
 
@@ -111,7 +117,7 @@ def _tangential_part(reaction: Reaction, mark: str, k: int) -> Iterable[PolygonP
 
 
 def _closing_part(reaction: Reaction, k: int) -> Iterable[PolygonPart]:
-    """What closes the polygon: the normal part of a hinge's reaction, or all of a guide's."""
+    """Yield what closes the polygon: the normal component of a hinge reaction, or the whole reaction of a guide."""
     if reaction.normal is not None:
         yield reaction_symbol(reaction.by, reaction.on, "n"), complex(reaction.normal[k]), "normal"
     else:
@@ -121,9 +127,9 @@ def _closing_part(reaction: Reaction, k: int) -> Iterable[PolygonPart]:
 def _borne_forces(
     borne: tuple[Reaction, ...], reactions: Reactions, links: tuple[str, ...], link: str, k: int
 ) -> Iterable[PolygonPart]:
-    """What a link bears besides its group's reactions: later groups first, then loads, then drivers.
+    """Yield the forces on a link besides its group's reactions: reactions of later groups, loads, then drivers.
 
-    links: all of the plan; a driver between two of them acts within it.
+    links: all links of the plan; a driver between two of them is internal.
     """
     for reaction in borne:
         if reaction.by == link:

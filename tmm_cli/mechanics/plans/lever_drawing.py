@@ -1,4 +1,6 @@
-"""The Zhukovsky lever of a position: the velocity plan turned through 90 degrees, loaded with all forces."""
+"""The Zhukovsky lever of a position: the velocity plan rotated through 90 degrees and loaded with all
+forces.
+"""
 
 from __future__ import annotations
 
@@ -42,7 +44,7 @@ MOST_FORCES = 22  # forces on a lever, those of couples among them; with more of
 
 @dataclass(frozen=True)
 class CoupleAsForces:
-    """A couple M (N m) on a link as two forces, P and P′, M over the distance (m) of two of its points, each."""
+    """Couple M (N m) on a link, replaced by two forces P and P′ at two of its points, each M / distance (m)."""
 
     symbol: Symbol
     couple: Symbol
@@ -52,17 +54,18 @@ class CoupleAsForces:
 
     @property
     def force(self) -> float:
-        """The magnitude of each force, N."""
+        """Magnitude of each force, N."""
         return abs(self.moment) / self.distance
 
 
 @dataclass(frozen=True)
 class LeverPlan:
-    """ends: lettered points of the turned plan (m per unit of the driver's motion). bars: its lines.
+    """Lever of one position. ends: lettered points of the rotated plan (m per unit of the driver's motion);
+    bars: its lines.
 
-    acting: all forces, at these places, and couples: those that balance, and M′ = M ω/ω₁ where M is not a pair of
-    forces (on links of one point, and on levers with many forces). couples: these M′ with the loads that they are of.
-    equation: their moments about the pole.
+    acting: all forces at these points, and couples: balancing couples, and M′ = M ω/ω₁ where M is not
+    replaced by two forces (links of one point, levers with many forces). pairs: couples replaced by forces.
+    couples: these M′ with their loads. equation: moments about the pole.
     """
 
     ends: dict[str, complex]
@@ -74,9 +77,11 @@ class LeverPlan:
 
 
 def lever_plan(motion: Motion, reactions: Reactions, lever: ZhukovskyLever, k: int) -> LeverPlan:
-    """Velocities per unit of the driver's motion, turned clockwise; forces keep their directions.
+    """Build the lever at position k: velocities per unit of the driver's motion, rotated clockwise; forces keep
+    their directions.
 
-    One driver is found from the moments of the loads; of several the force plan says what they do.
+    The balancing moment of a single driver follows from the moments of the loads; with several drivers it is
+    taken from the force plan.
     """
     linkage = motion.linkage
     ends = plan_ends(linkage, LEVER_POLE, lambda point: ROTATED * complex(motion.named(point).first[k]))
@@ -118,16 +123,17 @@ def _lever_force(motion: Motion, load: AppliedLoad, k: int) -> Iterable[ForceOrC
 
 
 def _lever_couple(motion: Motion, load: AppliedLoad, k: int) -> ForceOrCouple:
-    """M′, with the ratio of the link's speed to the driver's in it."""
+    """Couple M′ = M times the speed ratio of the link to the driver."""
     ratio, at = float(motion.link(load.link).first[k]), ROTATED * complex(motion.point(load.link, load.at).first[k])
     symbol = load_symbols(load)[1].primed
     return ForceOrCouple(symbol, vector_kind(load), load.link, at, 0j, float(load.moment[k]) * ratio)
 
 
 def _couple_as_forces(motion: Motion, load: AppliedLoad, k: int, taken: Container[Symbol]) -> CoupleAsForces | None:
-    """The two forces that replace the couple on a link, at its first two points; None if the link has one point.
+    """Replace the couple on a link by two forces at its first two points; None if the link has only one point.
 
-    taken: symbols of other forces. P₃ replaces M₃; if that is taken, P with the whole symbol of the couple.
+    taken: symbols of other forces. P₃ replaces M₃; if that is taken, P with the whole symbol of the couple as
+    index.
     """
     points = list(motion.linkage.links[load.link].points.items())
     if load.moment[k] == 0 or len(points) < 2 or points[0][1] == points[1][1]:
@@ -141,7 +147,9 @@ def _couple_as_forces(motion: Motion, load: AppliedLoad, k: int, taken: Containe
 
 
 def _forces_of_couple(motion: Motion, load: AppliedLoad, pair: CoupleAsForces, k: int) -> Iterable[ForceOrCouple]:
-    """Across the line of the two points, at the ends of their velocities."""
+    """Yield the two forces, perpendicular to the line of the two points, at the ends of the velocities of these
+    points.
+    """
     one, other = (complex(motion.linkage.local(load.link, point)) for point in pair.points)
     arm = (other - one) * complex(motion.poses[load.link].z[k])
     force = 1j * arm * (pair.moment / abs(arm) ** 2)
@@ -153,7 +161,10 @@ def _forces_of_couple(motion: Motion, load: AppliedLoad, pair: CoupleAsForces, k
 def _balancing_forces(
     motion: Motion, balance: Balance, k: int, moment: float | None, *, several: bool
 ) -> Iterable[ForceOrCouple]:
-    """What balances a driver; moment: what the lever gives for a single one (N m, or N), else the force plan's."""
+    """Yield the balancing force or couple of a driver.
+
+    moment: result of the lever for a single driver (N m or N); None: the value of the force plan.
+    """
     driver, turns = balance.driver, balance.kind == "moment"
     symbol = balance_symbol(driver.link, several, turns=turns)
     ratio = float(np.broadcast_to(motion.drives[driver.link].first, motion.q.shape)[k])
@@ -191,7 +202,7 @@ READING_STEP = 0.5  # mm: what can be read off paper
 
 @dataclass(frozen=True)
 class DrawingScales:
-    """SI a millimetre: of the driving link's drawing, of its force plan, of the lever."""
+    """Scales (SI units per mm) of the drawings of the driving link, of its force plan and of the lever."""
 
     link: float
     forces: float
@@ -200,7 +211,10 @@ class DrawingScales:
 
 @dataclass(frozen=True)
 class DrawnCheck:
-    """What balances the driver (N m or N), by both ways; difference: a share of the largest of all positions."""
+    """Balancing moment (N m) or force (N) measured on the force plan and on the lever.
+
+    difference: relative to the largest balancing value of all positions.
+    """
 
     plan: float
     lever: float
@@ -209,14 +223,14 @@ class DrawnCheck:
 
 @dataclass(frozen=True)
 class BalanceDrawings:
-    """The three drawings of a position from which the driver's balance is read."""
+    """The three drawings of a position from which the balancing moment is measured."""
 
     link: FreeBody
     forces: ForcePlan
     lever: LeverPlan
 
     def scales(self) -> DrawingScales:
-        """Those at which each fills a sheet A4."""
+        """Return the scales at which each drawing fills a sheet A4."""
         terms = [term for equation in self.link.equations for term in equation.terms]
         places = [*(e.centre for e in self.link.equations), *(p for t in terms for p in (t.acting.at, t.foot))]
         polygon = [p for vector in self.forces.plan.vectors for p in (vector.start, vector.end)]
@@ -225,7 +239,7 @@ class BalanceDrawings:
 
 
 def balance_drawings(motion: Motion, reactions: Reactions, lever: ZhukovskyLever, k: int) -> BalanceDrawings | None:
-    """The drawings of position k; None where several drivers share the balance, or the driver is not on the frame."""
+    """Return the drawings of position k; None with several drivers, or if the driving link is not on the frame."""
     own = [part for part in list_free_bodies(motion, reactions, k) if part.links == (reactions.balance.driver.link,)]
     plans = [plan for plan in force_plans(reactions, k, motion) if plan.driving]
     if len(reactions.balances) > 1 or not own or not own[-1].driving or not plans:
@@ -234,7 +248,7 @@ def balance_drawings(motion: Motion, reactions: Reactions, lever: ZhukovskyLever
 
 
 def drawn_check(motion: Motion, reactions: Reactions, drawn: BalanceDrawings, scales: DrawingScales) -> DrawnCheck:
-    """Both ways on drawings of these scales."""
+    """Measure the balancing moment on drawings of these scales, by the force plan and by the lever."""
     balance = reactions.balance
     symbol = balance_symbol(balance.driver.link, False, turns=balance.kind == "moment")
     segments = {v.symbol: _read_off(abs(v.value), scales.forces) for v in drawn.forces.plan.vectors}
@@ -247,12 +261,12 @@ def drawn_check(motion: Motion, reactions: Reactions, drawn: BalanceDrawings, sc
 
 
 def _read_off(length: float, mu: float) -> float:
-    """A length (SI) as it is read off a drawing of this scale."""
+    """Round a length (SI) to what can be read off a drawing of scale `mu` (SI units per mm)."""
     return round(length / mu / READING_STEP) * READING_STEP * mu
 
 
 def _measured_unknown(equation: MomentEquation, mu: float, segments: Mapping[Symbol, float]) -> float:
-    """What an equation of moments gives with arms that are measured; segments: forces that are measured too, N."""
+    """Value of the unknown of a moment equation with measured arms. segments: forces that are measured too, N."""
     found = equation.found
     if found is None:
         return 0.0

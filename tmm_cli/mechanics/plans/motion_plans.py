@@ -1,4 +1,4 @@
-"""The velocity plan of a position: pole p, ends of the absolute velocities, relative velocities between them."""
+"""Velocity and acceleration plans of a position, and the values that are read off them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,9 @@ from tmm_cli.mechanics.structure import Group
 
 
 def plan_letters(linkage: Linkage) -> dict[str, str]:
-    """What each point is called on a plan: in small letters; P is not the pole p, nor A the same as a."""
+    """Return the letter of each point on plans: lower case, distinct from the poles p and π and from one
+    another.
+    """
     fixed = linkage.links[FRAME].points
     found = {point: point.lower() for point in fixed}
     taken = {"p", "π"}
@@ -38,13 +40,15 @@ def plan_letters(linkage: Linkage) -> dict[str, str]:
 
 
 def plan_ends(linkage: Linkage, pole: str, value: Callable[[str], complex]) -> dict[str, complex]:
-    """The pole, and the ends of the vectors of all moving points, by their letters; value: of a point by its name."""
+    """Return the ends of the vectors of all moving points by their letters, and the pole. value: vector of a
+    point by name.
+    """
     letter_of = plan_letters(linkage)
     return {pole: 0j} | {letter_of[point]: complex(value(point)) for point in linkage.moving_points}
 
 
 def relative_vectors(motion: Motion, ends: Mapping[str, complex]) -> list[NamedVector]:
-    """Vectors ab, ac, ... along each link, from the end of its point that is found first to those of the others."""
+    """Return relative vectors ab, ac, ... of each link, from its point that is solved first to its others."""
     linkage = motion.linkage
     fixed, letter_of = linkage.links[FRAME].points, plan_letters(linkage)
     rank = solution_rank(linkage, groups_of(motion))
@@ -60,14 +64,17 @@ def relative_vectors(motion: Motion, ends: Mapping[str, complex]) -> list[NamedV
 
 
 def groups_of(motion: Motion) -> list[Group]:
-    """The groups as they were solved."""
+    """Return the Assur groups in solution order."""
     return [kernel.group for kernel in motion.kernels]
 
 
 def absolute_vectors(
     ends: Mapping[str, complex], pole: str, letter: str = "v", names: Mapping[str, str] | None = None
 ) -> list[NamedVector]:
-    """Vectors pa, pb, ... from the pole to every end. letter: of their values; names: of points by their letters."""
+    """Return vectors pa, pb, ... from the pole to every end.
+
+    letter: letter of their symbols. names: names of points by their letters.
+    """
     names = names or {}
     return [
         NamedVector(pole + end, 0j, value, "absolute", Symbol(letter, names.get(end, end)))
@@ -78,9 +85,10 @@ def absolute_vectors(
 
 @dataclass(frozen=True)
 class SlidingBlock:
-    """A stone on a moving guide and the point of the guide under it, at `local` in the axes of the guide's link.
+    """A sliding block on a moving guide and the coincident point of the guide, at `local` in the axes of the
+    guide's link.
 
-    letter, under: letters of both on the plan; name, below: names of both.
+    letter, under: letters of both on the plan. name, below: names of both.
     """
 
     slide: Slide
@@ -92,7 +100,7 @@ class SlidingBlock:
 
 
 def sliding_blocks(motion: Motion, ends: Collection[str], k: int) -> Iterable[SlidingBlock]:
-    """Stones on moving guides; ends: letters that are taken."""
+    """Yield the sliding blocks on moving guides. ends: letters that are taken."""
     letter_of = plan_letters(motion.linkage)
     for slide in motion.linkage.slides:
         if FRAME not in (slide.carrier, slide.runner):
@@ -104,7 +112,7 @@ def sliding_blocks(motion: Motion, ends: Collection[str], k: int) -> Iterable[Sl
 
 
 def velocity_plan(motion: Motion, k: int) -> Plan:
-    """Vectors pa, ab, ... in m/s at position k."""
+    """Build the velocity plan at position k: pole p, vectors pa, ab, ... in m/s."""
     linkage = motion.linkage
     ends = plan_ends(linkage, "p", lambda point: motion.named(point).v[k])
     vectors, names = relative_vectors(motion, ends), {letter: point for point, letter in plan_letters(linkage).items()}
@@ -125,12 +133,12 @@ def velocity_plan(motion: Motion, k: int) -> Plan:
 
 
 def links_with_mass(linkage: Linkage) -> list[str]:
-    """Moving links that have a mass, and so a centre of mass."""
+    """Return the moving links that have a mass, and so a centre of mass."""
     return [link for link in linkage.moving if np.any(linkage.links[link].mass != 0)]
 
 
 def pitch_points(motion: Motion, k: int) -> Iterable[tuple[str, str, complex]]:
-    """Where wheels roll on one another or on racks, with one velocity for both: name, moving wheel, place (m)."""
+    """Yield pitch points of gears and racks: name, moving gear, place (m); both bodies have one velocity there."""
     linkage = motion.linkage
     for mesh in linkage.meshes:
         if mesh.kind == "cam":
@@ -154,7 +162,10 @@ VectorPair = tuple[NamedVector, NamedVector]
 
 
 def acceleration_plan(motion: Motion, k: int) -> Plan:
-    """Vectors πa, a^n_BA, a^τ_BA, a^k, a^r in m/s2 at position k. Each pair of parts leads from one end to another."""
+    """Build the acceleration plan at position k: vectors πa, a^n_BA, a^τ_BA, a^k, a^r in m/s2.
+
+    Each pair of components leads from the end of one absolute acceleration to the end of another.
+    """
     linkage = motion.linkage
     ends = plan_ends(linkage, ACCELERATION_POLE, lambda point: motion.named(point).a[k])
     names = {letter: point for point, letter in plan_letters(linkage).items()}
@@ -185,9 +196,10 @@ def acceleration_plan(motion: Motion, k: int) -> Plan:
 def _rotation_parts(
     motion: Motion, k: int, about: SameLinkEquation, local: Mapping[str, complex], start: complex
 ) -> VectorPair:
-    """Normal part (towards the base) and tangential part of a point's acceleration about another of its link.
+    """Normal (towards the base) and tangential components of a point's acceleration relative to another point of
+    its link.
 
-    local: of the points under stones, in the axes of their links.
+    local: points of guides under sliding blocks, in the axes of their links.
     """
     link, index = about.link, about.point.name + about.base.name
     turning, own = motion.link(link), {**motion.linkage.links[link].points, **local}
@@ -201,7 +213,7 @@ def _rotation_parts(
 
 
 def _sliding_parts(motion: Motion, k: int, stone: SlidingBlock, start: complex) -> VectorPair:
-    """Coriolis part and sliding part of a stone's acceleration about the point of its guide under it."""
+    """Coriolis and sliding components of a block's acceleration relative to the coincident point of its guide."""
     sliding, index = motion.slide(stone.slide), stone.name + stone.below
     bend = start + complex(sliding.coriolis[k])
     end = bend + complex(sliding.a[k] * sliding.u[k])
@@ -212,7 +224,7 @@ def _sliding_parts(motion: Motion, k: int, stone: SlidingBlock, start: complex) 
 
 
 def _corners(pairs: Sequence[VectorPair], ends: Mapping[str, complex], least: float) -> dict[str, complex]:
-    """Letters of the points in which two parts meet: n₁, n₂, ..., k; none where one of the parts is zero."""
+    """Return letters of the points in which two components meet: n₁, n₂, ..., k; none if one of them is zero."""
     found: dict[str, complex] = {}
     for letter, kind in (("n", "normal"), ("k", "coriolis")):
         bends = [
@@ -226,8 +238,10 @@ def _corners(pairs: Sequence[VectorPair], ends: Mapping[str, complex], least: fl
 
 
 def _segment_letters(vector: NamedVector, lettered: Mapping[str, complex], least: float) -> str:
-    """The letters of a vector's ends, of the nearest places: near a dead position rounding parts them; nothing where
-    it is zero."""
+    """Letters of a vector's ends, empty for a zero vector.
+
+    Ends are matched to the nearest lettered points, as near a dead position rounding separates them.
+    """
     if abs(vector.value) <= least:
         return ""
     return "".join(
@@ -243,7 +257,9 @@ PART_KINDS = ("normal", "tangential")
 
 @dataclass(frozen=True)
 class PlanReading:
-    """symbols: of all vectors that are the same one; segment: its letters on the plan; size: SI, zero of a point."""
+    """One measured vector of a plan: all symbols that it stands for, its segment, its size (SI; zero for a
+    point).
+    """
 
     symbols: tuple[Symbol, ...]
     segment: str
@@ -252,16 +268,16 @@ class PlanReading:
 
 @dataclass(frozen=True)
 class AngularValue:
-    """What a link turns with, omega (rad/s) or epsilon (rad/s2): positive counter-clockwise."""
+    """Angular velocity omega (rad/s) or acceleration epsilon (rad/s2) of a link, positive counterclockwise."""
 
     symbol: Symbol
     value: float
 
 
 def plan_readings(plan: Plan) -> list[PlanReading]:
-    """Vectors in the order of the plan; absolute ones that are the same vector stand together.
+    """Return the vectors of a plan in its order; equal absolute vectors are one reading.
 
-    Of a link that does not turn there are no parts.
+    Links that do not rotate have no normal and tangential components.
     """
     least = NO_VECTOR * plan.size
     turning = {v.symbol.below for v in plan.vectors if v.kind in PART_KINDS and abs(v.value) > least}
@@ -285,7 +301,7 @@ def plan_readings(plan: Plan) -> list[PlanReading]:
 
 
 def angular_values(motion: Motion, k: int, what: Literal["omega", "epsilon"]) -> Iterable[AngularValue]:
-    """Of all links that turn in any of the positions."""
+    """Yield omega or epsilon at position k of all links that rotate in any of the positions."""
     letter = {"omega": "ω", "epsilon": "ε"}[what]
     links = {link: motion.link(link) for link in motion.linkage.moving}
     rates = {link: getattr(own, what) for link, own in links.items()}

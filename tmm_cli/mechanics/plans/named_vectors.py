@@ -1,4 +1,4 @@
-"""A plan: named vectors in one plane, and the scale at which it goes on paper."""
+"""Plans as named vectors in one plane, and the scale at which they are drawn on paper."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ PAD = 22.0  # mm about the figure, for labels
 
 @dataclass(frozen=True)
 class NamedVector:
-    """A vector from start to end (SI), and what a student calls it; symbol: of its value.
+    """Vector from start to end (SI) with its name on the plan and the symbol of its value.
 
-    The name of a velocity or an acceleration is its segment on the plan: pa, whose value is v_A.
+    The name of a velocity or an acceleration is its segment on the plan: pa, with the value v_A.
     """
 
     name: str
@@ -42,7 +42,9 @@ class NamedVector:
 
 @dataclass(frozen=True)
 class Plan:
-    """Vectors of a plan. ends: its lettered points, the pole among them; corners: those where parts meet (n, k)."""
+    """Vectors of a plan. ends: lettered points, the pole among them; corners: points where components meet (n,
+    k).
+    """
 
     vectors: tuple[NamedVector, ...]
     ends: Mapping[str, complex] = field(default_factory=dict)
@@ -50,18 +52,18 @@ class Plan:
 
     @property
     def size(self) -> float:
-        """The largest extent, SI."""
+        """Largest extent, SI."""
         points = [*self.ends.values(), *(p for v in self.vectors for p in (v.start, v.end))]
         return extent(points)[0] if points else 0.0
 
     def drawn(self) -> tuple[NamedVector, ...]:
-        """Vectors that are more than a point."""
+        """Return the vectors that are longer than rounding errors."""
         least = NO_VECTOR * self.size
         return tuple(v for v in self.vectors if abs(v.value) > least)
 
 
 def extent(points: Iterable[complex]) -> tuple[float, float, float, complex]:
-    """Larger side, width, height and middle of the box about the points."""
+    """Return the larger side, width, height and centre of the bounding box of points."""
     points = list(points)
     xs, ys = [p.real for p in points], [p.imag for p in points]
     width, height = max(xs) - min(xs), max(ys) - min(ys)
@@ -69,12 +71,12 @@ def extent(points: Iterable[complex]) -> tuple[float, float, float, complex]:
 
 
 def drawing_area(paper: tuple[float, float]) -> tuple[complex, complex]:
-    """Corners of what may be drawn on below the title strip, mm."""
+    """Return the corners of the area below the title strip, mm."""
     return MARGIN * (1 + 1j), complex(paper[0] - MARGIN, paper[1] - MARGIN - STRIP)
 
 
 def round_scale(width: float, height: float, paper_width: float, paper_height: float) -> float:
-    """The smallest round scale factor (SI a millimetre) at which a box fits on paper (mm)."""
+    """Return the smallest round scale factor (SI units per mm) at which a box fits on paper (mm)."""
     least = max(width / paper_width, height / paper_height)
     if not least > 0 or not math.isfinite(least):
         return 1.0
@@ -84,7 +86,7 @@ def round_scale(width: float, height: float, paper_width: float, paper_height: f
 
 
 def sheet_scale(points: Iterable[complex], pad: float = PAD) -> tuple[tuple[float, float], float]:
-    """The paper (mm) on which points (SI) are drawn largest, and the scale there, SI a millimetre."""
+    """Return the paper size (mm) on which points (SI) are drawn largest, and the scale (SI units per mm)."""
     _, width, height, _ = extent(list(points) or [0j])
     scales = {
         paper: round_scale(width, height, paper[0] - 2 * (MARGIN + pad), paper[1] - STRIP - 2 * (MARGIN + pad))
@@ -95,5 +97,5 @@ def sheet_scale(points: Iterable[complex], pad: float = PAD) -> tuple[tuple[floa
 
 
 def with_subscripts(segment: str) -> str:
-    """A segment of a plan, or a lettered point of it, with the figures of its letters below the line: pa₃, s₁."""
+    """Write the figures of a segment or a lettered point as subscripts: pa₃, s₁."""
     return segment.translate(SUBSCRIPTS)

@@ -1,7 +1,9 @@
-"""Vector equations of a linkage's velocities and accelerations on paper: driving links, then groups in solving order.
+"""Vector equations of velocities and accelerations, as solved on paper: driving links, then groups in
+solution order.
 
-Points of a link lead from one of them to each other; a stone leads from the point of its guide under it. What is known
-before the equations of a group are solved, and how many magnitudes are not, follows from who is joined to whom.
+Points of a link are related to one another; a sliding block is related to the coincident point of its
+guide. What is known before the equations of a group are solved, and how many magnitudes are unknown,
+follows from the structure alone.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ MOST_UNKNOWNS = 2  # unknown magnitudes on known lines that a polygon gives
 
 @dataclass(frozen=True)
 class PlanPoint:
-    """A point of a link, of the frame if it does not move. at: the named point in the same place (A of A3)."""
+    """Point of a link; link is the frame if it does not move. at: named point at the same place (A for A3)."""
 
     name: str
     at: str
@@ -30,9 +32,10 @@ class PlanPoint:
 
 @dataclass(frozen=True)
 class SameLinkEquation:
-    """A point of a link, found from another one of it.
+    """Equation of a point through another point of the same link.
 
-    known: so is what the link turns with. idle: it does not turn, and both points move as one.
+    known: the angular velocity of the link is known. idle: the link does not rotate, so both points move
+    alike.
     """
 
     point: PlanPoint
@@ -44,7 +47,9 @@ class SameLinkEquation:
 
 @dataclass(frozen=True)
 class MovingGuideEquation:
-    """A stone, found from the point of its moving guide under it. known: so is how it slides."""
+    """Equation of a sliding block through the coincident point of its moving guide. known: the sliding motion is
+    known.
+    """
 
     point: PlanPoint
     base: PlanPoint
@@ -54,7 +59,7 @@ class MovingGuideEquation:
 
 @dataclass(frozen=True)
 class FixedGuideEquation:
-    """A point that runs along a guide of the frame. known: so is how it runs."""
+    """Equation of a point on a guide of the frame. known: its motion along the guide is known."""
 
     point: PlanPoint
     slide: Slide
@@ -66,7 +71,7 @@ VectorEquation = SameLinkEquation | MovingGuideEquation | FixedGuideEquation
 
 @dataclass(frozen=True)
 class HigherPairRatio:
-    """A higher pair that gives what a link turns with, or how a sliding pair slides."""
+    """Higher pair that gives the rotation of a link, or the motion in a prismatic pair."""
 
     mesh: Mesh
     link: str = ""
@@ -75,11 +80,11 @@ class HigherPairRatio:
 
 @dataclass(frozen=True)
 class SolutionStep:
-    """A driving link on the frame, or a group with the drivers between its links.
+    """One step of the solution: a driving link on the frame, or a group with the drivers between its links.
 
-    ratios come before the equations, which are solved together; after: further points of the links. same: links that
-    turn as one, each time with one that is known before if there is one. on_paper: no more magnitudes are unknown than
-    a polygon gives.
+    ratios: ratios of higher pairs, used before the equations. equations: solved together. after: equations of
+    further points. same: links that rotate together, with one that was known before if there is one.
+    on_paper: no more magnitudes are unknown than a polygon gives.
     """
 
     links: tuple[str, ...]
@@ -93,13 +98,15 @@ class SolutionStep:
 
 
 def solution_steps(linkage: Linkage, groups: Sequence[Group]) -> list[SolutionStep]:
-    """Driving links on the frame, then the groups in their order."""
+    """Return the steps: driving links on the frame, then the groups in their order."""
     way = _EquationBuilder(linkage, solution_rank(linkage, groups))
     return [*(way.driving(driver) for driver in linkage.cranks), *(way.group(group) for group in groups)]
 
 
 def motion_points(linkage: Linkage, link: str) -> list[str]:
-    """Points of a link that tell its motion: those it shares with others, or all when it shares fewer than two."""
+    """Return the points that determine the motion of a link: those it shares with others, or all if fewer than
+    two.
+    """
     points = list(linkage.links[link].points)
     shared = {h.point for h in linkage.hinges if link in h.links}
     running = {s.at for s in linkage.slides if s.runner == link}
@@ -108,7 +115,9 @@ def motion_points(linkage: Linkage, link: str) -> list[str]:
 
 
 def solution_rank(linkage: Linkage, groups: Iterable[Group]) -> dict[str, int]:
-    """When named points are found: -1 those of the frame, 0 of driving links, then by the number of the first group."""
+    """Return when each named point is solved: -1 on the frame, 0 on driving links, then the number of its first
+    group.
+    """
     rank = {FRAME: -1} | {driver.link: 0 for driver in linkage.cranks}
     rank |= {link: number for number, group in enumerate(groups, 1) for link in group.links}
     points = {point for link in linkage.links.values() for point in link.points}
@@ -116,10 +125,10 @@ def solution_rank(linkage: Linkage, groups: Iterable[Group]) -> dict[str, int]:
 
 
 class _EquationBuilder:
-    """Through a linkage, with what is known so far.
+    """Builds the equations step by step, with what is known so far.
 
-    turns: for each link the first that turns as it does. known: those of them whose turning is known, and names of
-    sliding pairs in which it is known how they slide.
+    turns: for each link the first link that rotates with it. known: such first links with known rotation.
+    slid: names of prismatic pairs with known motion.
     """
 
     def __init__(self, linkage: Linkage, rank: Mapping[str, int]) -> None:
@@ -132,7 +141,7 @@ class _EquationBuilder:
         self.slid: set[str] = set()
 
     def driving(self, driver: Driver) -> SolutionStep:
-        """A link that is driven from the frame."""
+        """Return the step of a link driven from the frame."""
         link = driver.link
         self.known.add(self.turns[link])
         if driver.kind == "turn":
@@ -144,7 +153,7 @@ class _EquationBuilder:
         return SolutionStep((link,), (driver,), equations=(FixedGuideEquation(base, slide, True),), after=after)
 
     def group(self, group: Group) -> SolutionStep:
-        """A group, when all that it hangs on is known."""
+        """Return the step of a group whose external pairs have known motion."""
         before = [link for link in self.turns if self.turns[link] in self.known]
         for driver in group.drivers:
             if driver.kind == "slide":
@@ -179,7 +188,7 @@ class _EquationBuilder:
         return PlanPoint(point, point, FRAME if FRAME in self.linkage.carriers(point) else self.linkage.owner(point))
 
     def _running(self, link: str, slide: Slide) -> PlanPoint:
-        """The point of a link that tells how it runs on the frame."""
+        """Point of a link that determines its motion along a guide of the frame."""
         if slide.runner == link and slide.point in self.linkage.links[link].points:
             return self._spot(slide.point)
         return self._spot(next(iter(self.linkage.links[link].points)))
@@ -188,7 +197,7 @@ class _EquationBuilder:
         return -1 if spot.fixed else self.rank[spot.at] if spot.name == spot.at else float("inf")
 
     def _of_group(self, group: Group, link: str) -> list[PlanPoint]:
-        """Points of a link in the pairs of its group, those that are found first before the others."""
+        """Return points of a link in pairs of its group, those that are solved first before the others."""
         found: list[PlanPoint] = []
         for pair in (*group.outer, *group.inner):
             if link not in (pair.i, pair.j) or not pair.lower:
@@ -219,7 +228,7 @@ class _EquationBuilder:
             yield MovingGuideEquation(self._spot(slide.point), coincident_point(slide), slide, known)
 
     def _others(self, link: str, base: PlanPoint, told: Collection[str]) -> tuple[SameLinkEquation, ...]:
-        """Further points of a link that tell its motion; not the free ends of cylinders and rods that swing."""
+        """Equations of further points of a link, without free ends of cylinders and oscillating rods."""
         points = [p for p in motion_points(self.linkage, link) if p not in told and p != base.name]
         if not base.fixed and any(link in (slide.carrier, slide.runner) for slide in self.linkage.slides):
             running = {slide.point for slide in self.linkage.slides}
@@ -227,7 +236,7 @@ class _EquationBuilder:
         return tuple(self._about(self._spot(p), base, link) for p in points if not self._spot(p).fixed)
 
     def _same(self, group: Group, before: Collection[str]) -> tuple[tuple[str, ...], ...]:
-        """Links of the group that turn as one, after one that is known before."""
+        """Return links of the group that rotate together, after one that was known before."""
         found = []
         for first in dict.fromkeys(self.turns[link] for link in group.links):
             earlier = [link for link in before if self.turns[link] == first][:1]
@@ -237,7 +246,7 @@ class _EquationBuilder:
         return tuple(found)
 
     def _ratios(self, group: Group) -> tuple[HigherPairRatio, ...]:
-        """Higher pairs of the group in which one quantity only is unknown, one after another."""
+        """Return higher pairs of the group with a single unknown, in the order in which they can be used."""
         meshes = [pair.mesh for pair in (*group.outer, *group.inner) if pair.mesh is not None]
         found: list[HigherPairRatio] = []
         for _ in meshes:
@@ -254,5 +263,5 @@ class _EquationBuilder:
 
 
 def coincident_point(slide: Slide) -> PlanPoint:
-    """The point of a moving guide that is under its stone."""
+    """Return the point of a moving guide that coincides with its sliding block."""
     return PlanPoint(f"{slide.point}{slide.carrier}", slide.point, slide.carrier)
