@@ -1,4 +1,4 @@
-"""Drawings: recorded first, then written in any format. A new sheet is a function in a file here and a line below."""
+"""All sheets of a run, drawn first and then written in any format; a new sheet is a function listed here."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ DrawingJob = Callable[[], NamedDrawings]  # may be pickled
 
 
 def all_sheets(results: Results) -> NamedDrawings:
-    """Every sheet with its file's stem: those of the structure, of the cycle, then of each position in detail."""
+    """Yield every sheet with the stem of its file: structure, whole cycle, then each detailed position."""
     return chain.from_iterable(part() for part in sheet_jobs(results))
 
 
 def sheet_jobs(results: Results) -> list[DrawingJob]:
-    """All sheets in parts that can be drawn apart, in their order."""
+    """Return jobs that can be run separately and together draw all sheets, in order."""
     if results.motion is None:
         return [partial(_draw_mechanism, results)]
     chosen = detailed_positions(results)
@@ -82,14 +82,20 @@ def _draw_positions(results: Results, chosen: Sequence[int]) -> NamedDrawings:
 def sheet_files(
     results: Results, say: Callable[[str], None] = lambda note: None, way: JobRunner = run_in_process
 ) -> Iterable[tuple[str, bytes]]:
-    """Every sheet in every format of a run; say: where a note on them goes; way: who draws."""
+    """Yield every sheet in every format of a run, as (file name, content).
+
+    Args:
+        results: Computed results.
+        say: Called with notes on the sheets.
+        runner: Runs the drawing jobs, for example on several cores.
+    """
     for remark in position_remarks(results):
         say(remark)
     yield from files_of_parts(sheet_jobs(results), say, way)
 
 
 def position_remarks(results: Results) -> Iterable[str]:
-    """Which position is drawn in full where the file names none, and why."""
+    """Yield a note on the position drawn in detail, and the reason, if the file names none."""
     if results.motion is not None and detail_chosen_by_program(results):
         yield from (_default_position_note(results, k) for k in detailed_positions(results))
 

@@ -28,7 +28,10 @@ CODE_BREAKER = "\N{HAIR SPACE}"
 
 
 def write_dxf(drawing: Drawing) -> bytes:
-    """The same drawing gives the same bytes: no date, no random numbers."""
+    """Write a drawing as DXF R2010.
+
+    The file has no date and no random numbers: the same drawing gives the same bytes.
+    """
     import ezdxf
     from ezdxf.enums import TextEntityAlignment
 
@@ -70,13 +73,13 @@ def write_dxf(drawing: Drawing) -> bytes:
 
 
 def escape_codes(text: str) -> str:
-    """A text in which no code of DXF is read: %%c, ^I, \\U+0416 and their like."""
+    r"""Return the text with DXF control codes (%%c, ^I, \U+0416 and the like) made harmless."""
     text = "".join(letter if letter.isprintable() else " " for letter in text)
     return re.sub(r"%(?=%)|\\(?=[UM]\+)", lambda found: found[0] + CODE_BREAKER, text).replace("^", "^ ")
 
 
 def _add_shape(space: Modelspace, mark: LineMark | AreaMark | CircleMark) -> None:
-    """A line, or a filled figure and its outline."""
+    """Add a line, or a filled figure with its outline, to the model space."""
     about = {"layer": mark.layer}
     if isinstance(mark, LineMark):
         pen = about | _pen_attributes(mark.colour, mark.width)

@@ -1,4 +1,4 @@
-"""Drawings for word processors: Enhanced Metafiles, vectors that every version of them shows; texts are outlines.
+"""Drawings for word processors: Enhanced Metafiles with vector graphics; texts are written as outlines.
 
 The records are those of Microsoft's [MS-EMF]; a logical unit is a hundredth of a millimetre.
 """
@@ -28,7 +28,7 @@ TRANSPARENT, WINDING_FILL, GEOMETRIC_PEN = 1, 2, 0x10000
 
 
 def write_emf(drawing: Drawing) -> bytes:
-    """Places are rounded to a hundredth of a millimetre."""
+    """Write a drawing as an Enhanced Metafile; coordinates are rounded to 0.01 mm."""
     pen = _RecordWriter(drawing.paper[1])
     body = [_record(BACKGROUND_MODE, "I", TRANSPARENT), _record(FILL_MODE, "I", WINDING_FILL)]
     for mark in drawing.marks:
@@ -64,7 +64,7 @@ def write_emf(drawing: Drawing) -> bytes:
 
 
 class _RecordWriter:
-    """Records of marks on a paper of this height; pens and brushes are made once each."""
+    """Writer of EMF records for marks on paper of this height (mm); each pen and brush is created once."""
 
     def __init__(self, height: float) -> None:
         self.height = height
@@ -144,7 +144,7 @@ class _RecordWriter:
 
 
 def _dash_polyline(places: Vector, dashes: Sequence[float]) -> Iterable[Vector]:
-    """A polyline, or what of it is drawn where it is dashed; dashes: lengths drawn and left out by turns, mm."""
+    """Yield a polyline, or its dashes if `dashes` (mm, lengths drawn and skipped alternately) is not empty."""
     if not dashes or len(places) < 2:
         yield places
         return

@@ -1,4 +1,4 @@
-"""A TrueType font cut down to some letters, as PDF embeds it."""
+"""PDF with vector graphics, searchable text and embedded subsets of the TrueType fonts."""
 
 from __future__ import annotations
 
@@ -35,7 +35,10 @@ CHECKSUM_BASE = 0xB1B0AFBA  # what the sum of a font is subtracted from
 
 
 def subset_font(path: str, wanted: Sequence[int]) -> bytes:
-    """The font with these glyphs alone, in this order; parts of which they are composed come after them."""
+    """Return the TrueType font at `path` reduced to these glyphs, in this order.
+
+    Glyphs that are components of composite glyphs are appended after the requested ones.
+    """
     tables = _read_tables(path)
     offsets = np.frombuffer(tables["loca"], ">u4" if tables["head"][51] else ">u2").astype(int)
     offsets *= 1 if tables["head"][51] else 2
@@ -71,7 +74,7 @@ def _read_tables(path: str) -> dict[str, bytes]:
 
 
 def _component_offsets(shape: bytearray) -> Iterator[int]:
-    """Where a composite glyph says the numbers of its parts."""
+    """Yield the byte offsets at which a composite glyph stores the numbers of its components."""
     if len(shape) < 10 or shape[0] < 0x80:  # its number of contours is not negative
         return
     at, more = 10, True
@@ -84,7 +87,7 @@ def _component_offsets(shape: bytearray) -> Iterator[int]:
 
 
 def _build_font(tables: dict[str, bytes]) -> bytes:
-    """A font of these tables."""
+    """Assemble a TrueType font file from its tables, with checksums."""
     power = len(tables).bit_length() - 1
     head = struct.pack(">IHHHH", 0x10000, len(tables), 16 << power, power, 16 * (len(tables) - (1 << power)))
     entries, body = [head], list[bytes]()
@@ -116,7 +119,10 @@ Slant = tuple[bool, bool]  # bold, italic
 
 
 def write_pdf(*drawings: Drawing) -> bytes:
-    """A page for each drawing, without a date: the same drawings give the same bytes."""
+    """Write a PDF with a page for each drawing.
+
+    The file has no date: the same drawings give the same bytes.
+    """
     file, fonts = _PdfObjects(), _FontCodes()
     contents = [file.add(_stream(_page_content(drawing, fonts))) for drawing in drawings]
     used = "".join(f"/F{n} {_add_font(file, slant, codes)} 0 R" for n, (slant, codes) in enumerate(fonts.codes.items()))
@@ -134,7 +140,7 @@ def write_pdf(*drawings: Drawing) -> bytes:
 
 
 class _PdfObjects:
-    """Objects in their order, numbered from one on."""
+    """PDF objects in the order of the file, numbered from 1."""
 
     def __init__(self) -> None:
         self.parts = [b"%PDF-1.4\n%\xb5\xb6\xb7\xb8\n"]
@@ -148,7 +154,7 @@ class _PdfObjects:
         return self.count
 
     def closed(self, root: int) -> bytes:
-        """The file with the places of its objects, `root` the outermost of them."""
+        """Return the whole file, with its cross-reference table; `root` is the number of the catalogue object."""
         *places, end = accumulate(map(len, self.parts))
         table = b"".join(b"%010d 00000 n \n" % place for place in places)
         form = b"xref\n0 %d\n0000000000 65535 f \n%btrailer\n<</Size %d/Root %d 0 R>>\nstartxref\n%d\n%%%%EOF\n"
@@ -156,13 +162,13 @@ class _PdfObjects:
 
 
 class _FontCodes:
-    """Codes of the letters of each font, as they are met; characters of one shape have two."""
+    """Character codes of each font, assigned as letters occur; two characters of the same shape get two codes."""
 
     def __init__(self) -> None:
         self.codes: dict[Slant, dict[str, int]] = {}
 
-    def told(self, text: str, slant: Slant) -> tuple[int, str]:
-        """The number of the font, and the codes of the letters as hexadecimals."""
+    def encode(self, text: str, slant: Slant) -> tuple[int, str]:
+        """Return the number of the font of this slant and the hexadecimal codes of the letters."""
         own = self.codes.setdefault(slant, {})
         return list(self.codes).index(slant), "".join(
             f"{own.setdefault(x, len(own) + 1):04x}" for x in replace_missing(text)
@@ -170,7 +176,7 @@ class _FontCodes:
 
 
 def _add_font(file: _PdfObjects, slant: Slant, codes: Iterable[str]) -> int:
-    """A font of these letters, which have the codes from one on: outlines, widths, and which characters they are."""
+    """Add a font with these letters (codes from 1): outlines, widths, descriptor, map to Unicode; return its number."""
     face, letters = load_font(*slant), list(codes)
     outlines = subset_font(str(font_file(*slant)), [0, *(face.get_char_index(ord(letter)) for letter in letters)])
     tag, per = zlib.crc32(outlines), 1000 / face.units_per_EM
@@ -195,7 +201,7 @@ def _add_font(file: _PdfObjects, slant: Slant, codes: Iterable[str]) -> int:
 
 
 def _character_map(letters: Sequence[str]) -> str:
-    """Which characters the codes from one on are, a block of at most a hundred after the other."""
+    """Return the ToUnicode CMap of the codes from 1, in blocks of at most 100 letters."""
     lines = [f"<{code:04x}><{letter.encode('utf-16-be').hex()}>\n" for code, letter in enumerate(letters, 1)]
     blocks = [lines[k : k + 100] for k in range(0, len(lines), 100)]
     return (
@@ -217,7 +223,7 @@ def _bytes(content: str | bytes) -> bytes:
 
 
 def _page_content(drawing: Drawing, fonts: _FontCodes) -> str:
-    """What draws the marks, one after the other; a pen or a colour is told where it is another one."""
+    """Return the page operators of all marks; pen and colour operators are written only when they change."""
     told: dict[str, str] = {}
     lines = [ROUND_LINES]
     for mark in drawing.marks:
@@ -231,7 +237,7 @@ def _page_content(drawing: Drawing, fonts: _FontCodes) -> str:
 
 
 def _mark_operators(mark: Mark, fonts: _FontCodes) -> tuple[list[tuple[str, str]], str]:
-    """The states of the page that a mark needs, each of its kind, and what draws it."""
+    """Return the graphics states that a mark needs, as (kind, operator), and the operators that draw it."""
     match mark:
         case LineMark():
             dashes = f"[{' '.join(map(_format_length, mark.dashes))}] 0 d"
@@ -247,7 +253,7 @@ def _mark_operators(mark: Mark, fonts: _FontCodes) -> tuple[list[tuple[str, str]
             states = [*_pen_states(mark.edge, mark.width), ("dashes", "[] 0 d"), _fill_state(mark.face)]
             return states, f"{_circle_operators(mark.centre, mark.radius)}b\n"
         case TextMark():
-            name, codes = fonts.told(mark.text, (mark.bold, mark.italic))
+            name, codes = fonts.encode(mark.text, (mark.bold, mark.italic))
             start, along = baseline(mark)
             turned = f"{along.real:.6f} {along.imag:.6f} {-along.imag:.6f} {along.real:.6f}"
             return [_fill_state(mark.colour)], (
@@ -274,7 +280,7 @@ def _path_operators(places: Sequence[complex]) -> str:
 
 
 def _circle_operators(centre: complex, radius: float) -> str:
-    """A circle of four curves."""
+    """Return the operators of a circle made of four Bézier curves."""
     lines = [f"{_format_point(centre + radius)} m\n"]
     for k in range(4):
         way = radius * 1j**k
@@ -288,5 +294,5 @@ def _format_point(place: complex) -> str:
 
 
 def _format_length(length: float) -> str:
-    """Millimetres in points."""
+    """Convert a length from mm to points."""
     return f"{length / POINT:.4f}".rstrip("0").rstrip(".")

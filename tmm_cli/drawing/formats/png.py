@@ -1,4 +1,4 @@
-"""Pictures of a drawing: PNG."""
+"""PNG images of drawings."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ AGG: Any = backend_agg  # matplotlib does not say its types
 
 
 def write_png(drawing: Drawing) -> bytes:
-    """On white paper."""
+    """Write a drawing as a PNG image on white paper."""
     width, height = (round(side / 25.4 * DPI) for side in drawing.paper)
     renderer, told = _renderer_and_buffer(width, height)
     pixels = np.asarray(renderer.buffer_rgba())
@@ -53,7 +53,7 @@ def write_png(drawing: Drawing) -> bytes:
 
 @lru_cache(2)
 def _renderer_and_buffer(width: int, height: int) -> tuple[Any, NDArray[Any]]:
-    """A renderer, and room for its picture as it is told in a file: clearing them is quicker than asking for memory."""
+    """Return a renderer and a buffer for the filtered rows; reusing them is faster than allocating new ones."""
     return AGG.RendererAgg(width, height, DPI), np.full((height, 1 + 3 * width), UP_FILTER, np.uint8)
 
 
@@ -88,7 +88,7 @@ def _path(places: Sequence[complex], *, closed: bool = False) -> Path:
 
 
 def _draw_texts(marks: Sequence[TextMark], colour: str, renderer: RendererBase, to_pixels: Affine2D) -> None:
-    """Texts are filled outlines: letters stand where their widths say, whatever the pixels are."""
+    """Draw texts as filled outlines, so that letters stand where their widths say, whatever the resolution."""
     placed, codes = [], []
     for mark in marks:
         start, along = baseline(mark)
@@ -106,7 +106,7 @@ def _draw_texts(marks: Sequence[TextMark], colour: str, renderer: RendererBase, 
 
 
 def _encode_png(pixels: NDArray[Any], told: NDArray[Any]) -> bytes:
-    """The file of a picture without its transparency, packed in half the time that libraries take."""
+    """Encode an image as PNG without its alpha channel, in half the time of the usual libraries."""
     height, width, __ = pixels.shape
     for k in range(3):
         told[0, 1 + k :: 3] = pixels[0, :, k]

@@ -1,4 +1,4 @@
-"""Formats of drawings: a new one is a function in a file here and an entry below."""
+"""Register of the formats of drawings: a new one is a function in its own module and an entry below."""
 
 from __future__ import annotations
 
@@ -29,18 +29,23 @@ JobResult = TypeVar("JobResult")
 
 
 class JobRunner(Protocol):
-    """Who does jobs, which may be pickled: what they give, in their order."""
+    """Callable that runs jobs (they may be pickled) and yields their results in order."""
 
     def __call__(self, jobs: Sequence[Callable[[], JobResult]], /) -> Iterable[JobResult]: ...
 
 
 def run_in_process(jobs: Sequence[Callable[[], JobResult]], /) -> Iterable[JobResult]:
-    """One after the other, in this process."""
+    """Run the jobs one after another in this process."""
     return (job() for job in jobs)
 
 
 def drawing_files(drawn: NamedDrawings, say: Callable[[str], None] = lambda note: None) -> Iterable[tuple[str, bytes]]:
-    """Every sheet in the formats of a run, by the name of its file; at last what there is to say of them all."""
+    """Yield every sheet in the formats of a run, as (file name, content).
+
+    Args:
+        drawn: Stems of file names, with the drawings.
+        say: Called at the end with notes that concern all sheets.
+    """
     return files_of_parts([lambda: drawn], say)
 
 
@@ -49,7 +54,16 @@ def files_of_parts(
     say: Callable[[str], None] = lambda note: None,
     way: JobRunner = run_in_process,
 ) -> Iterable[tuple[str, bytes]]:
-    """The same of sheets that come in parts, each of which is a job; way: who does the jobs."""
+    """Yield the files of sheets that are drawn in parts, each of which is one job.
+
+    Args:
+        parts: Functions that draw some sheets each; they may be pickled.
+        say: Called at the end with notes that concern all sheets.
+        runner: Runs the jobs, for example on several cores.
+
+    Returns:
+        Pairs of file name and content.
+    """
     boxes: set[str] = set()
     for written, lost in way([partial(_write_part, part) for part in parts]):
         boxes |= lost
@@ -59,14 +73,14 @@ def files_of_parts(
 
 
 def _write_part(part: Callable[[], NamedDrawings]) -> tuple[FormatFiles, set[str]]:
-    """Files by name, and characters that the font lacks."""
+    """Draw one part; return its files and the characters that the font lacks."""
     every = list(part())
     lost = missing_characters("".join(text for __, sheet in every for text in sheet.texts()))
     return [(f"{stem}.{kind}", FORMATS[kind](sheet)) for stem, sheet in every for kind in RUN_FORMATS], lost
 
 
 def missing_character_notes(texts: Iterable[str]) -> Iterable[str]:
-    """What there is to say of characters that no drawing can show."""
+    """Yield a note that names the characters of the texts that the font lacks, if there are any."""
     boxes = missing_characters("".join(texts))
     if boxes:
         text = _("note: the font of the drawings lacks these characters, boxes stand for them: {characters}")

@@ -1,4 +1,4 @@
-"""Drawings for browsers and editors: SVG in millimetres, text as text."""
+"""SVG drawings in millimetres for browsers and editors; text remains text."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NOT_XML = dict.fromkeys((*range(9), 11, 12, *range(14, 32), 65534, 65535), "�"
 
 
 def write_svg(drawing: Drawing) -> bytes:
-    """Places are rounded to a thousandth of a millimetre."""
+    """Write a drawing as SVG; coordinates are rounded to 0.001 mm."""
     across, up = (f"{side:g}" for side in drawing.paper)
     lines = [
         '<?xml version="1.0" encoding="utf-8"?>',
@@ -30,7 +30,7 @@ def write_svg(drawing: Drawing) -> bytes:
 
 
 def svg_element(mark: Mark, height: float) -> str:
-    """A mark on a paper of this height (mm); y goes down from there."""
+    """Return the SVG element of a mark; `height` (mm) is that of the paper, because y points down in SVG."""
     match mark:
         case LineMark():
             dashes = f' stroke-dasharray="{" ".join(f"{d:.3g}" for d in mark.dashes)}"' if mark.dashes else ""

@@ -1,4 +1,4 @@
-"""Large sheets to hand in: drawings and tables packed into a frame with its title block."""
+"""Large sheets to hand in: drawings and tables arranged in a frame with a title block."""
 
 from tmm_cli.interfaces import lazy
 

@@ -69,15 +69,24 @@ MOST_ROUNDS = 8  # while a page stays thin
 
 @dataclass(frozen=True)
 class LargeSheet(Drawing):
-    """A framed sheet; pictures: what stands on it, each with its lower left corner (mm)."""
+    """A framed sheet; `pictures` are the drawings on it, each with its lower left corner (mm)."""
 
     pictures: tuple[tuple[complex, SheetPicture], ...] = ()
 
 
 def large_sheets(choice: SheetChoice, paper: str, way: JobRunner = run_in_process) -> Iterator[tuple[str, LargeSheet]]:
-    """Every sheet with its file's stem, numbered from 1; what does not fit on one goes on on the next. way: who draws.
+    """Yield the large sheets of a project with the stems of their files, numbered from 1.
 
-    That of the structure, which has no scale, is on the smallest format that holds it.
+    What does not fit on one sheet continues on the next. The structure sheet, which has no scale, gets the smallest
+    format that holds it.
+
+    Args:
+        choice: Results and the positions to be drawn.
+        paper: Largest format, a key of PAPERS.
+        runner: Draws the subjects, for example on several cores.
+
+    Raises:
+        ProblemError: A drawing does not fit on the paper.
     """
     problem = choice.results.problem
     smaller = [name for name in reversed(PAPERS) if PAPERS[name] <= PAPERS[paper]]
@@ -97,8 +106,9 @@ def large_sheets(choice: SheetChoice, paper: str, way: JobRunner = run_in_proces
 def _fit_smallest_paper(
     number: int, choice: SheetChoice, papers: Sequence[str]
 ) -> tuple[Size, list[SheetPicture], list[Page]]:
-    """The drawings of a sheet on the first of these formats that holds them on one page, or else on the last one; where
-    they leave that thin, on the next smaller one that holds them so.
+    """Arrange a subject on the first of these formats that holds it on one page.
+
+    If none does, the last one is used. If the page stays thin, the next smaller format is tried.
     """
     for paper in papers:
         size, pictures, pages = found = _arrange_on_paper(paper, number, choice)
@@ -120,9 +130,7 @@ def _arrange_on_paper(paper: str, number: int, choice: SheetChoice) -> tuple[Siz
 def _arrange_fullest(
     number: int, choice: SheetChoice, paper: Size, field: PackingField
 ) -> tuple[list[SheetPicture], list[Page]]:
-    """The drawings of a sheet; where a page stays thin, once more, high ones as high as is free above the titles, or
-    lower.
-    """
+    """Arrange the drawings of a subject; if a page stays thin, try again with a lower limit of height."""
     found = _arrange_sheet(number, choice, paper, field, field.height - DRAWING_GAP)
     for high in (field.height - field.taken[1] - DRAWING_GAP, *(share * field.height for share in FLAT_HEIGHTS)):
         if _least_page_area(found) > THIN_BELOW * field.area:
@@ -134,13 +142,13 @@ def _arrange_fullest(
 
 
 def _least_page_area(found: tuple[list[SheetPicture], list[Page]]) -> float:
-    """What is drawn on the emptiest page, mm²."""
+    """Return the area (mm²) of the drawings on the emptiest page."""
     pictures, pages = found
     return min((page_area([one.paper for one in pictures], page) for page in pages), default=0.0)
 
 
 def drawing_field(paper: Size, block: str) -> PackingField:
-    """What is free for drawings, each with the gap to its right and below it."""
+    """Return the field for drawings, each of which includes the gap to its right and below it."""
     low, high = frame_corners(paper)
     room, taken = high - low - (2 * FRAME_GAP - DRAWING_GAP) * (1 + 1j), TITLE_BLOCK_SIZES[block]
     return PackingField(room.real, room.imag, (taken[0] - FRAME_GAP + DRAWING_GAP, taken[1] - FRAME_GAP + DRAWING_GAP))
@@ -149,9 +157,17 @@ def drawing_field(paper: Size, block: str) -> PackingField:
 def _arrange_sheet(
     number: int, choice: SheetChoice, paper: Size, field: PackingField, high: float
 ) -> tuple[list[SheetPicture], list[Page]]:
-    """All drawings of a sheet, and which of them stand on which of its pages.
+    """Draw a subject and distribute its drawings over pages.
 
-    high: how high a drawing becomes if it can be folded, mm.
+    Args:
+        number: Number of the subject.
+        choice: Results and the positions to be drawn.
+        paper: Width and height of the paper, mm.
+        field: Field for drawings on it.
+        high: Largest height (mm) of a drawing that can be folded.
+
+    Returns:
+        The drawings, and for each page the numbers of the drawings on it.
     """
     shrunk, most = max(paper) / max(PAPERS["A1"]), (field.width - DRAWING_GAP, high)
     asked = [(source, choice, most) for source in CONTENTS if source.sheet == number]
@@ -161,7 +177,7 @@ def _arrange_sheet(
     pieces = [every[k] for k in order]
 
     def drawn(rooms: Sequence[float]) -> list[SheetPiece]:
-        """The same pieces in other rooms, source by source."""
+        """Draw the pieces again in other rooms, source by source."""
         back = sorted(range(len(order)), key=order.__getitem__)
         old, new = [pieces[k] for k in back], [rooms[k] for k in back]
         starts = accumulate(lengths, initial=0)
@@ -215,7 +231,7 @@ def _tidy_pages(
     field: PackingField,
     drawn: Callable[[Sequence[float]], list[SheetPiece]],
 ) -> list[SheetPiece]:
-    """The same with letters of about one size on each page; smaller ones where that brings a page into its order."""
+    """Equalize the letters of tables on each page; reduce drawings if that lets a page keep its reading order."""
     for page in pages:
         tried = drawn(equalize_letters(pieces, _drawn_lengths(pieces), page))
         if pack_boxes(add_gaps(_paper_sizes(tried), page), field) is not None:
@@ -231,14 +247,14 @@ def _tidy_pages(
 
 
 def _drawn_lengths(pieces: Sequence[SheetPiece]) -> list[float]:
-    """What they were drawn for, mm."""
+    """Return the longest side (mm) for which each piece was drawn."""
     return [piece.drawn.longest or piece.usual for piece in pieces]
 
 
 def _accept_larger(
     pieces: Sequence[SheetPiece], larger: Sequence[SheetPiece], pages: Sequence[Page], field: PackingField
 ) -> list[SheetPiece]:
-    """Those of the larger pieces for which there really is room, one after the other."""
+    """Replace pieces by their larger versions, one after another, as long as the page still holds them."""
     found = list(pieces)
     for page, (led, tidy, enough) in product(pages, PACKING_RULES):
         if page_area(_paper_sizes(found), page) < enough * field.area:
@@ -254,7 +270,11 @@ def _paper_sizes(pieces: Sequence[SheetPiece]) -> list[Size]:
 
 
 def arrange_as_drawn(pictures: Sequence[SheetPicture], field: PackingField) -> list[Page]:
-    """Pages for drawings as they are. Raises ProblemError where one is larger than the field."""
+    """Distribute drawings over pages without resizing them.
+
+    Raises:
+        ProblemError: A drawing is larger than the field.
+    """
     for one in pictures:
         if pack_boxes(add_gaps([one.paper], [0]), field) is None:
             raise ProblemError(_("{name} is larger than the sheet").format(name=one.stem), allowed=_("a larger format"))
@@ -262,7 +282,7 @@ def arrange_as_drawn(pictures: Sequence[SheetPicture], field: PackingField) -> l
 
 
 def _draw_first(source: DrawingSource, choice: SheetChoice, most: Size, shrunk: float) -> list[SheetPiece]:
-    """The drawings of a source as large as usual."""
+    """Draw a source at its usual size; `shrunk` is the size of the paper relative to A1."""
     number = len(getattr(choice, source.over)) if source.over else 1
     usual = source.usual and source.usual * max(
         SMALLEST_SHARE, min(1.0, math.sqrt(FULL_SIZE_POSITIONS / max(number, 1)))
@@ -280,7 +300,7 @@ def _draw_first(source: DrawingSource, choice: SheetChoice, most: Size, shrunk: 
 def _redraw(
     source: DrawingSource, choice: SheetChoice, most: Size, pieces: list[SheetPiece], rooms: Sequence[float]
 ) -> list[SheetPiece]:
-    """The same in other rooms, where they are other ones."""
+    """Draw the pieces of a source again if their rooms have changed."""
     if all(math.isclose(piece.drawn.longest, room) for piece, room in zip(pieces, rooms, strict=True)):
         return pieces
     pictures = _draw_source(source, choice, most, rooms)
@@ -290,7 +310,7 @@ def _redraw(
 def _draw_source(
     source: DrawingSource, choice: SheetChoice, most: Size, rooms: Iterable[float | None]
 ) -> list[SheetPicture]:
-    """The drawings of a source, each in its room."""
+    """Draw a source, each drawing in its room (mm, longest side; None: as it comes)."""
     every, found = iter(source.drawings(choice)), list[SheetPicture]()
     for room in rooms:
         with drawing_within(PictureSpace(room, most)):
@@ -305,7 +325,7 @@ def _draw_source(
 def frame_pictures(
     pictures: Sequence[SheetPicture], field: PackingField, paper: Size, titles: TitleBlockTexts
 ) -> LargeSheet:
-    """A sheet with these pictures on its field."""
+    """Arrange pictures on a field and add the frame and the title block."""
     sizes = [(picture.paper[0] + DRAWING_GAP, picture.paper[1] + DRAWING_GAP) for picture in pictures]
     places = spread_boxes(arrange_boxes(sizes, field) or [], sizes, field)
     low, high = frame_corners(paper)
@@ -320,7 +340,11 @@ MOST_PLANS = 24  # positions of which plans are drawn
 
 
 def parse_formats(text: str) -> list[str]:
-    """Formats from their names with commas. Raises ProblemError."""
+    """Parse comma-separated names of formats.
+
+    Raises:
+        ProblemError: A format is unknown, or its library is not installed.
+    """
     wanted = parse_names(text, FORMATS, "--as", _("there is no such format of drawings"))
     if "dxf" in wanted and find_spec("ezdxf") is None:
         raise ProblemError(_("DXF is written by ezdxf, which is not installed"), allowed="pip install 'tmm-cli[cad]'")
@@ -328,7 +352,11 @@ def parse_formats(text: str) -> list[str]:
 
 
 def refuse_plans(count: int) -> None:
-    """Refuse plans of motion of more positions than sheets are read with. Raises ProblemError."""
+    """Refuse more motion plans than a reader can use.
+
+    Raises:
+        ProblemError: More than MOST_PLANS positions.
+    """
     if count > MOST_PLANS:
         raise ProblemError(
             _("plans of so many positions fill no sheet that is read"),
@@ -346,9 +374,18 @@ def large_sheet_files(
     *,
     every: bool,
 ) -> Iterator[tuple[str, bytes]]:
-    """Every sheet in every format, by the name of its file; a PDF has all as its pages. Raises ProblemError.
+    """Yield the large sheets in every format, as (file name, content); a PDF has one page for each sheet.
 
-    way: who draws and who writes. every: whether motion plans are drawn of all positions.
+    Args:
+        results: Computed results.
+        paper: Largest format, a key of PAPERS.
+        formats: Names of formats.
+        say: Called with notes.
+        runner: Draws and writes, for example on several cores.
+        every: Draw motion plans of all positions, not only of the detailed ones.
+
+    Raises:
+        ProblemError: Too many motion plans, or a drawing that does not fit.
     """
     choice = choose_positions(results, every=every)
     refuse_plans(len(choice.plans))

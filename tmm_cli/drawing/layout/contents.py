@@ -1,4 +1,7 @@
-"""Which drawings stand on which large sheet, and how large they usually are; a further one is a line in CONTENTS."""
+"""Contents of the large sheets: which drawings stand on which sheet, and their usual sizes.
+
+Extend CONTENTS to add one.
+"""
 
 from __future__ import annotations
 
@@ -48,7 +51,7 @@ CONTINUATION_SUFFIX = "-sheet-"  # in the name of a drawing that goes on with an
 
 @dataclass(frozen=True)
 class SheetChoice:
-    """What is drawn: the results, the positions of the motion plans and those of the forces."""
+    """The results, and the positions of the motion plans and of the force drawings."""
 
     results: Results
     plans: tuple[Position, ...]
@@ -56,22 +59,22 @@ class SheetChoice:
 
     @property
     def moves(self) -> bool:
-        """Whether there is a position in which the mechanism can be drawn."""
+        """True if the mechanism can be drawn in at least one position."""
         motion = self.results.motion
         return motion is not None and bool(motion.placed.any())
 
     @property
     def loaded(self) -> bool:
-        """Whether there are forces to draw: without any load a sheet of them would say zero throughout."""
+        """True if there are forces to draw; without any load every force would be zero."""
         reactions = self.results.reactions
         return reactions is None or reactions.loaded
 
     def shows(self, sheet: int) -> bool:
-        """Whether there is something to draw on this one."""
+        """Return True if this sheet has something to show."""
         return sheet == STRUCTURE_SHEET or (self.moves and (sheet != FORCES_SHEET or self.loaded))
 
     def title(self, sheet: int) -> str:
-        """What it is about, to be translated."""
+        """Return the title of a sheet, still to be translated."""
         return (
             SYNTHESIS_TITLE
             if sheet == STRUCTURE_SHEET and self.results.problem.synthesis is not None
@@ -81,10 +84,15 @@ class SheetChoice:
 
 @dataclass(frozen=True)
 class DrawingSource:
-    """What draws some of the drawings of a sheet, from the results or from each of some positions.
+    """Function that makes some of the drawings of a large sheet.
 
-    usual: longest side on A1, mm; None: as it comes (tables). over: for which positions of the choice it draws.
-    about: how the names of its drawings begin; of sources that say it, drawings whose names go on alike are neighbours.
+    Attributes:
+        sheet: Number of the sheet in SUBJECTS.
+        draw: Called with the results, or with each of some positions.
+        usual: Longest side (mm) on A1; None for tables, which keep their own size.
+        over: Positions for which it draws; empty: it draws the whole mechanism.
+        about: Prefix of the names of its drawings. Drawings of different sources whose names continue alike after
+            their prefixes become neighbours.
     """
 
     sheet: int
@@ -94,7 +102,7 @@ class DrawingSource:
     about: str = ""
 
     def drawings(self, choice: SheetChoice) -> NamedDrawings:
-        """They are drawn one after the other, as they are taken."""
+        """Yield the drawings; each is drawn when it is requested."""
         if not choice.shows(self.sheet):
             return ()
         if self.over:
@@ -103,9 +111,10 @@ class DrawingSource:
 
 
 def reading_order(drawings: Iterable[tuple[DrawingSource, str]]) -> list[int]:
-    """In which order drawings stand, by their numbers: those about one thing (a group) one beside the other.
+    """Return the numbers of the drawings in reading order, drawings of one group next to each other.
 
-    drawings: what draws each, and its name.
+    Args:
+        drawings: Source and name of each drawing.
     """
     first: dict[str, int] = {}
     keys: list[tuple[int, int]] = []
@@ -116,7 +125,7 @@ def reading_order(drawings: Iterable[tuple[DrawingSource, str]]) -> list[int]:
 
 
 def choose_positions(results: Results, *, every: bool) -> SheetChoice:
-    """The positions in detail; with `every` the motion plans of all positions that could be computed."""
+    """Choose the detailed positions; with `every`, motion plans of all computed positions."""
     motion = results.motion
     if motion is None:
         return SheetChoice(results, (), ())

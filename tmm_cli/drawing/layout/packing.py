@@ -1,4 +1,4 @@
-"""Boxes put beside and below one another on a field, one corner of which is taken; sizes and places in mm."""
+"""Packing of boxes on a field with an occupied corner (sizes in mm); frame and title block of a sheet."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ THOROUGH_ORDERS = 300  # where the best of all arrangements is looked for
 
 @dataclass(frozen=True)
 class PackingField:
-    """Width and height; `taken` is what the title block has in the lower right corner."""
+    """Width and height of a field; `taken` is the size of the title block in its lower right corner."""
 
     width: float
     height: float
@@ -29,15 +29,15 @@ class PackingField:
 
     @property
     def area(self) -> float:
-        """What is free for boxes."""
+        """Area that is free for boxes."""
         return self.width * self.height - self.taken[0] * self.taken[1]
 
     def depth(self, start: float, end: float) -> float:
-        """How far down from the upper edge a box between these distances from the left edge may reach."""
+        """Return how far down a box between these distances from the left edge may reach."""
         return self.height - (self.taken[1] if end > self.width - self.taken[0] + 1e-9 else 0.0)
 
     def holds(self, at: Size, size: Size) -> bool:
-        """Whether a box fits there; `at`: its upper left corner, from the left and down from the upper edge."""
+        """Return True if a box fits with its upper left corner at `at` (from the left, and down from the top)."""
         right, low = at[0] + size[0], at[1] + size[1]
         return right <= self.width + 1e-9 and low <= self.depth(at[0], right) + 1e-9
 
@@ -45,16 +45,23 @@ class PackingField:
 def pack_boxes(
     sizes: Sequence[Size], field: PackingField, *, led: bool = False, tidy: bool = False
 ) -> list[Size] | None:
-    """Upper left corners of the boxes, from the left and down from the upper edge; None where they were not fitted.
+    """Pack boxes into a field.
 
-    led: the first box is in the upper left corner. tidy: none stands before an earlier one.
+    Args:
+        sizes: Widths and heights.
+        field: The field.
+        led: Keep the first box in the upper left corner.
+        tidy: Let no box lie both above and to the left of an earlier one.
+
+    Returns:
+        Upper left corners (from the left, and down from the top), or None if no packing was found.
     """
     found = _packings(sizes, field, RANDOM_ORDERS, led=led, tidy=tidy)
     return next((places for places in found if not tidy or not _count_out_of_order(places)), None)
 
 
 def arrange_boxes(sizes: Sequence[Size], field: PackingField) -> list[Size] | None:
-    """The same, so that a reader who goes right and down meets the boxes about as they come."""
+    """Pack boxes so that they are met about in order when reading to the right and down; None if impossible."""
     for led in (True, False):
         found = [
             places for tidy in (True, False) for places in _packings(sizes, field, THOROUGH_ORDERS, led=led, tidy=tidy)
@@ -65,7 +72,7 @@ def arrange_boxes(sizes: Sequence[Size], field: PackingField) -> list[Size] | No
 
 
 def _packings(sizes: Sequence[Size], field: PackingField, mixed: int, *, led: bool, tidy: bool) -> Iterator[list[Size]]:
-    """Arrangements that fit; mixed: in how many orders by chance the boxes are tried too; tidy: orders near theirs."""
+    """Yield packings that fit; `mixed` is the number of random orders, with `tidy` close to the given order."""
     if sum(width * height for width, height in sizes) > field.area:
         return
     turned = PackingField(field.height, field.width, field.taken[::-1])
@@ -79,12 +86,12 @@ def _packings(sizes: Sequence[Size], field: PackingField, mixed: int, *, led: bo
 
 
 def _count_out_of_order(places: Sequence[Size]) -> int:
-    """How many boxes begin both farther up and farther to the left than one that comes earlier."""
+    """Count pairs of boxes of which the later one lies both above and to the left of the earlier one."""
     return sum(late[0] <= early[0] and late[1] <= early[1] for early, late in combinations(places, 2))
 
 
 def _disorder(places: Sequence[Size], sizes: Sequence[Size], field: PackingField) -> float:
-    """By how much boxes stand before those that come earlier, the more so the earlier, on the way right and down."""
+    """Return how much boxes precede earlier ones on the way right and down, weighted by the distance in order."""
     middles = [
         (x + width / 2) / field.width + (y + height / 2) / field.height
         for (x, y), (width, height) in zip(places, sizes, strict=True)
@@ -95,7 +102,7 @@ def _disorder(places: Sequence[Size], sizes: Sequence[Size], field: PackingField
 
 
 def _orders(sizes: Sequence[Size], mixed: int, kept: int, *, tidy: bool) -> Iterator[Sequence[int]]:
-    """Orders in which boxes are put down: as they come, then the large ones first; `kept`: that many stay first."""
+    """Yield orders for placing boxes: as given, then large ones first, then random; the first `kept` stay first."""
     every = range(len(sizes))
     first, rest, chance = every[:kept], every[kept:], Random(len(sizes))
     yield every
@@ -116,7 +123,7 @@ def _orders(sizes: Sequence[Size], mixed: int, kept: int, *, tidy: bool) -> Iter
 
 
 def _place_in_order(sizes: Sequence[Size], order: Sequence[int], field: PackingField) -> list[Size] | None:
-    """Each box as far up as it goes, then as far left; the skyline says how far down the boxes so far reach."""
+    """Place each box as far up, then as far left as possible; the skyline is the lower edge of those placed."""
     skyline: list[SkylineStep] = [(0.0, field.width, 0.0)]
     places = [(0.0, 0.0)] * len(sizes)
     for k in order:
@@ -137,7 +144,7 @@ def _place_in_order(sizes: Sequence[Size], order: Sequence[int], field: PackingF
 
 
 def _skyline_top(skyline: Sequence[SkylineStep], number: int, end: float, most: float) -> float:
-    """How far down a box begins that stands from the left end of a step to here; what is not less than most is most."""
+    """Return the top of a box from the left end of a skyline step to `end`; `most` if it would not be higher."""
     begin, top = skyline[number][0] + 1e-9, 0.0
     for left, right, down in islice(skyline, number, None):
         if left >= end - 1e-9:
@@ -150,7 +157,7 @@ def _skyline_top(skyline: Sequence[SkylineStep], number: int, end: float, most: 
 
 
 def _lower_skyline(skyline: Sequence[SkylineStep], start: float, end: float, down: float) -> list[SkylineStep]:
-    """The skyline with a box under which it goes down to here."""
+    """Return the skyline after placing a box whose lower edge is at `down`."""
     found: list[SkylineStep] = []
     for left, right, depth in skyline:
         if left < start - 1e-9:
@@ -163,9 +170,9 @@ def _lower_skyline(skyline: Sequence[SkylineStep], start: float, end: float, dow
 
 
 def spread_boxes(places: Sequence[Size], sizes: Sequence[Size], field: PackingField) -> list[Size]:
-    """The same arrangement with the free room shared out: first across, then down.
+    """Distribute the free space of an arrangement, first horizontally, then vertically.
 
-    Distances of the corners grow all by one factor, so boxes that did not overlap do not afterwards.
+    All corners are scaled by one factor, so boxes that did not overlap still do not.
     """
     for axis in (0, 1):
         low, high = 1.0, 4.0
@@ -194,7 +201,7 @@ SMALL_LETTERS, USUAL_LETTERS, LARGE_LETTERS = 2.8, 3.5, 5.0  # mm: sizes of lett
 
 @dataclass(frozen=True)
 class TitleBlockTexts:
-    """What is written into the block of one sheet; number: which of `count` it is."""
+    """Texts of the title block of sheet `number` of `count`."""
 
     texts: SheetTexts
     title: str
@@ -204,18 +211,18 @@ class TitleBlockTexts:
 
 
 def sheet_frame(paper: tuple[float, float]) -> LineMark:
-    """The frame of the field."""
+    """Return the frame of a sheet as a mark."""
     low, high = frame_corners(paper)
     return _rectangle(low, high)
 
 
 def frame_corners(paper: tuple[float, float]) -> tuple[complex, complex]:
-    """Corners of the field within the frame."""
+    """Return the lower left and upper right corners of the frame."""
     return complex(LEFT_MARGIN, OTHER_MARGIN), complex(paper[0] - OTHER_MARGIN, paper[1] - OTHER_MARGIN)
 
 
 def title_block(titles: TitleBlockTexts, corner: complex) -> Iterable[Mark]:
-    """The block, its lower right corner here."""
+    """Return the marks of the title block, its lower right corner at `corner`."""
     kind = titles.texts.block
     low = corner - TITLE_BLOCK_SIZES[kind][0]
     marks = _gost_block(titles) if kind == "gost" else _plain_block(titles)
@@ -288,6 +295,6 @@ def _rectangle(low: complex, high: complex) -> LineMark:
 
 
 def _ruled_lines(axis: str, every: Sequence[tuple[float, float, float]], width: float) -> list[LineMark]:
-    """Lines at a distance along one axis, from and to along the other."""
+    """Return ruling lines at positions along one axis (at, from, to) of the given width."""
     ends = [(complex(at, a), complex(at, b)) if axis == "x" else (complex(a, at), complex(b, at)) for at, a, b in every]
     return [LineMark(pair, DARK_COLOUR, width, layer="frame", z=8.0) for pair in ends]

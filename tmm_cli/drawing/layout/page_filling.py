@@ -1,4 +1,4 @@
-"""How large the drawings of a sheet are made: at round scales, in their usual proportion, as large as fits."""
+"""Sizes of the drawings of a large sheet, and their distribution over pages: round scales, as large as fits."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ MOST_PARTITIONS = 2000  # with more possible ways none is tried
 
 @dataclass(frozen=True)
 class SheetPiece:
-    """A drawing; the room (mm, its longest side) that is usual for it, the least and the largest."""
+    """A drawing with the usual, the least and the largest room (mm, longest side) for it."""
 
     drawn: SheetPicture
     usual: float
@@ -54,20 +54,20 @@ class SheetPiece:
 
     @property
     def length(self) -> float:
-        """The longest side of the figure, SI; none where there is no scale."""
+        """Longest side of the figure in SI units; 0 if it is not to scale."""
         longest = max(self.drawn.figure or (0.0,))
         return longest * self.drawn.mu if longest > POINT_SIZE and self.drawn.mu else 0.0
 
     def fitted(self, room: float) -> float:
-        """What a drawing takes of a room (mm): at a round scale its figure is shorter."""
+        """Return the length (mm) that the drawing takes in a room; at a round scale it is shorter than the room."""
         return self.length / round_scale(self.length, 0.0, room, room) if self.length else room
 
     def about(self, room: float) -> float:
-        """The same, a little larger than the room where the round scale wants that."""
+        """Return the length (mm) at the round scale nearest to the room, which may exceed it slightly."""
         return self.fitted(ROOM_TOLERANCE * room) if self.length else room
 
     def larger(self, room: float) -> float:
-        """The next room in which it becomes larger."""
+        """Return the next room (mm) in which the drawing becomes larger."""
         if not self.length:
             return GROWTH_STEP * room
         return next(
@@ -77,7 +77,7 @@ class SheetPiece:
         )
 
     def size(self, room: float) -> Size:
-        """Its size (mm) in another room: letters stay as large as they are."""
+        """Return width and height (mm) in another room; letters keep their size."""
         (width, height), figure, factor = self.drawn.paper, self.drawn.figure, room / (self.drawn.longest or 1.0)
         if figure is None:
             return width * factor, height * factor
@@ -88,10 +88,18 @@ Page = list[int]  # numbers of pieces
 
 
 def initial_rooms(pieces: Sequence[SheetPiece], field: PackingField, shrunk: float) -> tuple[list[float], list[Page]]:
-    """A room for each piece, and which pieces stand on which page.
+    """Choose a room for each piece and distribute the pieces over as few pages as possible at a legible size.
 
-    shrunk: of the usual sizes, what suits the format. As few pages as hold everything in a legible size. Raises
-    ProblemError where the format is too small.
+    Args:
+        pieces: The drawings.
+        field: Field of a page.
+        shrunk: Size of the paper relative to A1.
+
+    Returns:
+        Rooms (mm), and for each page the numbers of its pieces.
+
+    Raises:
+        ProblemError: The paper is too small.
     """
     few, found = MOST_PAGES, None
     for share in size_shares():
@@ -109,7 +117,7 @@ def initial_rooms(pieces: Sequence[SheetPiece], field: PackingField, shrunk: flo
 def shrink_rooms(
     pieces: Sequence[SheetPiece], rooms: Sequence[float], share: float, which: Container[int]
 ) -> list[float]:
-    """Rooms so much smaller for these pieces, but not below their least."""
+    """Multiply the rooms of the pieces in `which` by `share`, but not below their least rooms."""
     return [
         piece.fitted(max(share * room, min(room, piece.least))) if k in which else room
         for k, (piece, room) in enumerate(zip(pieces, rooms, strict=True))
@@ -117,24 +125,27 @@ def shrink_rooms(
 
 
 def size_shares() -> Iterator[float]:
-    """Of the usual size, from what is more to what is hardly legible."""
+    """Yield shares of the usual size, from larger than usual to hardly legible."""
     yield from (1.3 * 0.95**k for k in range(SIZES_TRIED))
 
 
 def sizes_in_rooms(pieces: Sequence[SheetPiece], rooms: Sequence[float]) -> list[Size]:
-    """The sizes of the pieces in these rooms."""
+    """Return the sizes of the pieces in these rooms."""
     return [piece.size(room) for piece, room in zip(pieces, rooms, strict=True)]
 
 
 def add_gaps(sizes: Sequence[Size], page: Page) -> list[Size]:
-    """Sizes of these pieces with the gap that each has to its right and below it."""
+    """Return the sizes of the pieces of a page, each with the gap to its right and below it."""
     return [(sizes[k][0] + DRAWING_GAP, sizes[k][1] + DRAWING_GAP) for k in page]
 
 
 def fill_pages(sizes: Sequence[Size], field: PackingField) -> list[Page] | None:
-    """As few pages as hold the pieces, about equally full; None where a piece alone does not fit.
+    """Distribute pieces over as few pages as possible, about equally full.
 
-    The pieces stay in their order unless fewer pages hold them where some stand earlier.
+    The order is kept unless fewer pages suffice when some pieces move to earlier pages.
+
+    Returns:
+        Numbers of the pieces of each page, or None if a piece alone does not fit.
     """
     fewest, back = _fill_in_order(sizes, field, math.inf), False
     if fewest is None or len(fewest) < 2:
@@ -146,7 +157,7 @@ def fill_pages(sizes: Sequence[Size], field: PackingField) -> list[Page] | None:
 
 
 def _fill_evenly(sizes: Sequence[Size], field: PackingField, count: int, *, back: bool) -> list[Page] | None:
-    """So many pages, of which none is much fuller than it must be."""
+    """Distribute pieces over `count` pages, none of them much fuller than necessary."""
     most = page_area(sizes, [*range(len(sizes))]) / count
     while True:
         pages = _fill_in_order(sizes, field, most, back=back)
@@ -156,7 +167,7 @@ def _fill_evenly(sizes: Sequence[Size], field: PackingField, count: int, *, back
 
 
 def page_partitions(sizes: Sequence[Size], pages: list[Page], field: PackingField) -> Iterator[list[Page]]:
-    """These pages, then as many others: in the order of the pieces, the most even ones first, then in another one."""
+    """Yield these pages, then other partitions into as many pages: in order, the most even first, then mixed."""
     yield pages
     every, count = range(len(sizes)), len(pages)
     if count < 2 or math.comb(len(sizes) - 1, count - 1) > MOST_PARTITIONS:
@@ -177,19 +188,19 @@ def page_partitions(sizes: Sequence[Size], pages: list[Page], field: PackingFiel
 
 
 def evenest_pages(sizes: Sequence[Size], pages: list[Page], field: PackingField) -> list[Page]:
-    """So many pages, of which the emptiest one is as full as can be."""
+    """Return the partition into as many pages whose emptiest page is fullest."""
     return max(
         page_partitions(sizes, pages, field), key=lambda way: min((page_area(sizes, page) for page in way), default=0.0)
     )
 
 
 def page_area(sizes: Sequence[Size], page: Page) -> float:
-    """What the pieces of a page take, mm²."""
+    """Return the area (mm²) of the pieces of a page."""
     return sum(sizes[k][0] * sizes[k][1] for k in page)
 
 
 def _fill_in_order(sizes: Sequence[Size], field: PackingField, most: float, *, back: bool = False) -> list[Page] | None:
-    """Pages filled one after the other, each with no more than so much; back: what follows may be on earlier ones."""
+    """Fill pages up to an area of `most` mm² each; with `back`, later pieces may go to earlier pages."""
     pages: list[Page] = []
     for number in range(len(sizes)):
         for page in pages if back else pages[-1:]:
@@ -207,11 +218,11 @@ def _fill_in_order(sizes: Sequence[Size], field: PackingField, most: float, *, b
 def share_out_pages(
     pieces: Sequence[SheetPiece], given: Sequence[float], pages: list[Page], field: PackingField, shrunk: float
 ) -> tuple[list[float], list[Page]]:
-    """Larger rooms, and so many pages as there are, shared out so that the emptiest one is as full as can be."""
+    """Enlarge rooms and repartition the pieces so that the emptiest page is as full as possible."""
     best, most = (list(given), pages), -1.0
 
     def better(found: Iterable[list[Page]], enough: float) -> bool:
-        """Whether the emptiest page became fuller in one of these ways."""
+        """Return True if one of these partitions has a fuller emptiest page."""
         nonlocal best, most
         before = most
         for way in found:
@@ -233,7 +244,7 @@ def share_out_pages(
 
 
 def pages_with_moved_piece(sizes: Sequence[Size], pages: list[Page], field: PackingField) -> Iterator[list[Page]]:
-    """Pages where the emptiest one has one piece more from another one, perhaps in exchange for one of its own."""
+    """Yield partitions in which the emptiest page gets a piece of another page, or exchanges one with it."""
     thin = min(range(len(pages)), key=lambda number: page_area(sizes, pages[number]), default=0)
     for other, page in enumerate(pages):
         for piece, back in product(page if other != thin else (), (None, *pages[thin])):
@@ -245,14 +256,14 @@ def pages_with_moved_piece(sizes: Sequence[Size], pages: list[Page], field: Pack
 
 
 def packs_in_order(sizes: Sequence[Size], page: Page, field: PackingField) -> bool:
-    """Whether the pieces of a page can stand in their order, the first one in its corner."""
+    """Return True if the pieces of a page can be packed in order, the first one in the upper left corner."""
     return pack_boxes(add_gaps(sizes, page), field, led=True, tidy=True) is not None
 
 
 def tidier_rooms(
     pieces: Sequence[SheetPiece], given: Sequence[float], page: Page, field: PackingField
 ) -> Iterator[list[float]]:
-    """Rooms in which a drawing or two, or all tables, are so much smaller that the page is in order and full enough."""
+    """Yield rooms with one or two drawings, or all tables, reduced so that the page packs in order and stays full."""
     tables = [k for k in page if pieces[k].letters]
     single = [tables, *([k] for k in page if k not in tables)]
     for share, which in product(SHRINK_SHARES, [*single, *([*a, *b] for a, b in combinations(single, 2))]):
@@ -265,10 +276,10 @@ def tidier_rooms(
 def grow_rooms(
     pieces: Sequence[SheetPiece], given: Sequence[float], pages: Sequence[Page], field: PackingField, shrunk: float
 ) -> list[float]:
-    """Larger rooms while all fits on its page, first for those pieces that are farthest below their usual size.
+    """Enlarge rooms as long as every page holds its pieces, those farthest below their usual size first.
 
-    The pieces stay in their order and the first one in the corner, unless too much of the page were left empty for
-    that. Letters of tables stay about alike.
+    Pieces keep their order and the first one its corner, unless that would leave too much of the page empty. Letters
+    of tables stay about equal.
     """
     rooms = list(given)
     for page, (led, tidy, enough) in product(pages, PACKING_RULES):
@@ -289,12 +300,12 @@ def grow_rooms(
 
 
 def equalize_letters(pieces: Sequence[SheetPiece], rooms: Sequence[float], page: Page) -> list[float]:
-    """The rooms with those of a page's tables made smaller whose letters are larger than those of another one."""
+    """Reduce the tables of a page whose letters are larger than those of the others."""
     return [min(room, letter_limit(pieces, rooms, page, k)) if k in page else room for k, room in enumerate(rooms)]
 
 
 def letter_limit(pieces: Sequence[SheetPiece], rooms: Sequence[float], page: Page, number: int) -> float:
-    """The largest room for a piece beside tables, if it is one: its letters are hardly larger than theirs."""
+    """Return the largest room of a table next to other tables, so that its letters are hardly larger; else inf."""
     if not pieces[number].letters:
         return math.inf
     others = [rooms[k] / pieces[k].usual for k in page if pieces[k].letters and k != number]

@@ -1,4 +1,4 @@
-"""Tables as drawings: words and numbers in ruled cells, folded into parts beside one another where they are long."""
+"""Tables of values as drawings: ruled cells, long tables folded into parts side by side."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ WIDEST_TEXT = 24.0  # of the size: a longer text is cut
 def draw_table(
     title: str, heads: Sequence[Words], rows: Sequence[Sequence[Words]], notes: Sequence[str] = ()
 ) -> SheetPicture:
-    """A table, its letters as large as the room lets them be."""
+    """Draw a table with letters as large as its room allows."""
     cells = [
         [cut_text(one, 1.0, WIDEST_TEXT) if isinstance(one, str) else one for one in row] for row in (heads, *rows)
     ]
@@ -79,7 +79,7 @@ def draw_table(
 
 
 def _draw_table_part(cells: Sequence[Sequence[Words]], columns: Sequence[float], size: float) -> list[Mark]:
-    """Rows below one another, the heads first; words begin at the left, numbers end at the right."""
+    """Draw the heads and some rows; words are aligned left, numbers right."""
     row, wide = ROW_HEIGHT * size, sum(columns)
     edges = [sum(columns[:k]) for k in range(len(columns) + 1)]
     high = [-row * k for k in range(len(cells) + 1)]
@@ -127,7 +127,7 @@ QuantityColumn = tuple[str | Symbol, Any, Dimension]
 
 
 def draw_structure_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
-    """Links and kinematic pairs."""
+    """Yield the tables of links and of kinematic pairs."""
     for found in walk(results, ("links", "pairs")):
         rows = [[str(column.values[k]) for column in found.columns] for k in range(found.rows)]
         yield (
@@ -137,7 +137,7 @@ def draw_structure_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
 
 
 def draw_motion_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
-    """Speeds, then accelerations, of all points and links in all positions."""
+    """Yield tables of the speeds, then of the accelerations, of all points and links in all positions."""
     motion, linkage = results.motion, results.linkage
     assert motion is not None
     points = {name: motion.named(name) for name in linkage.moving_points}
@@ -157,7 +157,7 @@ def draw_motion_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
 
 
 def draw_balance_table(results: Results) -> Iterator[tuple[str, Drawing]]:
-    """What balances the drivers in all positions, by both ways."""
+    """Yield the table of balancing moments or forces in all positions, by force plans and Zhukovsky lever."""
     reactions, lever = results.reactions, results.lever
     if reactions is None or lever is None:
         return
@@ -176,7 +176,7 @@ def draw_balance_table(results: Results) -> Iterator[tuple[str, Drawing]]:
 
 
 def table_over_positions(results: Results, title: str, columns: Sequence[QuantityColumn]) -> Drawing:
-    """A row a position, angles of the driver first."""
+    """Draw a table with a row for each position; the driver coordinate is the first quantity."""
     units, motion = results.problem.units, results.motion
     assert motion is not None
     crank = results.linkage.driver.kind == "turn"
@@ -192,7 +192,7 @@ def table_over_positions(results: Results, title: str, columns: Sequence[Quantit
 
 
 def draw_forces_table(here: Position) -> Iterator[tuple[str, Drawing]]:
-    """Sizes of all forces with their angles from x, and moments, at a position."""
+    """Yield the table of all forces (magnitude, angle from x) and moments at a position."""
     results, k = here.results, here.k
     reactions, units = results.reactions, results.problem.units
     if reactions is None:
@@ -219,7 +219,7 @@ def draw_forces_table(here: Position) -> Iterator[tuple[str, Drawing]]:
 
 
 def _polar_cells(force: complex, largest: float, units: UnitSystem) -> tuple[str, str]:
-    """Size, and angle within a turn; a force that is only rounding has none."""
+    """Format magnitude and angle (0 to 360°) of a force; one below the rounding error is "0" without an angle."""
     if not abs(force) > NO_FORCE * largest:
         return "0", "-"
     angle = round(math.degrees(math.atan2(force.imag, force.real)), 1) % 360
@@ -227,7 +227,7 @@ def _polar_cells(force: complex, largest: float, units: UnitSystem) -> tuple[str
 
 
 def format_column(values: Any, dimension: Dimension, units: UnitSystem, rows: Iterable[int]) -> list[str]:
-    """Values (SI) in the units of the file, all with the decimals that the largest one needs; a dash where none is."""
+    """Format values (SI) in the units of the file, with the decimals of the largest; "-" for undefined ones."""
     shown = np.broadcast_to(np.asarray(values, float), (max(np.size(values), 1),)) / units.factor(dimension)
     picked = np.array([shown[k if len(shown) > 1 else 0] for k in rows])
     known = shown[np.isfinite(shown)]
@@ -248,7 +248,7 @@ def format_column(values: Any, dimension: Dimension, units: UnitSystem, rows: It
 
 
 def draw_law_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
-    """What was found, then the machine reduced to its driver and its law of motion in all positions."""
+    """Yield the table of results of dynamics, then that of the law of motion in all positions."""
     running = results.steady
     if running is None or results.motion is None:
         return

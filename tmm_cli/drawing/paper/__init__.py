@@ -1,4 +1,7 @@
-"""What goes on paper: the record of a drawing, texts, labels, blocks, charts, dimension lines. Knows no mechanism."""
+"""Drawing on paper: record of a drawing, texts, labels, note blocks, charts, dimension lines.
+
+Independent of mechanisms.
+"""
 
 from tmm_cli.interfaces import lazy
 

@@ -1,4 +1,4 @@
-"""Blocks of notes and tables on a sheet, and where there is room for them."""
+"""Blocks of notes and tables on a sheet, and the choice of scale and position that leaves room for them."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ MOST_PARTS = 4  # of one table side by side, at most
 
 @dataclass(frozen=True)
 class TableRow:
-    """Cells of a row of a table; `head`: they are titles of columns."""
+    """Cells of a table row; `head` marks a row of column titles."""
 
     cells: tuple[Words, ...]
     head: bool = False
@@ -35,7 +35,7 @@ class TableRow:
 
 @dataclass(frozen=True)
 class BlockText:
-    """A text of a block; `at`: its left or right end, off the block's lower left corner, mm."""
+    """Text of a block; `at` is its left or right end, relative to the lower left corner of the block (mm)."""
 
     at: complex
     words: Words
@@ -46,7 +46,7 @@ class BlockText:
 
 @dataclass(frozen=True)
 class BlockShape:
-    """A block in one of its shapes: its size, texts and lines, mm."""
+    """One of the possible layouts of a block: its size, texts and lines (mm)."""
 
     size: complex
     texts: tuple[BlockText, ...]
@@ -55,14 +55,14 @@ class BlockShape:
 
 @dataclass
 class NoteBlock:
-    """Notes, and a table under them; `numbers`: its last columns, which stand flush right."""
+    """Notes with a table below them; the last `numbers` columns are aligned right."""
 
     notes: list[Words] = field(default_factory=list)
     rows: list[TableRow] = field(default_factory=list)
     numbers: int = 1
 
     def shapes(self) -> Iterator[BlockShape]:
-        """From the highest on; in others the table goes on beside itself."""
+        """Yield possible layouts from the tallest on; in the others the table is split into parts side by side."""
         for parts in range(1, 1 + min(MOST_PARTS, max(1, len(self.rows) // 4))):
             yield self._shape(parts)
 
@@ -103,7 +103,7 @@ class NoteBlock:
 
 
 def split_rows(rows: Sequence[TableRow], parts: int) -> Iterator[list[TableRow]]:
-    """Rows in parts about equally long; titles are repeated above what goes on beside."""
+    """Split rows into parts of about equal length; the last column titles are repeated at the top of each part."""
     each = math.ceil(len(rows) / parts)
     head: list[TableRow] = []
     for start in range(0, len(rows), each or 1):
@@ -113,7 +113,7 @@ def split_rows(rows: Sequence[TableRow], parts: int) -> Iterator[list[TableRow]]
 
 
 def block_positions(low: complex, high: complex, size: complex) -> Vector:
-    """Places for a block in a field, of its lower left corner: corners of the field, then along its edges."""
+    """Return candidate positions of the lower left corner of a block: the corners of the field, then its edges."""
     room = high - low - size
     if min(room.real, room.imag) < 0:
         return np.zeros(0, complex)
@@ -128,7 +128,7 @@ def block_positions(low: complex, high: complex, size: complex) -> Vector:
 
 
 def count_covered(crowd: Vector, at: Vector, size: complex, about: Vector | float = BLOCK_CLEARANCE) -> Vector:
-    """How many points of what is drawn a block would cover, or come near (mm), at each place."""
+    """Count the points that a block would cover, or approach within `about` mm, at each candidate position."""
     off = crowd[None, :] - at[:, None] - size / 2
     near = (np.abs(off.real) < size.real / 2 + about) & (np.abs(off.imag) < size.imag / 2 + about)
     found: Vector = np.count_nonzero(near, axis=1)
@@ -136,7 +136,7 @@ def count_covered(crowd: Vector, at: Vector, size: complex, about: Vector | floa
 
 
 def least_covering_block(block: NoteBlock, low: complex, high: complex, crowd: Vector) -> tuple[BlockShape, complex]:
-    """The shape and the place of a block in a field in which it covers the least."""
+    """Return the layout and position of a block in a field at which it covers least."""
     best: tuple[int, BlockShape, complex] | None = None
     for shape in block.shapes():
         places = block_positions(low, high, shape.size)
@@ -151,9 +151,14 @@ def least_covering_block(block: NoteBlock, low: complex, high: complex, crowd: V
 def free_block_position(
     block: NoteBlock, low: complex, high: complex, crowd: Vector, fits: Callable[[float, float], bool]
 ) -> tuple[BlockShape, complex]:
-    """The shape and the place of a block in the box about a drawing where it covers nothing, or below or beside it.
+    """Return a layout and a position at which a block covers nothing: inside the box of a drawing, below or beside it.
 
-    fits: whether there is room for a drawing of this width and height (mm).
+    Args:
+        block: The block.
+        low: Lower left corner of the drawing, mm.
+        high: Upper right corner of the drawing, mm.
+        crowd: Points of the drawing, mm.
+        fits: Returns True if the sheet holds a drawing of this width and height (mm).
     """
     found: list[tuple[bool, float, BlockShape, complex]] = []
     for shape in block.shapes():
@@ -189,14 +194,14 @@ LINE_POINTS = 40  # points that stand for a line
 
 @dataclass
 class FigureExtent:
-    """What goes on a sheet: places (SI), how far (mm) it is off them, and the room (mm) that it needs about it."""
+    """Points of a figure (SI), their offsets on paper (mm), and the clearance about each (mm)."""
 
     places: list[Vector] = field(default_factory=list)
     off: list[Vector] = field(default_factory=list)
     about: list[Vector] = field(default_factory=list)
 
     def spots(self, places: Sequence[complex] | Vector, about: float, off: complex = 0j) -> None:
-        """Places (SI), those that are finite."""
+        """Add the finite ones of these points (SI), with a clearance and an offset (mm)."""
         found = np.asarray(places, complex)
         found = found[np.isfinite(found)]
         self.places.append(found)
@@ -204,15 +209,15 @@ class FigureExtent:
         self.about.append(np.full(len(found), about))
 
     def line(self, start: complex, end: complex, about: float, off: complex = 0j) -> None:
-        """A straight line between places (SI)."""
+        """Add a straight line between two points (SI)."""
         self.spots(start + (end - start) * np.linspace(0, 1, LINE_POINTS), about, off)
 
 
 @dataclass(frozen=True)
 class PaperLayout:
-    """paper (mm), SI a millimetre, where zero is on the paper (mm).
+    """Paper size (mm), scale (SI units per mm) and position of the origin on the paper (mm).
 
-    figure: width and height of what is to scale there, mm; free: it is there without a scale.
+    figure: width and height of the part to scale (mm); free: the drawing has no scale.
     """
 
     paper: tuple[float, float]
@@ -223,7 +228,16 @@ class PaperLayout:
 
 
 def choose_scale(figure: FigureExtent, block: NoteBlock, also: Sequence[float] = ()) -> PaperLayout:
-    """The largest round scale, or one of `also`, at which the figure fits and the block covers nothing of it."""
+    """Choose paper and the largest round scale at which the figure fits and the block covers nothing of it.
+
+    Args:
+        figure: Points and clearances of the figure.
+        block: Notes and table that need room on the sheet.
+        also: Further scales (SI units per mm) that are allowed.
+
+    Returns:
+        Paper, scale and origin. On a large sheet the scale follows from the room there.
+    """
     places, off, about = (np.concatenate(part) for part in (figure.places, figure.off, figure.about))
     if on_large_sheet():
         return _tight_layout(places, off, about)
@@ -251,7 +265,7 @@ def choose_scale(figure: FigureExtent, block: NoteBlock, also: Sequence[float] =
 
 
 def _tight_layout(places: Vector, off: Vector, about: Vector) -> PaperLayout:
-    """At the scale that a large sheet gives, on a paper no larger than the figure; blocks find their place there."""
+    """Return the layout at the scale of a large sheet, on paper no larger than the figure."""
     longest = longest_for(max(LANDSCAPE))
     __, across, up, ___ = extent(places.tolist())
     mu = round_scale(across, up, longest, longest)
@@ -266,7 +280,14 @@ def _tight_layout(places: Vector, off: Vector, about: Vector) -> PaperLayout:
 def scaleless_layout(
     places: Sequence[complex], pad: float, least: float, below: Callable[[float], float] = lambda width: 0
 ) -> PaperLayout:
-    """For places (SI) that are put on a large sheet without a scale; below: what (mm) is free there at its width."""
+    """Return the layout of a drawing without scale on a large sheet.
+
+    Args:
+        places: Points of the drawing.
+        pad: Clearance about them, mm.
+        least: Least width of the paper, mm.
+        below: Height (mm) to be kept free below the drawing, as a function of the width.
+    """
     size, across, up, __ = extent(list(places) or [0j])
     factor = longest_for(max(LANDSCAPE)) / (size or 1.0)
     low, high = drawing_area((0.0, 0.0))
@@ -276,7 +297,7 @@ def scaleless_layout(
 
 
 def round_scales(size: float, also: Sequence[float]) -> Iterator[float]:
-    """Round scales (SI a millimetre) for a figure of this size (SI), from one at which it fits on no sheet on."""
+    """Yield round scales (SI units per mm) in ascending order, from one at which the figure fits on no sheet."""
     least = size / max(LANDSCAPE)
     power = math.floor(math.log10(least)) if least > 0 and math.isfinite(least) else 0
     for n in count(power):

@@ -1,4 +1,4 @@
-"""The convex hull of places on paper."""
+"""Plane geometry on paper: convex hull, axis-parallel boxes, distances to segments."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 
 def convex_hull(places: list[complex]) -> list[complex]:
-    """The convex hull; the two ends when all lie on a line."""
+    """Return the corners of the convex hull; only the two ends if all points are collinear."""
     places = list(dict.fromkeys(complex(round(p.real, 6), round(p.imag, 6)) for p in places if np.isfinite(p)))
     if len(places) < 3:
         return places or [complex(np.nan, np.nan)]
@@ -37,36 +37,36 @@ LEAST_STEP = 1e-12  # mm, in the place of no way at all along an axis
 
 
 def box_about(middle: complex, width: float, height: float) -> Box:
-    """The box about its middle."""
+    """Return the box with this centre, width and height."""
     return middle.real - width / 2, middle.real + width / 2, middle.imag - height / 2, middle.imag + height / 2
 
 
 def boxes_about(middles: NDArray[Any], width: float | NDArray[Any], height: float | NDArray[Any]) -> Boxes:
-    """Boxes about their middles, of one size or each of its own."""
+    """Return boxes with these centres, shape (boxes, 4); width and height may differ from box to box."""
     x, y = middles.real, middles.imag
     return np.stack([x - width / 2, x + width / 2, y - height / 2, y + height / 2], axis=1)
 
 
 def widen(boxes: Boxes, air: float) -> Boxes:
-    """Boxes with so much air about them."""
+    """Return the boxes enlarged by `air` on every side."""
     return boxes + air * np.array([-1, 1, -1, 1])
 
 
 def text_squares(middle: complex, along: complex, width: float, height: float) -> list[complex]:
-    """Middles of squares that hold a text along a unit vector, side by side, as large as it is high."""
+    """Return centres of squares that together cover a text of this width and height along a unit vector."""
     reach = max(width - height, 0.0) / 2
     return [middle + share * reach * along for share in np.linspace(-1, 1, max(2, math.ceil(width / height)))]
 
 
 def nearest_in_boxes(boxes: Boxes, places: NDArray[Any]) -> NDArray[Any]:
-    """The place of each box that is nearest to its own one of other places."""
+    """Return the point of each box that is nearest to the corresponding one of `places`."""
     left, right, low, high = boxes.T
     found: NDArray[Any] = np.clip(places.real, left, right) + 1j * np.clip(places.imag, low, high)
     return found
 
 
 def box_distances(boxes: Boxes, places: Sequence[complex] | NDArray[Any]) -> NDArray[Any]:
-    """How far each place is from each box: (box, place)."""
+    """Return the distance of every point from every box, shape (boxes, points)."""
     z, (left, right, low, high) = np.asarray(places, complex), boxes.T[:, :, None]
     across = np.maximum(np.maximum(left - z.real, z.real - right), 0)
     found: NDArray[Any] = np.hypot(across, np.maximum(np.maximum(low - z.imag, z.imag - high), 0))
@@ -74,7 +74,7 @@ def box_distances(boxes: Boxes, places: Sequence[complex] | NDArray[Any]) -> NDA
 
 
 def lengths_inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> NDArray[Any]:
-    """How long each straight line is inside each box: (box, line)."""
+    """Return the length of every segment inside every box, shape (boxes, segments)."""
     if not len(boxes) or not len(starts):
         return np.zeros((len(boxes), len(starts)))
     first, last = shares_inside(boxes, starts, ends)
@@ -83,7 +83,7 @@ def lengths_inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> ND
 
 
 def shares_inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Shares of each straight line at which it comes into each box and leaves it (before, where it never does)."""
+    """Return the parameters (0 to 1) at which every segment enters and leaves every box; exit < entry if it misses."""
     way = ends - starts
     left, right, low, high = boxes.T[:, :, None]
     first: Any = 0.0
@@ -96,7 +96,7 @@ def shares_inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> tup
 
 
 def stretches_outside(places: Sequence[complex], boxes: Boxes) -> Iterator[tuple[complex, ...]]:
-    """Stretches of a polyline that are in none of the boxes."""
+    """Yield the parts of a polyline that lie in none of the boxes."""
     z = np.asarray(places, complex)
     left, right, low, high = boxes.T
     across, up = (left < z.real.max()) & (right > z.real.min()), (low < z.imag.max()) & (high > z.imag.min())
@@ -122,7 +122,7 @@ def stretches_outside(places: Sequence[complex], boxes: Boxes) -> Iterator[tuple
 
 
 def segments_cross(starts: NDArray[Any], ends: NDArray[Any], firsts: NDArray[Any], lasts: NDArray[Any]) -> NDArray[Any]:
-    """Whether each straight line crosses each of others: (line, other)."""
+    """Return whether each segment crosses each of the other ones, shape (segments, others)."""
     way, other = (ends - starts)[:, None], lasts - firsts
 
     def side(along: NDArray[Any], off: NDArray[Any]) -> NDArray[Any]:
@@ -136,7 +136,7 @@ def segments_cross(starts: NDArray[Any], ends: NDArray[Any], firsts: NDArray[Any
 
 
 def shared_areas(boxes: Boxes, others: Boxes) -> NDArray[Any]:
-    """The area that each box shares with each other one, mm²."""
+    """Return the area (mm²) that each box shares with each of the others, shape (boxes, others)."""
     left, right, low, high = boxes.T[:, :, None]
     across = np.minimum(right, others[:, 1]) - np.maximum(left, others[:, 0])
     up = np.minimum(high, others[:, 3]) - np.maximum(low, others[:, 2])
@@ -145,14 +145,14 @@ def shared_areas(boxes: Boxes, others: Boxes) -> NDArray[Any]:
 
 
 def distance_to_segment(place: complex, start: complex, end: complex) -> float:
-    """How far a place is from a stretch of a line."""
+    """Return the distance of a point from a line segment."""
     span = end - start
     share = ((place - start) * span.conjugate()).real / (abs(span) ** 2 or 1.0)
     return abs(place - start - min(max(share, 0.0), 1.0) * span)
 
 
 def distances_to_segments(places: NDArray[Any], starts: NDArray[Any], ends: NDArray[Any]) -> NDArray[Any]:
-    """How far each place is from each stretch of a line: (place, line)."""
+    """Return the distance of every point from every line segment, shape (points, segments)."""
     span, off = ends - starts, places[:, None] - starts
     share = np.clip((off * span.conj()).real / np.maximum(np.abs(span) ** 2, LEAST_STEP), 0, 1)
     found: NDArray[Any] = np.abs(off - share * span)

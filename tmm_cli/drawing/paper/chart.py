@@ -1,4 +1,4 @@
-"""Axes of charts: from values to millimetres of paper at a round scale, and the round numbers that stand on them."""
+"""Charts: axes at round scales with round numbers, panels above one another, curves, legends, numbers of positions."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ MOST_DECADES = 12  # most of them on a logarithmic axis; what is smaller stands 
 
 @dataclass(frozen=True)
 class ChartAxis:
-    """Values from `low` on, `mu` of them a millimetre, `length` mm from `start` on; of a logarithmic one powers of ten.
+    """An axis from value `low`, with `mu` units per mm, `length` mm long, beginning at `start` mm.
 
-    degrees: its round numbers are those of angles.
+    A logarithmic axis counts powers of ten. degrees: its round numbers are those of angles.
     """
 
     low: float
@@ -50,11 +50,11 @@ class ChartAxis:
 
     @property
     def end(self) -> float:
-        """Where it ends, mm."""
+        """End of the axis, mm."""
         return self.start + self.length
 
     def on(self, values: Any) -> NDArray[Any]:
-        """Where values stand, mm; values of a logarithmic axis below its end stand at its end."""
+        """Return the positions of values (mm); on a logarithmic axis values below its end are put at the end."""
         found = np.asarray(values, dtype=float)
         if self.logarithmic:
             with np.errstate(divide="ignore", invalid="ignore"):
@@ -62,7 +62,7 @@ class ChartAxis:
         return self.start + (found - self.low) / self.mu
 
     def ticks(self, apart: float) -> list[tuple[float, str]]:
-        """Round values on the axis that stand at least so far apart (mm), and how they are written."""
+        """Return round values at least `apart` mm from each other, with their texts."""
         step = max(1.0, math.ceil(apart * self.mu)) if self.logarithmic else self._step(apart * self.mu)
         first, last = math.ceil(self.low / step - EQUAL_WITHIN), math.floor(self.high / step + EQUAL_WITHIN)
         values = [k * step for k in range(first, last + 1)]
@@ -77,25 +77,25 @@ class ChartAxis:
 
 
 def round_up(least: float, steps: Sequence[float] = ROUND_SCALES) -> float:
-    """The smallest round number that is no smaller."""
+    """Return the smallest round number that is not less than `least`."""
     power = 10.0 ** math.floor(math.log10(least))
     return next(step for step in steps if step * power >= least * (1 - EQUAL_WITHIN)) * power
 
 
 def finite_limits(values: Sequence[Any]) -> tuple[float, float]:
-    """The least and the largest of all values that are finite; 0 and 1 where there are none."""
+    """Return the smallest and the largest finite value; (0, 1) if there is none."""
     every = np.concatenate([np.zeros(0), *(np.ravel(np.asarray(v, dtype=float)) for v in values)])
     every = every[np.isfinite(every)]
     return (float(every.min()), float(every.max())) if every.size else (0.0, 1.0)
 
 
 def filling_axis(low: float, high: float, start: float, length: float) -> ChartAxis:
-    """An axis from a value to another, whatever its scale."""
+    """Return an axis that spans exactly `length` mm, whatever its scale."""
     return ChartAxis(low, (high - low) / length, start, length)
 
 
 def round_axis(low: float, high: float, start: float, most: float, *, degrees: bool = False) -> ChartAxis:
-    """An axis that ends where the values end, at the largest round scale at which it is no longer than `most` mm."""
+    """Return an axis that ends at the last value, at the largest round scale that keeps it within `most` mm."""
     low, high = _widen_range(low, high)
     mu = round_up((high - low) / most, DEGREE_SCALES if degrees else ROUND_SCALES)
     return ChartAxis(low, mu, start, (high - low) / mu, degrees=degrees)
@@ -104,9 +104,10 @@ def round_axis(low: float, high: float, start: float, most: float, *, degrees: b
 def vertical_axis(
     low: float, high: float, start: float, length: float, *, degrees: bool = False, air: float = 2.0
 ) -> ChartAxis:
-    """An axis of this length at a round scale, with the values in it and `air` mm above and below them.
+    """Return an axis of this length at a round scale, with `air` mm above and below the values.
 
-    Zero is on it unless the values lie far from it; where all of them lie on one side it begins, or ends, there.
+    Zero is on it unless the values are far from zero; if all values are on one side of zero, the axis begins or ends
+    there.
     """
     low, high = _widen_range(low, high)
     if max(abs(low), abs(high)) < 2 * (high - low):
@@ -118,7 +119,7 @@ def vertical_axis(
 
 
 def logarithmic_axis(low: float, high: float, start: float, length: float) -> ChartAxis:
-    """A logarithmic axis of whole powers of ten."""
+    """Return a logarithmic axis of whole powers of ten."""
     most = math.ceil(math.log10(high)) if high > 0 else 0
     least = math.floor(math.log10(low)) if low > 0 else most - MOST_DECADES
     least = max(min(least, most - 1), most - MOST_DECADES)
@@ -126,7 +127,7 @@ def logarithmic_axis(low: float, high: float, start: float, length: float) -> Ch
 
 
 def equal_scales(axes: tuple[ChartAxis, ChartAxis], ends: Sequence[tuple[float, float]]) -> tuple[ChartAxis, ChartAxis]:
-    """The two at one round scale at which what lies between these ends stands in the middle of both."""
+    """Return both axes at one round scale, with the ranges `ends` centred on them."""
     spans = [_widen_range(*own) for own in ends]
     mu = round_up(max((high - low) / axis.length for axis, (low, high) in zip(axes, spans, strict=True)))
     one, other = (
@@ -137,7 +138,7 @@ def equal_scales(axes: tuple[ChartAxis, ChartAxis], ends: Sequence[tuple[float, 
 
 
 def _widen_range(low: float, high: float) -> tuple[float, float]:
-    """The same, or round about it where both are one."""
+    """Return the range, or one about its value if both ends coincide."""
     if high - low > EQUAL_WITHIN * max(abs(low), abs(high)):
         return low, high
     half = abs(low) / 2 or 0.5
@@ -162,7 +163,7 @@ LABEL_SAMPLING = 8  # of so many places of a curve one keeps labels off it
 
 @dataclass(frozen=True)
 class ChartCurve:
-    """Values over those of the common axis; those that are not finite interrupt it. dots: drawn as single points."""
+    """A curve over the common axis; non-finite values interrupt it. dots: drawn as separate dots."""
 
     xs: Any
     ys: Any
@@ -175,7 +176,7 @@ class ChartCurve:
 
 @dataclass(frozen=True)
 class CurveJump:
-    """A place of the common axis at which a curve leaps from a value to another, as they are written."""
+    """A jump of a curve at a value of the common axis, from one value to another, with their texts."""
 
     at: float
     values: tuple[float, float]
@@ -185,7 +186,10 @@ class CurveJump:
 
 @dataclass(frozen=True)
 class PlotContent:
-    """What a panel shows. scale: how the scale of its axis is written, from mu; share: of the height."""
+    """Content of a panel.
+
+    scale: returns the text of the scale of its axis for a scale factor; share: relative height of the panel.
+    """
 
     words: str
     curves: Sequence[ChartCurve]
@@ -197,14 +201,14 @@ class PlotContent:
 
     @property
     def legend(self) -> list[ChartCurve]:
-        """Curves that have a name, where it tells anything."""
+        """Named curves; none if the panel has only one curve."""
         named = [curve for curve in self.curves if curve.label]
         return named if len(self.curves) > 1 else []
 
 
 @dataclass(frozen=True)
 class CommonAxis:
-    """The common axis. numbers: of positions, by their places; spans: stretches that have a name."""
+    """The common horizontal axis. numbers: position numbers by value; spans: named intervals (start, end, name)."""
 
     axis: ChartAxis
     words: Words
@@ -213,35 +217,44 @@ class CommonAxis:
 
 
 def axis_extent(sheet: DrawingSheet) -> tuple[float, float]:
-    """Where the common axis may begin, and how long it may be, mm."""
+    """Return the start (mm) and the largest length (mm) of the common axis."""
     start = sheet.ground.low.real + LEFT_MARGIN
     return start, sheet.ground.high.real - RIGHT_MARGIN - start
 
 
 def count_fitting(sheet: DrawingSheet, plots: Sequence[PlotContent], over: CommonAxis) -> int:
-    """Return how many of the panels, from the first one on, fit on the sheet with a height of at least LOWEST mm."""
+    """Return how many of the panels, from the first on, fit on the sheet at LEAST_PANEL_HEIGHT."""
     needed = np.cumsum([TEXT_ROW * len(_legend_rows(plot, over.axis.length)) for plot in plots])
     free = [_height_for_panels(sheet, over, count) for count in range(1, len(plots) + 1)]
     return max(1, int(np.count_nonzero(needed <= free)))
 
 
 def _height_for_panels(sheet: DrawingSheet, over: CommonAxis, count: int) -> float:
-    """The height (mm) that so many panels of LOWEST mm leave for their heads."""
+    """Return the height (mm) that `count` panels of the least height leave for their heads."""
     beside = (2 + bool(over.spans)) * TEXT_ROW
     return float((sheet.ground.high - sheet.ground.low).imag - beside - count * (_panel_gap(over) + LEAST_PANEL_HEIGHT))
 
 
 def _panel_gap(over: CommonAxis) -> float:
-    """The height (mm) between a panel and the head of the next one."""
+    """Return the distance (mm) between a panel and the head of the next one."""
     return 0.3 * TEXT_ROW + (TEXT_ROW if over.numbers else 0.6 * TEXT_ROW)
 
 
 def draw_chart(
     sheet: DrawingSheet, plots: Sequence[PlotContent], over: CommonAxis, *, same_scale: bool = False
 ) -> list[Panel]:
-    """Panels one above another, as high as the sheet leaves room for. same_scale: of a single panel's two axes.
+    """Draw panels above one another, as high as the sheet allows.
 
-    Entries of legends for which the sheet is too low are left out.
+    Legend entries for which the sheet is too low are omitted.
+
+    Args:
+        sheet: Sheet to draw on.
+        plots: Contents of the panels, from the top down.
+        over: The common axis.
+        same_scale: Use one scale for both axes of a single panel.
+
+    Returns:
+        The panels.
     """
     start, most = axis_extent(sheet)
     x = replace(over.axis, start=start + (most - over.axis.length) / 2)
@@ -277,26 +290,26 @@ def draw_chart(
 
 @dataclass(frozen=True)
 class Panel:
-    """A field of a sheet with its two axes."""
+    """A panel of a chart with its two axes."""
 
     sheet: DrawingSheet
     x: ChartAxis
     y: ChartAxis
 
     def at(self, x: Any, y: Any) -> NDArray[Any]:
-        """Places of values on paper, mm."""
+        """Return the points on paper (mm) of these values."""
         return self.x.on(x) + 1j * self.y.on(y)
 
     def line(self, start: complex, end: complex, colour: str, width: float, style: Style = "-", z: float = 1.0) -> None:
-        """A line; one that lies above the grid keeps labels off, others are interrupted under them."""
+        """Draw a line; one above the grid (z > 1) keeps labels off, others are interrupted by labels."""
         self.sheet.line([start, end], colour, width, style, z, faint=z <= 1)
 
     def upright(self, place: float, colour: str, width: float, style: Style = "-", z: float = 1.0) -> None:
-        """A line from below to above at a place across, mm."""
+        """Draw a vertical line through the panel at `place` mm."""
         self.line(complex(place, self.y.start), complex(place, self.y.end), colour, width, style, z)
 
     def level(self, place: float, colour: str, width: float, z: float) -> None:
-        """A line from side to side at a height, mm."""
+        """Draw a horizontal line through the panel at `place` mm."""
         self.line(complex(self.x.start, place), complex(self.x.end, place), colour, width, z=z)
 
     def text(
@@ -305,7 +318,7 @@ class Panel:
         self.sheet.text(at, text, size, ha=ha, colour=colour)
 
     def grid(self, across: bool = True) -> None:
-        """Lines at round numbers, those of the axis upwards beside it, the border, the line of zero."""
+        """Draw the grid, the numbers of the vertical axis, the border and the zero line."""
         for value, __ in self.x.ticks(NUMBER_GAPS[0]) if across else ():
             self.upright(float(self.x.on(value)), GRID_COLOUR, 0.5, z=0.5)
         for value, text in self.y.ticks(NUMBER_GAPS[1]):
@@ -320,12 +333,12 @@ class Panel:
             self.level(float(self.y.on(0.0)), DARK_COLOUR, 0.7, z=1.5)
 
     def numbers_across(self, under: float) -> None:
-        """Round numbers below the panel, so far under it (mm)."""
+        """Write round numbers `under` mm below the panel."""
         for value, text in self.x.ticks(NUMBER_GAPS[0]):
             self.text(complex(float(self.x.on(value)), self.y.start - under - 0.5 * TEXT_ROW), text, "center")
 
     def positions(self, numbers: Sequence[tuple[float, str]]) -> None:
-        """Short lines at positions and their numbers, a round share of them where all are too many."""
+        """Mark positions with short lines and numbers; if they are too many, every second, fifth and so on."""
         widest = max((width_of(text, SMALL_TEXT * POINT) for __, text in numbers), default=0.0)
         crowd = len(numbers) * (widest + 2) / self.x.length
         for value, text in numbers[:: max(1, round(round_up(crowd, TICK_STEPS)))] if numbers else ():
@@ -334,7 +347,7 @@ class Panel:
             self.text(complex(place, self.y.start - 0.65 * TEXT_ROW), text, "center", SMALL_TEXT, SCALE_COLOUR)
 
     def fill(self, plot: PlotContent) -> None:
-        """Its curves, and where they leap."""
+        """Draw the curves and their jumps."""
         for curve in plot.curves:
             places = self.at(curve.xs, curve.ys)
             if curve.dots:
@@ -367,7 +380,7 @@ def _legend_width(curve: ChartCurve) -> float:
 
 
 def _legend_rows(plot: PlotContent, most: float) -> list[list[ChartCurve]]:
-    """Rows above a panel with the entries of its legend in each; the first one begins with its words."""
+    """Distribute the legend over rows above a panel; the first row begins with the title."""
     words = (plot.words, *(split_symbols(plot.scale(0.00025)) if plot.scale else ()))
     rows: list[list[ChartCurve]] = [[]]
     if sum(map(_legend_width, plot.legend)) < most - width_of_words(words, PLAIN_TEXT * POINT) - 2 * LEGEND_GAP:
@@ -383,7 +396,7 @@ def _legend_rows(plot: PlotContent, most: float) -> list[list[ChartCurve]]:
 
 
 def _write_head(panel: Panel, plot: PlotContent, rows: Sequence[Iterable[ChartCurve]], top: float) -> None:
-    """What the panel shows and at which scale, and its legend."""
+    """Write title, scale and legend of a panel."""
     at = complex(panel.x.start, top - TEXT_ROW / 2)
     panel.text(at, plot.words, size=PLAIN_TEXT)
     if plot.scale is not None:
@@ -403,7 +416,7 @@ def _write_head(panel: Panel, plot: PlotContent, rows: Sequence[Iterable[ChartCu
 
 
 def _draw_spans(panels: Sequence[Panel], spans: Sequence[tuple[float, float, str]], height: float) -> None:
-    """Borders of stretches through all panels, their names between arrows above the first one."""
+    """Draw the limits of intervals through all panels, with names between arrows above the first panel."""
     if not spans:
         return
     first = panels[0]

@@ -1,4 +1,4 @@
-"""Lines of equal value on a grid, and regions of it with their hatching."""
+"""Contour lines on a grid, and regions of the grid with their hatching."""
 
 from __future__ import annotations
 
@@ -16,13 +16,16 @@ BorderShare = Callable[[tuple[int, int], tuple[int, int]], float]  # how far fro
 
 
 def contour_lines(values: NDArray[Any], level: float) -> list[NDArray[Any]]:
-    """Lines on which values (columns, rows) have a level, as places column + i row; none in cells that lack a value."""
+    """Return lines of equal value as points column + i*row; cells with an undefined value have none.
+
+    values: shape (columns, rows).
+    """
     lines = contour_generator(z=np.ma.masked_invalid(values.T)).lines(level)
     return [places[:, 0] + 1j * places[:, 1] for places in map(np.asarray, lines)]
 
 
 def region_borders(inside: NDArray[Any], share: BorderShare) -> list[NDArray[Any]]:
-    """Outlines of a region of the nodes (columns, rows), inside the grid."""
+    """Return the outlines of a region of grid nodes; inside: shape (columns, rows)."""
     pieces = []
     for i, j in _mixed_cells(inside):
         crossed = [place for _, _, place in _crossings(inside, i, j, share)]
@@ -31,7 +34,7 @@ def region_borders(inside: NDArray[Any], share: BorderShare) -> list[NDArray[Any
 
 
 def region_polygons(inside: NDArray[Any], share: BorderShare) -> Iterator[list[complex]]:
-    """The region in pieces, as corners column + i row: rows of whole cells, and parts of those that its border cuts."""
+    """Yield polygons (corners column + i*row) that make up the region: strips of whole cells, and cut cells."""
     whole = inside[:-1, :-1] & inside[1:, :-1] & inside[1:, 1:] & inside[:-1, 1:]
     for j in range(whole.shape[1]):
         ends = np.flatnonzero(np.diff(np.concatenate([[False], whole[:, j], [False]])))
@@ -48,7 +51,7 @@ def region_polygons(inside: NDArray[Any], share: BorderShare) -> Iterator[list[c
 
 
 def hatch_polygons(pieces: Sequence[Sequence[complex]], pitch: float) -> list[tuple[complex, complex]]:
-    """Slanted lines through polygons (mm), so far apart; lines that go on from piece to piece are one."""
+    """Return oblique hatching lines through polygons, `pitch` mm apart; lines continue from polygon to polygon."""
     along, across = np.exp(0.25j * np.pi), np.exp(0.75j * np.pi)
     spans: dict[int, list[tuple[float, float]]] = {}
     for piece in pieces:
@@ -77,7 +80,7 @@ def hatch_polygons(pieces: Sequence[Sequence[complex]], pitch: float) -> list[tu
 
 
 def _mixed_cells(inside: NDArray[Any]) -> list[list[int]]:
-    """Cells through which a border goes."""
+    """Return the cells that the border of the region crosses."""
     corners = [inside[i : i + inside.shape[0] - 1, j : j + inside.shape[1] - 1] for i, j in CORNERS]
     return np.argwhere(np.any(np.stack(corners) != corners[0], axis=0)).tolist()
 
@@ -85,7 +88,7 @@ def _mixed_cells(inside: NDArray[Any]) -> list[list[int]]:
 def _crossings(
     above: NDArray[Any], i: int, j: int, share: BorderShare
 ) -> Iterator[tuple[tuple[int, int], tuple[int, int], complex]]:
-    """Sides of a cell that a border crosses, round it: from which node to which, and where."""
+    """Yield the sides of a cell that the border crosses: first node, second node, point of crossing."""
     for k, (a, b) in enumerate(CORNERS):
         c, d = CORNERS[(k + 1) % 4]
         one, other = (i + a, j + b), (i + c, j + d)
@@ -95,7 +98,7 @@ def _crossings(
 
 
 def _join_pieces(pieces: Sequence[tuple[complex, complex]]) -> list[NDArray[Any]]:
-    """Pieces that have an end in common as one line."""
+    """Join pieces with common ends into polylines."""
     at: dict[complex, list[int]] = {}
     for n, piece in enumerate(pieces):
         for end in piece:

@@ -1,4 +1,4 @@
-"""Dimension lines and angles on a sheet, as on engineering drawings (GOST 2.307, ISO 129)."""
+"""Dimension lines and angles as on engineering drawings (GOST 2.307, ISO 129); rulers with numbers of positions."""
 
 from __future__ import annotations
 
@@ -36,9 +36,18 @@ UPRIGHT_BELOW = 0.3  # of a direction: sideways part of a line that is nearly up
 
 
 def draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str, along: complex = 0j) -> None:
-    """A dimension line beside two places (mm), where the least is in its way; text along it, above or left of it.
+    """Draw a dimension line beside two points (mm), where it interferes least.
 
-    The text of a short one goes on along it, at whichever end is free, or stands beside an upright one.
+    The text stands above the line, or to the left of an upright one. If the line is short, the text stands beyond one
+    of
+    its ends, or beside an upright line.
+
+    Args:
+        sheet: Sheet to draw on.
+        start: First measured point, mm.
+        end: Second measured point, mm.
+        text: Text of the dimension.
+        along: Direction of measurement; 0: from start to end.
     """
     with sheet.on_layer("dimensions"):
         _draw_dimension(sheet, start, end, text, along)
@@ -59,7 +68,7 @@ def _draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str
     stands = tuple(TEXT_SHARES) if fits else others
 
     def lines(side: complex, offset: float, stand: str) -> tuple[complex, complex, complex, complex]:
-        """Ends of the dimension line, middle and direction of the text."""
+        """Return both ends of the dimension line, the middle of the text and its direction."""
         foot = max(dot(z, side) for z in (start, end)) + offset
         first, last = (z + (foot - dot(z, side)) * side for z in (start, end))
         middle = first + TEXT_SHARES.get(stand, 0.5) * (last - first)
@@ -109,20 +118,20 @@ def _draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str
 
 
 def text_side(u: complex) -> complex:
-    """The side of a line on which its text stands: above it, or left of an upright one."""
+    """Return the normal on the side of a line where its text stands: above it, or left of an upright line."""
     turned = 1j * u
     return turned if turned.imag > 1e-6 or (abs(turned.imag) <= 1e-6 and turned.real < 0) else -turned
 
 
 def count_beside(crowd: Vector, start: complex, end: complex, width: float) -> int:
-    """How many points are nearer to a stretch of a line than this, on both sides of it."""
+    """Count the points within `width` of a segment, on both sides of it."""
     along = (end - start) / abs(end - start)
     run, off = dot(crowd - start, along), np.abs(cross(along, crowd - start))
     return int(np.count_nonzero((run > 0) & (run < abs(end - start)) & (off < width)))
 
 
 def draw_angle(sheet: DrawingSheet, vertex: complex, first: complex, last: complex, name: str, *, right: bool) -> None:
-    """The arc of an angle between the ways to two places (mm), or a square where it is right; its name beside it."""
+    """Draw the arc of an angle between the directions to two points (mm), or a right-angle mark, with its name."""
     with sheet.on_layer("dimensions"):
         _draw_angle(sheet, vertex, first, last, name, right=right)
 
@@ -160,9 +169,11 @@ ARC_STEP = 1.0  # mm between points of a drawn arc
 
 @dataclass(frozen=True)
 class Ruler:
-    """Along a line, `along`, through a place `base` (mm); or on a circle about it, from the middle that `along` shows.
+    """A ruler parallel to a straight path through `base` along `along`, or concentric with a circular one about `base`.
 
-    off: how far it is off the way, to the left of a line or outside a circle, mm.
+    A circular ruler is measured from direction `along`. off: offset from the path (mm), positive to the left of a
+    line
+    or outside a circle.
     """
 
     base: complex
@@ -171,7 +182,7 @@ class Ruler:
     radius: float = 0.0
 
     def at(self, run: float, out: float = 0.0) -> complex:
-        """The place at a run along it (mm), and so far out from it."""
+        """Return the point at `run` mm along the ruler and `out` mm away from the path."""
         if self.radius == 0:
             return self.base + run * self.along + (self.off + out * self.side) * 1j * self.along
         return self.base + (self.radius + self.off + out * self.side) * self.along * cmath.rect(1, run / self.radius)
@@ -180,33 +191,33 @@ class Ruler:
     def side(self) -> float:
         return float(np.sign(self.off))
 
-    def way(self, run: float) -> complex:
-        """The place on the way itself."""
+    def path_point(self, run: float) -> complex:
+        """Return the point of the path at `run` mm."""
         return replace(self, off=0.0).at(run)
 
     def away(self, places: Vector) -> Vector:
-        """How far places are from the way, on the side of the ruler, mm."""
+        """Return the distances (mm) of points from the path, positive on the side of the ruler."""
         off = places - self.base
         if self.radius == 0:
             return self.side * np.asarray(dot(1j * self.along, off))
         return self.side * np.asarray(abs(off) - self.radius)
 
     def run(self, places: Vector | complex) -> Real:
-        """How far along it places on the way are, mm."""
+        """Return the coordinates (mm) of points of the path along the ruler."""
         off = places - self.base
         if self.radius == 0:
             return np.asarray(dot(self.along, off))
         return self.radius * np.asarray(np.angle(off / self.along))
 
     def out(self, run: float) -> complex:
-        """The direction away from the way."""
+        """Return the unit vector away from the path."""
         step = self.at(run, 1.0) - self.at(run)
         return step / abs(step)
 
 
 @dataclass(frozen=True)
 class RulerNumber:
-    """The mark of a position at a run along a ruler; outer: on the side away from the way."""
+    """A number at coordinate `run` of a ruler; outer: it stands on the side away from the path."""
 
     run: float
     text: str
@@ -215,7 +226,7 @@ class RulerNumber:
 
 
 def fit_ruler(way: Sequence[complex], line: complex, pivot: complex | None) -> Ruler:
-    """For places of a way (mm) along a line, or about a pivot."""
+    """Return a ruler for the points of a path (mm), along a line or about a pivot."""
     found = [place for place in way if np.isfinite(place)]
     if pivot is None:
         middle = sum(found) / len(found)
@@ -225,24 +236,24 @@ def fit_ruler(way: Sequence[complex], line: complex, pivot: complex | None) -> R
 
 
 def numbers_height(ruler: Ruler, numbers: Sequence[RulerNumber]) -> float:
-    """How much room numbers take across a ruler, mm."""
+    """Return the extent (mm) of the numbers across a ruler."""
     return max((number_height(ruler, number) for number in numbers), default=0.0)
 
 
 def number_height(ruler: Ruler, number: RulerNumber) -> float:
-    """Of one number."""
+    """Return the extent (mm) of one number across a ruler."""
     out, (wide, high) = ruler.out(number.run), text_extent(number.text, NUMBER_SIZE)
     return abs(out.real) * wide + abs(out.imag) * high
 
 
 def number_width(ruler: Ruler, number: RulerNumber) -> float:
-    """How much room a number takes along a ruler, mm."""
+    """Return the extent (mm) of a number along a ruler."""
     out, (wide, high) = ruler.out(number.run), text_extent(number.text, NUMBER_SIZE)
     return min(wide / max(abs(out.imag), 1e-9), high / max(abs(out.real), 1e-9)) + NUMBER_GAP
 
 
 def least_crowded_ruler(ruler: Ruler, numbers: Sequence[RulerNumber], lines: Vector) -> Ruler:
-    """The ruler on either side of the way, at least as far off as its inner numbers need, where least is drawn (mm)."""
+    """Return the ruler at the side and offset where least is drawn; `lines` are the points drawn (mm)."""
     inner = numbers_height(ruler, [number for number in numbers if not number.outer])
     least = PATH_CLEARANCE + (inner + TICK_LENGTH + 2 * NUMBER_GAP if inner else 0.0)
     choices = [replace(ruler, off=side * (least + more)) for more in RULER_OFFSETS for side in (-1.0, 1.0)]
@@ -250,12 +261,12 @@ def least_crowded_ruler(ruler: Ruler, numbers: Sequence[RulerNumber], lines: Vec
 
 
 def ruler_reach(ruler: Ruler, numbers: Sequence[RulerNumber]) -> float:
-    """How far from the ruler its outer numbers end, mm."""
+    """Return the distance (mm) from the ruler to the far ends of its outer numbers."""
     return TICK_LENGTH + NUMBER_GAP + numbers_height(ruler, [number for number in numbers if number.outer])
 
 
 def count_under_ruler(ruler: Ruler, numbers: Sequence[RulerNumber], lines: Vector) -> float:
-    """How much of what is drawn (points, mm) is where the ruler would be; more than all where it has no room."""
+    """Count the drawn points (mm) in the area of the ruler; inf if it does not fit inside a circular path."""
     if ruler.radius and ruler.radius + ruler.off < ruler_reach(ruler, numbers) + PATH_CLEARANCE:
         return math.inf
     runs, own, far = [number.run for number in numbers], ruler.run(lines), ruler.away(lines)
@@ -268,7 +279,7 @@ def count_under_ruler(ruler: Ruler, numbers: Sequence[RulerNumber], lines: Vecto
 
 
 def gather_numbers(numbers: Sequence[RulerNumber]) -> list[RulerNumber]:
-    """Numbers that coincide on paper stand together, with an end of the way at its place."""
+    """Combine numbers that coincide on paper; an extreme position keeps its place."""
     found = []
     for __, here in in_place((complex(number.run, number.outer), number) for number in numbers):
         place = next((number for number in here if number.strong), here[0])
@@ -277,7 +288,7 @@ def gather_numbers(numbers: Sequence[RulerNumber]) -> list[RulerNumber]:
 
 
 def draw_ruler(sheet: DrawingSheet, ruler: Ruler, numbers: Sequence[RulerNumber]) -> None:
-    """The scale with a tick and a number for each position; numbers that would touch one another stand apart."""
+    """Draw a ruler with a tick and a number for each position; numbers that would overlap are moved apart."""
     runs = [number.run for number in numbers]
     steps = max(2, int((max(runs) - min(runs)) / ARC_STEP)) if ruler.radius else 2
     sheet.line([ruler.at(float(run)) for run in np.linspace(min(runs), max(runs), steps)], THIN_COLOUR, 0.7, z=2.6)
@@ -300,7 +311,7 @@ def draw_ruler(sheet: DrawingSheet, ruler: Ruler, numbers: Sequence[RulerNumber]
 
 
 def spread_intervals(wanted: Sequence[float], sizes: Sequence[float]) -> list[float]:
-    """Middles of intervals of these sizes, in order, as near as can be to where they are wanted without touching."""
+    """Return the middles of intervals of these sizes, in order and without overlap, nearest to the wanted middles."""
     heaps: list[tuple[float, list[int]]] = []  # where each heap of touching intervals begins
     for k in range(len(wanted)):
         heap = [k]

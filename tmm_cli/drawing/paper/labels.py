@@ -1,4 +1,4 @@
-"""Where labels go: beside their anchor, or farther off with a thin line to it, where they cover nothing."""
+"""Placement of labels: next to their anchors, or farther away with a leader, where they cover nothing."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ Item = TypeVar("Item")
 
 @dataclass(frozen=True)
 class Label:
-    """A text asked for at an anchor (mm on paper), `size` points high; line: it stands beside it, wherever along it."""
+    """A text of `size` points to be placed near an anchor (mm), or anywhere beside `line` if one is given."""
 
     text: Words
     anchor: complex
@@ -83,7 +83,7 @@ class Label:
 
 @dataclass(frozen=True)
 class PlacedLabel:
-    """A label at its middle; leader: from its anchor, where it stands far off."""
+    """A label with the middle of its text (mm), and its leader if it stands far from the anchor."""
 
     label: Label
     middle: complex
@@ -92,9 +92,9 @@ class PlacedLabel:
 
 @dataclass(frozen=True)
 class LabelCandidates:
-    """Boxes for a label, leaders from their feet to their ends, and what each costs by what is drawn and how far off.
+    """Candidate positions of a label: boxes, leaders (foot, end), and the price of each.
 
-    led: whether there is a leader.
+    led: True where there is a leader. The price includes the distance and what is covered on the sheet.
     """
 
     middles: NDArray[Any]
@@ -105,12 +105,12 @@ class LabelCandidates:
     price: NDArray[Any]
 
     def part(self, which: slice | NDArray[Any]) -> LabelCandidates:
-        """Some of them."""
+        """Return the selected candidates."""
         return LabelCandidates(*(getattr(self, one.name)[which] for one in fields(self)))
 
 
 class LabelPlacer:
-    """Where labels may be on a ground. rivals: places that have other names, or are named by these labels."""
+    """Search for label positions. rivals: points with other names, or named by these labels."""
 
     def __init__(self, ground: OccupiedArea, labels: Sequence[Label]) -> None:
         self.ground, self.labels, self.raster = ground, labels, PriceRaster(ground)
@@ -132,7 +132,7 @@ class LabelPlacer:
             wanting = [k for k in wanting if self.more(k) and self.known[k][-1].price.min() > LINE_PRICE / 2]
 
     def _look_farther(self, numbers: Sequence[int]) -> None:
-        """Get to know the next places of some labels, all at once."""
+        """Evaluate the next ring of candidates of several labels at once."""
         found = [next(self.tiers[k]) for k in numbers]
         feet, middles, price = (np.concatenate(part) for part in zip(*found, strict=True))
         lengths = [len(tier[0]) for tier in found]
@@ -149,11 +149,11 @@ class LabelPlacer:
             self.known[k].append(self._clear(places.part(slice(start, stop))))
 
     def more(self, k: int) -> bool:
-        """Whether a label has places that are not known yet."""
+        """Return True if a label has candidates that are not evaluated yet."""
         return len(self.known[k]) < (len(LINE_DISTANCES) if self.labels[k].line else len(RING_CANDIDATES))
 
     def _clear(self, places: LabelCandidates) -> LabelCandidates:
-        """Of places with leaders only the cheapest, with the price of what their leaders cross."""
+        """Keep the cheapest candidates with leaders, and add the price of what the leaders cross."""
         if not places.led.any():
             return places
         best = np.argsort(places.price, kind="stable")[:LEADERS_KEPT]
@@ -167,7 +167,7 @@ class LabelPlacer:
     def _mistaken(
         self, whose: NDArray[Any], middles: NDArray[Any], boxes: Boxes, away: NDArray[Any], led: NDArray[Any]
     ) -> NDArray[Any]:
-        """The price of standing nearer to another lettered place, or to another line, than to one's own."""
+        """Return the price of standing nearer to another named point or line than to the label's own."""
         nearer = np.zeros(len(middles), bool)
         if len(self.rivals) and not led.all():  # a leader says what is meant
             off = box_distances(boxes, self.rivals)
@@ -181,9 +181,9 @@ class LabelPlacer:
         return np.where(nearer, np.where(led, 0.0, AMBIGUITY_PRICE), 0.0)
 
     def best(self, k: int, taken: Boxes, leaders: NDArray[Any]) -> tuple[float, LabelCandidates]:
-        """The cheapest place of a label, given the boxes of others and their leaders (number, ends).
+        """Return the price and the cheapest candidate of a label, given the boxes and leaders of the other labels.
 
-        Those farther off are looked at only while nothing nearer is free.
+        Farther rings are evaluated only while nothing nearer is free.
         """
         best: tuple[float, LabelCandidates] | None = None
         for number in count():
@@ -207,7 +207,17 @@ class LabelPlacer:
 
 
 def place_labels(ground: OccupiedArea, labels: Sequence[Label]) -> list[PlacedLabel]:
-    """Where labels cover the least: those with the least choice first; then each once more, given the others."""
+    """Place labels where they cover least.
+
+    Labels with the least choice come first; then every label is placed again, given the others, until nothing moves.
+
+    Args:
+        ground: Area with the lines and texts drawn so far.
+        labels: Labels to be placed.
+
+    Returns:
+        The labels with their positions, in the given order.
+    """
     if not labels:
         return []
     placer = LabelPlacer(ground, labels)
@@ -235,7 +245,7 @@ CandidateTier = tuple[NDArray[Any], NDArray[Any], NDArray[Any]]  # feet of leade
 
 
 def _ring_candidates(number: int) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Unit vectors in which a label may be off its anchor, and how far."""
+    """Return the directions (unit vectors) and the distances (mm) of the candidates of a ring."""
     many = DIRECTIONS * (1 + (ANCHOR_DISTANCES[number] > LEADER_FROM))
     turns = (np.arange(many) + 0.5 * (number % 2)) / many
     return np.exp(1j * (2 * np.pi * turns + np.pi / 4)), np.full(many, ANCHOR_DISTANCES[number])
@@ -248,14 +258,14 @@ RING_CANDIDATES = [
 
 
 def candidates_about(label: Label, width: float, height: float) -> Iterator[CandidateTier]:
-    """Places about an anchor: the box touches a circle about it."""
+    """Yield candidates about an anchor, ring by ring; the box touches a circle about the anchor."""
     for along, reach in RING_CANDIDATES:
         off = reach * along + along.real * width / 2 + 1j * along.imag * height / 2
         yield np.full(len(along), label.anchor), label.anchor + off, DISTANCE_PRICE * reach
 
 
 def candidates_beside(label: Label, width: float, height: float) -> Iterator[CandidateTier]:
-    """Places beside a line, above it first."""
+    """Yield candidates beside a line, those above it first."""
     assert label.line is not None
     start, end = label.line
     span = (end - start) / (abs(end - start) or 1.0)
@@ -268,7 +278,7 @@ def candidates_beside(label: Label, width: float, height: float) -> Iterator[Can
 
 
 def gather_coincident(placed: Iterable[tuple[complex, Item]]) -> list[tuple[complex, list[Item]]]:
-    """Items by their place (mm): those that coincide on paper stand together."""
+    """Group items whose points (mm) coincide on paper."""
     found: list[tuple[complex, list[Item]]] = []
     for at, item in placed:
         same = next((items for place, items in found if abs(place - at) < SAME_PLACE), None)
@@ -280,6 +290,6 @@ def gather_coincident(placed: Iterable[tuple[complex, Item]]) -> list[tuple[comp
 
 
 def text_extent(text: Words, size: float) -> tuple[float, float]:
-    """Width and height of a text on paper, mm, with a little air at its sides; size: points."""
+    """Return width and height (mm) of a text, with a small margin at its ends; size in points."""
     high = 1.0 if isinstance(text, str) else 1.3  # letters below and above the line
     return script_width(text, size * POINT) + 0.6, high * size * POINT

@@ -25,14 +25,14 @@ OUTSIDE_PRICE = 200.0  # of a place beyond the edge
 
 @dataclass
 class Segments:
-    """Straight lines, gathered one by one, and looked at all at once."""
+    """Line segments, collected one by one and evaluated together."""
 
     fresh: list[tuple[complex, complex]] = field(default_factory=list)
     found: NDArray[Any] = field(default_factory=lambda: np.zeros((0, 2), complex))
     reach: NDArray[Any] = field(default_factory=lambda: np.zeros((4, 0)))  # left, right, low, high of each
 
     def path(self, places: Sequence[complex]) -> None:
-        """A polyline, or the outline of a figure."""
+        """Add a polyline, or the outline of a figure."""
         self.fresh += [
             (start, end)
             for start, end in pairwise(places)
@@ -41,7 +41,7 @@ class Segments:
 
     @property
     def all(self) -> NDArray[Any]:
-        """Their ends: (number, 2)."""
+        """Ends of all segments, shape (segments, 2)."""
         if self.fresh:
             self.found = np.concatenate([self.found, np.array(self.fresh, complex)])
             self.fresh.clear()
@@ -50,14 +50,14 @@ class Segments:
         return self.found
 
     def near(self, field: Box) -> NDArray[Any]:
-        """Ends of those that may come into a field."""
+        """Return the segments that may enter a box."""
         every, (left, right, low, high) = self.all, field
         first, last, under, over = self.reach
         found: NDArray[Any] = every[(last >= left) & (first <= right) & (over >= low) & (under <= high)]
         return found
 
     def points(self, step: float = SAMPLE_STEP) -> NDArray[Any]:
-        """Points on them, about so far (mm) apart."""
+        """Return points along all segments, about `step` mm apart."""
         starts, ends = self.all.T
         counts = np.maximum(2, (np.abs(ends - starts) / step).astype(int))
         whose = np.repeat(np.arange(len(counts)), counts)
@@ -68,10 +68,11 @@ class Segments:
 
 @dataclass
 class OccupiedArea:
-    """Lines and texts on a field of the paper, mm.
+    """A field of the paper (mm) with the lines and texts on it.
 
-    rivals: lettered places; no label stands nearer to one of them than to its own; likewise lines that have names.
-    solid, faint: lines that no label may cover, and thin ones that are interrupted where a label stands.
+    rivals: named points, none of which may be nearer to a label than the label's own point; lines: named lines,
+    likewise.
+    solid: lines that no label may cover; faint: thin lines that are interrupted by labels.
     """
 
     low: complex
@@ -84,7 +85,7 @@ class OccupiedArea:
 
     @property
     def crowd(self) -> NDArray[Any]:
-        """Points on solid lines."""
+        """Points along the solid lines."""
         return self.solid.points()
 
     @property
@@ -95,15 +96,15 @@ class OccupiedArea:
         return found.ravel()
 
     def line(self, start: complex, end: complex) -> None:
-        """A line is in the way."""
+        """Add a solid line."""
         self.solid.path([start, end])
 
     def path(self, places: Sequence[complex]) -> None:
-        """A polyline, or the outline of a figure, is in the way."""
+        """Add a solid polyline, or the outline of a figure."""
         self.solid.path(places)
 
     def spot(self, place: complex, radius: float = 1.0) -> None:
-        """A circle is in the way."""
+        """Add a circle."""
         turns = (
             CIRCLE_CORNERS
             if radius < 4 * SAMPLE_STEP
@@ -112,11 +113,11 @@ class OccupiedArea:
         self.path([complex(corner) for corner in place + radius * turns])
 
     def free(self, box: Box) -> bool:
-        """Whether a text there covers nothing."""
+        """Return True if a text in this box covers nothing."""
         return bool(self.price(np.array([box]))[0] < LINE_PRICE)
 
     def crossed(self, lines: Sequence[tuple[complex, complex]]) -> float:
-        """The price of texts that these straight lines, or heads of arrows on them, would cover."""
+        """Return the price of the texts that these segments, or arrowheads on them, would cover."""
         if not self.boxes:
             return 0.0
         return TEXT_PRICE * float(
@@ -124,7 +125,7 @@ class OccupiedArea:
         )
 
     def price(self, boxes: Boxes) -> NDArray[Any]:
-        """The price of what texts in these boxes cover: of lines, of texts, of the edge."""
+        """Return the price of what texts in these boxes cover: lines, texts, the edge of the field."""
         wide = widen(boxes, TEXT_AIR)
         room = wide[:, 0].min(), wide[:, 1].max(), wide[:, 2].min(), wide[:, 3].max()
         solid, faint = self.solid.near(room), self.faint.near(room)
@@ -139,7 +140,7 @@ class OccupiedArea:
 
 
 def overlap_price(boxes: Boxes, others: Boxes) -> NDArray[Any]:
-    """The price of the texts (their boxes) that texts in these boxes cover."""
+    """Return the price of covering other texts, for texts in these boxes."""
     if not len(others):
         return np.zeros(len(boxes))
     areas = shared_areas(widen(boxes, TEXT_AIR), others)
@@ -155,7 +156,7 @@ SOLID_UNIT, TEXT_UNIT = 1 << 20, 1 << 40  # one count holds points on faint line
 
 
 class PriceRaster:
-    """Sums of what is drawn in all boxes that begin at the lower left corner of a field."""
+    """Cumulative counts of what is drawn, on a raster of squares: four look-ups give the content of any box."""
 
     def __init__(self, ground: OccupiedArea) -> None:
         self.low, self.high = ground.low, ground.high
@@ -179,7 +180,7 @@ class PriceRaster:
         return np.floor(off.real).astype(int), np.floor(off.imag).astype(int)
 
     def _edges(self, boxes: Boxes) -> NDArray[Any]:
-        """Numbers of the first square and of the one after the last, across and up."""
+        """Return for each box the first square and the one after the last, horizontally and vertically."""
         x, y = self.low.real, self.low.imag
         off = (boxes - np.array([x, x, y, y])) / self.cell
         off[:, ::2], off[:, 1::2] = np.floor(off[:, ::2]), np.ceil(off[:, 1::2])
@@ -188,7 +189,7 @@ class PriceRaster:
         return found
 
     def price(self, boxes: Boxes) -> NDArray[Any]:
-        """The price of what texts in these boxes cover: of lines, of texts, of the edge."""
+        """Return the price of what texts in these boxes cover: lines, texts, the edge of the field."""
         left, right, low, high = self._edges(widen(boxes, RASTER_AIR)).T
         sums = self.sums
         found = sums[right, high] - sums[left, high] - sums[right, low] + sums[left, low]

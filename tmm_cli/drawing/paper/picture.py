@@ -1,4 +1,4 @@
-"""A drawing that stands on a large sheet beside others: how large it may be, and what becomes of it there."""
+"""Drawings that stand on a large sheet beside others: their largest size, and cropping with a heading."""
 
 from __future__ import annotations
 
@@ -28,10 +28,14 @@ Size = tuple[float, float]
 
 @dataclass(frozen=True)
 class SheetPicture(Drawing):
-    """A drawing with its heading, no larger than they are.
+    """A drawing with its heading, cropped to its contents.
 
-    longest: side (mm) that it was drawn for; figure: what of it grows with that (mm), None: all; mu: SI a millimetre,
-    None where it is not to scale; stem: its name; title: its heading, also where it is not written.
+    Attributes:
+        longest: Longest side (mm) for which it was drawn.
+        figure: Width and height (mm) of the part that grows with it; None: all of it.
+        mu: Scale, SI units per mm; None if it is not to scale.
+        stem: Stem of its file name.
+        title: Its heading, even if it is not written.
     """
 
     longest: float = 0.0
@@ -43,10 +47,12 @@ class SheetPicture(Drawing):
 
 @dataclass(frozen=True)
 class PictureSpace:
-    """longest: side (mm) of a figure that is to scale, or of the paper that is asked for; None: as it comes.
+    """Space for a picture on a large sheet.
 
-    most: width and height (mm) of the field of the sheet. written: headings and equations stand by the drawings; in a
-    note its own text has them.
+    Attributes:
+        longest: Longest side (mm) of a figure to scale, or of the requested paper; None: the usual size.
+        most: Width and height (mm) of the field of the sheet.
+        written: Headings and equations are part of the drawing; in an explanatory note its own text has them.
     """
 
     longest: float | None
@@ -59,7 +65,7 @@ _PICTURE_SPACE: ContextVar[PictureSpace | None] = ContextVar("space", default=No
 
 @contextmanager
 def drawing_within(space: PictureSpace) -> Iterator[None]:
-    """What is drawn meanwhile becomes pictures, without papers of their own."""
+    """Let drawings made in this context become pictures for a space, without paper of their own."""
     token = _PICTURE_SPACE.set(space)
     try:
         yield
@@ -68,29 +74,29 @@ def drawing_within(space: PictureSpace) -> Iterator[None]:
 
 
 def on_large_sheet() -> bool:
-    """Whether what is drawn now is to be a picture beside others."""
+    """Return True if the current drawing is to be a picture beside others."""
     return _PICTURE_SPACE.get() is not None
 
 
 def writes_equations() -> bool:
-    """Whether what is drawn now has its heading and its equations by it."""
+    """Return True if the current drawing includes its heading and equations."""
     space = _PICTURE_SPACE.get()
     return space is None or space.written
 
 
 def longest_for(usual: float) -> float:
-    """The longest side (mm) of what is drawn now, where it would be this one."""
+    """Return the longest side (mm) of the current drawing, whose usual one is given."""
     space = _PICTURE_SPACE.get()
     return usual if space is None or space.longest is None else space.longest
 
 
 def fits_sheet(width: float, height: float) -> bool:
-    """Whether there is room on the sheet for what is so large (mm) and has a heading, if it is written."""
+    """Return True if the sheet holds a drawing of this size (mm), with its heading if that is written."""
     return excess_factor(width, height) <= 1.0
 
 
 def excess_factor(width: float, height: float) -> float:
-    """How many times what is so large is larger than the room that there is for it."""
+    """Return the size of a drawing relative to the space for it; more than 1: it does not fit."""
     space = _PICTURE_SPACE.get()
     if space is None:
         return 0.0
@@ -99,7 +105,7 @@ def excess_factor(width: float, height: float) -> float:
 
 
 def choose_paper(points: Sequence[complex], pad: float, paper: Size | None) -> tuple[Size, float]:
-    """The paper (mm) for points (SI), or one like that which is asked for, and the scale, SI a millimetre."""
+    """Return the paper (mm) and the scale (SI units per mm) for points (SI); `paper` is a requested format."""
     if not on_large_sheet():
         best, mu = sheet_scale(points, pad)
         return paper or best, mu
@@ -120,7 +126,16 @@ def render_picture(
     mu: float | None = None,
     notes: Sequence[str] = (),
 ) -> SheetPicture:
-    """What was drawn, cut out of its paper, below its title and notes."""
+    """Crop a drawing to its marks and put its title and notes above it.
+
+    Args:
+        marks: Marks of the drawing.
+        title: Heading.
+        longest: Longest side (mm) for which it was drawn.
+        figure: Width and height (mm) of the part that grows with `longest`; None: all of it.
+        mu: Scale, SI units per mm; None if it is not to scale.
+        notes: Lines below the heading.
+    """
     drawn, heading = list(marks), title if writes_equations() else ""
     low, high = bounding_corners(drawn)
     room = max((high - low).real, LEAST_HEADING_WIDTH)
@@ -135,14 +150,14 @@ def render_picture(
 
 
 def bounding_corners(marks: Iterable[Mark]) -> tuple[complex, complex]:
-    """Corners of the box about marks, mm."""
+    """Return the lower left and upper right corners of marks, mm."""
     places = [place for mark in marks for place in mark_corners(mark)] or [0j]
     xs, ys = [z.real for z in places], [z.imag for z in places]
     return complex(min(xs), min(ys)), complex(max(xs), max(ys))
 
 
 def mark_corners(mark: Mark) -> Sequence[complex]:
-    """Places between which a mark lies, mm."""
+    """Return points (mm) whose hull contains a mark."""
     match mark:
         case LineMark():
             return mark.places
@@ -155,7 +170,7 @@ def mark_corners(mark: Mark) -> Sequence[complex]:
 
 
 def points_covered(marks: Iterable[Mark]) -> Vector:
-    """Places close together on lines and in texts, mm."""
+    """Return closely spaced points (mm) on lines and in texts."""
     found = [np.zeros(0, complex)]
     for mark in marks:
         low, high = bounding_corners([mark])

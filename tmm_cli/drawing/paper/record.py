@@ -1,6 +1,7 @@
-"""A drawing as a record: primitives in millimetres of paper, from which each format is written.
+"""Record of a drawing: primitives in millimetres of paper, from which every format is written.
 
-The origin is the lower left corner of the paper. A text is data: no format may read it as markup or mathematics.
+The origin is the lower left corner of the paper. Texts are data: no format may interpret them as markup or
+mathematics.
 """
 
 from __future__ import annotations
@@ -34,13 +35,13 @@ class LineMark:
 
     @property
     def dashes(self) -> tuple[float, ...]:
-        """Lengths drawn and left out by turns, mm; none of a whole line."""
+        """Lengths (mm) drawn and skipped alternately; empty for a solid line."""
         return tuple(length * self.width for length in DASHES[self.style])
 
 
 @dataclass(frozen=True, slots=True)
 class AreaMark:
-    """A filled polygon. edge: the colour of its outline, if it has one."""
+    """A filled polygon; edge: colour of its outline, or None."""
 
     corners: tuple[complex, ...]
     face: str
@@ -71,9 +72,9 @@ class CircleMark:
 
 @dataclass(frozen=True, slots=True)
 class TextMark:
-    """One line of text; `at` is its left end, middle or right end at half the height of its letters.
+    """One line of text; `at` is its left end, middle or right end at half the height of the letters.
 
-    size: of the letters' body, mm. turn: deg, about `at`.
+    size: font size (mm); turn: rotation about `at` (deg).
     """
 
     at: complex
@@ -96,20 +97,20 @@ Mark = LineMark | AreaMark | CircleMark | TextMark
 
 @dataclass(frozen=True)
 class Drawing:
-    """Marks on a paper (mm), those that cover others last."""
+    """Marks on paper (sizes in mm), in drawing order."""
 
     paper: tuple[float, float]
     marks: tuple[Mark, ...]
 
     @classmethod
     def of(cls, paper: tuple[float, float], marks: Iterable[Mark]) -> Drawing:
-        """Of marks in the order in which they were made."""
+        """Sort marks by their z; marks of equal z keep their order."""
         return cls(paper, tuple(sorted(marks, key=lambda mark: mark.z)))
 
     def moved(self, by: complex) -> Drawing:
-        """All marks at another place of the paper."""
+        """Return the drawing shifted on its paper."""
         return replace(self, marks=tuple(mark.moved(by) for mark in self.marks))
 
     def texts(self) -> list[str]:
-        """What is written on it."""
+        """Return all texts of the drawing."""
         return [mark.text for mark in self.marks if isinstance(mark, TextMark)]

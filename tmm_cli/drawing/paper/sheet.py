@@ -1,4 +1,7 @@
-"""A sheet of paper: millimetres, true scales; lines, arrows, labels, a title strip. What is drawn is recorded."""
+"""A sheet of paper in millimetres with true scales: lines, arrows, labels, a title strip.
+
+Everything drawn is recorded.
+"""
 
 from __future__ import annotations
 
@@ -66,7 +69,7 @@ CURVE_EDGE = 4.0  # mm inside the field where curves are cut
 
 
 class DrawingSheet:
-    """A drawing in millimetres of A4. Quantities come in SI; `mu` (SI a millimetre) and `origin` put them on paper."""
+    """A drawing in mm; quantities are given in SI and put on paper by `mu` (SI units per mm) and `origin`."""
 
     def __init__(
         self,
@@ -78,7 +81,16 @@ class DrawingSheet:
         paper: tuple[float, float] | None = None,
         room: PaperLayout | None = None,
     ) -> None:
-        """For these points (SI), upright or not as they are larger then; of a paper, scaled later; or of a room."""
+        """Open a sheet for points (SI), a requested paper, or a layout.
+
+        Args:
+            title: Title of the project.
+            caption: What the sheet shows.
+            points: Points (SI) that must be on it; they decide scale and orientation.
+            pad: Clearance about the points, mm.
+            paper: Width and height (mm) of a sheet whose scale is set later.
+            room: Layout chosen beforehand; it overrides the others.
+        """
         found = [p for p in points if np.isfinite(p)] or [0j]
         __, across, up, middle = extent(found)
         self.caption, self.remarks = caption, list[str]()
@@ -100,7 +112,7 @@ class DrawingSheet:
         self.layer = "construction"
 
     def _strip(self, title: str) -> None:
-        """The title above the drawing."""
+        """Write the title and the caption above the drawing."""
         width, height = self.paper
         edge = 1j * (height - MARGIN - STRIP + 5)
         self.line([MARGIN + edge, width - MARGIN + edge], DARK_COLOUR, 0.6, blocks=False)
@@ -110,24 +122,24 @@ class DrawingSheet:
         self.text(complex(MARGIN, height - MARGIN - 8), told, size / POINT, colour="#404040")
 
     def on(self, value: complex) -> complex:
-        """A value (SI) as a place on paper (mm)."""
+        """Return the point on paper (mm) of a value (SI)."""
         return self.origin + value / self.mu
 
     @property
     def field(self) -> tuple[complex, complex]:
-        """Corners of the field in which curves and guides are drawn, mm."""
+        """Corners of the field to which curves and guides are cut, mm."""
         return self.ground.low + CURVE_EDGE * (1 + 1j), self.ground.high - CURVE_EDGE * (1 + 1j)
 
     @contextmanager
     def on_layer(self, layer: Layer) -> Iterator[None]:
-        """What is drawn meanwhile belongs to this layer."""
+        """Put everything drawn in this context on a layer."""
         before, self.layer = self.layer, layer
         yield
         self.layer = before
 
     @contextmanager
     def part(self, name: str) -> Iterator[None]:
-        """What is drawn meanwhile belongs to a body: a link, or what moves by itself, as a slider's box does."""
+        """Assign everything drawn in this context to a body: a link, or something that moves separately, as a block."""
         first = len(self.marks)
         yield
         self.parts.append((name, slice(first, len(self.marks))))
@@ -144,7 +156,7 @@ class DrawingSheet:
         style: str = "normal",
         turn: float = 0.0,
     ) -> None:
-        """A text of this size (points) at a place (mm), turned (deg) about it; never read as mathematics."""
+        """Write a text of `size` points at a point (mm), rotated by `turn` degrees; never read as mathematics."""
         bold, italic, along = weight == "bold", style == "italic", complex(unit(np.radians(turn)))
         one = isinstance(text, str)
         start = complex(at) if one else at - ALIGN_SHARE[ha] * script_width(text, size * POINT) * along
@@ -161,7 +173,7 @@ class DrawingSheet:
     def label(
         self, text: Words, anchor: complex, size: float = 9, colour: str = DARK_COLOUR, style: str = "normal"
     ) -> None:
-        """A text beside a place (mm); where exactly is decided when all is drawn."""
+        """Request a label near a point (mm); it is placed when everything is drawn."""
         if np.isfinite(anchor):
             self.labels.append(Label(text, anchor, size, colour, style))
 
@@ -176,9 +188,9 @@ class DrawingSheet:
         blocks: bool = True,
         faint: bool = False,
     ) -> None:
-        """A polyline through places (mm), of this width (points); places that are not finite interrupt it.
+        """Draw a polyline through points (mm), `width` points wide; non-finite points interrupt it.
 
-        faint: it is interrupted where texts stand.
+        faint: the line is interrupted by texts.
         """
         for stretch in finite_stretches(places):
             if faint:
@@ -197,7 +209,7 @@ class DrawingSheet:
         *,
         blocks: bool = True,
     ) -> None:
-        """A filled polygon; its outline of this width (points) has the colour `edge`, if it is not `none`."""
+        """Fill a polygon; its outline of `width` points has colour `edge` unless that is "none"."""
         outline = None if edge == "none" else edge
         self.marks.append(AreaMark(tuple(map(complex, corners)), face, outline, width * POINT, self.layer, z))
         if blocks:
@@ -206,13 +218,13 @@ class DrawingSheet:
     def circle(
         self, at: complex, radius: float, face: str = "white", edge: str = DARK_COLOUR, width: float = 1.0, z: float = 6
     ) -> None:
-        """A circle about a place (mm)."""
+        """Draw a circle about a point (mm)."""
         if np.isfinite(at):
             self.marks.append(CircleMark(complex(at), radius, face, edge, width * POINT, self.layer, z))
             self.ground.spot(at, radius)
 
     def arrow(self, start: complex, end: complex, colour: str = DARK_COLOUR, width: float = 1.2, z: float = 5) -> None:
-        """An arrow; its head shrinks with a short shaft so that it stays an arrow."""
+        """Draw an arrow; on a short shaft its head is smaller."""
         length = abs(end - start)
         if not np.isfinite(length) or length < 0.15:
             self.circle(end, 0.5, colour, colour, 0.3, z)
@@ -226,15 +238,15 @@ class DrawingSheet:
             self.area([end, neck + side, neck - side], colour, "none", z=z)
 
     def note(self, text: Words) -> None:
-        """A line of the corner box: scale factors and remarks."""
+        """Add a line to the note block: a scale factor or a remark."""
         self.block.notes.append(text)
 
     def table(self, rows: Iterable[TableRow], numbers: int) -> None:
-        """A table under the notes; numbers: how many of its columns, the last ones, are flush right."""
+        """Put a table below the notes; its last `numbers` columns are aligned right."""
         self.block.rows, self.block.numbers = list(rows), numbers
 
     def finish(self) -> Drawing:
-        """Put the notes into the emptiest corner, place the labels; on a large sheet, cut it out below its caption."""
+        """Place the note block and the labels, and return the drawing; on a large sheet, cropped below its caption."""
         self.corner()
         self.settle()
         self._interrupt()
@@ -247,7 +259,7 @@ class DrawingSheet:
         return Drawing.of(self.paper, self.marks)
 
     def _interrupt(self) -> None:
-        """Leave out of faint lines what is under texts."""
+        """Cut faint lines where texts stand on them."""
         boxes = widen(np.array(self.ground.boxes), TEXT_AIR)
         for number in reversed(self.faint):
             mark = self.marks[number]
@@ -258,7 +270,7 @@ class DrawingSheet:
         self.faint.clear()
 
     def settle(self) -> None:
-        """Place the labels that are waiting, in the field that the ground has now."""
+        """Place the pending labels in the current field."""
         for placed in place_labels(self.ground, self.labels):
             label = placed.label
             self.text(placed.middle, label.text, label.size, colour=label.colour, ha="center", style=label.style)
@@ -267,13 +279,13 @@ class DrawingSheet:
         self.labels.clear()
 
     def along(self, at: complex, text: str, size: float, along: complex) -> None:
-        """A text along a unit vector, its middle at a place (mm); it is in the way of labels."""
+        """Write a text along a unit vector, its middle at a point (mm); labels avoid it."""
         turn = float(np.degrees(np.angle(along)))
         turn -= 180 * np.round(turn / 180) if abs(abs(turn) - 90) > 1e-6 else turn - 90
         self.text(at, text, size, ha="center", turn=turn)
 
     def corner(self) -> None:
-        """Put notes and table where they cover the least of the drawing."""
+        """Put the note block where it covers least of the drawing."""
         if not self.block.notes and not self.block.rows:
             return
         if on_large_sheet():
@@ -295,7 +307,7 @@ class DrawingSheet:
 
 
 def finite_stretches(places: Sequence[complex]) -> Iterator[tuple[complex, ...]]:
-    """Stretches of a polyline between places that are not finite."""
+    """Yield the parts of a polyline between non-finite points."""
     array = np.asarray(places, complex)
     finite = np.isfinite(array)
     for stretch in [array] if finite.all() else np.split(array, np.flatnonzero(~finite)):  # mostly there is one
@@ -305,7 +317,7 @@ def finite_stretches(places: Sequence[complex]) -> Iterator[tuple[complex, ...]]
 
 
 def draw_hatching(sheet: DrawingSheet, start: complex, end: complex, outward: complex) -> None:
-    """Short slanted strokes on the side where the frame is; labels keep off all of the strip."""
+    """Draw hatching on the outer side of a line of the frame; labels avoid the whole strip."""
     along = (end - start) / abs(end - start)
     number = int(abs(end - start) / 2.0)
     with sheet.on_layer("supports"):
@@ -319,7 +331,7 @@ def draw_hatching(sheet: DrawingSheet, start: complex, end: complex, outward: co
 def divide_into_cells(
     low: complex, high: complex, columns: int, rows: int, gap: float
 ) -> tuple[complex, list[tuple[complex, complex]]]:
-    """Width and height of equal cells in a field, and two corners of each, row by row from above, mm."""
+    """Divide a field into equal cells; return their size and two corners of each, row by row from the top (mm)."""
     size = complex(((high - low).real + gap) / columns - gap, ((high - low).imag + gap) / rows - gap)
     step = size + gap * (1 + 1j)
     starts = [
@@ -331,7 +343,7 @@ def divide_into_cells(
 
 
 def leave_field(inner: complex, outer: complex, low: complex, high: complex) -> complex:
-    """Where the way from a place in a field to another one leaves it."""
+    """Return the point where the segment from a point inside a field to another one leaves the field."""
     way, share = outer - inner, 1.0
     for at, step, least, most in (
         (inner.real, way.real, low.real, high.real),
@@ -343,15 +355,15 @@ def leave_field(inner: complex, outer: complex, low: complex, high: complex) -> 
 
 
 def scale_words(symbol: str, mu: float, unit: str) -> tuple[Symbol, str]:
-    """μ_l = 0.005 m/mm."""
+    """Return the text of a scale factor, e.g. μ_l = 0.005 m/mm."""
     return Symbol("μ", symbol), f" = {numeral(mu, '.10g')} {spelt(unit)}"
 
 
 def with_unit(words: str, dimension: Dimension, units: UnitSystem) -> str:
-    """A title of an axis."""
+    """Return the title of an axis with the unit of its quantity."""
     return ", ".join(part for part in (words, typeset_unit(units.spelt(dimension))) if part)
 
 
 def file_safe_name(name: str) -> str:
-    """A name that a file may have."""
+    """Return the name with every character replaced that a file name may not have."""
     return "".join(c if c.isalnum() or c in "-_" else "_" for c in name)

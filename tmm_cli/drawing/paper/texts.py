@@ -27,14 +27,14 @@ FONT_UNITS = 1000  # the size at which advances are read
 
 
 def font_file(bold: bool = False, italic: bool = False) -> Path:
-    """The file of the font of a weight and slant."""
+    """Return the file of the font of this weight and slant."""
     ending = ("Bold" if bold else "") + ("Oblique" if italic else "")
     return Path(mpl.get_data_path(), "fonts", "ttf", f"DejaVuSans-{ending}.ttf" if ending else "DejaVuSans.ttf")
 
 
 @cache
 def load_font(bold: bool = False, italic: bool = False) -> FT2Font:
-    """The font of a weight and slant, read whole: forked processes would share the place in an open file."""
+    """Load a font completely into memory; forked processes would share the position in an open file."""
     found = FT2Font(BytesIO(font_file(bold, italic).read_bytes()))
     found.set_size(FONT_UNITS, 72)
     return found
@@ -42,14 +42,14 @@ def load_font(bold: bool = False, italic: bool = False) -> FT2Font:
 
 @cache
 def _letter(letter: str, bold: bool, italic: bool) -> tuple[float, NDArray[Any], NDArray[Any]]:
-    """Of size 1: its advance, the places of its outline (x + iy, from its foot on), and matplotlib's codes of them."""
+    """Return advance, outline points (x + iy from the baseline) and matplotlib path codes of a letter of size 1."""
     glyph = load_font(bold, italic).load_char(ord(replace_missing(letter)))
     places, codes = load_font(bold, italic).get_path()
     return float(glyph.linearHoriAdvance) / 65536 / FONT_UNITS, (places[:, 0] + 1j * places[:, 1]) / FONT_UNITS, codes
 
 
 def letter_advance(letter: str, bold: bool = False, italic: bool = False) -> float:
-    """How far on the next letter stands, of its size."""
+    """Return the advance width of a letter, as a fraction of the font size."""
     return _letter(letter, bold, italic)[0]
 
 
@@ -59,13 +59,13 @@ def _unit_width(text: str, bold: bool, italic: bool) -> float:
 
 
 def text_width(text: str, size: float, *, bold: bool = False, italic: bool = False) -> float:
-    """Width of a line of text, in the unit of its size."""
+    """Return the width of a line of text, in the unit of its size."""
     return size * _unit_width(text, bold, italic)
 
 
 @lru_cache(1000)
 def glyph_outline(text: str, *, bold: bool = False, italic: bool = False) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Of a line of text of size 1: places from the left end of its base line on, and matplotlib's codes of them."""
+    """Return outline points (from the left end of the baseline) and matplotlib path codes of a text of size 1."""
     along, places, codes = 0.0, [], []
     for letter in text:
         advance, own, its_codes = _letter(letter, bold, italic)
@@ -76,19 +76,19 @@ def glyph_outline(text: str, *, bold: bool = False, italic: bool = False) -> tup
 
 
 def text_start(mark: TextMark) -> complex:
-    """The left end of a text, at half the height of its letters, mm."""
+    """Return the left end of a text at half the height of its letters, mm."""
     left = ALIGN_SHARE[mark.align] * text_width(mark.text, mark.size, bold=mark.bold, italic=mark.italic)
     return mark.at - left * cmath.rect(1, math.radians(mark.turn))
 
 
 def baseline(mark: TextMark) -> tuple[complex, complex]:
-    """The left end of the base line of a text, mm, and the way along it."""
+    """Return the left end of the baseline of a text (mm) and its direction."""
     along = cmath.rect(1, math.radians(mark.turn))
     return text_start(mark) - 1j * BASELINE_SHARE * mark.size * along, along
 
 
 def text_corners(mark: TextMark) -> tuple[complex, complex, complex, complex]:
-    """Corners of the box of a text, from the lower left one on, mm."""
+    """Return the corners of the box of a text (mm), counterclockwise from the lower left."""
     along = cmath.rect(1, math.radians(mark.turn))
     low = text_start(mark) - 0.5j * mark.size * along
     end = low + text_width(mark.text, mark.size, bold=mark.bold, italic=mark.italic) * along
@@ -102,13 +102,13 @@ def _font_letters() -> frozenset[int]:
 
 
 def replace_missing(text: str) -> str:
-    """The text with boxes in the place of characters that the font lacks."""
+    """Return the text with a box in place of every character that the font lacks."""
     known = _font_letters()
     return "".join(letter if ord(letter) in known else MISSING_GLYPH for letter in text)
 
 
 def missing_characters(text: str) -> set[str]:
-    """Characters for which the font has no letter: boxes stand for them."""
+    """Return the characters that the font lacks and boxes replace."""
     known = _font_letters()
     return {letter for letter in text if ord(letter) not in known}
 
@@ -120,13 +120,13 @@ INDEX_BELOW, INDEX_ABOVE = -0.30, 0.36  # how far their middle is off that of th
 
 
 def split_symbols(words: Words) -> tuple[str | Symbol, ...]:
-    """Texts and symbols, one after another, with printed signs."""
+    """Return the texts and symbols of which words consist, with typographic minus signs."""
     several = words if isinstance(words, tuple) else (words,)
     return tuple(signed(typeset(part)) if isinstance(part, str) else part for part in several)
 
 
 def plain_text(words: Words) -> str:
-    """In one line: a^n_BA."""
+    """Return words on one line, with indices written like a^n_BA."""
     return "".join(
         part
         if isinstance(part, str)
@@ -136,7 +136,7 @@ def plain_text(words: Words) -> str:
 
 
 def placed_pieces(words: Words, size: float) -> Iterator[tuple[complex, str, float]]:
-    """Pieces of a text of this size: how far each is off the left end of the whole, its letters, and their size."""
+    """Yield the pieces of a text: offset from its left end, letters, and their size."""
     at = 0.0
     for part in split_symbols(words):
         if isinstance(part, str):
@@ -152,7 +152,7 @@ def placed_pieces(words: Words, size: float) -> Iterator[tuple[complex, str, flo
 
 @lru_cache(10_000)
 def script_width(words: Words, size: float) -> float:
-    """Width of a text, in the unit of its size."""
+    """Return the width of words with indices, in the unit of their size."""
     return sum(
         text_width(part, size)
         if isinstance(part, str)
@@ -164,9 +164,9 @@ def script_width(words: Words, size: float) -> float:
 
 @lru_cache(1000)
 def wrap_symbols(words: Words, size: float, most: float, hanging: str = "") -> tuple[Words, ...]:
-    """Lines that are no wider than this, broken at spaces; all but the first begin with `hanging`.
+    """Break words at spaces into lines of at most `most`; all lines but the first begin with `hanging`.
 
-    The last word, which may be a unit, is not parted from the one before it.
+    The last word, which may be a unit, stays with the one before it.
     """
     lines: list[Words] = []
     line: list[str | Symbol] = []
@@ -183,7 +183,7 @@ def wrap_symbols(words: Words, size: float, most: float, hanging: str = "") -> t
 
 
 def _join_texts(line: Iterable[str | Symbol]) -> tuple[str | Symbol, ...]:
-    """The same with texts that follow one another in one."""
+    """Join consecutive texts into one."""
     found: list[str | Symbol] = []
     for part in line:
         if found and isinstance(part, str) and isinstance(found[-1], str):
@@ -194,7 +194,7 @@ def _join_texts(line: Iterable[str | Symbol]) -> tuple[str | Symbol, ...]:
 
 
 def _split_at_spaces(words: Words) -> Iterator[tuple[str | Symbol, ...]]:
-    """What stands between two spaces, each with the space before it."""
+    """Yield the words between spaces, each with the space before it."""
     token: list[str | Symbol] = []
     for part in split_symbols(words):
         first, *others = part.split(" ") if isinstance(part, str) else [part]
@@ -214,7 +214,7 @@ LINE_SPACING = 1.25  # of the size: from line to line
 
 
 def cut_text(text: str, size: float, room: float, *, bold: bool = False) -> str:
-    """As much of a text as the room (mm) has place for."""
+    """Return as much of a text as fits the room (mm), with an ellipsis if it is cut."""
     text = text[: max(int(8 * room / size), 1)]  # no letter of a line is narrower on average; measuring takes time
     if text_width(text, size, bold=bold) <= room:
         return text
@@ -227,7 +227,7 @@ def cut_text(text: str, size: float, room: float, *, bold: bool = False) -> str:
 
 
 def wrap_text(text: str, size: float, room: float, most: int, *, bold: bool = False) -> list[str]:
-    """A text in lines that fit the room (mm), at most so many and about equally long; the last one is cut."""
+    """Break a text into at most `most` lines of about equal length within the room (mm); the last one is cut."""
     found = narrower = _fill_lines(text, size, room, most, bold)
     while 1 < len(narrower) == len(found) and " ".join(narrower) == " ".join(found):
         found = narrower
@@ -237,7 +237,7 @@ def wrap_text(text: str, size: float, room: float, most: int, *, bold: bool = Fa
 
 
 def _fill_lines(text: str, size: float, room: float, most: int, bold: bool) -> list[str]:
-    """Lines each as long as there is room for."""
+    """Break a text into lines, each as long as the room allows."""
     lines: list[str] = []
     left = text.split()
     while left and len(lines) < most - 1:
@@ -252,7 +252,7 @@ def _fill_lines(text: str, size: float, room: float, most: int, bold: bool) -> l
 def cell_text(
     text: str, low: complex, high: complex, size: float, align: Align = "center", *, lines: int = 1, bold: bool = False
 ) -> list[TextMark]:
-    """A text in the middle of a cell with these corners (mm), smaller or cut where it is too long for it."""
+    """Return a text in the middle of a cell with these corners (mm), reduced or cut if it is too long."""
     room = (high - low).real - 2 * CELL_GAP
     smaller = next(
         (s for s in (size, 0.87 * size, LEAST_TEXT_SHARE * size) if _fits_cell(text, s, room, lines, bold)),
@@ -266,7 +266,7 @@ def cell_text(
 
 
 def fit_one_line(text: str, size: float, room: float, *, bold: bool = False) -> tuple[str, float]:
-    """A text on one line of this room (mm) and its size, smaller or cut where it is too long for it."""
+    """Return a text for one line of this room (mm) and its size, reduced or cut if it is too long."""
     words = " ".join(text.split())
     smaller = (
         max(min(1.0, room / max(text_width(words[: int(8 * room / size)], size, bold=bold), room)), LEAST_TEXT_SHARE)

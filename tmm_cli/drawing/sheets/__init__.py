@@ -1,4 +1,4 @@
-"""The sheets, one a file; `draw/__init__.py` lists those of a run."""
+"""Sheets of a project, one subject in each module; `drawing/run.py` lists those of a run."""
 
 from tmm_cli.interfaces import lazy
 

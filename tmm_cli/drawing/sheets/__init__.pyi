@@ -1,4 +1,4 @@
-"""The sheets, one a file; `draw/__init__.py` lists those of a run."""
+"""Sheets of a project, one subject in each module; `drawing/run.py` lists those of a run."""
 
 from .assemblies import draw_assemblies as draw_assemblies
 from .captions import CaptionTable as CaptionTable, DrawingCaption as DrawingCaption

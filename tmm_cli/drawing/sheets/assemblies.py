@@ -1,4 +1,4 @@
-"""All real assemblies of a group side by side, at one scale, with the links that it hangs on."""
+"""All real assemblies of an Assur group side by side at one scale, with the links to which the group is attached."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ LEAST_SYMBOLS = 0.7  # size of symbols: smaller ones cannot be read
 
 
 def draw_assemblies(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """The sheets with the stems of their files, more than one of a group with many; none without a real assembly."""
+    """Yield the sheets with the stems of their files; groups with many assemblies get more than one sheet."""
     for stem, here, group in name_assembly_files(results.assemblies or ()):
         every = list(enumerate(group.assemblies, 1))
         for first in range(0, len(every), ASSEMBLIES_PER_SHEET):
@@ -57,7 +57,7 @@ def draw_assemblies(results: Results) -> Iterable[tuple[str, Drawing]]:
 def assemblies_sheet(
     results: Results, here: Assemblies, group: GroupAssemblies, every: Sequence[tuple[int, Assembly]]
 ) -> DrawingSheet:
-    """One sheet of these assemblies with their numbers; those of the group that are not on it count for the scale."""
+    """Draw a sheet of numbered assemblies; the scale also suits the assemblies of the group on other sheets."""
     shown = _drawn_pairs(results.structure, group)
     structure = replace(results.structure, pairs=shown)
     links = [*group.group.links, *_adjacent_links(group)]
@@ -86,30 +86,30 @@ def assemblies_sheet(
 
 
 def _adjacent_links(group: GroupAssemblies) -> list[str]:
-    """The moving links that a group hangs on."""
+    """Return the moving links to which a group is attached."""
     own = group.group.links
     known = (pair.i if pair.j in own else pair.j for pair in group.group.outer)
     return list(dict.fromkeys(link for link in known if link != FRAME))
 
 
 def _drawn_pairs(structure: Structure, group: GroupAssemblies) -> tuple[Pair, ...]:
-    """Pairs of the group, those of its neighbours on the frame, and hinges in which later groups are joined to it."""
+    """Return the pairs of the group and of its adjacent links with the frame, and hinges of later groups."""
     own = set(group.group.links)
     drawn = own | {FRAME} | set(_adjacent_links(group))
     return tuple(p for p in structure.pairs if {p.i, p.j} <= drawn or (p.kind == "R" and p.i in own))
 
 
 def _assembly_box(scene: MechanismScene, links: Sequence[str]) -> tuple[complex, complex]:
-    """Middle of an assembly, and its width and height, m."""
+    """Return the centre of an assembly, and its width and height as a complex number, m."""
     places = [*scene.extent(links), *(scene.at(pair) for pair in scene.structure.pairs)]
     __, across, up, middle = extent([p for p in places if np.isfinite(p)] or [0j])
     return middle, complex(across, up)
 
 
 def _choose_cells(count: int, largest: complex) -> tuple[float, tuple[float, float], list[tuple[complex, complex]]]:
-    """Metres a millimetre, paper and cells (mm) for as many drawings up to this width and height (m).
+    """Return scale (m per mm), paper and cells (mm) for `count` drawings of at most this size (m).
 
-    As large as can be, with few empty cells when it does not matter.
+    The largest scale is chosen; of equal ones, that with the fewest empty cells.
     """
     found = []
     for paper in (LANDSCAPE, PORTRAIT):
@@ -122,7 +122,7 @@ def _choose_cells(count: int, largest: complex) -> tuple[float, tuple[float, flo
 
 
 def _draw_assembly(sheet: DrawingSheet, scene: MechanismScene, group: GroupAssemblies, look: SymbolStyle) -> None:
-    """The group in its colour, its neighbours grey, the frame dark."""
+    """Draw the group in its colour, the adjacent links in grey and the frame dark."""
     own, known, pairs = group.group.links, _adjacent_links(group), scene.structure.pairs
     hue = link_colours(scene.structure) | dict.fromkeys(known, THIN_COLOUR)
     drawn = render_scene(sheet, scene, (*known, *own), pairs, look, hue)
@@ -135,7 +135,7 @@ def _draw_assembly(sheet: DrawingSheet, scene: MechanismScene, group: GroupAssem
 
 
 def _draw_cell(sheet: DrawingSheet, low: complex, high: complex, number: int, assembly: Assembly) -> None:
-    """The cell with the number of the assembly; that of the sketch is marked."""
+    """Draw the frame of a cell and the number of the assembly; that of the sketch is marked."""
     corners = [low, complex(high.real, low.imag), high, complex(low.real, high.imag), low]
     mark = assembly.of_sketch
     sheet.line(corners, DARK_COLOUR if mark else THIN_COLOUR, 2.2 if mark else 0.5, z=1, blocks=False)

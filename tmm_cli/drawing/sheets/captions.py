@@ -1,4 +1,4 @@
-"""What is written by a drawing: equations in lines beneath it, and small tables, below them or on its right."""
+"""Equations and small tables that accompany a drawing, below it or on its right."""
 
 from __future__ import annotations
 
@@ -50,33 +50,33 @@ SHEET_PAPERS = (LANDSCAPE, PORTRAIT)
 
 @dataclass(frozen=True)
 class CaptionTable:
-    """A head and rows, all of one length."""
+    """Column titles, and rows of the same length."""
 
     head: tuple[str, ...]
     rows: Sequence[tuple[Words, ...]]
 
     @property
     def size(self) -> complex:
-        """In one column, mm."""
+        """Width and height (mm) in one column, as a complex number."""
         return complex(sum(self.widths), CAPTION_ROW * (len(self.rows) + 1.5))
 
     @cached_property
     def widths(self) -> list[float]:
-        """Of its columns, mm."""
+        """Widths of the columns, mm."""
         columns = zip(self.head, *self.rows, strict=True)
         return [max(script_width(words, CAPTION_TEXT * POINT) for words in column) + COLUMN_SPACE for column in columns]
 
 
 @dataclass(frozen=True)
 class DrawingCaption:
-    """Lines (wrapped as needed), and tables: side by side below them, or aside of the drawing one below the other."""
+    """Wrapped lines, and tables side by side below them (with `aside`: stacked beside the drawing)."""
 
     lines: Sequence[Words] = ()
     tables: Sequence[CaptionTable] = ()
     aside: bool = False
 
     def left(self, low: complex, high: complex) -> complex:
-        """What it leaves of a field to the drawing, mm: a negative height where it has no room itself."""
+        """Return the size (mm) left to the drawing; its height is negative if the caption does not fit."""
         lines = CAPTION_GAP + CAPTION_LINE * len(self._wrapped((high - low).real))
         if not self.aside:
             rows = self._rows((high - low).real)
@@ -86,7 +86,7 @@ class DrawingCaption:
         return room if sum(size.imag for size in sizes) <= room.imag else complex(room.real, -1.0)
 
     def put(self, sheet: DrawingSheet, low: complex, high: complex) -> None:
-        """Write it into a field."""
+        """Write the caption into a field."""
         room, across = self.left(low, high), (high - low).real
         top = low + 1j * (CAPTION_LINE * len(self._wrapped(across)))
         if not self.aside:
@@ -110,7 +110,7 @@ class DrawingCaption:
         ]
 
     def _rows(self, across: float) -> int:
-        """Rows of the longest column at which all columns fit side by side."""
+        """Return the number of rows at which all columns of the tables fit side by side."""
         tables = [table for table in self.tables if table.rows]
         most = max((len(table.rows) for table in tables), default=0)
         for rows in range(min(most, 3), most):
@@ -121,7 +121,7 @@ class DrawingCaption:
 
 
 def _write_column(sheet: DrawingSheet, top: complex, table: CaptionTable, rows: Sequence[tuple[Words, ...]]) -> None:
-    """Some rows of a table under its head."""
+    """Write some rows of a table below its titles."""
     for number, row in enumerate((table.head, *rows)):
         at = top - 1j * CAPTION_ROW * (number + (0.4 if number == 0 else 0.7))
         for words, wide in zip(row, table.widths, strict=True):
@@ -142,10 +142,19 @@ def captioned_sheets(
     beneath: Callable[[float], DrawingCaption],
     **words: str,
 ) -> tuple[DrawingSheet, DrawingSheet | None]:
-    """A sheet for a drawing with what is written by it; this is on a sheet of its own where it is much.
+    """Open a sheet for a drawing with its caption; a long caption gets a sheet of its own.
 
-    places: those of the drawing (SI), each with how far it goes on from there on paper (mm). beneath: at a scale, SI a
-    millimetre. The paper is upright or not, and tables are below or aside, as the drawing is larger then.
+    Orientation of the paper and position of the tables are chosen so that the drawing becomes largest.
+
+    Args:
+        here: The position.
+        title: Title with the field {caption}, and others given in `words`.
+        places: Points of the drawing (SI), each with the offset (mm) by which the drawing extends beyond it.
+        beneath: Returns the caption at a scale (SI units per mm).
+        words: Further fields of the title.
+
+    Returns:
+        The sheet for the drawing, and that of the caption or None.
     """
     name, subject = here.results.problem.title, title.format(caption=here.caption, **words)
     places = [(place, away) for place, away in places if np.isfinite(place + away)] or [(0j, 0j)]
@@ -170,7 +179,7 @@ def captioned_sheets(
 
 @dataclass(frozen=True)
 class _CaptionedLayout:
-    """A drawing on a paper, at a scale (SI a millimetre), about a middle (mm of the drawing), with what is written."""
+    """Paper, scale (SI units per mm), middle of the drawing (mm) and caption."""
 
     paper: tuple[float, float]
     mu: float
@@ -181,7 +190,7 @@ class _CaptionedLayout:
 def _best_layout(
     places: Sequence[tuple[complex, complex]], *ways: Callable[[float], DrawingCaption]
 ) -> _CaptionedLayout:
-    """The placing at which the drawing is largest, the first of those that are alike."""
+    """Return the layout with the largest drawing; of equal ones, the first."""
     return min(
         (_fit_layout(paper, places, way) for way in ways for paper in SHEET_PAPERS), key=lambda placed: placed.mu
     )
@@ -190,7 +199,7 @@ def _best_layout(
 def _large_sheet_layout(
     places: Sequence[tuple[complex, complex]], beneath: Callable[[float], DrawingCaption]
 ) -> _CaptionedLayout:
-    """As large as a large sheet lets it be, on a paper no larger than it needs with all that is written beneath it."""
+    """Return the layout at the scale of a large sheet, on the smallest paper for drawing and caption."""
     longest = longest_for(max(LANDSCAPE))
     _, across, up, __ = extent([place for place, __ in places])
     mu = round_scale(across, up, longest, longest)
@@ -231,7 +240,7 @@ def _captioned_sheet(
 def _fit_layout(
     paper: tuple[float, float], places: Sequence[tuple[complex, complex]], written: Callable[[float], DrawingCaption]
 ) -> _CaptionedLayout:
-    """At the least round scale at which all fits."""
+    """Return the layout at the smallest round scale factor at which drawing and caption fit on the paper."""
     low, high = drawing_area(paper)
     size, across, up, __ = extent([place for place, __ in places])
     mu = round_scale(across, up, (high - low).real, (high - low).imag)

@@ -1,4 +1,4 @@
-"""Instantaneous centres of a position, with the lines on which they lie in threes by Kennedy's theorem."""
+"""Instantaneous centres of a position, with the lines on which they lie by threes (Kennedy's theorem)."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ FAR_AWAY = 1e4  # mm: beyond every sheet
 
 
 def draw_centres(results: Results) -> Iterator[tuple[str, Drawing]]:
-    """A sheet a position."""
+    """Yield a sheet of instantaneous centres for each detailed position."""
     motion = results.motion
     assert motion is not None
     for k, found in (results.centres or {}).items():
@@ -77,7 +77,7 @@ def _draw_kennedy_line(
     known: Mapping[LinkPair, InstantCentre],
     near: Mapping[LinkPair, complex],
 ) -> None:
-    """Through two centres and the one that they show, or to the border where one of them is beyond it."""
+    """Draw the line through two centres and the one they determine, up to the border if a centre is beyond it."""
     through = [known[links] for links in line]
     three = (*through, centre)
     along = _line_direction(through)
@@ -103,7 +103,7 @@ def _line_direction(through: Sequence[InstantCentre]) -> complex:
 
 
 def _distant_centre_notes(found: Sequence[InstantCentre], near: Mapping[LinkPair, complex]) -> Iterator[str]:
-    """Centres that are not on the sheet."""
+    """Yield notes on the centres that are not on the sheet."""
     for centre in found:
         symbol = Symbol("P", name(centre.links)[1:]).name
         if centre.place is None and centre.direction is not None:

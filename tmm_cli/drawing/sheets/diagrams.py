@@ -61,7 +61,7 @@ MOST_CURVES = 6  # courses in a panel of reactions, of pressure angles, of what 
 
 @dataclass(frozen=True)
 class SampledCurve:
-    """How a quantity goes (SI): at places close together, and at the computed positions. limit: what is allowed."""
+    """A quantity (SI) at closely spaced driver coordinates and at the computed positions. limit: an allowed value."""
 
     name: str
     values: Any
@@ -71,7 +71,7 @@ class SampledCurve:
 
 @dataclass(frozen=True)
 class QuantityPlot:
-    """Courses of one kind, which share a panel. symbol: of its scale, where their dimension does not say it."""
+    """Curves of one dimension, in one panel. symbol: symbol in the scale, if the dimension does not determine it."""
 
     words: str
     dimension: Dimension
@@ -80,7 +80,7 @@ class QuantityPlot:
 
 
 def output_plots(results: Results, motion: Motion, link: str) -> list[QuantityPlot]:
-    """Motion of an output; an angle is followed through full turns."""
+    """Return the motion of an output; angles continue through full revolutions."""
     assert results.motion is not None
     near = [int(np.argmin(np.abs(motion.q - q))) for q in results.motion.q]
     found = []
@@ -97,7 +97,7 @@ def output_plots(results: Results, motion: Motion, link: str) -> list[QuantityPl
 
 
 def balancing_plots(whole: Results, results: Results) -> list[QuantityPlot]:
-    """What balances the drivers: moments in one panel, forces in another."""
+    """Return the balancing moments of the drivers in panels, and the balancing forces in others."""
     if whole.reactions is None or results.reactions is None:
         return []
     several = len(whole.reactions.balances) > 1
@@ -117,7 +117,7 @@ def balancing_plots(whole: Results, results: Results) -> list[QuantityPlot]:
 
 
 def reaction_plots(whole: Results, results: Results) -> list[QuantityPlot]:
-    """Sizes of all reactions, a few in a panel."""
+    """Return the magnitudes of all reactions, MOST_CURVES in a panel."""
     if whole.reactions is None or results.reactions is None:
         return []
     here = {r.pair.name: r for r in results.reactions.all}
@@ -135,7 +135,7 @@ def reaction_plots(whole: Results, results: Results) -> list[QuantityPlot]:
 
 
 def energy_plots(whole: Results, results: Results) -> list[QuantityPlot]:
-    """Reduced inertia and moment, kinetic energy, powers; nothing where nothing weighs and nothing acts."""
+    """Return reduced inertia and moment, kinetic energy and powers; nothing without weights and loads."""
     curve, given = whole.energy, results.energy
     if curve is None or given is None:
         return []
@@ -162,7 +162,7 @@ def energy_plots(whole: Results, results: Results) -> list[QuantityPlot]:
 
 
 def shaking_plots(results: Results, q: Any) -> list[QuantityPlot]:
-    """Force and moment on the frame before and after balancing."""
+    """Return the shaking force and moment on the frame, before and after balancing."""
     found = results.balancing
     if found is None or not np.any(np.nan_to_num(found.cycle.before.force) != 0):
         return []
@@ -181,7 +181,7 @@ def shaking_plots(results: Results, q: Any) -> list[QuantityPlot]:
 
 
 def pressure_plots(results: Results, motion: Motion) -> list[QuantityPlot]:
-    """Pressure angles of all driven links, those that slide and those that turn apart: different ones are allowed."""
+    """Return pressure angles of sliding and of rotating driven links in separate panels, for their limits differ."""
     with np.errstate(all="ignore"):
         curves = {
             (kernel.group.title, lead[0], driving_pair_names(lead)): pressure_angle(motion, kernel, at, lead)
@@ -240,7 +240,7 @@ SYMBOL_UNITS = {"T": "J", "A": "J", "P": "W", "t": "s"}  # of what has no unit i
 
 
 def draw_diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """Run, speed and acceleration of the outputs, and the balancing moments; reactions, energy and pressure angles."""
+    """Yield the diagrams over the cycle: outputs, balancing, reactions, energy, pressure angles, shaking force."""
     places, borders = dense_coordinates(results)
     whole = results_at(results, places)
     motion = whole.motion
@@ -266,7 +266,7 @@ def draw_diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
 
 
 def dense_coordinates(results: Results) -> tuple[Real, list[int]]:
-    """Places of the driver close together, and after which of them a stroke ends or a table of a load jumps."""
+    """Return closely spaced driver coordinates, and the indices after which a stroke ends or a load jumps."""
     turns, sense = results.turns, results.linkage.driver.sense
     places = results.closely(min((POSITIONS_PER_TURN - 1) * (turns or 1), MOST_POINTS) + 1)
     if not turns:
@@ -285,7 +285,7 @@ def dense_coordinates(results: Results) -> tuple[Real, list[int]]:
 
 
 def _strokes_from_start(results: Results) -> list[tuple[float, float, bool]]:
-    """Strokes in what is drawn, from position 0 on: start, length (rad), whether it is a working one."""
+    """Return the strokes from position 0 on: start (rad), length (rad), and whether it is a working stroke."""
     turns, strokes = results.turns, results.strokes
     if not turns or strokes is None:
         return []
@@ -301,7 +301,7 @@ def _strokes_from_start(results: Results) -> list[tuple[float, float, bool]]:
 
 
 def _stroke_names(results: Results, strokes: Sequence[tuple[float, float, bool]]) -> list[str]:
-    """What the strokes are called."""
+    """Return the names of strokes."""
     if not results.counts_strokes:
         return [_("working stroke") if working else _("idle stroke") for __, __, working in strokes]
     numbers = list(range(1, len(strokes) + 1))
@@ -311,7 +311,7 @@ def _stroke_names(results: Results, strokes: Sequence[tuple[float, float, bool]]
 
 
 def _axis_values(results: Results, q: Real) -> Any:
-    """The driver's turn from position 0, deg; a slider's run in the file's unit."""
+    """Return the crank angle from position 0 (deg), or the displacement of a slider in the unit of the file."""
     if results.linkage.driver.kind == "slide":
         return np.asarray(q) / results.problem.units.factor(quantities.LENGTH)
     return np.degrees(results.linkage.driver.sense * (q - results.start))
@@ -320,9 +320,15 @@ def _axis_values(results: Results, q: Real) -> Any:
 def plot_over_driver(
     results: Results, stem: str, caption: str, q: Real, borders: Sequence[int], every: Sequence[QuantityPlot]
 ) -> Iterable[tuple[str, Drawing]]:
-    """Draw quantities at driver coordinates q, which may jump after those numbered `borders`, on one or more sheets.
+    """Draw quantities against the driver coordinate on one or more sheets.
 
-    stem: name of the first sheet; the further ones are numbered from 2 on.
+    Args:
+        results: Computed results.
+        stem: Stem of the first file; further ones are numbered from 2.
+        caption: Caption of the sheets.
+        q: Driver coordinates (rad or m).
+        borders: Indices after which a quantity may jump.
+        every: Quantities, one panel each.
     """
     left, number = list(every), 1
     while left:
@@ -334,7 +340,7 @@ def plot_over_driver(
 def _plot_sheet(
     results: Results, caption: str, q: Real, borders: Sequence[int], every: Sequence[QuantityPlot]
 ) -> tuple[int, Drawing]:
-    """A sheet with as many of the quantities as it has room for, and how many these are."""
+    """Draw as many of the quantities as one sheet holds; return their number and the sheet."""
     assert results.motion is not None
     sheet = DrawingSheet(results.problem.title, caption, paper=PORTRAIT if len(every) > 2 else LANDSCAPE)
     xs, marks, end = _axis_values(results, q), _axis_values(results, results.motion.q), 360 * results.turns
@@ -358,7 +364,7 @@ def _plot_sheet(
 
 
 def _driver_axis(results: Results, ends: tuple[float, float], start: float, most: float) -> tuple[ChartAxis, Words]:
-    """The axis of the driver's turn (deg) or of its run, and what is written below it."""
+    """Return the axis of the driver coordinate (deg or unit of the file) and its title."""
     if results.linkage.driver.kind == "turn":
         axis = round_axis(*ends, start, most, degrees=True)
         return axis, (f"{_('turn of the crank from position 0, deg')};  ", *scale_words("φ", axis.mu, "deg/mm"))
@@ -368,7 +374,15 @@ def _driver_axis(results: Results, ends: tuple[float, float], start: float, most
 
 
 def plot_quantities(found: QuantityPlot, units: UnitSystem, xs: Any, marks: Any, borders: Sequence[int]) -> PlotContent:
-    """A panel of quantities over places xs, which may jump after those of the numbers `borders`; marks: of points."""
+    """Return the panel of a plot; after the indices `borders` its curves may jump.
+
+    Args:
+        found: The quantities (SI).
+        units: Units of the file.
+        xs: Values of the horizontal axis, shape (coordinates,).
+        marks: Values of the horizontal axis at the computed positions.
+        borders: Indices of `xs` after which a curve may jump.
+    """
     factor, unit = units.factor(found.dimension), typeset_unit(units.spelt(found.dimension))
     curves, jumps = [], []
     for k, course in enumerate(found.courses):
@@ -401,9 +415,9 @@ def plot_quantities(found: QuantityPlot, units: UnitSystem, xs: Any, marks: Any,
 
 
 def _find_jumps(xs: Any, values: Any, borders: Sequence[int]) -> list[int]:
-    """After which places a curve jumps: at ends of strokes, and where it runs far faster than just before and after.
+    """Return the indices after which a curve jumps: at ends of strokes, and where it is much steeper than nearby.
 
-    So it does where friction turns about within a stroke.
+    The latter occurs where friction reverses within a stroke.
     """
     steps, whole = np.abs(np.diff(values)), np.ptp(values)
     if not whole > CONSTANT_BELOW * np.max(np.abs(values)):
@@ -416,7 +430,7 @@ def _find_jumps(xs: Any, values: Any, borders: Sequence[int]) -> list[int]:
 
 
 def _scale_caption(found: QuantityPlot, units: UnitSystem, unit: str) -> Any:
-    """How the scale of the axis is written: that of lengths in metres, as on the other sheets."""
+    """Return the function that writes the scale of an axis; lengths are in metres, as on the other sheets."""
     symbol, factor = found.symbol or SCALE_SYMBOLS.get(found.dimension, ""), 1.0
     if found.dimension == quantities.LENGTH:
         unit, factor = "m", units.factor(quantities.LENGTH)

@@ -1,4 +1,9 @@
-"""x"""
+"""Dynamics: law of motion over the cycle, Wittenbauer's energy-mass diagram, a single run.
+
+The law of motion is drawn against the travel of the driver in its sense of motion: driving moments are positive,
+whichever way the driver rotates. The energy-mass diagram has its two tangents with their angles, and the segment
+that determines the flywheel.
+"""
 
 from __future__ import annotations
 
@@ -62,13 +67,13 @@ MOST_CURVES = 6  # loads, or links, that have a curve each; the smallest of more
 
 
 def draw_law_of_motion(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """Of a file that asks for it: what acts, what comes of it, and the energy-mass diagram."""
+    """Yield the law of motion and the energy-mass diagram, if the file requests dynamics."""
     yield from draw_law_curves(results)
     yield from draw_energy_mass(results)
 
 
 def draw_law_curves(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """What acts, and what comes of it, over the cycle."""
+    """Yield reduced moments, works and energies, then inertia, speed, acceleration and time over the cycle."""
     running = results.steady
     if running is None or results.motion is None:
         return
@@ -81,13 +86,13 @@ def draw_law_curves(results: Results) -> Iterable[tuple[str, Drawing]]:
 
 
 def draw_energy_mass(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """The energy-mass diagram."""
+    """Yield the energy-mass diagram."""
     if results.steady is not None and results.motion is not None:
         yield "energy-mass", energy_mass_sheet(results, results.steady, _dense_travel(results.steady)[0])
 
 
 def _dense_travel(running: SteadyRunning) -> tuple[Real, list[int]]:
-    """Ways close together, and after which of them a panel of the functions ends: there they may jump."""
+    """Return closely spaced travels, and the indices after which a piece of the functions ends: they may jump there."""
     lows, highs = visible_stretches(running.steady.law.energy.edges)
     inner = np.linspace(0, 1, max(4, 720 // len(lows)))
     low, high = lows[:, None] + BORDER_OFFSET, highs[:, None] - BORDER_OFFSET
@@ -96,9 +101,10 @@ def _dense_travel(running: SteadyRunning) -> tuple[Real, list[int]]:
 
 
 def visible_stretches(edges: Real) -> tuple[Real, Real]:
-    """The starts and the ends of the panels between these edges that are wide enough to be seen on paper.
+    """Return starts and ends of the intervals between `edges` that are wide enough to be seen on paper.
 
-    Narrow panels side by side are one stretch; together narrower than a line is wide, they are left out: a jump.
+    Adjacent narrow intervals form one stretch; if they are together narrower than a line, they are left out as a
+    jump.
     """
     least = LEAST_STRETCH * (edges[-1] - edges[0])
     wide = np.diff(edges) >= least
@@ -108,7 +114,7 @@ def visible_stretches(edges: Real) -> tuple[Real, Real]:
 
 
 def _load_plots(results: Results, running: SteadyRunning, way: Real, here: Real) -> list[QuantityPlot]:
-    """Moments of the loads and their sum; that of what drives; works; energies."""
+    """Return reduced moments of the loads with their sum, the driving moment, works and energies."""
     steady = running.steady
     law, machine = steady.law, steady.machine
     loads = _curves_with_sum(
@@ -138,7 +144,7 @@ def _load_plots(results: Results, running: SteadyRunning, way: Real, here: Real)
 
 
 def _motion_plots(results: Results, running: SteadyRunning, way: Real, here: Real) -> list[QuantityPlot]:
-    """Inertia of each link and the sum, and its slope; speed, acceleration, time."""
+    """Return inertia of each link with the sum, its derivative, speed, acceleration and time."""
     steady = running.steady
     law = steady.law
     parts = _curves_with_sum(
@@ -170,7 +176,7 @@ def _sample_curves(names: Sequence[str], of: Any, way: Real, here: Real) -> list
 
 
 def _reduced_load_moments(results: Results, running: SteadyRunning, way: Real) -> dict[str, Real]:
-    """Reduced moments by names of loads, along the sense of the driver."""
+    """Return the reduced moment of each load by its name, positive in the sense of the driver."""
     motion = motion_at_positions(results, running.start + running.sense * way)
     found: dict[str, Real] = {}
     for load in collect_loads(motion, results.strokes):
@@ -188,7 +194,7 @@ def _reduced_link_inertias(results: Results, running: SteadyRunning, way: Real) 
 
 
 def _curves_with_sum(curves: dict[str, Real], points: dict[str, Real], total: str) -> list[SampledCurve]:
-    """A course of each part that is not nothing, the small ones of many as one, after the sum of all."""
+    """Return the sum, then a curve for each nonzero part; of many parts the smallest are added up."""
     sizes = {name: float(np.max(np.abs(values))) for name, values in curves.items()}
     largest = max(sizes.values(), default=0.0)
     courses = [SampledCurve(name, curves[name], points[name]) for name, size in sizes.items() if size > 1e-9 * largest]
@@ -221,7 +227,7 @@ SEGMENT_ENDS = ("a", "b")
 
 @dataclass(frozen=True)
 class DrawnTangent:
-    """A tangent as it is drawn, mm and rad: where it begins on the axis of energy, where it touches, its angle."""
+    """A tangent on paper: start on the energy axis and point of contact (mm), angle (rad)."""
 
     start: complex
     touching: complex
@@ -235,7 +241,7 @@ class DrawnTangent:
 
 
 def energy_mass_sheet(results: Results, running: SteadyRunning, way: Real) -> Drawing:
-    """Work of all moments from position 0 on against the reduced inertia of the links, over the cycle."""
+    """Draw the work of all moments from position 0 on against the reduced inertia of the links, over the cycle."""
     assert results.motion is not None
     steady, units = running.steady, results.problem.units
     factor, unit = units.factor(MOMENT_OF_INERTIA), typeset_unit(units.spelt(MOMENT_OF_INERTIA))
@@ -282,7 +288,10 @@ def energy_mass_sheet(results: Results, running: SteadyRunning, way: Real) -> Dr
 
 
 def _axis_ends(inertia: Any, massless: float) -> tuple[float, float]:
-    """Of the axis: it begins at zero unless that is far off. massless: its end where all links are without inertia."""
+    """Return the ends of the inertia axis: it begins at zero unless that is far away.
+
+    massless: its end if no link has inertia.
+    """
     low, high = float(np.min(inertia)), float(np.max(inertia))
     if high <= 0.0:
         return 0.0, massless
@@ -293,21 +302,21 @@ def _axis_ends(inertia: Any, massless: float) -> tuple[float, float]:
 
 
 def _massless_width(steady: SteadySolution) -> float:
-    """The inertia (kg*m^2) over which a tangent rises as much as the work changes in the cycle; 1 where it does not."""
+    """Return the inertia (kg*m²) over which a tangent rises by the change of work in the cycle; 1 if it is zero."""
     fastest, slowest = steady.tangents
     rise = abs(fastest.offset - slowest.offset)
     return rise / fastest.slope if rise > 0.0 else 1.0
 
 
 def _tangent_curve(tangent: Tangent, factor: float, ends: tuple[float, float], name: str, colour: str) -> ChartCurve:
-    """From the axis of energy on."""
+    """Return a tangent as a curve, beginning at the energy axis."""
     low, high = ends
     xs = np.array([low, min(tangent.inertia / factor + TANGENT_OVERHANG * (high - low), high)])
     return ChartCurve(xs, tangent.offset + tangent.slope * factor * xs, name, colour, "--", 1.0)
 
 
 def _draw_tangent_angle(sheet: DrawingSheet, tangent: DrawnTangent, name: Symbol, radius: float, colour: str) -> None:
-    """Of a tangent with the axis of inertia, where it begins; and where it touches."""
+    """Draw the angle between a tangent and the inertia axis, and the point of contact."""
     sheet.line([tangent.start, tangent.start + radius + ANGLE_LINE], THIN_COLOUR, 0.6, z=1.4, faint=True)
     arc = tangent.start + radius * np.exp(1j * np.linspace(0, tangent.angle, 30))
     sheet.line(arc.tolist(), colour, 0.7, z=2.6)
@@ -316,7 +325,7 @@ def _draw_tangent_angle(sheet: DrawingSheet, tangent: DrawnTangent, name: Symbol
 
 
 def _measured_text(drawn: list[DrawnTangent]) -> Words:
-    """What one would measure on the sheet."""
+    """Return the angles and the segment ab as they would be measured on the sheet."""
     told: list[str | Symbol] = []
     for one, name in zip(drawn, TANGENT_ANGLES, strict=True):
         told += [name, f" = {numeral(math.degrees(one.angle), '.4g')}°;   "]
@@ -325,7 +334,10 @@ def _measured_text(drawn: list[DrawnTangent]) -> Words:
 
 
 def _flywheel_text(inertia: float, begins: float, units: UnitSystem) -> Words:
-    """How its inertia follows from that. begins: the inertia at which the axis does, in the unit of the file."""
+    """Return the equation for the inertia of the flywheel.
+
+    begins: inertia at the start of the axis, in the unit of the file.
+    """
     tan, largest, least = symbol("tan"), *TANGENT_ANGLES
     found = units.from_si(inertia, MOMENT_OF_INERTIA)
     return (
@@ -348,7 +360,7 @@ LEAST_SAMPLES = 4  # in a piece, where there are very many
 
 
 def draw_single_run(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """Of a file that asks for one."""
+    """Yield the diagrams of a single run, if the file requests one."""
     single = results.single
     if single is None or results.motion is None:
         return
@@ -384,7 +396,14 @@ def draw_single_run(results: Results) -> Iterable[tuple[str, Drawing]]:
 def _run_plots(
     single: SingleRun, curve: tuple[Real, Any], points: tuple[Real, Real, Real], *, crank: bool
 ) -> list[QuantityPlot]:
-    """Over the times and states of the curve; at the times, ways and speeds of the points."""
+    """Return the quantities of a run.
+
+    Args:
+        single: The run.
+        curve: Times and states along the curve.
+        points: Times, travels and speeds at the computed positions.
+        crank: The driver rotates.
+    """
     times, (way, speed, driven, loaded, braked) = curve
     time, here, there = points
     changes, at_points = single.acceleration(times, way, speed), single.acceleration(time, here, there)

@@ -1,4 +1,4 @@
-"""Forces and couples on links, without scale, and arms of moments to scale."""
+"""Arrows of forces and couples on links, not to scale, and moment arms to scale."""
 
 from __future__ import annotations
 
@@ -26,9 +26,10 @@ COUPLE_RADII = (5.5, 8.1, 10.7, 13.3)  # mm of couples about one place
 
 @dataclass
 class ForceArrows:
-    """Arrows on a sheet, with tail or head at their places, as it covers less; couples as open circles.
+    """Arrows of forces on a sheet, tail or head at the point of action, whichever covers less; couples as open circles.
 
-    whole: on the whole mechanism: all have their tails there, and what balances a crank goes round its support.
+    whole: the forces act on the whole mechanism: all tails are at the points of action, and the balancing moment of a
+    crank is drawn around its support.
     """
 
     sheet: DrawingSheet
@@ -73,14 +74,14 @@ class ForceArrows:
         self.sheet.label(name, end if out else start, 9.5, colour)
 
     def _covered(self, at: complex, way: complex) -> int:
-        """How much is drawn along a way from a place."""
+        """Count the drawn points along a direction from a point."""
         crowd = self.sheet.ground.crowd - at
         run, off = dot(way, crowd), np.abs(cross(way, crowd))
         return int(np.count_nonzero((run > 2.5) & (run < LOAD_LENGTH + 3) & (off < SHAFT_REACH)))
 
 
 def _draw_couple(sheet: DrawingSheet, at: complex, sense: float, colour: str, name: Words, radius: float) -> None:
-    """A couple as an open circle with an arrow head in its sense."""
+    """Draw a couple as an open circle with an arrowhead in its sense."""
     angles = np.linspace(0.35 * np.pi, 1.75 * np.pi, 40)[:: int(sense)]
     arc = [at + radius * complex(np.cos(a), np.sin(a)) for a in angles]
     sheet.line(arc[:-4], colour, 1.2, z=5)
@@ -89,7 +90,7 @@ def _draw_couple(sheet: DrawingSheet, at: complex, sense: float, colour: str, na
 
 
 def arrow_extent(acting: Iterable[ForceOrCouple]) -> list[tuple[complex, complex]]:
-    """Places (m), and how far (mm) an arrow may go on from there."""
+    """Return points (m) with the offsets (mm) by which an arrow may extend from them."""
     found = []
     for one in acting:
         along = 0j if one.couple else (LOAD_LENGTH + 2) * one.force / abs(one.force)
@@ -98,9 +99,14 @@ def arrow_extent(acting: Iterable[ForceOrCouple]) -> list[tuple[complex, complex
 
 
 def draw_arms(sheet: DrawingSheet, equations: Sequence[MomentEquation], links: Vector) -> None:
-    """Thin lines from each centre to the feet on the lines of forces, lettered, with the square of a right angle.
+    """Draw the moment arms: from each centre a thin line to the foot of the perpendicular on each line of action.
 
-    One that would lie on a link stands beside it as a dimension. links: points (mm) that stand for them.
+    Each has its letter and a right-angle mark. An arm along a link is drawn beside it as a dimension.
+
+    Args:
+        sheet: Sheet to draw on.
+        equations: Equations of moments.
+        links: Points (mm) along the links.
     """
     drawn: set[int] = set()
     beside_links: list[tuple[complex, complex, str]] = []
@@ -136,7 +142,7 @@ def draw_arms(sheet: DrawingSheet, equations: Sequence[MomentEquation], links: V
 
 
 def _draw_right_angle(sheet: DrawingSheet, foot: complex, way: complex, at: complex) -> None:
-    """Its mark at the foot of an arm, on the side of the force."""
+    """Draw the right-angle mark at the foot of an arm, on the side of the force."""
     back, side = -RIGHT_ANGLE_LEG * way, RIGHT_ANGLE_LEG * 1j * way
     if dot(side, at - foot) < 0:
         side = -side

@@ -1,7 +1,8 @@
-"""The table of Assur groups of classes II to VI by order (Table 1 of the source of structure), as a sheet.
+"""Table of Assur groups of classes II to VI by order (Table 1 of the source on structure), as a sheet.
 
-A group is drawn alone: links as bars, or plates where they have three pairs, pairs as hinges or stones; dotted leads go
-out from the pairs by which it is joined to other links.
+Each group is drawn alone: links as bars, or plates if they have three pairs; pairs as hinges or sliding blocks;
+dotted
+stubs at the external pairs.
 """
 
 from __future__ import annotations
@@ -27,9 +28,13 @@ PLATE_COLOUR = "#e8edf2"
 
 @dataclass(frozen=True)
 class GroupExample:
-    """A group of the table: points in a square of side 1, links by their points, leads by point and direction (deg).
+    """A group of the table.
 
-    stones: for a sliding pair its point and the direction of its guide (deg).
+    Attributes:
+        points: Points in a square of side 1.
+        links: Links, each by the letters of its points.
+        leads: External pairs: point, and direction of the stub (deg).
+        stones: Prismatic pairs: point, and direction of the guide (deg).
     """
 
     group_class: int
@@ -42,7 +47,7 @@ class GroupExample:
 
     @property
     def pairs(self) -> list[tuple[str, tuple[str, ...]]]:
-        """Each pair by its point, with the links that it joins; a lead joins one."""
+        """Pairs by their points, each with the links it joins; an external pair has only one."""
         return [(point, tuple(link for link in self.links if point in link)) for point in self.points]
 
 
@@ -149,7 +154,7 @@ GROUP_EXAMPLES: tuple[GroupExample, ...] = (
 
 
 def draw_group_table() -> Iterator[tuple[str, Drawing]]:
-    """The sheet, by the name of its file."""
+    """Yield the sheet with the stem of its file."""
     sheet = DrawingSheet(
         _("Assur groups of classes II to VI"), _("By class and order; leads are dotted"), paper=LANDSCAPE
     )

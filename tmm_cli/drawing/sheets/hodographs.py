@@ -1,4 +1,4 @@
-"""Hodographs: the ends of a force drawn from one pole over the cycle, with the numbers of positions."""
+"""Hodographs: the ends of a force drawn from one pole over the cycle, with numbers of positions."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ MOST_NUMBERED = 24  # positions with numbers, at most
 
 @dataclass(frozen=True)
 class Hodograph:
-    """A force (N) over the whole cycle, and at the positions; leaps: after which places it may leap."""
+    """A force (N) over the whole cycle and at the positions; leaps: indices after which it may jump."""
 
     name: Words
     cycle: Vector
@@ -48,7 +48,7 @@ class Hodograph:
 
 
 def draw_shaking_hodograph(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """The shaking force before and after balancing."""
+    """Yield the hodograph of the shaking force before and after balancing."""
     found = results.balancing
     if found is None or not found.cycle.shakes:
         return
@@ -62,7 +62,7 @@ def draw_shaking_hodograph(results: Results) -> Iterable[tuple[str, Drawing]]:
 
 
 def draw_reaction_hodographs(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """Of every pair: the ends of its reaction from one pole, then its parts and its size over the turn of the crank."""
+    """Yield for every pair the hodograph of its reaction, then magnitude and components over the cycle."""
     assert results.reactions is not None
     places, borders = dense_coordinates(results)
     whole = results_at(results, places)
@@ -82,7 +82,7 @@ def draw_reaction_hodographs(results: Results) -> Iterable[tuple[str, Drawing]]:
 def _turned_hodographs(
     results: Results, whole: Results, here: Reaction, cycle: Reaction, leaps: Sequence[int]
 ) -> Iterable[tuple[str, Drawing]]:
-    """The same in the axes of each link of the pair that turns, and its size in polar axes, by the crank's angle."""
+    """Yield the hodograph in the axes of each rotating link of a pair, and the magnitude in polar axes."""
     assert results.motion is not None and whole.motion is not None
     pair, symbol = here.pair.name, reaction_symbol(here.by, here.on)
     for link in (here.by, here.on):
@@ -103,7 +103,7 @@ def _turned_hodographs(
 
 
 def _force_components(cycle: Vector, here: Vector) -> list[QuantityPlot]:
-    """The size of a force, and its parts along the axes of the drawing."""
+    """Return the magnitude of a force, and its components along x and y."""
     parts = [("x", cycle.real, here.real), ("y", cycle.imag, here.imag)]
     size = SampledCurve("", np.abs(cycle), np.abs(here))
     return [
@@ -113,7 +113,7 @@ def _force_components(cycle: Vector, here: Vector) -> list[QuantityPlot]:
 
 
 def hodograph_sheet(results: Results, caption: str, drawn: Sequence[Hodograph], letter: str) -> Drawing:
-    """A sheet of hodographs from one pole at one scale; of a force that is nothing beside the others a dot."""
+    """Draw hodographs from one pole at one scale; a negligible force is drawn as a dot."""
     largest = max(float(np.nanmax(np.abs(one.cycle))) for one in drawn)
     places = [0j, *(complex(p) for one in drawn for p in one.cycle)]
     sheet = DrawingSheet(results.problem.title, caption, places, pad=FIGURE_PAD)
@@ -131,7 +131,7 @@ def hodograph_sheet(results: Results, caption: str, drawn: Sequence[Hodograph], 
 
 
 def _draw_hodograph(sheet: DrawingSheet, results: Results, one: Hodograph) -> None:
-    """Its line, which comes back to its beginning; thin and dotted where it leaps."""
+    """Draw the curve, closed if the driver rotates fully; jumps are thin and dotted."""
     closed = np.append(one.cycle, one.cycle[:1]) if results.turns else one.cycle
     places = sheet.origin + closed / sheet.mu
     leaps = [k for k in one.leaps if abs(places[k + 1] - places[k]) > LEAST_JUMP]
@@ -141,7 +141,7 @@ def _draw_hodograph(sheet: DrawingSheet, results: Results, one: Hodograph) -> No
 
 
 def _draw_axes(sheet: DrawingSheet, places: Sequence[complex]) -> None:
-    """Through the pole, along the axes of the drawing."""
+    """Draw the axes through the pole."""
     on = np.array([sheet.on(place) for place in places if np.isfinite(place)])
     pole = sheet.on(0j)
     for along, low, high, name in (
@@ -157,7 +157,7 @@ def _draw_axes(sheet: DrawingSheet, places: Sequence[complex]) -> None:
 
 
 def _number_positions(sheet: DrawingSheet, results: Results, one: Hodograph) -> None:
-    """Numbers of positions along it."""
+    """Write numbers of positions along a hodograph."""
     step = -(-len(results.numbers) // MOST_NUMBERED)
     for number, value in list(zip(results.numbers, one.positions.tolist(), strict=True))[::step]:
         if np.isfinite(value):

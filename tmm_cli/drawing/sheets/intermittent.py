@@ -1,4 +1,4 @@
-"""Intermittent motion of wheels over a cycle of the driver, or over those of all settings: level where they stand."""
+"""Intermittent motion of gears and ratchets over a cycle of the driver, or over the cycles of all settings."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def draw_intermittent(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """A sheet a wheel: its angle and its angular speed over the driver's way."""
+    """Yield a sheet for each intermittently moving wheel: its angle and angular speed against the driver travel."""
     for wheel in results.wheels or ():
         yield f"intermittent-{file_safe_name(wheel.task.name)}", _intermittent_sheet(results, wheel)
 

@@ -55,32 +55,35 @@ HIDDEN_WITHIN = 0.03  # share of the mechanism's size: pairs nearer than that to
 
 @dataclass(frozen=True)
 class Position:
-    """A computed position by its index, and what its sheets are called."""
+    """A computed position by its index; it names and opens the sheets of that position."""
 
     results: Results
     motion: Motion
     k: int
 
     def stem(self, name: str) -> str:
-        """velocity-03."""
+        """Return the stem of a file name, e.g. velocity-03."""
         return f"{name}-{self.results.numbers[self.k]:02d}"
 
     def sheet(
         self, title: str, places: Iterable[complex] = (), room: PaperLayout | None = None, **words: str
     ) -> DrawingSheet:
-        """A sheet for places (SI), or of a room. {caption} in its title: which position it is, and of what driver."""
+        """Open a sheet for points (SI) or a layout.
+
+        The field {caption} of the title is filled with position number and driver coordinate.
+        """
         subject = title.format(caption=self.caption, **words)
         return DrawingSheet(self.results.problem.title, subject, places, room=room)
 
     @property
     def caption(self) -> str:
-        """Which position it is and where the driver stands."""
+        """Number of the position and driver coordinate, as text."""
         place = driver_caption(self.results, float(self.motion.q[self.k]))
         return _("Position {number}, {place}").format(number=self.results.numbers[self.k], place=place)
 
 
 def driver_caption(results: Results, q: float, digits: int = 6) -> str:
-    """In words."""
+    """Return the driver coordinate as text."""
     crank, units = results.linkage.driver.kind == "turn", results.problem.units
     measure = ANGLE if crank else LENGTH
     value = round(units.from_si(q % (2 * np.pi) if crank else q, measure), COORDINATE_DECIMALS)
@@ -91,9 +94,13 @@ def driver_caption(results: Results, q: float, digits: int = 6) -> str:
 def draw_measured(
     sheet: DrawingSheet, scene: MechanismScene, mark: str = "", links: Sequence[str] = ()
 ) -> RenderedLinks:
-    """One position to scale with its symbols, names of points and centres of mass, numbers of links.
+    """Draw a position to scale with symbols, names of points and centres of mass, and numbers of links.
 
-    mark: of the position, after the names of moving points. links: only these, without what they are joined to.
+    Args:
+        sheet: Sheet to draw on.
+        scene: The position.
+        mark: Suffix of the names of moving points.
+        links: Draw only these, without the links to which they are joined; empty: all moving links.
     """
     linkage = scene.linkage
     moving, shown, hue = linkage.moving_points, links or linkage.moving, dict.fromkeys(linkage.links, DARK_COLOUR)
@@ -132,7 +139,7 @@ def draw_measured(
 
 
 def join_to_link(sheet: DrawingSheet, scene: MechanismScene, link: str, at: complex) -> None:
-    """A thin line from a link of one point to a place (mm) that belongs to it too."""
+    """Draw a thin line from a link with one point to another point (mm) that belongs to it."""
     if len(scene.linkage.links[link].points) == 1:
         (point,) = scene.linkage.links[link].points
         sheet.line([sheet.on(scene.point(point)), at], THIN_COLOUR, 0.9, z=2.1)
@@ -141,14 +148,14 @@ def join_to_link(sheet: DrawingSheet, scene: MechanismScene, link: str, at: comp
 def draw_skeleton(
     sheet: DrawingSheet, scene: MechanismScene, colour: str = GREY_COLOUR, width: float = 0.7, z: float = 1.0
 ) -> None:
-    """One position as thin lines."""
+    """Draw a position as thin lines."""
     for link in scene.linkage.moving:
         for edge in form_by_points(sheet, scene, link, whole=False).edges:
             sheet.line(edge, colour, width, z=z, faint=True)
 
 
 def point_paths(results: Results) -> list[Vector]:
-    """Paths of all moving points over the cycle, and of centres of mass that are none of them, m."""
+    """Return the paths (m) of all moving points over the cycle, and of centres of mass that are not at a point."""
     linkage, whole = results.linkage, motion_at_positions(results, results.closely(POSITIONS_PER_TURN), 0)
     found = [whole.spot(name) for name in linkage.moving_points]
     for link in links_with_mass(linkage):
@@ -159,13 +166,13 @@ def point_paths(results: Results) -> list[Vector]:
 
 
 def draw_paths(sheet: DrawingSheet, found: Iterable[Vector]) -> None:
-    """Paths (m) as dashed lines, once only where a point comes back on the way on which it went."""
+    """Draw paths (m) as dashed lines; a stretch that a point retraces is drawn once."""
     for path in found:
         sheet.line(drop_retraced(sheet.origin + path / sheet.mu), THIN_COLOUR, 0.7, "--", 1.5, faint=True)
 
 
 def drop_retraced(path: Vector) -> list[complex]:
-    """A path (mm) that is interrupted where it leads back over itself."""
+    """Return a path (mm) with nan where it retraces itself."""
     steps, middles = np.diff(path), (path[1:] + path[:-1]) / 2
     off = middles[:, None] - path[None, :-1]
     size = np.maximum(np.abs(steps), 1e-12)
@@ -176,14 +183,14 @@ def drop_retraced(path: Vector) -> list[complex]:
 
 
 def detailed_drawings(results: Results) -> list[Position]:
-    """The positions in detail that could be computed."""
+    """Return the detailed positions that could be computed."""
     motion = results.motion
     assert motion is not None
     return [Position(results, motion, k) for k in detailed_positions(results)]
 
 
 def draw_position(here: Position) -> Iterable[tuple[str, Drawing]]:
-    """The position with weights, inertia forces and couples, loads, and what balances the crank."""
+    """Yield the position with weights, inertia forces and couples, loads, and the balancing moment of the crank."""
     results, motion, k = here.results, here.motion, here.k
     linkage, reactions = results.linkage, results.reactions
     scene = MechanismScene(linkage, results.structure, motion.poses, k)
@@ -209,9 +216,10 @@ def draw_position(here: Position) -> Iterable[tuple[str, Drawing]]:
 
 
 def sketch_scene(results: Results) -> tuple[str, MechanismScene] | None:
-    """Where to draw, in words, and the scene there: the sketch, or a place at which no pair hides another.
+    """Return driver coordinate (text) and scene of the sketch, or of a position in which no pair hides another.
 
-    None when the linkage cannot be assembled at the sketch.
+    Returns:
+        None if the linkage cannot be assembled at the sketch.
     """
     linkage, structure = results.linkage, results.structure
     driver_range = results.driver_range
@@ -230,9 +238,9 @@ def sketch_scene(results: Results) -> tuple[str, MechanismScene] | None:
 
 
 def _clearness(scenes: Sequence[MechanismScene]) -> Real:
-    """Least distance of a pair from another, or from a bar of other links, as a share of the size; a value a scene.
+    """Return for each scene the least distance of a pair from another pair or a bar of other links.
 
-    Pairs that always coincide do not count.
+    It is relative to the size of the mechanism. Pairs that always coincide do not count.
     """
     moving, every = scenes[0].structure.links, scenes[0].structure.pairs
     # a guide on the frame may be drawn anywhere along itself
@@ -251,7 +259,11 @@ def _clearness(scenes: Sequence[MechanismScene]) -> Real:
 
 
 def task_picture(results: Results) -> Drawing | None:
-    """None when the linkage cannot be assembled at the sketch."""
+    """Draw the mechanism at the sketch to scale, as given in a task: names, but no results.
+
+    Returns:
+        None if the linkage cannot be assembled at the sketch.
+    """
     found = sketch_scene(results)
     if found is None:
         return None

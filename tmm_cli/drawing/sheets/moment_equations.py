@@ -53,7 +53,12 @@ EquationPart = str | Symbol
 
 
 def equation_lines(equation: MomentEquation, unit: str = "N·m") -> Iterable[Words]:
-    """The sum in letters; then what it gives, in letters, with numbers (N, m) and as a value; unit: of moments."""
+    """Yield an equation of moments in letters, then its solution in letters, with numbers and as a value.
+
+    Args:
+        equation: The equation (N, m).
+        unit: Unit of moments.
+    """
     found, sought = equation.found, equation.sought
     links = (_("link {links}") if len(equation.links) == 1 else _("links {links}")).format(
         links=", ".join(equation.links)
@@ -93,7 +98,7 @@ def equation_lines(equation: MomentEquation, unit: str = "N·m") -> Iterable[Wor
 
 
 def guide_force_lines(forces: ForceSum) -> Iterable[Words]:
-    """The sum along a guide in letters, then with numbers."""
+    """Yield the sum of forces along a guide, in letters and then with numbers."""
     title = _("ΣF along guide {guide}, link {link}: ").format(guide=forces.guide, link=forces.link)
     others = [part for part in forces.parts if part is not forces.found]
     sense = -float(np.sign(forces.found.along))
@@ -128,7 +133,7 @@ def _term_numbers(term: MomentTerm) -> tuple[EquationPart, ...]:
 
 
 def _sum_text(terms: Iterable[tuple[tuple[EquationPart, ...], float]]) -> list[EquationPart]:
-    """a − b + c."""
+    """Return terms joined with their signs, e.g. a − b + c."""
     found: list[EquationPart] = []
     for words, sign in terms:
         plus = " + " if found else ""
@@ -137,7 +142,7 @@ def _sum_text(terms: Iterable[tuple[tuple[EquationPart, ...], float]]) -> list[E
 
 
 def forces_table(acting: Iterable[ForceOrCouple], unit: str = "N·m") -> CaptionTable:
-    """Sizes, angles of forces from x and senses of couples; unit: of couples."""
+    """Return the table of magnitudes, directions of forces from x and senses of couples; unit: of couples."""
     rows: list[tuple[Words, ...]] = []
     for one in acting:
         way = f"{numeral(round(float(np.degrees(np.angle(one.force))), 1) % 360, '.1f')}°"
@@ -148,7 +153,13 @@ def forces_table(acting: Iterable[ForceOrCouple], unit: str = "N·m") -> Caption
 
 
 def arms_table(equations: Sequence[MomentEquation], units: UnitSystem | None, mu: float) -> CaptionTable:
-    """In the unit of lengths (none: they are ratios) and on paper; mu: SI a millimetre."""
+    """Return the table of moment arms, in the unit of lengths and on paper.
+
+    Args:
+        equations: Equations of moments.
+        units: Units of the file; None: arms are ratios.
+        mu: Scale, SI units per mm.
+    """
     found: dict[int, list[MomentTerm]] = {}
     for term in (t for e in equations for t in e.terms if t.number):
         found.setdefault(term.number, []).append(term)
@@ -161,7 +172,7 @@ def arms_table(equations: Sequence[MomentEquation], units: UnitSystem | None, mu
 
 
 def format_figures(value: float) -> str:
-    """A number with four figures and all those before its point, without powers of ten as far as people write it so."""
+    """Format a number with four significant figures, without a power of ten where people do not write one."""
     rounded = float(f"{half_up(value):.4g}")
     if 1e4 <= abs(rounded) < 1e7:
         return numeral(value, ".0f")
@@ -178,7 +189,10 @@ MOST_ARMS = 12  # arms on one sheet
 
 
 def draw_group_loads(here: Position) -> Iterable[tuple[str, Drawing]]:
-    """A sheet for each group and each driving link; another one for equations whose arms would crowd the first."""
+    """Yield a sheet for each group and each driving link with loads and equations of moments.
+
+    Equations whose arms would crowd the first sheet get another one.
+    """
     if here.results.reactions is None:
         return
     for part in list_free_bodies(here.motion, here.results.reactions, here.k):
@@ -194,7 +208,7 @@ def draw_group_loads(here: Position) -> Iterable[tuple[str, Drawing]]:
 
 
 def split_equations(equations: Sequence[MomentEquation]) -> list[list[MomentEquation]]:
-    """Equations in their order, on as many sheets as their arms need."""
+    """Distribute equations in order over as many sheets as their arms need."""
     found: list[list[MomentEquation]] = [[]]
     for equation in equations:
         number = sum(len(_arm_numbers(e)) for e in found[-1])
@@ -254,7 +268,7 @@ def _group_sheets(
 
 
 def _draw_assur_point(sheet: DrawingSheet, part: FreeBody, equation: MomentEquation) -> None:
-    """The point of Assur, and the lines of the reactions that meet there."""
+    """Mark the Assur point, and draw the lines of action of the reactions that meet there."""
     at, with_moments = sheet.on(equation.centre), {t.acting.symbol for t in equation.terms}
     for one in part.acting:
         if one.pair and not one.couple and one.symbol not in with_moments:
@@ -268,14 +282,14 @@ SLIGHT_SHARE = 1e-3  # of the largest force or moment: a smaller load is not sig
 
 
 def draw_plan_points(sheet: DrawingSheet, ends: Mapping[str, complex], pole: str) -> None:
-    """The lettered points; those that coincide share a place and a label."""
+    """Draw the lettered points of a plan; coincident ones share a circle and a label."""
     for at, names in gather_coincident((sheet.on(end), name) for name, end in ends.items()):
         sheet.circle(at, 0.9 if pole in names else 0.55, "white" if pole in names else DARK_COLOUR, DARK_COLOUR, 1.0)
         sheet.label(", ".join(map(with_subscripts, names)), at, 11 if pole in names else 10)
 
 
 def significant_forces(plan: LeverPlan) -> Sequence[ForceOrCouple]:
-    """Of many forces and couples those that count: no load below a thousandth of the largest force or moment."""
+    """Return the forces to be drawn: of many, no load below 0.1 % of the largest force or moment."""
     if len(plan.acting) <= MOST_FORCES:
         return plan.acting
     force, moment = max(abs(a.force) for a in plan.acting), max(abs(term.moment) for term in plan.equation.terms)
@@ -285,7 +299,7 @@ def significant_forces(plan: LeverPlan) -> Sequence[ForceOrCouple]:
 
 
 def draw_lever(here: Position) -> Iterable[tuple[str, Drawing]]:
-    """Arms are lines from the pole to the feet on the lines of forces."""
+    """Yield the Zhukovsky lever (rotated velocity plan) with all forces, arms and the equation of moments."""
     results = here.results
     if results.lever is None or results.reactions is None:
         return
@@ -335,14 +349,14 @@ def draw_lever(here: Position) -> Iterable[tuple[str, Drawing]]:
 
 
 def _couple_equation(pair: CoupleAsForces) -> tuple[str | Symbol, ...]:
-    """P = M / AB: the forces that stand for a couple."""
+    """Return the equation P = M / AB of the forces that replace a couple."""
     moment, distance, force = map(format_figures, (abs(pair.moment), pair.distance, pair.force))
     numbers = f"{moment} / {distance} = {force} {spelt('N')}"
     return (pair.symbol, " = ", pair.couple, f" / {''.join(pair.points)} = {numbers}      ")
 
 
 def _force_plan_check(here: Position) -> Iterable[Words]:
-    """What the force plan has found for the one driver, and the difference."""
+    """Yield the balancing load by the force plans and its difference, if there is one driver."""
     results, reactions = here.results, here.results.reactions
     assert reactions is not None and results.lever is not None
     if len(reactions.balances) > 1:
@@ -360,7 +374,7 @@ def _force_plan_check(here: Position) -> Iterable[Words]:
 
 
 def _several_driver_notes(here: Position) -> Iterable[str]:
-    """What the lever gives with several drivers: the sum of what they do at their speeds."""
+    """Yield notes for several drivers: the lever gives the sum of their powers at their speed ratios."""
     motion, results, k = here.motion, here.results, here.k
     reactions = results.reactions
     assert reactions is not None and results.lever is not None

@@ -48,7 +48,7 @@ TableSize = tuple[Words, str, float, Dimension]
 
 
 def length_rows(results: Results) -> list[TableRow]:
-    """Rows with name and value in the units of the file; between them the parameter, where any is called otherwise."""
+    """Return rows of names and values in the units of the file, with the names of parameters if these differ."""
     sizes = [*_link_lengths(results), *_gear_radii(results.linkage), *_frame_sizes(results)]
     units = results.problem.units
     named = any(parameter for __, parameter, *___ in sizes)
@@ -63,7 +63,7 @@ def length_rows(results: Results) -> list[TableRow]:
 
 
 def _link_lengths(results: Results) -> Iterator[TableSize]:
-    """Distances between points of a link, as many as tell where they are: of the first two, then from both of them."""
+    """Yield enough distances between the points of a link to fix them: to the first two points each."""
     linkage = results.linkage
     for link in linkage.moving:
         points = list(linkage.links[link].points.items())
@@ -75,7 +75,7 @@ def _link_lengths(results: Results) -> Iterator[TableSize]:
 
 
 def _gear_radii(linkage: Linkage) -> Iterator[TableSize]:
-    """Radii of pitch circles of wheels in mesh; the mesh is named where there are several."""
+    """Yield the pitch radii of gears in mesh; the mesh is named if there are several."""
     teeth = [mesh for mesh in linkage.meshes if mesh.kind != "cam"]
     for mesh in teeth:
         radii = {mesh.i: abs(mesh.ratio)}  # of one that rolls on a rack
@@ -89,7 +89,7 @@ def _gear_radii(linkage: Linkage) -> Iterator[TableSize]:
 
 
 def _length_parameter(results: Results, link: str, name: str) -> str:
-    """The parameter of the file that is the length of a link between these points, where it is called otherwise."""
+    """Return the parameter that is the length of a link between these points, or "" if it has the same name."""
     own = _file_value(results, "links", link)
     ends = own.get("points") if isinstance(own, dict) else None
     if not isinstance(ends, list) or "".join(map(str, ends)) != name:
@@ -98,7 +98,7 @@ def _length_parameter(results: Results, link: str, name: str) -> str:
 
 
 def _coordinate_parameter(results: Results, written: Any, place: complex, size: float, name: str) -> str:
-    """The parameter that is one of the coordinates of a place, the one of this size."""
+    """Return the parameter that is the coordinate of a point with this absolute value, or ""."""
     if not isinstance(written, list):
         return ""
     both = zip(written, (place.real, place.imag), strict=False)
@@ -109,13 +109,13 @@ def _coordinate_parameter(results: Results, written: Any, place: complex, size: 
 
 
 def _renaming_parameter(results: Results, text: Any, name: str) -> str:
-    """The parameter that a text of the file consists of, where its letters are others than those of a name."""
+    """Return the parameter of which a text of the file consists, or "" if it has the letters of `name`."""
     known, word = _file_value(results, "parameters"), str(text).lstrip("-")
     return word if isinstance(known, dict) and word in known and sorted(word) != sorted(name) else ""
 
 
 def _file_value(results: Results, *path: str) -> Any:
-    """What the file has there; None where it has nothing."""
+    """Return the value at a path of keys in the problem file, or None."""
     source = results.problem.source
     found: Any = None if source is None else source.data
     for key in path:
@@ -124,7 +124,7 @@ def _file_value(results: Results, *path: str) -> Any:
 
 
 def _frame_sizes(results: Results) -> Iterator[TableSize]:
-    """Pivots on the frame from the first of them, and guides on the frame by their distance from it and their slope."""
+    """Yield positions of fixed hinges relative to the first one, and distance and slope of guides on the frame."""
     linkage = results.linkage
     pivots = {h.point: complex(linkage.local(FRAME, h.point)) for h in linkage.hinges if FRAME in h.links}
     start, origin = next(iter(pivots.items()), ("", 0j))
@@ -151,7 +151,7 @@ def _frame_sizes(results: Results) -> Iterator[TableSize]:
 
 @dataclass(frozen=True)
 class OutputExtreme:
-    """An end of the output's way: the driver's place (rad or m), and its mark, a number where it is a position."""
+    """An extreme position of the output: driver coordinate (rad or m), and its mark (a number if it is a position)."""
 
     q: float
     mark: str
@@ -159,9 +159,9 @@ class OutputExtreme:
 
 @dataclass(frozen=True)
 class NumberedPath:
-    """The way of a point of the output: along a line, about a pivot, or any.
+    """Path of a point along which positions are numbered: a line, an arc about a pivot, or any curve.
 
-    line, pivot: direction and place of it, of the two kinds that have one (m).
+    line, pivot: direction of the line, and centre of the arc (m).
     """
 
     kind: Literal["line", "arc", "any"]
@@ -171,12 +171,12 @@ class NumberedPath:
     pivot: complex = 0j
 
     def places(self, states: LinkStates) -> Vector:
-        """Of the point in these positions, m."""
+        """Return the points of the path in these positions, m."""
         return states.poses[self.link].at(self.local)
 
 
 def output_extremes(results: Results) -> list[OutputExtreme]:
-    """Ends of the strokes in order, or of what is asked for where the driver does not turn fully."""
+    """Return the extreme positions of the output in order: ends of strokes, or of the requested range."""
     strokes, travels = results.strokes, results.travels
     if strokes is not None and strokes.strokes:
         cycle, ends = strokes.cycle, [stroke.start for stroke in strokes.strokes]
@@ -201,7 +201,7 @@ def output_extremes(results: Results) -> list[OutputExtreme]:
 
 
 def output_travel(results: Results) -> float:
-    """The stroke (m) or the swing (rad) of the main output between its ends."""
+    """Return the stroke (m) or the swing angle (rad) of the main output."""
     strokes, travels = results.strokes, results.travels
     if strokes is not None and strokes.strokes:
         return strokes.travel
@@ -209,7 +209,7 @@ def output_travel(results: Results) -> float:
 
 
 def output_path(results: Results) -> NumberedPath | None:
-    """Of the main output; None where there is none."""
+    """Return the path of the main output, or None if there is none."""
     linkage, link = results.linkage, results.mechanism.output
     if link is None:
         return None
@@ -226,7 +226,7 @@ def output_path(results: Results) -> NumberedPath | None:
 
 
 def swinging_path(linkage: Linkage, link: str) -> NumberedPath:
-    """Of the point of a link that is farthest from its pivot on the frame, or of its first one where it has none."""
+    """Return the path of the point of a link farthest from its fixed hinge, or of its first point if it has none."""
     points = linkage.links[link].points
     pivot = next((p for p in points if p in linkage.links[FRAME].points and linkage.hinged_to_frame(link)), None)
     if pivot is None or len(points) < 2:
@@ -237,7 +237,7 @@ def swinging_path(linkage: Linkage, link: str) -> NumberedPath:
 
 
 def driver_path(results: Results) -> NumberedPath | None:
-    """Of the end of the crank, or of the driven slider; None of a wheel without a point."""
+    """Return the path of the crank pin or of the driving slider; None for a gear without a point."""
     linkage, driver = results.linkage, results.linkage.driver
     if driver.kind == "turn":
         ends = [local for name, local in linkage.links[driver.link].points.items() if name != driver.joint]
@@ -249,7 +249,7 @@ def driver_path(results: Results) -> NumberedPath | None:
 
 
 def extreme_states(results: Results, found: list[OutputExtreme]) -> LinkStates:
-    """The mechanism at the ends of the output's way."""
+    """Return the states of the mechanism in the extreme positions of the output."""
     return motion_at_positions(results, np.array([extreme.q for extreme in found]), 0)
 
 
@@ -272,7 +272,7 @@ RIM_CLEARANCE = 10.0  # mm about the pitch line of a wheel, for a hatched rim
 
 @dataclass(frozen=True)
 class PositionMark:
-    """Where a position is on a track (m), and what it is called; end: of the output's way; working: its stroke."""
+    """A position on a path (m) with its text. end: extreme position of the output; working: in the working stroke."""
 
     place: complex
     text: str
@@ -282,7 +282,7 @@ class PositionMark:
 
 @dataclass(frozen=True)
 class PositionsView:
-    """What is on the sheet: the motion with one position in full, the ends of the output's way."""
+    """Content of the sheet of positions: motion, position drawn in full, extreme positions of the output."""
 
     results: Results
     motion: Motion
@@ -291,7 +291,7 @@ class PositionsView:
     states: LinkStates | None
 
     def lines(self, k: int) -> Vector:
-        """Points (m) that stand for the links in a position."""
+        """Return points (m) along the links in a position."""
         scene, found = replace(self.scene, k=k), []
         for link in self.results.linkage.moving:
             places = [scene.place(link, local) for local in self.results.linkage.links[link].points.values()]
@@ -300,7 +300,7 @@ class PositionsView:
 
     @property
     def shown(self) -> list[int]:
-        """Positions drawn thin."""
+        """Positions drawn as thin lines."""
         step = max(1, len(self.results.numbers) // MOST_SHOWN)
         return [k for k in range(0, len(self.results.numbers), step) if self.motion.placed[k]]
 
@@ -311,7 +311,7 @@ class PositionsView:
         return [k for k in range(0, len(self.results.numbers), step) if self.motion.placed[k]]
 
     def marks(self, track: NumberedPath) -> list[PositionMark]:
-        """Numbers and letters of positions along a track, ends of the output's way among them."""
+        """Return numbers and letters of positions along a path, including the extreme positions."""
         named, strokes, places = [end.mark for end in self.ends], self.results.strokes, track.places(self.motion)
         working = np.ones(len(places), bool)
         if strokes is not None and strokes.strokes:
@@ -329,7 +329,7 @@ class PositionsView:
 
 
 def draw_all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """One sheet: every position thin, the first detailed one in full, dashed trajectories, numbers, stroke, lengths."""
+    """Yield the sheet of all positions: thin lines, one position in full, trajectories, numbers, stroke, lengths."""
     motion, linkage = results.motion, results.linkage
     assert motion is not None
     chosen = detailed_drawings(results)
@@ -374,12 +374,12 @@ def draw_all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
 
 
 def scale_ratio(mu: float) -> str:
-    """A scale factor (m/mm) as the scale of a drawing, 1:4."""
+    """Return a scale factor (m/mm) as the scale of a drawing, e.g. 1:4."""
     return f"1:{numeral(1000 * mu, '.6g')}" if mu >= 1e-3 else f"{numeral(1e-3 / mu, '.6g')}:1"
 
 
 def _figure_extent(view: PositionsView, whole: list[Vector]) -> FigureExtent:
-    """Everything but the numbers of the output, with the room that it needs."""
+    """Return the extent of the figure without the ruler of the output."""
     figure, pivots = FigureExtent(), frame_pivots(view.results.linkage)
     used = [*pivots, *(place for path in whole for place in path.tolist())]
     figure.spots(pivots, PIVOT_CLEARANCE)
@@ -398,7 +398,7 @@ def _figure_extent(view: PositionsView, whole: list[Vector]) -> FigureExtent:
 def _reserve_ruler(
     figure: FigureExtent, view: PositionsView, track: NumberedPath, marks: list[PositionMark], whole: list[Vector]
 ) -> float:
-    """Room for the scale of the output and for its stroke beyond it; how far off the way it is, whatever the scale."""
+    """Reserve room for the ruler of the output and its stroke; return its offset (mm), the same at any scale."""
     mu = sheet_scale([place for path in whole for place in path.tolist()])[1]
     plain, numbers = _ruler_numbers(track, marks, lambda place: place / mu)
     bold = [view.lines(view.scene.k)] * BOLD_WEIGHT
@@ -409,7 +409,7 @@ def _reserve_ruler(
         RULER_OVERHANG if high - low > SHORT_STROKE else RULER_OVERHANG + SHORT_STROKE
     )  # the text of a short stroke stands beside it
     for run in np.linspace(low - more, high + more, len(LINE_SHARES)).tolist():
-        way = ruler.way(min(max(run, low), high))
+        way = ruler.path_point(min(max(run, low), high))
         for out in (0.0, ruler_reach(ruler, numbers), ruler_reach(ruler, numbers) + STROKE_OFFSET):
             figure.spots([way * mu], THIN_CLEARANCE, ruler.at(run, out) - way)
     return ruler.off
@@ -418,7 +418,7 @@ def _reserve_ruler(
 def _ruler_numbers(
     track: NumberedPath, marks: list[PositionMark], on: Callable[[complex], complex]
 ) -> tuple[Ruler, list[RulerNumber]]:
-    """A scale along the way of the output, and its numbers."""
+    """Return a ruler along the path of the output, and its numbers."""
     pivot = on(track.pivot) if track.kind == "arc" else None
     plain = fit_ruler([on(mark.place) for mark in marks], track.line, pivot)
     numbers = gather_numbers([RulerNumber(float(plain.run(on(m.place))), m.text, m.working, m.end) for m in marks])
@@ -428,7 +428,7 @@ def _ruler_numbers(
 def _draw_output_ruler(
     sheet: DrawingSheet, view: PositionsView, track: NumberedPath, marks: list[PositionMark], off: float
 ) -> None:
-    """Numbers of positions along the way of the output, so far off it, and its stroke or swing."""
+    """Draw the ruler of the output at offset `off` (mm) from its path, and the stroke or swing angle."""
     plain, numbers = _ruler_numbers(track, marks, sheet.on)
     ruler = replace(plain, off=off)
     draw_ruler(sheet, ruler, numbers)
@@ -444,7 +444,7 @@ def _draw_output_ruler(
 
 
 def _travel_text(view: PositionsView) -> str:
-    """The stroke H, or the swing ψ."""
+    """Return the stroke H or the swing angle ψ as text."""
     results, units = view.results, view.results.problem.units
     turns = results.mechanism.output is not None and results.linkage.output_swings(results.mechanism.output)
     measure, letter = (ANGLE, "ψ") if turns else (LENGTH, "H")
@@ -452,13 +452,13 @@ def _travel_text(view: PositionsView) -> str:
 
 
 def _farthest_ends(places: Vector) -> tuple[complex, complex]:
-    """The two ends that are farthest from one another."""
+    """Return the two points that are farthest from each other."""
     found = [(p, q) for n, p in enumerate(places.tolist()) for q in places.tolist()[:n]]
     return max(found, key=lambda ends: abs(ends[0] - ends[1]))
 
 
 def _number_points(sheet: DrawingSheet, marks: list[PositionMark]) -> None:
-    """Numbers of positions beside the places of a point, outside its way."""
+    """Write numbers of positions beside the points of a path, on its outer side."""
     finite = [mark for mark in marks if np.isfinite(mark.place)]
     if not finite:
         return
@@ -473,7 +473,7 @@ def _number_points(sheet: DrawingSheet, marks: list[PositionMark]) -> None:
 
 
 def _position_notes(view: PositionsView, track: NumberedPath | None, marks: list[PositionMark]) -> Iterable[str]:
-    """Which position is in full, which are the ends of the output's way, and how long it is where that is not drawn."""
+    """Yield notes: position in full, extreme positions, and the travel if it is not drawn."""
     yield _("in full: position {number}").format(number=view.results.numbers[view.scene.k])
     if view.ends:
         yield _("ends of the output's way: {ends}").format(ends=", ".join(end.mark for end in view.ends))

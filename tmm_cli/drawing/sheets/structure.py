@@ -1,4 +1,4 @@
-"""The Assur groups apart: each alone at its pose, its leads free, with its class, order and type; and the driver."""
+"""Structural scheme with its legend, and the Assur groups drawn separately with class, order and type."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ JOINT_RADIUS = 0.9  # mm: pairs of a link in place of a higher pair
 
 @dataclass(frozen=True)
 class MechanismPart:
-    """A driver on the frame (no group), an Assur group, or a redundant link; with its colour."""
+    """A driver on the frame (group is None), an Assur group, or a redundant link, with its colour."""
 
     title: str
     links: tuple[str, ...]
@@ -72,7 +72,7 @@ class MechanismPart:
 
 
 def mechanism_parts(structure: Structure) -> tuple[MechanismPart, ...]:
-    """The primary mechanisms and the groups, in solving order; then the redundant links."""
+    """Return the primary mechanisms and the groups in the order of solution, then the redundant links."""
     cranks = [driver for driver in structure.drivers if driver.base == FRAME]
     every: list[tuple[str, tuple[str, ...], Group | None]] = [
         *((structure.driver_title(d), structure.rigid_with(d.link), None) for d in cranks),
@@ -88,20 +88,20 @@ def mechanism_parts(structure: Structure) -> tuple[MechanismPart, ...]:
 
 
 def link_colours(structure: Structure) -> dict[str, str]:
-    """The colour of every link, by solving order; the frame, and what is rigid to it, is dark."""
+    """Return the colour of every link; the frame and links rigid with it are dark."""
     of_frame = dict.fromkeys((FRAME, *structure.rigid_with(FRAME)), DARK_COLOUR)
     return of_frame | {link: part.colour for part in mechanism_parts(structure) for link in part.links}
 
 
 def draw_scheme(results: Results) -> Iterator[tuple[str, Drawing]]:
-    """The sheet of the scheme at the sketch; none when the linkage cannot be assembled there."""
+    """Yield the structural scheme at the sketch; nothing if the linkage cannot be assembled there."""
     found = sketch_scene(results)
     if found is not None:
         yield "structure", scheme_sheet(results.problem.title, *found).finish()
 
 
 def scheme_sheet(title: str, place: str, scene: MechanismScene) -> DrawingSheet:
-    """The whole mechanism with its legend below; labels are placed."""
+    """Draw the structural scheme with its legend below; its labels are placed."""
     legend = Legend(scene.structure)
     links, pairs, hue = scene.structure.links, scene.structure.pairs, link_colours(scene.structure)
     places, most = scene.extent(links), SCHEME_BASE_SIZE + SCHEME_SIZE_PER_LINK * len(links)
@@ -132,7 +132,7 @@ def scheme_sheet(title: str, place: str, scene: MechanismScene) -> DrawingSheet:
 
 
 def _draw_replacements(sheet: DrawingSheet, scene: MechanismScene) -> None:
-    """The links in place of higher pairs, dashed: with a turning pair at an end, or a stone on a straight profile."""
+    """Draw the links that replace higher pairs, dashed: with a hinge at each end, or a block on a straight profile."""
     with sheet.on_layer("links"):
         for mesh in scene.linkage.meshes:
             link = replacement_link(higher_pair_outline(scene, mesh))
@@ -148,7 +148,7 @@ def _draw_replacements(sheet: DrawingSheet, scene: MechanismScene) -> None:
 
 
 class Legend:
-    """The band below the scheme: colours of the parts on the left; formula, mobility and class on the right."""
+    """Band below the scheme: colours of the parts on the left; structural formula, mobility and class on the right."""
 
     def __init__(self, structure: Structure) -> None:
         self.structure, self.parts = structure, mechanism_parts(structure)
@@ -183,7 +183,7 @@ class Legend:
             self.facts.append(_("Compound hinge {points}: a circle for every pair").format(points=", ".join(compound)))
 
     def split(self, paper: float) -> tuple[float, list[str]]:
-        """Where the right part begins (mm), and its lines."""
+        """Return the start (mm) of the right part and its lines."""
         width = paper - 2 * MARGIN
         left = min(0.5 * width, 14 + max(text_extent(self.words(part), 9)[0] for part in self.parts))
         chars = int((width - left - 6) / 1.75)
@@ -191,7 +191,7 @@ class Legend:
         return left, [line for lines in wrapped for line in lines]
 
     def words(self, part: MechanismPart) -> str:
-        """What a part is."""
+        """Return the text of a part."""
         if part.redundant is not None:
             return _("{title}: redundant, adds q = {q}").format(title=part.title, q=part.redundant.constraints)
         if part.group is None:
@@ -206,7 +206,7 @@ class Legend:
         return LEGEND_ROW * min(max(len(self.parts), len(lines)), 14) + 4
 
     def draw(self, sheet: DrawingSheet) -> None:
-        """Into the band that was kept free."""
+        """Draw the legend into the band kept free for it."""
         rows, (left, lines) = len(self.parts), self.split(sheet.paper[0])
         top = MARGIN + self.height(sheet.paper[0])
         sheet.line([complex(MARGIN, top), complex(sheet.paper[0] - MARGIN, top)], DARK_COLOUR, 0.6, blocks=False)
@@ -222,7 +222,7 @@ class Legend:
 
 
 def count_pair_letters(kind: str) -> str:
-    """RRRRRR as 6R: types of large groups only count their pairs."""
+    """Abbreviate the type of a large group, e.g. RRRRRR to 6R."""
     if len(kind) <= 5:
         return kind
     return "".join(f"{kind.count(letter)}{letter}" for letter in dict.fromkeys(kind))
@@ -239,7 +239,7 @@ STUB_LENGTH = 8.0  # mm of what a lead would be joined to
 
 
 def draw_all_groups(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """Sheets of the groups at the sketch; none when the linkage cannot be assembled there."""
+    """Yield the sheets of the groups at the sketch; nothing if the linkage cannot be assembled there."""
     found = sketch_scene(results)
     return () if found is None else draw_groups(results.problem.title, *found, results.roles)
 
@@ -247,7 +247,7 @@ def draw_all_groups(results: Results) -> Iterable[tuple[str, Drawing]]:
 def draw_groups(
     title: str, place: str, scene: MechanismScene, roles: Mapping[str, str] | None = None
 ) -> Iterable[tuple[str, Drawing]]:
-    """All groups side by side, on more than one sheet when there are many; on large sheets each alone."""
+    """Yield sheets with the groups side by side; on large sheets, a picture of each."""
     every = mechanism_parts(scene.structure)
     if on_large_sheet():
         for part in every:
@@ -259,7 +259,7 @@ def draw_groups(
 
 
 def _group_picture(title: str, scene: MechanismScene, part: MechanismPart, roles: Mapping[str, str]) -> DrawingSheet:
-    """One part on a large sheet, below its caption."""
+    """Draw one part for a large sheet, below its caption."""
     words = part_caption(part, scene.structure.pairs, roles, GROUP_CAPTION_WIDTH)
     sheet = DrawingSheet(title, words[0], room=scaleless_layout(scene.extent(part.links), GROUP_PAD[0], 0.0))
     sheet.remarks = words[1:]
@@ -270,7 +270,7 @@ def _group_picture(title: str, scene: MechanismScene, part: MechanismPart, roles
 def groups_sheet(
     title: str, place: str, scene: MechanismScene, every: Sequence[MechanismPart], roles: Mapping[str, str]
 ) -> DrawingSheet:
-    """A sheet of these parts, each in a cell with its caption below it."""
+    """Draw a sheet of these parts, each in a cell with its caption below it."""
     subject = _("Assur groups apart, {place}; dashed: what the leads are joined to").format(place=place)
     sheet = DrawingSheet(title, subject, paper=LANDSCAPE)
     rows = math.ceil(len(every) / GROUPS_PER_ROW)
@@ -293,7 +293,7 @@ def groups_sheet(
 
 
 def part_caption(part: MechanismPart, pairs: Iterable[Pair], roles: Mapping[str, str], width: float) -> list[str]:
-    """What a part is, in lines that fit a width (mm)."""
+    """Return the caption of a part in lines of at most `width` mm."""
     links = ", ".join(f"{n} {_(ROLES[roles[n]])}" if n in roles else n for n in part.links)
     if part.redundant is not None:
         q = _("redundant, adds q = {q}").format(q=part.redundant.constraints)
@@ -323,7 +323,7 @@ def part_caption(part: MechanismPart, pairs: Iterable[Pair], roles: Mapping[str,
 
 
 def external_pairs(part: MechanismPart, pairs: Iterable[Pair]) -> tuple[Pair, ...]:
-    """The pairs that join a part to other links: those of a group, or all of a redundant link."""
+    """Return the external pairs of a group, or all pairs of a redundant link with other links."""
     if part.group is not None:
         return part.group.outer
     links = {*part.links}
@@ -335,7 +335,7 @@ def _list_pairs(pairs: Iterable[Pair]) -> str:
 
 
 def _draw_part(sheet: DrawingSheet, scene: MechanismScene, part: MechanismPart, pad: float) -> None:
-    """One part in the field that the ground of the sheet has."""
+    """Draw one part in the current field of the sheet."""
     pairs, links = scene.structure.pairs, part.links
     outer, frame = external_pairs(part, pairs), () if part.group or part.redundant else (FRAME,)
     inner = tuple(p for p in pairs if {p.i, p.j} <= {*links, *frame})
@@ -364,14 +364,14 @@ def _draw_part(sheet: DrawingSheet, scene: MechanismScene, part: MechanismPart, 
 
 
 def external_pair_name(pair: Pair, part: MechanismPart) -> str:
-    """A (to 1): a lead and the link that it is joined to."""
+    """Return the name of an external pair with the link to which it is joined, e.g. A (to 1)."""
     return _("{pair} (to {link})").format(pair=pair.name, link=printed(pair.i if pair.j in part.links else pair.j))
 
 
 def draw_free_prismatic(
     sheet: DrawingSheet, scene: MechanismScene, pair: Pair, part: MechanismPart, look: SymbolStyle
 ) -> None:
-    """A free sliding pair: the box with a piece of the guide, or the bar with the stone, that it would be joined to."""
+    """Draw a free prismatic pair: its box with a piece of the guide, or the guide with the box it would carry."""
     assert pair.slide is not None
     at, along = sheet.on(scene.at(pair)), scene.along(pair.slide)
     if pair.slide.runner not in part.links:
@@ -385,7 +385,7 @@ def draw_free_prismatic(
 def _draw_stub(
     sheet: DrawingSheet, scene: MechanismScene, pair: Pair, forms: Mapping[str, LinkForm], look: SymbolStyle
 ) -> None:
-    """A short dashed piece of the link that a free hinge would be joined to, on its empty side."""
+    """Draw a short dashed piece of the link to which a free hinge would be joined, where there is room."""
     at = sheet.on(scene.at(pair))
     arm = (forms.get(pair.j) or forms[pair.i]).middle - at
     out = quiet_direction(sheet, at, -arm / abs(arm) if abs(arm) > 0.5 else 1j, STUB_LENGTH + 2)
@@ -398,7 +398,7 @@ def _draw_stub(
 def _mark_later_pairs(
     sheet: DrawingSheet, scene: MechanismScene, part: MechanismPart, drawn: Iterable[Pair], look: SymbolStyle
 ) -> None:
-    """Pairs in which later groups will be joined to the links: dots with grey names."""
+    """Mark pairs to which later groups will be joined with dots and grey names."""
     known = {p.name for p in drawn}
     circled = [sheet.on(scene.at(p)) for p in drawn if p.kind == "R"]
     later = [p for link in part.links for p in scene.of(link) if p.name not in known]

@@ -77,7 +77,11 @@ SAME_LENGTH = 1e-6  # relative: a link as long as that of the construction
 def use_problem_names(
     drawn: GeometricConstruction, linkage: Linkage | None, names: Mapping[str, str]
 ) -> tuple[GeometricConstruction, Mapping[str, str]]:
-    """The construction in the user's letters, and these letters by those of its words."""
+    """Rename the points and sizes of a construction to those of the problem file.
+
+    Returns:
+        The renamed construction, and the new letters by the standard ones.
+    """
     own = {letter: letter for letter in CHAIN_LETTERS.get(drawn.chain, "")}
     if linkage is not None:
         own |= match_joints(linkage, drawn.chain, drawn)
@@ -112,7 +116,10 @@ def use_problem_names(
 
 
 def match_joints(linkage: Linkage, chain: Chain, drawn: GeometricConstruction) -> dict[str, str]:
-    """Names of joints along the chain from the driver; none where the linkage is another one, or drives elsewhere."""
+    """Return the joint names along the chain from the driver by standard letter.
+
+    The result is empty if the linkage does not match the chain, or is driven elsewhere.
+    """
     driver, letters = linkage.driver, CHAIN_LETTERS.get(chain, "")
     if not letters or driver.kind != "turn":
         return {}
@@ -167,7 +174,15 @@ def draw_construction(
     linkage: Linkage | None = None,
     names: Mapping[str, str] | None = None,
 ) -> DrawingSheet:
-    """One sheet; joints are called as in the linkage, parameters by their names in the file."""
+    """Draw a construction with the joint names of the linkage and the parameter names of the file.
+
+    Args:
+        title: Title of the project.
+        drawn: The construction.
+        units: Units of the file.
+        linkage: Linkage whose joint names are used; None: standard letters.
+        names: Parameter names, standard name to that in the file.
+    """
     drawn, letters = use_problem_names(drawn, linkage, names or {})
     sheet = DrawingSheet(title, translated(drawn.title).format(**letters), points_on_sheet(drawn), pad=CONSTRUCTION_PAD)
     sheet.ground.rivals += [sheet.on(s.at) for s in drawn.spots if s.name]
@@ -207,7 +222,7 @@ def draw_construction(
 
 
 def points_on_sheet(drawn: GeometricConstruction) -> list[complex]:
-    """Places (m) on the sheet: the mechanism, and wishes that do not make it too small."""
+    """Return the points (m) on the sheet: the mechanism, and optional ones that do not make it too small."""
     points = drawn.places()
     most = MOST_REDUCTION * sheet_scale(points, CONSTRUCTION_PAD)[1]
     for wish in drawn.wishes:
@@ -217,7 +232,7 @@ def points_on_sheet(drawn: GeometricConstruction) -> list[complex]:
 
 
 def pieces_inside(places: Sequence[complex], low: complex, high: complex) -> list[list[complex]]:
-    """The pieces of a polyline that lie in a field, from edge to edge where they leave it."""
+    """Return the pieces of a polyline inside a field, each extended to the edge where the line leaves it."""
     z = np.asarray(places, dtype=complex)
     within = (z.real >= low.real) & (z.real <= high.real) & (z.imag >= low.imag) & (z.imag <= high.imag)
     found = []
@@ -233,7 +248,7 @@ def pieces_inside(places: Sequence[complex], low: complex, high: complex) -> lis
 
 
 def _draw_curve(sheet: DrawingSheet, places: Sequence[complex], style: str) -> list[Sequence[complex]]:
-    """A curve, cut at the edge with arrows where it goes on beyond it; the pieces that are drawn."""
+    """Draw a curve, cut at the edge with arrows where it continues; return the pieces drawn."""
     colour, width, line = LINE_STYLES[style]
     pieces: list[Sequence[complex]] = [piece for piece in pieces_inside(places, *sheet.field) if len(piece) > 1]
     low, high = sheet.field
@@ -254,7 +269,7 @@ def _draw_curve(sheet: DrawingSheet, places: Sequence[complex], style: str) -> l
 
 
 def _label_curve(sheet: DrawingSheet, name: str, pieces: Sequence[Sequence[complex]]) -> None:
-    """The name of a curve where it is alone, written once."""
+    """Write the name of a curve once, where there is room."""
     places: list[complex] = []
     for piece in pieces:
         run = np.concatenate([[0], np.cumsum(np.abs(np.diff(piece)))])
@@ -266,7 +281,7 @@ def _label_curve(sheet: DrawingSheet, name: str, pieces: Sequence[Sequence[compl
 
 
 def _arc_points(sheet: DrawingSheet, arc: Arc) -> list[complex]:
-    """Places of an arc (mm), close together also where its circle is huge: only what is near the sheet is taken."""
+    """Return closely spaced points (mm) of an arc; of a huge circle only the part near the sheet."""
     centre, radius = sheet.on(arc.centre), arc.radius / sheet.mu
     middle, reach = (sheet.ground.low + sheet.ground.high) / 2, abs(sheet.ground.high - sheet.ground.low) / 2
     start, end = arc.start, arc.end
@@ -284,7 +299,7 @@ def _arc_points(sheet: DrawingSheet, arc: Arc) -> list[complex]:
 
 
 def _draw_centre(sheet: DrawingSheet, centre: CircleCentre, units: UnitSystem) -> None:
-    """The centre with lines to it; where it is off the sheet, arrows towards it with its distance."""
+    """Draw a centre with lines to it; if it is off the sheet, arrows towards it with the radius."""
     at, (low, high) = sheet.on(centre.at), sheet.field
     legs = [sheet.on(leg) for leg in centre.legs]
     if pieces_inside([at], low, high):
@@ -324,7 +339,7 @@ def _draw_spot(sheet: DrawingSheet, spot: LetteredPoint, rods: Sequence[Segment]
 
 
 def _draw_size(sheet: DrawingSheet, size: DimensionLine, units: UnitSystem) -> None:
-    """A dimension line; its value has no unit."""
+    """Draw a dimension line; its value has no unit."""
     way = size.end - size.start
     length = abs(way) if size.along == 0 else abs((way * np.conj(size.along / abs(size.along))).real)
     text = _equation_text(size.name, length, "length", units, symbol=False)
@@ -332,7 +347,7 @@ def _draw_size(sheet: DrawingSheet, size: DimensionLine, units: UnitSystem) -> N
 
 
 def _equation_text(name: str, value: float, kind: str, units: UnitSystem, *, symbol: bool = True) -> str:
-    """H = 120 mm."""
+    """Return an equation such as H = 120 mm."""
     measure = DIMENSIONS[kind].dimension
     number = float(units.from_si(value, measure))
     text = numeral(number, ".0f" if "e+" in f"{number:.4g}" else ".4g")
@@ -363,9 +378,14 @@ def draw_synthesis(
     units: UnitSystem,
     names: Mapping[str, str] | None = None,
 ) -> Iterable[tuple[str, Drawing]]:
-    """What the task draws, and the extreme positions, if there is a mechanism with strokes.
+    """Yield the drawings of a synthesis, and the extreme positions if the mechanism has strokes.
 
-    names: of parameters, standard name to that in the file.
+    Args:
+        title: Title of the project.
+        outcome: Result of the synthesis.
+        results: Results of the mechanism found, or None.
+        units: Units of the file.
+        names: Parameter names, standard name to that in the file.
     """
     linkage = results.linkage if results is not None else None
     for drawn in outcome.drawings:
@@ -378,14 +398,14 @@ def draw_synthesis(
 
 
 def draw_problem_synthesis(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """The sheets of a problem whose file has a synthesis."""
+    """Yield the drawings of the synthesis of a problem, if it has one."""
     found = results.problem.synthesis
     if found is not None:
         yield from draw_synthesis(results.problem.title, found.outcome, results, results.problem.units, found.names)
 
 
 def synthesis_diagram(title: str, drawn: Diagram, units: UnitSystem) -> Drawing:
-    """Curves over one quantity, in the units of the file."""
+    """Draw curves over one quantity, in the units of the file."""
     sheet = DrawingSheet(title, translated(drawn.title), paper=LANDSCAPE)
     words, kind = drawn.x
     wide = DIMENSIONS[kind].dimension
@@ -403,7 +423,7 @@ def synthesis_diagram(title: str, drawn: Diagram, units: UnitSystem) -> Drawing:
 
 
 def _diagram_plot(lines: Iterable[DiagramLine], y: tuple[str, str], wide: Dimension, units: UnitSystem) -> PlotContent:
-    """Curves of a panel, those behind the others first."""
+    """Return the curves of a panel, those in the background first."""
     words, kind = y
     high = DIMENSIONS[kind].dimension
     colours = cycle((DARK_COLOUR, LOAD_COLOUR, INERTIA_COLOUR, REACTION_COLOUR))
@@ -422,7 +442,7 @@ def _diagram_plot(lines: Iterable[DiagramLine], y: tuple[str, str], wide: Dimens
 
 
 def extreme_positions_sheet(results: Results) -> DrawingSheet:
-    """The mechanism at both ends of its working stroke, the start in full, with the paths of its points."""
+    """Draw the mechanism at both ends of its working stroke, the start in full, with the paths of its points."""
     strokes, linkage = results.strokes, results.linkage
     assert strokes is not None
     ends = [stroke.start for stroke in strokes.strokes]

@@ -56,7 +56,7 @@ LEAST_DIFFERENCE = 0.03  # of a plan: a vector that differs from another one by 
 
 
 def draw_force_plans(here: Position) -> Iterable[tuple[str, Drawing]]:
-    """A sheet for the polygon of each group and of the driving link."""
+    """Yield a sheet with the force polygon of each group and of the driving link."""
     if here.results.reactions is None:
         return
     for plan in force_plans(here.results.reactions, here.k, here.motion):
@@ -95,13 +95,13 @@ def _force_plan_sheet(here: Position, plan: ForcePlan, title: str) -> DrawingShe
 
 
 def _force_sum(plan: ForcePlan) -> Words:
-    """The sum of all vectors, which is nothing."""
+    """Return the equation that the sum of all vectors is zero."""
     symbols = [v.symbol for v in plan.plan.vectors if v.kind != "inner"]
     return (*(part for symbol in symbols[:-1] for part in (symbol, " + ")), *symbols[-1:], " = 0")
 
 
 def distinct_reactions(plan: ForcePlan) -> list[NamedVector]:
-    """Reactions that are seen beside their parts."""
+    """Return the total reactions that differ visibly from their components."""
     least = LEAST_DIFFERENCE * plan.plan.size
     return [
         full
@@ -111,7 +111,7 @@ def distinct_reactions(plan: ForcePlan) -> list[NamedVector]:
 
 
 def force_plan_rows(plan: ForcePlan, mu: float) -> list[TableRow]:
-    """Every vector with its size, its length on paper and its direction; then reactions of which it has the parts."""
+    """Return the table of a force plan: magnitude, length on paper, direction; then the total reactions."""
     rows = [TableRow((_("vector"), spelt("N"), spelt("mm"), _("from x")), head=True)]
     least = NO_FORCE * plan.plan.size
     for vector in (*plan.plan.vectors, *plan.full):
@@ -122,9 +122,9 @@ def force_plan_rows(plan: ForcePlan, mu: float) -> list[TableRow]:
 
 
 def lane_offsets(vectors: Sequence[NamedVector], size: float) -> list[complex]:
-    """How far each vector is drawn off its place (mm, across it) so that none lies on another.
+    """Return the offsets (mm, across the vectors) at which no vector coincides with another.
 
-    Long ones of the polygon stay where they are; the others go outward.
+    Long vectors of the polygon stay in place; the others move outwards.
     """
     middle = extent([p for v in vectors for p in (v.start, v.end)] or [0j])[3]
     taken: dict[int, int] = {}
@@ -141,7 +141,7 @@ def lane_offsets(vectors: Sequence[NamedVector], size: float) -> list[complex]:
 
 
 def _overlaps(one: NamedVector, other: NamedVector, size: float) -> bool:
-    """Whether two vectors would be seen as one line."""
+    """Return True if two vectors would look like one line."""
     short, long = sorted((one, other), key=lambda vector: abs(vector.value))
     along = long.value / abs(long.value)
     if max(abs(cross(along, p - long.start)) for p in (short.start, short.end)) > OVERLAP_WITHIN * size:
@@ -151,7 +151,7 @@ def _overlaps(one: NamedVector, other: NamedVector, size: float) -> bool:
 
 
 def _join_corners(sheet: DrawingSheet, vectors: Sequence[NamedVector], aside: Sequence[complex]) -> None:
-    """Thin lines that join what belongs to one corner of the polygon where its vectors are spread apart."""
+    """Draw thin lines between the parts of a corner of the polygon that are drawn apart."""
     ends = [(sheet.on(p), sheet.on(p) + off) for v, off in zip(vectors, aside, strict=True) for p in (v.start, v.end)]
     for _at, places in gather_coincident(ends):
         apart = [place for place in places if abs(place - places[0]) > 0.1 * LANE_WIDTH]
@@ -179,7 +179,7 @@ NAME_CLEARANCE = 0.02  # of the plan: least distance of a name from other vector
 
 @dataclass(frozen=True)
 class MotionPlanKind:
-    """One of the two plans. unit, turning: of its vectors and of what links turn with."""
+    """Velocity plan or acceleration plan; unit, turning: units of its vectors and of angular quantities."""
 
     stem: str
     title: str
@@ -192,7 +192,7 @@ class MotionPlanKind:
 
 
 def motion_plan_kinds() -> tuple[MotionPlanKind, MotionPlanKind]:
-    """The velocity plan and the acceleration plan."""
+    """Return the velocity plan and the acceleration plan."""
     return (
         MotionPlanKind("velocity", _("Velocity plan. {caption}"), velocity_plan, "p", "v", "m/s", "omega", "rad/s"),
         MotionPlanKind(
@@ -209,7 +209,7 @@ def motion_plan_kinds() -> tuple[MotionPlanKind, MotionPlanKind]:
 
 
 def draw_motion_plans(here: Position) -> Iterable[tuple[str, Drawing]]:
-    """Velocity plan and acceleration plan of a position, with the parts of each link."""
+    """Yield the velocity plan and the acceleration plan of a position, with the components for each link."""
     for sort in motion_plan_kinds():
         plan = sort.plan(here.motion, here.k)
         figure = FigureExtent()
@@ -243,7 +243,7 @@ def draw_motion_plans(here: Position) -> Iterable[tuple[str, Drawing]]:
 
 
 def corners_on_paper(plan: Plan, mu: float) -> dict[str, complex]:
-    """Corners; one that cannot be told from a lettered end on paper shares its place, and so its label."""
+    """Return the corners of a plan, moved to a lettered end with which they coincide on paper."""
     nearest = {
         letter: min(plan.ends.values(), key=lambda end: abs(end - place)) for letter, place in plan.corners.items()
     }
@@ -254,7 +254,7 @@ def corners_on_paper(plan: Plan, mu: float) -> dict[str, complex]:
 
 
 def name_position(vector: NamedVector, plan: Plan) -> complex:
-    """A place on a vector, near its middle, that is as far as can be from what is drawn over it."""
+    """Return a point near the middle of a vector, clear of other vectors, for its name."""
     others = [v for v in plan.drawn() if v is not vector and v.kind != "absolute"]
     places = [vector.start + share * vector.value for share in NAME_SHARES]
     room = [min((distance_to_segment(place, v.start, v.end) for v in others), default=plan.size) for place in places]
@@ -264,7 +264,7 @@ def name_position(vector: NamedVector, plan: Plan) -> complex:
 
 
 def motion_plan_rows(here: Position, sort: MotionPlanKind, plan: Plan, mu: float) -> list[TableRow]:
-    """Every vector with its segment, its length on paper and its value; what each link turns with."""
+    """Return the table of a plan: segment, length on paper and value of every vector; angular quantities of links."""
     rows = [TableRow((_("vector"), _("segment"), spelt("mm"), spelt(sort.unit)), head=True)]
     for reading in plan_readings(plan):
         first, *others = reading.symbols

@@ -1,4 +1,4 @@
-"""The symbols of a mechanism in one position: links, pairs, supports, wheels, cylinders, what acts on them."""
+"""Symbols of a mechanism in one position: links, pairs, supports, gears, cams, cylinders, springs."""
 
 from tmm_cli.interfaces import lazy
 

@@ -1,4 +1,4 @@
-"""Cylinders and springs, at a pose of the mechanism."""
+"""Cylinders and springs in a position of the mechanism."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ SPRING_BODY = "{}|spring"  # the body that a spring is, which is stretched
 
 
 def cylinder_drivers(linkage: Linkage) -> dict[str, Driver]:
-    """Drivers that slide between two moving links, by their sliding pair."""
+    """Return the drivers that slide between two moving links, by their prismatic pair."""
     return {d.joint: d for d in linkage.drivers if d.kind == "slide" and d.base != FRAME}
 
 
 @dataclass(frozen=True)
 class Cylinder:
-    """A cylinder between two links, mm: its barrel from back to front, its rod from the piston to the end."""
+    """A cylinder between two links (mm): barrel from `back` to `front`, rod from `piston` to `end`."""
 
     slide: Slide
     back: complex
@@ -40,11 +40,13 @@ class Cylinder:
 
     @staticmethod
     def of(sheet: DrawingSheet, scene: MechanismScene, slide: Slide) -> Cylinder:
-        """The barrel begins at the last point that its link has behind the rod's end, else a stroke before it.
+        """Return the cylinder of a prismatic pair.
 
-        Where it cannot hold the stroke (no real one could) the piston goes slower than the rod.
+        The barrel begins at the last point of its link behind the end of the rod, or else one stroke before it. If
+        the barrel
+        cannot hold the stroke, the piston is drawn to move slower than the rod.
         """
-        low, high = (run / sheet.mu for run in scene.way(slide))
+        low, high = (run / sheet.mu for run in scene.travel(slide))
         foot, end = sheet.on(scene.place(slide.carrier, slide.through)), sheet.on(scene.place(slide.runner, slide.at))
         along, stroke = scene.along(slide), high - low
         run = float(dot(along, end - foot))
@@ -58,11 +60,11 @@ class Cylinder:
         return Cylinder(slide, foot + along * start, foot + along * (start + length), foot + along * piston, end)
 
     def part(self, link: str) -> tuple[complex, complex]:
-        """The barrel or the rod."""
+        """Return the ends of the barrel or of the rod, whichever belongs to the link."""
         return (self.back, self.front) if link == self.slide.carrier else (self.piston, self.end)
 
     def draw(self, sheet: DrawingSheet, hue: Mapping[str, str]) -> None:
-        """The barrel cut open, the piston and its rod in it."""
+        """Draw the barrel cut open, with piston and rod."""
         side = 1j * (self.front - self.back) / abs(self.front - self.back) * BARREL_HALF_WIDTH
         corners = [self.back + side, self.front + side, self.front - side, self.back - side]
         with sheet.part(self.slide.carrier):
@@ -74,12 +76,12 @@ class Cylinder:
 
 
 def driver_symbol(driver: Driver, letter: str) -> Symbol:
-    """ω1, or ω21 where the base moves: of link 2 against link 1."""
+    """Return the symbol of a driver: ω1, or ω21 for link 2 relative to a moving link 1."""
     return Symbol(letter, driver.link + ("" if driver.base == FRAME else driver.base))
 
 
 def draw_springs(sheet: DrawingSheet, scene: MechanismScene) -> None:
-    """All springs, with their names."""
+    """Draw all springs with their names."""
     for spring in scene.linkage.springs:
         if spring.turns:
             with sheet.part(spring.j):
@@ -103,7 +105,7 @@ def draw_springs(sheet: DrawingSheet, scene: MechanismScene) -> None:
 
 
 def draw_coil_spring(sheet: DrawingSheet, start: complex, end: complex) -> None:
-    """A zigzag between two straight ends."""
+    """Draw a zigzag between two straight ends."""
     length = abs(end - start)
     along = (end - start) / length
     stub = min(SPRING_END, 0.15 * length)
@@ -115,7 +117,7 @@ def draw_coil_spring(sheet: DrawingSheet, start: complex, end: complex) -> None:
 
 
 def draw_gas_spring(sheet: DrawingSheet, start: complex, end: complex) -> None:
-    """A cylinder that only pushes, or a force that does not change with length."""
+    """Draw a cylinder for a gas spring or a constant force."""
     along = (end - start) / abs(end - start)
     neck, side = start + 0.6 * (end - start), 1j * along * 1.6
     sheet.line([start, end], SPRING_COLOUR, 1.1, z=3.7)
@@ -123,14 +125,14 @@ def draw_gas_spring(sheet: DrawingSheet, start: complex, end: complex) -> None:
 
 
 def draw_torsion_spring(sheet: DrawingSheet, scene: MechanismScene, spring: Spring) -> None:
-    """A spiral about the hinge of the two links, or about the second one's origin where they have none."""
+    """Draw a spiral about the common hinge of two links, or about its point on the second link if there is none."""
     point = scene.linkage.shared(spring.i, spring.j)
     centre = sheet.on(scene.place(spring.j, spring.at_j) if point is None else scene.point(point))
     if not np.isfinite(centre):
         return
     inner, outer, turns = TORSION_SPIRAL
     share = np.linspace(0, 1, 120)
-    arc = centre + (inner + (outer - inner) * share) * unit(scene.turn(spring.j) + 2 * np.pi * turns * share)
+    arc = centre + (inner + (outer - inner) * share) * unit(scene.angle(spring.j) + 2 * np.pi * turns * share)
     sheet.line([complex(p) for p in arc], SPRING_COLOUR, 1.1, z=5.5)
     last = complex(arc[-1])
     sheet.line([last, last + 2.4 * (last - centre) / abs(last - centre)], SPRING_COLOUR, 1.1, z=5.5)

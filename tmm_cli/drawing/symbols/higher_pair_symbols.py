@@ -33,9 +33,14 @@ def draw_higher_pair(
     span: tuple[float, float] | None = None,
     rods: Sequence[Segment] = (),
 ) -> None:
-    """What belongs to links that have a colour (hue), and a cam of any.
+    """Draw the gears, rack or cam of a higher pair that belong to links with a colour; cams always.
 
-    span: how far the rack goes on both sides of the pitch point (m); rods (mm) keep hatching away.
+    Args:
+        sheet: Sheet to draw on.
+        found: Geometry of the pair.
+        hue: Colours of links.
+        span: Range (m) of the rack on both sides of the pitch point; None: a short piece.
+        rods: Bars (mm) that interrupt hatching.
     """
     if isinstance(found, CamOutline):
         _draw_cam(sheet, found, hue)
@@ -56,7 +61,7 @@ def draw_higher_pair(
 
 
 def _draw_in_field(sheet: DrawingSheet, places: Vector, colour: str, width: float, style: Style, z: float) -> None:
-    """A curve within the drawing's field."""
+    """Draw a curve within the field of the sheet."""
     low, high = sheet.ground.low, sheet.ground.high
     inside = (places.real > low.real) & (places.real < high.real) & (places.imag > low.imag) & (places.imag < high.imag)
     if bool(np.any(inside)):
@@ -64,7 +69,7 @@ def _draw_in_field(sheet: DrawingSheet, places: Vector, colour: str, width: floa
 
 
 def _draw_pitch_circle(sheet: DrawingSheet, disc: GearDisc, colour: str) -> None:
-    """A pitch circle; the rim of inner teeth."""
+    """Draw a pitch circle, and the rim of a gear with internal teeth."""
     centre, radius = sheet.on(disc.centre), disc.radius / sheet.mu
     number = int(np.clip(2 * np.pi * radius / 1.5, 48, 3000))
     ways = unit(np.linspace(0, 2 * np.pi, number + 1))
@@ -74,7 +79,7 @@ def _draw_pitch_circle(sheet: DrawingSheet, disc: GearDisc, colour: str) -> None
 
 
 def _hatch_fixed_gear(sheet: DrawingSheet, disc: GearDisc, rods: Sequence[Segment]) -> None:
-    """Strokes about a wheel that is the frame, but for those under rods."""
+    """Draw hatching about a fixed gear, except under bars."""
     centre, out = sheet.on(disc.centre), 1.0 if disc.ring else -1.0
     rim = disc.radius / sheet.mu + (RIM_DEPTH if disc.ring else 0.0)
     number = int(np.clip(2 * np.pi * rim / 3.2, 12, 900))
@@ -86,12 +91,12 @@ def _hatch_fixed_gear(sheet: DrawingSheet, disc: GearDisc, rods: Sequence[Segmen
 
 
 def _tooth_wave(run: Any) -> Any:
-    """Teeth along a pitch line: +1 at tips, -1 at roots."""
+    """Return the tooth profile along a pitch line: +1 at tips, -1 at roots."""
     return np.clip(2.6 * np.sin(2 * np.pi * run / TOOTH_PITCH), -1, 1)
 
 
 def _draw_teeth(sheet: DrawingSheet, disc: GearDisc, pitch: complex, along: complex, colour: str) -> None:
-    """Some teeth at the pitch point: the same wave on both partners, so those of one fill the gaps of the other."""
+    """Draw some teeth at the pitch point; both gears use one wave, so that their teeth mesh."""
     centre, radius, reach = sheet.on(disc.centre), disc.radius / sheet.mu, TEETH_SHOWN / 2 * TOOTH_PITCH
     if radius < reach or not np.isfinite(pitch):
         return
@@ -103,7 +108,7 @@ def _draw_teeth(sheet: DrawingSheet, disc: GearDisc, pitch: complex, along: comp
 
 
 def _draw_rack(sheet: DrawingSheet, found: MeshOutline, colour: str, span: tuple[float, float] | None) -> None:
-    """A bar with teeth on its pitch line, joined to the running point of the rack; hatched where it is the frame."""
+    """Draw a toothed bar, joined to the sliding point of the rack; hatched if it is the frame."""
     pitch, along, side = sheet.on(found.pitch), found.along, found.side
     low, high = (-16.0, 16.0) if span is None else (span[0] / sheet.mu - 8, span[1] / sheet.mu + 8)
     run = np.linspace(low, high, int(np.clip(30 * (high - low) / TOOTH_PITCH, 60, 20_000)))
@@ -122,7 +127,7 @@ def _draw_rack(sheet: DrawingSheet, found: MeshOutline, colour: str, span: tuple
 
 
 def _draw_cam(sheet: DrawingSheet, found: CamOutline, hue: Mapping[str, str]) -> None:
-    """The disk, and the follower's roller; its other parts are bars of its link."""
+    """Draw the cam disk and the roller; the other parts of the follower are bars of its link."""
     disk = [sheet.on(complex(p)) for p in found.disk]
     if found.mesh.i in hue:
         with sheet.part(found.mesh.i):
@@ -147,7 +152,7 @@ SPOKE_WIDTH, THROUGH_WIDTH = 1.2, 2.0  # points
 def draw_rigid_marks(
     sheet: DrawingSheet, found: HigherPairOutline, form: LinkForm, link: str, colour: str, hinge: float
 ) -> None:
-    """The marks of one link that is a part of a higher pair."""
+    """Mark the parts of a link of a higher pair as rigidly joined."""
     if not isinstance(found, CamOutline):
         for disc in found.discs:
             if disc.link == link:
@@ -158,7 +163,7 @@ def draw_rigid_marks(
 
 
 def _arms_at(form: LinkForm, at: complex) -> list[complex]:
-    """Where straight parts lead from a place on them."""
+    """Return the vectors from a point to the ends of the straight parts on which it lies."""
     arms = []
     for start, end in form.edges:
         along = (end - start) / (abs(end - start) or 1.0)
@@ -168,7 +173,7 @@ def _arms_at(form: LinkForm, at: complex) -> list[complex]:
 
 
 def _draw_spoke(sheet: DrawingSheet, disc: GearDisc, form: LinkForm, colour: str) -> None:
-    """The longest bar from the axis goes on to the rim, and is welded to it."""
+    """Extend the longest bar from the axis of a gear to its rim, with a weld mark there."""
     centre, radius = sheet.on(disc.centre), disc.radius / sheet.mu
     arm = max(_arms_at(form, centre), key=abs, default=0j)
     if abs(arm) < ON_LINE or radius < 2 * WELD_LEG:
@@ -181,7 +186,7 @@ def _draw_spoke(sheet: DrawingSheet, disc: GearDisc, form: LinkForm, colour: str
 
 
 def _draw_corner(sheet: DrawingSheet, at: complex, arm: complex, form: LinkForm, colour: str, hinge: float) -> None:
-    """A follower's arm and the bar that is next to it at the same hinge."""
+    """Join the arm of a follower to the nearest bar at the same hinge."""
     others = [other for other in _arms_at(form, at) if abs(arm) > ON_LINE and abs(np.angle(other / arm)) > SAME_ANGLE]
     if not others:
         return

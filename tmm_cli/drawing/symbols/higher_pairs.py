@@ -1,8 +1,8 @@
-"""Toothed wheels, racks and cams: where their shapes lie, m.
+"""Geometry of gears, racks and cams (m).
 
-Wheels are their pitch circles; the pitch point is marked. A cam is given by its follower's law alone: for a sliding
-follower its disk is drawn for a flat face (the force plan takes it so too), for a swinging one for a roller on an arm
-that is chosen to look well.
+Gears are drawn as pitch circles, with the pitch point marked. A cam is given only by the law of its follower: for a
+sliding follower its disk is drawn for a flat face (as the force plan assumes), for a swinging one for a roller on an
+arm of suitable length.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ LARGE_GEAR = (
 
 @dataclass(frozen=True)
 class GearDisc:
-    """A wheel of a mesh: its pitch circle (m); ring: it has inner teeth."""
+    """Pitch circle of a gear (m); ring: it has internal teeth."""
 
     link: str
     centre: complex
@@ -42,9 +42,9 @@ class GearDisc:
 
 @dataclass(frozen=True)
 class MeshOutline:
-    """A mesh of a wheel with a wheel or a rack: pitch point, direction of the pitch line there, wheels.
+    """Mesh of a gear with a gear or a rack: pitch point, direction of the pitch line, pitch circles.
 
-    side: from the pitch point to where the rack is (a unit vector), for racks; start is its running point.
+    For racks: side, the unit vector from the pitch point to the rack; start, the sliding point of the rack.
     """
 
     mesh: Mesh
@@ -57,9 +57,9 @@ class MeshOutline:
 
 @dataclass(frozen=True)
 class CamOutline:
-    """A cam's disk about its axis, where its follower touches it, and the follower: face or arm, roller's radius.
+    """Cam disk, its axis and point of contact; face, stem and roller radius of the follower (m).
 
-    true: it is the cam that has this flat-faced follower, at its running point; else only a sign for one.
+    true: the disk is that of this flat-faced follower at its sliding point; otherwise only a symbol of a cam.
     """
 
     mesh: Mesh
@@ -76,36 +76,42 @@ HigherPairOutline = MeshOutline | CamOutline
 
 
 def higher_pair_outline(scene: MechanismScene, mesh: Mesh) -> HigherPairOutline:
-    """A higher pair at a pose."""
+    """Return the geometry of a higher pair in a position."""
     if mesh.kind == "cam":
         return _flat_faced_cam(scene, mesh) if mesh.slide else _roller_cam(scene, mesh)
     return _gear_outline(scene, mesh) if mesh.kind == "gear" else _rack_outline(scene, mesh)
 
 
 def _axis_point(scene: MechanismScene, mesh: Mesh, link: str) -> complex:
-    """Where the axis of a wheel or cam is, m."""
+    """Return the axis of a gear or cam, m."""
     return scene.place(mesh.carrier, carrier_axis(scene.linkage, link, mesh.carrier))
 
 
 def _cam_angle(scene: MechanismScene, mesh: Mesh) -> float:
-    """The angle of a cam from its carrier, rad."""
-    return scene.turn(mesh.i) - scene.turn(mesh.carrier)
+    """Return the angle of a cam relative to its carrier, rad."""
+    return scene.angle(mesh.i) - scene.angle(mesh.carrier)
 
 
 def contact_point(found: HigherPairOutline) -> complex:
-    """Where the two links touch, m."""
+    """Return the pitch point of a gear mesh, or the point of contact of a cam, m."""
     return found.pitch if isinstance(found, MeshOutline) else found.touch
 
 
 def follower_segments(found: HigherPairOutline) -> list[tuple[complex, complex]]:
-    """Straight parts of a cam's follower, m: its stem, and its face or none where it has a roller."""
+    """Return the straight parts of a cam follower (m): its stem, and its face unless it has a roller."""
     return [] if isinstance(found, MeshOutline) else [part for part in (found.stem, found.face) if part[0] != part[1]]
 
 
 def outline_extent(
     found: Iterable[HigherPairOutline], size: float, links: Collection[str] | None = None
 ) -> list[complex]:
-    """Places that must be on the sheet, m: of all links or some; `size` is that of the rest of the mechanism (m)."""
+    """Return points (m) that must be on the sheet.
+
+    Args:
+        found: Geometries of higher pairs.
+        size: Size (m) of the rest of the mechanism; much larger gears do not count.
+        links: Links whose gears are drawn; None: all.
+    """
     places: list[complex] = []
     for one in found:
         if isinstance(one, CamOutline):
@@ -133,7 +139,7 @@ def _gear_outline(scene: MechanismScene, mesh: Mesh) -> MeshOutline:
 
 
 def _guide_direction(scene: MechanismScene, mesh: Mesh) -> tuple[complex, complex]:
-    """Of a rack or a sliding follower: the way in which it goes, and its running point."""
+    """Return the direction of motion and the sliding point of a rack or sliding follower."""
     slide = scene.linkage.slide(mesh.slide)
     if slide.runner == mesh.j:
         return scene.along(slide), scene.place(slide.runner, slide.at)
@@ -149,7 +155,7 @@ def _rack_outline(scene: MechanismScene, mesh: Mesh) -> MeshOutline:
 
 
 def _flat_faced_cam(scene: MechanismScene, mesh: Mesh) -> CamOutline:
-    """The disk is the envelope of the follower's face: touched at (h - i h')u, u along the guide, h = c + s."""
+    """Return the cam of a flat-faced follower: the envelope (h - i h')u of its face, u along the guide, h = c + s."""
     assert mesh.law is not None
     forward, runs = _guide_direction(scene, mesh)
     centre, angle = _axis_point(scene, mesh, mesh.i), _cam_angle(scene, mesh)
@@ -173,7 +179,7 @@ def _flat_faced_cam(scene: MechanismScene, mesh: Mesh) -> CamOutline:
 
 
 def _roller_cam(scene: MechanismScene, mesh: Mesh) -> CamOutline:
-    """The disk of a roller on a follower that swings."""
+    """Return the cam of a swinging follower with a roller."""
     assert mesh.law is not None
     centre, pivot = (_axis_point(scene, mesh, link) for link in (mesh.i, mesh.j))
     turn = np.linspace(0, 2 * np.pi, PROFILE_STEPS)
@@ -195,9 +201,9 @@ def _roller_cam(scene: MechanismScene, mesh: Mesh) -> CamOutline:
 
 @dataclass(frozen=True)
 class ReplacementLink:
-    """The link in place of a higher pair, m: from the centre of curvature of i's profile to that of j's.
+    """The link that replaces a higher pair (m): between the centres of curvature of the profiles of i and j.
 
-    slides: the profile of j is straight, so the link slides along it at `end` instead of turning about a centre.
+    slides: the profile of j is straight, so the link slides along it at `end`.
     """
 
     start: complex
@@ -206,9 +212,9 @@ class ReplacementLink:
 
 
 def replacement_link(found: HigherPairOutline) -> ReplacementLink:
-    """The replacing link at a pose (I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 2).
+    """Return the link that replaces a higher pair (I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 2).
 
-    Involute teeth touch along a common tangent of their base circles, where the centres of curvature lie.
+    Involute teeth touch on a common tangent of their base circles, where their centres of curvature lie.
     """
     if isinstance(found, MeshOutline):
         mesh = found.mesh
@@ -222,7 +228,7 @@ def replacement_link(found: HigherPairOutline) -> ReplacementLink:
 
 
 def _curvature_centre(disk: Vector, touch: complex) -> complex:
-    """The centre of curvature of a closed outline near a place: that of the circle through three points about it."""
+    """Return the centre of curvature of a closed outline near a point: that of a circle through three of its points."""
     size = len(disk)
     at, step = int(np.argmin(np.abs(disk - touch))), max(1, size // 120)
     a, b, c = (complex(disk[(at + k * step) % size]) for k in (-1, 0, 1))

@@ -1,6 +1,6 @@
-"""The form in which a link is drawn: a bar between two places, a plate between more, a bar along every guide.
+"""Forms in which links are drawn: a bar between two points, a plate between more, a bar along every guide.
 
-By its pairs nothing of it is to be measured; by its points it is to scale, its guides as long as the way on them.
+A form by pairs is schematic; a form by points is to scale, with guides as long as the travel on them.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ GUIDE_OVERHANG = 7.0  # mm by which a guide extends beyond the travel of the mid
 
 @dataclass
 class LinkBar:
-    """A straight bar along a guide, from low to high (mm) of its base; `holds` are the link's pairs on it."""
+    """A straight bar from `low` to `high` (mm) of its base, along a unit vector; holds: pairs of the link on it."""
 
     base: complex
     along: complex
@@ -38,7 +38,7 @@ class LinkBar:
         return bool(abs(cross(self.along, place - self.base)) < ON_LINE)
 
     def take(self, place: complex) -> None:
-        """Reach as far as a place on the line."""
+        """Extend the bar to a point on its line."""
         run = float(dot(self.along, place - self.base))
         self.low, self.high = min(self.low, run), max(self.high, run)
 
@@ -52,9 +52,9 @@ class LinkBar:
 
 @dataclass(frozen=True)
 class LinkForm:
-    """A link on paper: corners of its plate (or the two ends of its bar), bars, struts with rigid corners.
+    """A link on paper: corners of its plate (or two ends of a bar), bars along guides, struts, rigid corners.
 
-    joints are its pairs but for the stones on its bars; boxes are those of them where it is the stone itself.
+    joints: its pairs except the blocks on its bars; boxes: those of them in which the link is the block itself.
     """
 
     joints: Sequence[complex] = ()
@@ -66,7 +66,7 @@ class LinkForm:
 
     @property
     def lines(self) -> list[Segment]:
-        """Its straight parts."""
+        """Straight parts: bars, struts and a two-point hull."""
         lines = [bar.tips for bar in self.bars] + list(self.struts)
         if len(self.hull) == 2:
             lines.append((self.hull[0], self.hull[1]))
@@ -74,12 +74,12 @@ class LinkForm:
 
     @property
     def edges(self) -> list[Segment]:
-        """Its straight parts and the sides of its plate."""
+        """Straight parts and the sides of the plate."""
         return self.lines + (list(pairwise([*self.hull, self.hull[0]])) if len(self.hull) > 2 else [])
 
     @property
     def middle(self) -> complex:
-        """Where its number goes: the middle of its plate or of the longest free part of its longest line."""
+        """Position of the link number: middle of the plate, or of the longest free part of its longest line."""
         if len(self.hull) > 2:
             return sum(self.hull) / len(self.hull)
         if not self.lines:
@@ -95,7 +95,7 @@ class LinkForm:
         return start + along * (runs[gap] + runs[gap + 1]) / 2
 
     def through(self, place: complex) -> complex | None:
-        """The direction of a bar that goes on beyond a hinge on both sides, if there is one."""
+        """Return the direction of a bar that continues on both sides of a hinge, or None."""
         for start, end in self.lines:
             length = abs(end - start)
             if length < 2:
@@ -108,15 +108,15 @@ class LinkForm:
 
 
 def form_by_points(sheet: DrawingSheet, scene: MechanismScene, link: str, *, whole: bool = True) -> LinkForm:
-    """The form of a link to scale: from its named points and its pairs, with guides as long as the way on them.
+    """Return the form of a link to scale, from its named points and pairs, with guides as long as their travel.
 
-    Not whole: its guides end at their stones, as thin lines of many positions do.
+    If not `whole`, guides end at their blocks, as in the thin lines of many positions.
     """
     joints = drop_coincident(sheet.on(p) for p in (*scene.ends(link), *scene.joints(link)))
     bars: list[LinkBar] = []
     for slide in _carried_guides(scene, link):
         stone, along = sheet.on(scene.place(slide.runner, slide.at)), scene.along(slide)
-        (low, high), here = scene.way(slide), scene.run(slide)
+        (low, high), here = scene.travel(slide), scene.run(slide)
         bar = _bar_through(bars, stone, along)
         for end, side in ((low - here, -along), (high - here, along)) if whole else ():
             tip = stone + end / sheet.mu * along
@@ -126,7 +126,7 @@ def form_by_points(sheet: DrawingSheet, scene: MechanismScene, link: str, *, who
 
 
 def form_by_pairs(sheet: DrawingSheet, scene: MechanismScene, link: str) -> LinkForm:
-    """The form of a link from its pairs, on paper."""
+    """Return the schematic form of a link from its pairs."""
     joints = drop_coincident(sheet.on(p) for p in scene.joints(link))
     bars: list[LinkBar] = []
     for slide in _carried_guides(scene, link):
@@ -142,13 +142,13 @@ def form_by_pairs(sheet: DrawingSheet, scene: MechanismScene, link: str) -> Link
 
 
 def _carried_guides(scene: MechanismScene, link: str) -> list[Slide]:
-    """Guides that a link carries, but for those in its cylinders."""
+    """Return the guides that a link carries, except those in its cylinders."""
     slides = [pair.slide for pair in scene.of(link) if pair.slide is not None and pair.slide.carrier == link]
     return [slide for slide in slides if slide.name not in cylinder_drivers(scene.linkage)]
 
 
 def _bar_through(bars: list[LinkBar], at: complex, along: complex) -> LinkBar:
-    """The bar on a line through a place: one that is there already, or a new one."""
+    """Return the bar on a line through a point, an existing one or a new one."""
     same = next((b for b in bars if abs(cross(b.along, along)) < 1e-6 and b.meets(at)), None)
     if same is None:
         same = LinkBar(at, along, 0.0, 0.0)
@@ -157,7 +157,7 @@ def _bar_through(bars: list[LinkBar], at: complex, along: complex) -> LinkBar:
 
 
 def _lay_bar(bars: list[LinkBar], start: complex, end: complex) -> None:
-    """A bar between two places (mm), or the one on their line made to reach them."""
+    """Add a bar between two points (mm), or extend the bar on their line to them."""
     if abs(end - start) > ON_LINE:
         bar = _bar_through(bars, start, (end - start) / abs(end - start))
         bar.take(start)
@@ -167,7 +167,7 @@ def _lay_bar(bars: list[LinkBar], start: complex, end: complex) -> None:
 def _join_parts(
     sheet: DrawingSheet, scene: MechanismScene, link: str, joints: Sequence[complex], bars: list[LinkBar]
 ) -> LinkForm:
-    """Pairs and bars of a link as one body: what is not on a bar is a plate, or is led to the bar."""
+    """Join the pairs and bars of a link into one body: pairs off the bars form a plate or get a strut."""
     driven, boxes = cylinder_drivers(scene.linkage), []
     for pair in scene.of(link):
         if pair.slide is not None and pair.name in driven:
@@ -201,7 +201,7 @@ def _join_parts(
 
 
 def _flatten_hull(hull: Sequence[complex]) -> Sequence[complex]:
-    """Corners of a plate; the two ends of one whose corners lie on a line."""
+    """Return the corners of a plate, or its two ends if the corners are collinear."""
     if len(hull) < 3:
         return hull
     start, end = max(((p, q) for p in hull for q in hull), key=lambda ends: abs(ends[1] - ends[0]))
@@ -210,7 +210,7 @@ def _flatten_hull(hull: Sequence[complex]) -> Sequence[complex]:
 
 
 def _nearest_joint(bars: Sequence[LinkBar], loose: Sequence[complex]) -> tuple[LinkBar, complex, complex]:
-    """Where pairs beside the bars are joined to them: at a pair on a bar, or at the foot of the perpendicular."""
+    """Return the shortest connection between bars and pairs off them: bar, pair, point of the bar."""
 
     def foot(bar: LinkBar, place: complex) -> complex:
         return min(bar.holds, key=lambda hold: abs(hold - place)) if bar.holds else bar.foot(place)
@@ -229,7 +229,7 @@ def _join_bars(
     struts: list[Segment],
     welds: list[tuple[complex, complex, complex]],
 ) -> None:
-    """Two guides of one link are one body: they are led to where they cross, or joined by a strut."""
+    """Join a guide of a link to the others, by extending them to their intersection or by a strut."""
     for other in others:
         turn = float(cross(other.along, bar.along))
         if abs(turn) > 0.05:

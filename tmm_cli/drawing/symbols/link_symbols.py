@@ -1,4 +1,4 @@
-"""The frame's symbols, hatched: supports of hinges and guides of boxes. No rod runs through their hatching."""
+"""Symbols of links, sliders and the frame: bars and plates, boxes, supports, hatched guides, arrows of motion."""
 
 from __future__ import annotations
 
@@ -23,10 +23,15 @@ BOX_CORNERS = ((1, 1), (-1, 1), (-1, -1), (1, -1))
 
 @dataclass(frozen=True)
 class SymbolStyle:
-    """Sizes of symbols, mm; widths of lines, points.
+    """Sizes of symbols (mm) and widths of lines (points).
 
-    measured: to scale, links by their points, guides as long as the way on them. stone: a slider on a moving link;
-    sides: where labels keep off a bar, mm from its middle line. moves: each body is drawn once, and then moves.
+    Attributes:
+        measured: To scale: links by their points, guides as long as their travel.
+        box: Length and width of a slider on the frame.
+        stone: Length and width of a block on a moving link.
+        support: Height and half base of the triangle of a support.
+        sides: Offsets (mm) from the middle line of a bar at which labels are kept off.
+        moves: For animation: each body is drawn once and then moved.
     """
 
     measured: bool
@@ -39,14 +44,14 @@ class SymbolStyle:
     moves: bool = False
 
     def sized(self, size: float) -> SymbolStyle:
-        """Smaller symbols, where pairs are near to one another."""
+        """Return the style with symbols scaled by `size`, for pairs close to each other."""
         length, width = self.box
         height, half = self.support
         box = (size * length, size * width)
         return replace(self, hinge=size * self.hinge, box=box, stone=box, support=(size * height, size * half))
 
     def raised(self) -> SymbolStyle:
-        """With supports that reach beyond a stone on their hinge."""
+        """Return the style with supports that extend beyond a block on their hinge."""
         height, half = self.support
         return replace(self, support=(height + self.stone[1] / 2, half))
 
@@ -58,13 +63,13 @@ PLATE_COLOUR = "#eceff3"  # of measured drawings
 
 
 def tint_colour(colour: str, share: float = 0.16) -> str:
-    """A colour mixed with white, for areas."""
+    """Return a colour mixed with white, for areas."""
     parts = (int(colour[n : n + 2], 16) for n in (1, 3, 5))
     return "#" + "".join(f"{round(255 - share * (255 - part)):02x}" for part in parts)
 
 
 def draw_mass_centre(sheet: DrawingSheet, at: complex) -> None:
-    """A centre of mass: a circle with two dark quarters."""
+    """Draw a centre of mass: a circle with two dark quarters."""
     sheet.circle(at, MASS_RADIUS, "white", DARK_COLOUR, 0.8, 6.2)
     for first in (0.0, np.pi):
         arc = at + MASS_RADIUS * unit(first + np.linspace(0, np.pi / 2, 9))
@@ -72,7 +77,7 @@ def draw_mass_centre(sheet: DrawingSheet, at: complex) -> None:
 
 
 def draw_body(sheet: DrawingSheet, form: LinkForm, colour: str, look: SymbolStyle) -> None:
-    """A link as bars and plates."""
+    """Draw a link as bars and plates."""
     if len(form.hull) > 2:
         sheet.area(form.hull, PLATE_COLOUR if look.measured else tint_colour(colour), colour, 1.5, 2.2)
     guides = [bar.tips for bar in form.bars]
@@ -90,7 +95,7 @@ def draw_body(sheet: DrawingSheet, form: LinkForm, colour: str, look: SymbolStyl
 
 
 def draw_weld(sheet: DrawingSheet, at: complex, one: complex, other: complex, colour: str, hidden: float = 0.0) -> None:
-    """The mark of a rigid corner between two legs; a circle of the radius `hidden` (mm) covers its tip."""
+    """Draw the mark of a rigid corner between two legs; a circle of radius `hidden` (mm) covers its tip."""
     if min(abs(one), abs(other)) > 0.5:
         legs = [min(WELD_LEG + hidden, abs(leg)) * leg / abs(leg) for leg in (one, other)]
         sheet.area([at, at + legs[0], at + legs[1]], colour, colour, 0.5, 3.1)
@@ -105,7 +110,7 @@ def draw_box(
     look: SymbolStyle,
     style: Style = "-",
 ) -> None:
-    """A slider or stone; dashed where it is only what a lead is joined to."""
+    """Draw a slider or block; dashed if it only indicates the link to which an external pair is joined."""
     length, width = size
     corners = [at + along * complex(sx * length / 2, sy * width / 2) for sx, sy in BOX_CORNERS]
     for share in (0.25, -0.25):  # nothing is written into a box
@@ -120,7 +125,7 @@ def draw_box(
 
 
 def draw_rails(sheet: DrawingSheet, start: complex, end: complex, width: float) -> None:
-    """What a lead would slide in: two lines along the way of a box of this width."""
+    """Draw two dashed lines along the travel of a box of this width, as the guide of a free prismatic pair."""
     along = (end - start) / abs(end - start)
     for side in (1j * along, -1j * along):
         shift = side * (width / 2 + RAIL_GAP)
@@ -130,7 +135,7 @@ def draw_rails(sheet: DrawingSheet, start: complex, end: complex, width: float) 
 def quiet_direction(
     sheet: DrawingSheet, at: complex, wish: complex, reach: float, choices: Iterable[complex] = (), from_: float = 1.8
 ) -> complex:
-    """The direction from a place in which the least is drawn; near `wish` when there is a choice."""
+    """Return the direction from a point in which least is drawn, as near to `wish` as possible."""
     crowd = sheet.ground.crowd
     crowd = crowd[np.abs(crowd - at) < 2 * reach] - at
 
@@ -146,7 +151,7 @@ def quiet_direction(
 def draw_rotation_arrow(
     sheet: DrawingSheet, pivot: complex, start: float, sense: int, name: Words, colour: str
 ) -> None:
-    """An arrow of rotation about a pivot; it begins beside the link, or where there is more room."""
+    """Draw an arrow of rotation about a pivot, beginning beside the link or where there is more room."""
     radius, crowd = 8.5, sheet.ground.crowd
 
     def arc(first: float) -> list[complex]:
@@ -164,7 +169,7 @@ def draw_rotation_arrow(
 def draw_sliding_arrow(
     sheet: DrawingSheet, at: complex, along: complex, width: float, name: Words, colour: str
 ) -> None:
-    """The way of a driven slider, beside its box of this width."""
+    """Draw the direction of motion of a driving slider beside its box of this width."""
     side = quiet_direction(sheet, at, 1j * along, 14, (1j * along, -1j * along), from_=5)
     foot = at + side * (width / 2 + 8)
     sheet.arrow(foot - 6 * along, foot + 8 * along, colour, 1.3)
@@ -172,14 +177,14 @@ def draw_sliding_arrow(
 
 
 def symbol_scale(sheet: DrawingSheet, scene: MechanismScene, links: Iterable[str]) -> float:
-    """1, or less where pairs of these links are so near to one another on paper that symbols would cover them."""
+    """Return 1, or less if pairs are so close on paper that symbols would overlap."""
     places = drop_coincident(sheet.on(scene.at(p)) for link in links for p in scene.of(link))
     gaps = [abs(p - q) for n, p in enumerate(places) for q in places[:n]]
     return float(np.clip(min(gaps, default=10.0) / 6.5, 0.5, 1.0))
 
 
 def draw_link_numbers(sheet: DrawingSheet, forms: Mapping[str, LinkForm], hue: Mapping[str, str]) -> None:
-    """The numbers of links: in the middle of a plate where nothing is drawn there, or beside the link."""
+    """Write the numbers of links in the middle of empty plates, or beside the links."""
     for link, form in forms.items():
         if len(form.hull) > 2 and np.all(np.abs(sheet.ground.crowd - form.middle) > NUMBER_CLEARANCE):
             sheet.text(form.middle, link, 11, colour=hue[link], ha="center", style="italic")
@@ -197,11 +202,11 @@ ROD_STEP = 0.4  # mm between sample points of a rod
 
 
 def support_side(sheet: DrawingSheet, at: complex, rods: Sequence[Segment], look: SymbolStyle = MEASURED) -> complex:
-    """The side of a fixed hinge where its support is: below, else above, else where no rod runs through it."""
+    """Return the direction of the support of a fixed hinge: downwards, else upwards, else where no bar crosses it."""
     height, half = look.support
 
     def lost(out: complex) -> float:
-        """Of its ground, mm, and more for a rod through its triangle."""
+        """Return the length (mm) of ground lost to bars, plus a penalty for a bar through the triangle."""
         ground = free_runs(
             -GROUND_HALF_WIDTHS * half, GROUND_HALF_WIDTHS * half, _covered_runs(rods, at + height * out, 1j * out, out)
         )
@@ -229,7 +234,7 @@ def support_side(sheet: DrawingSheet, at: complex, rods: Sequence[Segment], look
 def draw_support(
     sheet: DrawingSheet, at: complex, out: complex, look: SymbolStyle = MEASURED, rods: Sequence[Segment] = ()
 ) -> complex:
-    """The frame at a hinge: a triangle on hatched ground. Where its number goes."""
+    """Draw the support of a fixed hinge: a triangle on hatched ground; return the position of its number."""
     side = 1j * out
     height, half = look.support
     foot = at + height * out
@@ -243,7 +248,7 @@ def draw_support(
 def draw_guide(
     sheet: DrawingSheet, middle: complex, along: complex, look: SymbolStyle, reach: float, rods: Sequence[Segment] = ()
 ) -> None:
-    """A piece of the frame's guide, so long (mm) on both sides: hatched rails, open where rods go through."""
+    """Draw a piece of a guide on the frame, `reach` mm to both sides: hatched rails, open where bars pass."""
     for side in (1j * along, -1j * along):
         draw_hatched_line(sheet, middle + side * (look.box[1] / 2 + RAIL_GAP), along, side, reach, rods)
 
@@ -251,7 +256,7 @@ def draw_guide(
 def draw_hatched_line(
     sheet: DrawingSheet, middle: complex, along: complex, out: complex, reach: float, rods: Sequence[Segment]
 ) -> None:
-    """A line with hatching on its outer side, open where rods go through."""
+    """Draw a line with hatching on its outer side, open where bars pass."""
     for low, high in free_runs(-reach, reach, _covered_runs(rods, middle, along, out)):
         start, end = middle + low * along, middle + high * along
         with sheet.on_layer("supports"):
@@ -260,7 +265,7 @@ def draw_hatched_line(
 
 
 def _covered_runs(rods: Sequence[Segment], rail: complex, along: complex, out: complex) -> list[tuple[float, float]]:
-    """The runs (mm) along a rail in whose hatching rods are."""
+    """Return the intervals (mm) of a rail at which bars run through its hatching."""
     found = []
     for rod in rods:
         places = _rod_points(rod) - rail
@@ -273,12 +278,12 @@ def _covered_runs(rods: Sequence[Segment], rail: complex, along: complex, out: c
 
 
 def _rod_points(rod: Segment) -> Vector:
-    """Places along a rod, close together."""
+    """Return closely spaced points along a bar."""
     return np.linspace(rod[0], rod[1], int(abs(rod[1] - rod[0]) / ROD_STEP) + 2)
 
 
 def free_runs(low: float, high: float, covered: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """What is left from low to high without what is covered; pieces too short for hatching are left out."""
+    """Return the intervals from low to high that are not covered; pieces too short for hatching are omitted."""
     edges = [low]
     for first, last in sorted(covered):
         edges += [max(first, edges[-1]), max(last, edges[-1])]

@@ -1,6 +1,6 @@
-"""A mechanism on a sheet: its guides, wheels and cams, links, sliders, springs, hinges and supports, in that order.
+"""Rendering of a mechanism: guides, gears and cams, links, sliders, springs, hinges and supports, in that order.
 
-Measured drawings and structural schemes are drawn alike, in two looks.
+Drawings to scale and structural schemes are drawn by the same code in two styles.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ MESH_COLOUR = "#404040"
 
 @dataclass
 class RenderedLinks:
-    """What was drawn of the links, in which scene; the middles of the cylinders (mm) by their sliding pair."""
+    """Forms of the links drawn and the scene used; middles of the cylinders (mm) by their prismatic pair."""
 
     forms: Mapping[str, LinkForm]
     scene: MechanismScene
@@ -55,7 +55,17 @@ def render_scene(
     hue: Mapping[str, str],
     leads: Sequence[Pair] = (),
 ) -> RenderedLinks:
-    """These links with their pairs. hue: colours of links; leads: pairs with links that are not drawn."""
+    """Draw links with their pairs.
+
+    Args:
+        sheet: Sheet to draw on.
+        scene: The position.
+        links: Links to draw.
+        pairs: Pairs to draw.
+        look: Style of the symbols.
+        hue: Colours of links.
+        leads: Pairs with links that are not drawn.
+    """
     with sheet.on_layer("links"):
         return _render_links(sheet, scene, links, pairs, look, hue, leads)
 
@@ -117,14 +127,14 @@ def _render_links(
 def _draw_frame_guide(
     sheet: DrawingSheet, scene: MechanismScene, pair: Pair, look: SymbolStyle, rods: Sequence[Segment]
 ) -> None:
-    """A guide on the frame: hatched rails about its box; to scale also its axis, as long as the way on it.
+    """Draw a guide on the frame: hatched rails about its box; to scale, also its axis along the travel.
 
-    Where the box moves the rails are as long as its way.
+    In an animation the rails are as long as the travel.
     """
     slide = pair.slide
     assert slide is not None
     at, along = sheet.on(scene.at(pair)), scene.along(slide)
-    (low, high), here = scene.way(slide), scene.run(slide)
+    (low, high), here = scene.travel(slide), scene.run(slide)
     if look.moves:
         middle, way = at + ((low + high) / 2 - here) / sheet.mu * along, (high - low) / sheet.mu
         with sheet.part(FRAME):
@@ -153,11 +163,11 @@ def _draw_higher_pair(
     hue: Mapping[str, str],
     rods: Sequence[Segment],
 ) -> None:
-    """Toothed wheels, or a cam with its follower; of a measured rack all that ever comes into mesh."""
+    """Draw gears, or a cam with its follower; of a rack to scale, the whole part that comes into mesh."""
     found, span = scene.higher(pair), None
     if look.measured and found.mesh.slide:
         slide = scene.linkage.slide(found.mesh.slide)
-        (low, high), here = scene.way(slide), scene.run(slide)
+        (low, high), here = scene.travel(slide), scene.run(slide)
         span = here - high, here - low
     draw_wheels(sheet, found, hue, span, rods)
     if look.measured:
@@ -169,7 +179,7 @@ def _draw_higher_pair(
 def draw_slider(
     sheet: DrawingSheet, scene: MechanismScene, pair: Pair, look: SymbolStyle, colour: str, rods: Sequence[Segment] = ()
 ) -> None:
-    """The box of a sliding pair, hatched where it is the frame."""
+    """Draw the box of a prismatic pair, hatched if it is the frame."""
     slide = pair.slide
     assert slide is not None
     at, along = sheet.on(scene.at(pair)), scene.along(slide)
@@ -192,7 +202,7 @@ def _draw_hinge(
     look: SymbolStyle,
     hue: Mapping[str, str],
 ) -> None:
-    """The turning pairs of one place, a circle each; bars that go on beyond it cross it there."""
+    """Draw the revolute pairs at one point, a circle for each; continuous bars cross it."""
     order = {link: number for number, link in enumerate((FRAME, *hue))}
     step = 0.95 * look.hinge / STRUCTURAL.hinge
     links = list(dict.fromkeys(link for pair in here for link in (pair.i, pair.j)))
@@ -208,13 +218,13 @@ def _draw_hinge(
 
 
 def draw_names(sheet: DrawingSheet, named: Iterable[tuple[complex, str, str]]) -> None:
-    """Names beside their places with colours; those of one place share a label."""
+    """Write names beside their points; names at one point share a label."""
     for at, here in gather_coincident((at, (name, colour)) for at, name, colour in named):
         sheet.label(", ".join(dict.fromkeys(name for name, __ in here)), at, 10, here[0][1])
 
 
 def name_anchor(sheet: DrawingSheet, scene: MechanismScene, pair: Pair, look: SymbolStyle) -> complex:
-    """Where the name of a pair belongs: its hinge, the end of its box, guide on the frame or cylinder."""
+    """Return the point (mm) for the name of a pair: its hinge, or the end of its box, fixed guide or cylinder."""
     at = sheet.on(scene.at(pair))
     if pair.slide is None:
         return at
@@ -227,7 +237,7 @@ def name_anchor(sheet: DrawingSheet, scene: MechanismScene, pair: Pair, look: Sy
 def draw_driver_arrows(
     sheet: DrawingSheet, scene: MechanismScene, drawn: RenderedLinks, look: SymbolStyle, hue: Mapping[str, str]
 ) -> None:
-    """How the drivers of these links go."""
+    """Draw the directions of motion of the drivers."""
     for driver in scene.linkage.drivers:
         if driver.link not in drawn.forms:
             continue

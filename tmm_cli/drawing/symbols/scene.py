@@ -1,4 +1,4 @@
-"""Where everything of a linkage is in one position, m, and how it is put on paper."""
+"""Positions of all parts of a linkage in one position (m), and their scale on paper."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ FRAME_POSE = Pose(np.zeros(1, complex), np.ones(1, complex), np.zeros(1))  # of 
 
 @dataclass(frozen=True)
 class MechanismScene:
-    """A linkage with its structure at index k of the poses of its links.
+    """A linkage with its structure at index `k` of the poses of its links.
 
-    moved: by how much (m) boxes are drawn away from their running points, along their guides.
+    moved: displacements (m) of boxes along their guides, for boxes that would overlap.
     """
 
     linkage: Linkage
@@ -43,38 +43,38 @@ class MechanismScene:
     moved: Mapping[str, complex] = field(default_factory=dict)
 
     def place(self, link: str, local: complex) -> complex:
-        """A point of a link (its axes, m) in the drawing's axes, m."""
+        """Return a point of a link (local coordinates, m) in global coordinates, m."""
         if link == FRAME:
             return complex(local)
         return self._now(self.poses[link].x) + local * self._now(self.poses[link].z)
 
-    def turn(self, link: str) -> float:
-        """The angle of a link, rad."""
+    def angle(self, link: str) -> float:
+        """Return the angle of a link, rad."""
         return float(np.angle(self.place(link, 1 + 0j) - self.place(link, 0j)))
 
     def along(self, slide: Slide) -> complex:
-        """Direction of a guide."""
+        """Return the unit vector of a guide."""
         turned = 1.0 if slide.carrier == FRAME else self._now(self.poses[slide.carrier].z)
         return complex(turned * unit(slide.direction))
 
     def run(self, slide: Slide) -> float:
-        """How far the runner is along a guide, m."""
+        """Return the displacement of a runner along its guide, m."""
         foot = self.place(slide.carrier, slide.through)
         return float(dot(self.along(slide), self.place(slide.runner, slide.at) - foot))
 
-    def way(self, slide: Slide) -> tuple[float, float]:
-        """The least and the largest run in all positions, m."""
+    def travel(self, slide: Slide) -> tuple[float, float]:
+        """Return the least and the largest displacement along a guide over all positions, m."""
         carrier, runner = (self.poses.get(link, FRAME_POSE) for link in (slide.carrier, slide.runner))
         runs = dot(carrier.z * unit(slide.direction), runner.at(slide.at) - carrier.at(slide.through))
         return float(np.nanmin(runs)), float(np.nanmax(runs))
 
     def point(self, name: str) -> complex:
-        """A named point, m."""
+        """Return a named point, m."""
         link = self.linkage.owner(name)
         return self.place(link, self.linkage.local(link, name))
 
     def at(self, pair: Pair) -> complex:
-        """Where a pair is: its hinge, or the running point of its runner, m."""
+        """Return the point of a pair (m): its hinge, the sliding point of its runner, or the point of contact."""
         if pair.slide is not None:
             return self.place(pair.slide.runner, pair.slide.at) + self.moved.get(pair.name, 0j)
         if pair.kind == "R":
@@ -83,16 +83,16 @@ class MechanismScene:
         return contact_point(self.higher(pair))
 
     def higher(self, pair: Pair) -> HigherPairOutline:
-        """The wheels, or the cam and its follower, of a higher pair."""
+        """Return the geometry of a higher pair."""
         assert pair.mesh is not None
         return higher_pair_outline(self, pair.mesh)
 
     def of(self, link: str) -> tuple[Pair, ...]:
-        """The lower pairs of a link."""
+        """Return the lower pairs of a link."""
         return tuple(p for p in self.structure.pairs if link in (p.i, p.j) and p.kind in ("R", "P"))
 
     def joints(self, link: str) -> list[complex]:
-        """Places at which a link is hinged or runs on a guide; of a bar with one of them, its named points too."""
+        """Return the hinges and sliding points of a link (m); if there is only one, also its named points."""
         found = [self.at(p) for p in self.of(link) if p.slide is None or p.slide.runner == link]
         disk = any(mesh.kind == "cam" and mesh.i == link for mesh in self.linkage.meshes)
         if len(found) + len(self.guides(link)) < 2 and not disk:
@@ -100,16 +100,16 @@ class MechanismScene:
         return found
 
     def guides(self, link: str) -> list[tuple[complex, complex]]:
-        """Guides that a link carries: the place of the stone on each (m), and the direction."""
+        """Return the guides that a link carries: point of the block (m), and direction."""
         carried = [p for p in self.of(link) if p.slide is not None and p.slide.carrier == link]
         return [(self.at(p), self.along(p.slide)) for p in carried if p.slide is not None]
 
     def ends(self, link: str) -> list[complex]:
-        """Named points of a link: those on its guide show how long it is."""
+        """Return the named points of a link; those on its guide show its length."""
         return [self.place(link, local) for local in self.linkage.links[link].points.values()]
 
     def extent(self, links: Iterable[str]) -> list[complex]:
-        """Places that must be on the paper when these links are drawn, m."""
+        """Return points (m) that must be on paper when these links are drawn."""
         links = tuple(links)
         found: list[complex] = []
         for link in links:
@@ -130,7 +130,7 @@ class MechanismScene:
 def fit_links(
     sheet: DrawingSheet, scene: MechanismScene, links: Sequence[str], pad: float, most: float
 ) -> MechanismScene:
-    """Put these links onto the ground of the sheet; no slider covers another one."""
+    """Fit links to the field of the sheet, with sliders moved so that none overlaps another."""
     fit_points(sheet, scene.extent(links), pad, most)
     parted = spread_boxes(sheet, scene, links)
     if parted is not scene:
@@ -141,7 +141,7 @@ def fit_links(
 
 
 def spread_boxes(sheet: DrawingSheet, scene: MechanismScene, links: Sequence[str]) -> MechanismScene:
-    """Where a box is along a guide on the frame does not matter: what would cover another box is drawn further on."""
+    """Move boxes along guides on the frame (their position there is arbitrary) so that they do not overlap."""
     boxes = {p.name: sheet.on(scene.at(p)) for link in links for p in scene.of(link) if p.slide is not None}
     every = drop_coincident(sheet.on(scene.at(p)) for link in links for p in scene.of(link))
     moved = {}
@@ -160,24 +160,24 @@ def spread_boxes(sheet: DrawingSheet, scene: MechanismScene, links: Sequence[str
 
 
 def scale_to_fit(places: Sequence[complex], room: complex, most: float) -> float:
-    """Metres a millimetre at which places (m) fit into a room (mm) and are not larger than `most` (mm)."""
+    """Return the scale (m per mm) at which points (m) fit into a room (mm) and are not larger than `most` (mm)."""
     larger, across, up, __ = extent(places or [0j])
     return max(across / room.real, up / room.imag, larger / most) or 1.0
 
 
 def fit_points(sheet: DrawingSheet, places: Sequence[complex], pad: float, most: float) -> None:
-    """Put places (m) into the middle of the ground of the sheet, as large as the pad and `most` (mm) let them be."""
+    """Centre points (m) on the sheet, as large as the pad and `most` (mm) allow."""
     sheet.mu = scale_to_fit(places, sheet.ground.high - sheet.ground.low - 2 * pad * (1 + 1j), most)
     centre_points(sheet, places)
 
 
 def centre_points(sheet: DrawingSheet, places: Sequence[complex]) -> None:
-    """Put places (m) into the middle of the ground of the sheet, at its scale."""
+    """Centre points (m) on the sheet at its scale."""
     sheet.origin = (sheet.ground.low + sheet.ground.high) / 2 - extent(places or [0j])[3] / sheet.mu
 
 
 def drop_coincident(places: Iterable[complex]) -> list[complex]:
-    """Places without those that coincide with an earlier one."""
+    """Return the points without those that coincide with an earlier one."""
     found: list[complex] = []
     for place in places:
         if np.isfinite(place) and all(abs(place - other) > ON_LINE for other in found):
@@ -186,7 +186,7 @@ def drop_coincident(places: Iterable[complex]) -> list[complex]:
 
 
 def points_to_scale(scene: MechanismScene, places: Sequence[complex]) -> list[complex]:
-    """Places (m) with what else must be on a sheet that has them: wheels, cams, ends of springs on the frame."""
+    """Return the points (m), and those of gears, cams and springs that must also be on the sheet."""
     size = extent([p for p in places if np.isfinite(p)] or [0j])[0]
     found = [*places, *wheels_extent((higher_pair_outline(scene, mesh) for mesh in scene.linkage.meshes), size)]
     for spring in scene.linkage.springs:
@@ -196,5 +196,5 @@ def points_to_scale(scene: MechanismScene, places: Sequence[complex]) -> list[co
 
 
 def frame_pivots(linkage: Linkage) -> list[complex]:
-    """Hinges with the frame, m."""
+    """Return the fixed hinges, m."""
     return [complex(linkage.local(FRAME, hinge.point)) for hinge in linkage.hinges if FRAME in hinge.links]
