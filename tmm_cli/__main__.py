@@ -1,10 +1,10 @@
-"""The door of the command: `tmm`, `python -m tmm_cli`. What is imported later may be interrupted too."""
+"""Entry point of `tmm` and `python -m tmm_cli`. Later imports can be interrupted without a traceback."""
 
 import sys
 
 
 def main() -> None:
-    """Entry point of the command."""
+    """Run the command."""
     try:
         from tmm_cli.cli import main as command
 

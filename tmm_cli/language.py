@@ -1,11 +1,12 @@
-"""The language in which people are spoken to: sentences marked for gettext, and who speaks which language.
+"""Languages of messages and notation of courses: messages marked for gettext, and the current language.
 
-A sentence stands in English at the place that says it, as `_("...")`, and is said in the language that is spoken
-there and then. What must be named when a module is imported, or is kept in results, is a phrase, `N_("...")`, and
-translated where it is shown. Translations are in `locale/`.
+A message is written in English where it is used, as `_("...")`, and translated into the current language
+there. A message that is needed when a module is imported, or is kept in results, is a phrase,
+`N_("...")`, and translated where it is shown. Translations are in `locale/`.
 
-Files for programs (CSV, result.json) are written in English, `with words_of_files(): ...`. Scripts rely on their
-headings and words, so these stay when a sentence gets better English: the catalogue `files` keeps what files say.
+Files for programs (CSV, result.json) are written in English, `with words_of_files(): ...`. Scripts rely
+on their headings and words, so these stay when a message gets better English: the catalogue `files` keeps
+the words of files.
 """
 
 from __future__ import annotations
@@ -42,10 +43,7 @@ INERTIA: Final = {"U": {"U": "U", "M": "M"}, "Φ": {"U": "Φ", "M": "M_Φ"}}  # 
 
 @dataclass(frozen=True)
 class CourseNotation:
-    """How a course writes: its language, the number of the frame, the letter of inertia forces ("": the language's).
-
-    for_programs: with the words on which scripts rely (`words_of_files`).
-    """
+    """Notation of a course: language, number of the frame, letter of inertia forces ("": that of the language)."""
 
     language: str = ENGLISH
     frame: str = "0"
@@ -58,7 +56,9 @@ _course: ContextVar[CourseNotation] = ContextVar("course", default=USUAL)
 
 
 class Phrase(str):
-    """A marked sentence, perhaps with fields put in: English to all that read it, until it is `translated`."""
+    """Message for later translation, with fields; as a str it is English, `translated` gives the current
+    language.
+    """
 
     message: str
     fields: dict[str, Any]
@@ -76,7 +76,7 @@ N_ = Phrase  # as gettext's mark is called
 
 
 def translated(text: str) -> str:
-    """A phrase in the language that is spoken, with the phrases in its fields; a name or a title as it is."""
+    """Translate a Phrase, and the phrases in its fields, into the current language; return other text unchanged."""
     if not isinstance(text, Phrase) or _name_of_catalogue() == ENGLISH:
         return text
     message = _(text.message)
@@ -84,7 +84,7 @@ def translated(text: str) -> str:
 
 
 def _(message: str) -> str:
-    """The sentence in the language that is spoken; in English where it is not translated."""
+    """Translate a message into the current language; untranslated messages stay English."""
     name = _name_of_catalogue()
     return message if name == ENGLISH or not message else _catalogue(name).gettext(message)
 
@@ -96,18 +96,20 @@ def _name_of_catalogue() -> str:
 
 
 def numeral(value: float, form: str) -> str:
-    """A number for people in this format, with a comma where the language has one. What may be typed has points."""
+    """Format a number for people, with a decimal comma where the language has one; input that may be typed keeps
+    its point.
+    """
     text = f"{half_up(value):{form}}"
     return text if language() == ENGLISH else text.replace(".", ",")
 
 
 def half_up(value: float) -> float:
-    """The same, so little larger that what ends in a five is rounded away from zero, whatever its last bits are."""
+    """Increase a value slightly so that a final five is rounded away from zero, whatever its last bits are."""
     return value * (1 + TIE)
 
 
 def filled(sentence: str, **parts: Any) -> tuple[Any, ...]:
-    """A sentence in pieces: with a part, such as a symbol, or several ones (a tuple) in the places of its {names}."""
+    """Split a message at its fields and insert objects such as symbols, or tuples of them."""
     found: list[Any] = []
     for before, name, *__ in string.Formatter().parse(sentence):
         found += [before] if before else []
@@ -117,15 +119,15 @@ def filled(sentence: str, **parts: Any) -> tuple[Any, ...]:
 
 
 def signed(text: str) -> str:
-    """A text whose numbers have a minus sign for their hyphen."""
+    """Replace hyphens before numbers by minus signs."""
     return MINUS.sub("−", text)
 
 
 def typeset(text: str) -> str:
-    """A text with the signs that are printed for those of a keyboard: 3·5 − 2·7 = 1 for 3*5 - 2*7 = 1, → for ->.
+    """Replace keyboard characters by printed ones: 3·5 − 2·7 = 1 for 3*5 - 2*7 = 1, → for ->.
 
-    Hyphens are minus signs in formulas, and dashes between the two links of a pair; else they stay, so that a number
-    may be taken over.
+    Hyphens become minus signs in formulas, and dashes between the two links of a pair; others stay, so that
+    numbers can be copied.
     """
     text = text.replace("->", "→")
     if FORMULA.search(text):
@@ -135,20 +137,20 @@ def typeset(text: str) -> str:
 
 
 def spelt(unit: str) -> str:
-    """A unit as the language spells it: rad/s is рад/с in Russian, rpm is o/min in Serbian."""
+    """Spell a unit in the current language: rad/s is рад/с in Russian, rpm is o/min in Serbian."""
     if language() == ENGLISH:
         return unit
     return re.sub(r"[A-Za-zµμ°]+", lambda name: _in_context("unit", name[0]), unit)
 
 
 def symbol(letter: str) -> str:
-    """The letter that a course in this language writes: of a force of inertia U in English, Φ in Russian."""
+    """Return the letter of a quantity in the current notation: inertia force U in English, Φ in Russian."""
     own = INERTIA.get(_course.get().inertia, {})
     return own[letter] if letter in own else _in_context("symbol", letter)
 
 
 def printed(link: str) -> str:
-    """The number of a link as the course prints it; only that of the frame, link "0", may be another one."""
+    """Return the printed number of a link; only that of the frame, "0", depends on the notation."""
     return _course.get().frame if link == "0" else link
 
 
@@ -158,7 +160,7 @@ def _in_context(context: str, message: str) -> str:
 
 
 def _catalogue(language: str) -> NullTranslations:
-    """The translations of a language, read once."""
+    """Return the translations of a language, read once."""
     if language not in CATALOGUES:
         from gettext import GNUTranslations  # English needs none
 
@@ -171,18 +173,18 @@ def _catalogue(language: str) -> NullTranslations:
 
 
 def language() -> str:
-    """The language that is spoken here and now."""
+    """Return the current language."""
     return _course.get().language
 
 
 def course() -> CourseNotation:
-    """How is written here and now."""
+    """Return the current notation."""
     return _course.get()
 
 
 @contextmanager
 def spoken(language: str) -> Iterator[None]:
-    """Speak a language inside; a sentence is said where it is made, so nothing may be left to be made later."""
+    """Use a language inside the block; messages are translated where they are made, so none may be made later."""
     with written_as(replace(_course.get(), language=language, for_programs=False)):
         yield
 
@@ -202,7 +204,7 @@ def word_of_files(text: str) -> str:
 
 @contextmanager
 def written_as(course: CourseNotation) -> Iterator[None]:
-    """Write inside as a course does."""
+    """Use the notation of a course inside the block."""
     before = _course.set(course)
     try:
         yield
@@ -211,16 +213,16 @@ def written_as(course: CourseNotation) -> Iterator[None]:
 
 
 def speak(language: str) -> None:
-    """Speak a language from here to the end of the `spoken` around."""
+    """Use a language until the end of the enclosing `spoken` block."""
     _course.set(replace(_course.get(), language=language))
 
 
 def write(frame: str, inertia: str) -> None:
-    """Write so from here to the end of the `spoken` around: the number of the frame, the letter of inertia forces."""
+    """Use a frame number and a letter of inertia forces until the end of the enclosing `spoken` block."""
     _course.set(replace(_course.get(), frame=frame, inertia=inertia))
 
 
 def speaking(course: CourseNotation, work: Callable[[], Found]) -> Found:
-    """What some work gives when it writes as this course does; for work that goes to another process."""
+    """Call a function in the notation of a course, for work in another process."""
     with written_as(course):
         return work()

@@ -1,4 +1,4 @@
-"""A mechanism that turns on a page: what the results say at places close together, and a script that moves it."""
+"""Web pages with moving mechanisms: a page for one mechanism, and a gallery of many."""
 
 from tmm_cli.interfaces import lazy
 

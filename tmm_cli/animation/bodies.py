@@ -1,6 +1,6 @@
-"""What moves as one on the page: links, boxes of sliders, springs, with their marks in their own axes.
+"""Bodies that move as one on the page: links, boxes of sliders, springs, with their marks in their own axes.
 
-A body is drawn once; the page puts it where it is in each frame.
+A body is drawn once; the page moves it to its place in each frame.
 """
 
 from __future__ import annotations
@@ -31,8 +31,10 @@ from tmm_cli.mechanics.numerics import Real, Vector, unit
 
 @dataclass
 class MovingBody:
-    """Where it is (mm on the sheet), its angle (rad, followed through turns), how much longer it is than drawn: each
-    in every frame; its marks in its own axes.
+    """Body with its place (mm on the sheet), accumulated angle (rad) and stretch relative to the drawing, in
+    every frame.
+
+    marks: its marks in its own axes.
     """
 
     place: Vector
@@ -41,15 +43,15 @@ class MovingBody:
     marks: list[Mark] = field(default_factory=list)
 
     def own(self, at: complex) -> complex:
-        """A place on the sheet in the first frame, in the body's axes."""
+        """Return a place on the sheet in the first frame in the body's axes."""
         return complex((at - self.place[0]) * np.exp(-1j * self.angle[0]))
 
     def take(self, marks: list[Mark]) -> None:
-        """Marks drawn at the first frame move with the body from now on."""
+        """Attach marks drawn in the first frame to the body."""
         self.marks += [_in_body_axes(mark, self.own) for mark in marks]
 
     def at(self, own: Any, k: int) -> Any:
-        """A place of the body on the sheet, in a frame."""
+        """Return a place of the body on the sheet in frame k."""
         local = np.real(own) * self.stretch[k] + 1j * np.imag(own)
         return self.place[k] + local * np.exp(1j * self.angle[k])
 
@@ -67,7 +69,7 @@ def _in_body_axes(mark: Mark, own: Callable[[complex], complex]) -> Mark:
 
 @dataclass
 class MechanismPicture:
-    """A mechanism taken apart into bodies by their names; links have theirs, the frame is one too."""
+    """A mechanism divided into bodies by name; each link and the frame is one."""
 
     sheet: DrawingSheet
     motion: Motion
@@ -77,7 +79,9 @@ class MechanismPicture:
 
     @classmethod
     def of(cls, sheet: DrawingSheet, motion: Motion, scene: MechanismScene) -> MechanismPicture:
-        """A scene in its first frame, drawn on a sheet; what belongs to no body, as the touch of two wheels, is not."""
+        """Draw a scene in its first frame and divide it; marks of no body, such as contact points of gears, are
+        omitted.
+        """
         linkage, pairs = scene.linkage, scene.structure.pairs
         drawn = render_scene(sheet, scene, linkage.moving, pairs, MOVING, dict.fromkeys(linkage.links, DARK_COLOUR))
         picture = cls(sheet, motion, scene, {}, drawn.forms)
@@ -106,7 +110,7 @@ class MechanismPicture:
         return picture
 
     def _masses(self) -> None:
-        """Centres of mass that are no named points."""
+        """Draw centres of mass that are not named points."""
         for link in self.scene.linkage.moving:
             own = self.scene.linkage.links[link]
             if np.any(own.mass != 0) and all(abs(own.centre - local) > 0 for local in own.points.values()):
@@ -114,13 +118,13 @@ class MechanismPicture:
                     draw_mass_centre(self.sheet, self.sheet.on(self.scene.place(link, complex(own.centre))))
 
     def _spots(self, link: str, local: complex) -> Vector:
-        """Places of a point of a link on the sheet."""
+        """Places of a point of a link on the sheet, in all frames."""
         if link == FRAME:
             return np.full(self.motion.q.shape, self.sheet.on(complex(local)))
         return self.sheet.origin + self.motion.poses[link].spread(self.motion.q.shape).at(local) / self.sheet.mu
 
     def layers(self) -> Iterator[tuple[str, list[Mark]]]:
-        """Marks of bodies from below to above."""
+        """Yield marks of bodies from the lowest to the highest layer."""
         every = [(mark.z, name, mark) for name, own in self.bodies.items() for mark in own.marks]
         every.sort(key=lambda one: one[0])
         for name, layer in groupby(every, key=lambda one: one[1]):
@@ -137,7 +141,9 @@ LABEL_DISTANCE, NUMBER_DISTANCE = (
 
 
 def body_labels(picture: MechanismPicture, names: Sequence[str]) -> list[dict[str, Any]]:
-    """Names of points beyond the ends of links, numbers beside links: in the axes of the bodies that carry them."""
+    """Return names of points beyond the ends of links and numbers beside links, in axes of the bodies that carry
+    them.
+    """
     linkage, found = picture.scene.linkage, dict[tuple[str, complex], list[str]]()
     for name in {point: None for link in (FRAME, *linkage.moving) for point in linkage.links[link].points}:
         there = [link for link in (FRAME, *linkage.moving) if name in linkage.links[link].points]
@@ -163,7 +169,7 @@ def body_labels(picture: MechanismPicture, names: Sequence[str]) -> list[dict[st
 
 
 def _point_label_place(picture: MechanismPicture, link: str, local: complex) -> complex:
-    """Where the name of a point is, in its link's axes: away from the middle of the link, outside a slider's box."""
+    """Place of a point's name in its link's axes: away from the middle of the link, outside a slider's box."""
     sheet, scene = picture.sheet, picture.scene
     at, driven = sheet.on(scene.place(link, local)), cylinder_drivers(scene.linkage)
     slides = [slide for slide in scene.linkage.slides if slide.name not in driven]
@@ -179,7 +185,7 @@ def _point_label_place(picture: MechanismPicture, link: str, local: complex) -> 
 
 
 def _number_place(picture: MechanismPicture, link: str) -> complex:
-    """Where the number of a link is, in its axes: on its plate, beside its longest line, or beside its box."""
+    """Place of a link's number in its axes: on its plate, beside its longest line, or beside its box."""
     form, own = picture.forms[link], picture.bodies[link].own
     if len(form.hull) > 2:
         return own(form.middle)
@@ -191,5 +197,5 @@ def _number_place(picture: MechanismPicture, link: str) -> complex:
 
 
 def page_coordinates(z: complex) -> list[float]:
-    """x and y with y down."""
+    """Return x and y with y pointing down."""
     return [round(z.real, 2) + 0.0, round(-z.imag, 2) + 0.0]

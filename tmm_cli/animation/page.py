@@ -1,4 +1,9 @@
-"""Web page of a moving mechanism: frames, plans of motion and diagrams as data, and the HTML file that shows them."""
+"""Web page of a moving mechanism: inline SVG, frames, plans of motion and diagrams as JSON, and a script
+that moves it.
+
+It loads nothing from the network: its content security policy allows its own style and script only. Texts
+of files are escaped.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +39,9 @@ LEAST_DISTANCE = 1e-6  # of a plan: nearer points are one
 
 
 def plan_data(motion: Motion, sort: MotionPlanKind) -> dict[str, Any]:
-    """A plan in all frames: its points (SI, y up), vectors between them, letters at them; units a SI unit, its view."""
+    """Return a plan in all frames: points (SI, y up), vectors between them, letters, scale in units per SI unit,
+    view box.
+    """
     plans = [sort.plan(motion, k) for k in range(len(motion.q))]
     first = plans[0]
     size = float(np.percentile([plan.size for plan in plans], 95)) or 1.0
@@ -79,19 +86,19 @@ def plan_data(motion: Motion, sort: MotionPlanKind) -> dict[str, Any]:
 
 
 def field_sides(places: Vector, room: float) -> tuple[float, float, float, float]:
-    """Of a field with room about places, as a page has it: left, top (y down), width and height."""
+    """Return left, top (y down), width and height of a field with a margin around places."""
     x, y = places.real, -places.imag
     return float(x.min()) - room, float(y.min()) - room, float(np.ptp(x)) + 2 * room, float(np.ptp(y)) + 2 * room
 
 
 def _join_letters(letters: list[str]) -> str:
-    """Letters of one point, not more than have room."""
+    """Letters of one point, abbreviated if there are too many."""
     few = letters if len(letters) <= MOST_LETTERS else [*letters[:MOST_LETTERS], "…"]
     return ", ".join(map(with_subscripts, few))
 
 
 def chart_quantities(results: Results, whole: Results) -> Iterable[QuantityPlot]:
-    """Motion of the first outputs, and what balances the drivers."""
+    """Yield the motion of the first outputs, and balancing moments or forces of the drivers."""
     assert whole.motion is not None
     for link in results.mechanism.outputs[:2]:
         yield from output_plots(results, whole.motion, link)
@@ -99,7 +106,7 @@ def chart_quantities(results: Results, whole: Results) -> Iterable[QuantityPlot]
 
 
 def chart_data(results: Results, quantities: QuantityPlot) -> dict[str, Any]:
-    """A diagram in the units of the file."""
+    """Return a diagram in the units of the file."""
 
     def values(si: Real) -> list[float | None]:
         clean = without_rounding(si, largest_magnitude(si))
@@ -112,7 +119,7 @@ def chart_data(results: Results, quantities: QuantityPlot) -> dict[str, Any]:
 
 
 def position_marks(results: Results, motion: Motion) -> list[list[Any]]:
-    """Where the numbered positions are among the frames."""
+    """Return the places of the numbered positions among the frames."""
     found = []
     for number, q in zip(results.numbers, results.asked[list(results.numbers)].tolist(), strict=True):
         k = int(np.argmin(np.abs(motion.q - q)))
@@ -124,7 +131,7 @@ def position_marks(results: Results, motion: Motion) -> list[list[Any]]:
 
 
 def round_figures(values: Any, digits: int) -> list[float | None]:
-    """To so many significant figures; none where there is no value."""
+    """Round to significant figures; None where there is no value."""
     array = np.asarray(values, float)
     return [float(f"{value:.{digits}g}") + 0.0 if np.isfinite(value) else None for value in array.tolist()]
 
@@ -138,7 +145,7 @@ SECONDS = 4.0  # of a turn, or of a way, as long as one looks at it with ease
 
 
 def results_in_frames(results: Results, count: int) -> Results:
-    """The same results at about so many places a turn at which the mechanism moves. Raises ProblemError."""
+    """Return results at about `count` frames per revolution in which the mechanism moves. Raises ProblemError."""
     q = results.closely(count * (results.turns or 1) + 1)
     moved = results_at(results, q)
     assert moved.motion is not None
@@ -149,7 +156,7 @@ def results_in_frames(results: Results, count: int) -> Results:
 
 
 def page_data(results: Results, whole: Results, picture: MechanismPicture) -> dict[str, Any]:
-    """Everything that the script needs; places in mm of a sheet with y down, angles in rad, plans in SI."""
+    """Return all data of the script; places in mm on a sheet with y down, angles in rad, plans in SI."""
     motion = picture.motion
     names = list(picture.bodies)
     driver, turns = results.linkage.driver, results.turns
@@ -173,7 +180,7 @@ def page_data(results: Results, whole: Results, picture: MechanismPicture) -> di
 
 
 def draw_first_frame(whole: Results, motion: Motion) -> MechanismPicture:
-    """The mechanism in the first frame on a sheet that has room for all of its ways."""
+    """Draw the mechanism in its first frame on a sheet that has room for its whole motion."""
     linkage = whole.linkage
     scene = MechanismScene(linkage, whole.structure, motion.poses, 0)
     places = [*frame_pivots(linkage), *(z for name in linkage.moving_points for z in motion.spot(name).tolist())]
@@ -183,14 +190,14 @@ def draw_first_frame(whole: Results, motion: Motion) -> MechanismPicture:
 
 
 def picture_view(picture: MechanismPicture) -> tuple[float, float, float, float]:
-    """What of the sheet is ever drawn on: left, top (y down), width and height, mm."""
+    """Return the part of the sheet that is drawn on in any frame: left, top (y down), width and height, mm."""
     local = [(own, np.array([z for mark in own.marks for z in mark_corners(mark)])) for own in picture.bodies.values()]
     times = range(0, len(picture.motion.q), max(1, len(picture.motion.q) // 24))
     return field_sides(np.concatenate([own.at(places, k) for own, places in local for k in times]), EDGE)
 
 
 def body_data(own: MovingBody) -> dict[str, Any]:
-    """Where a body is in each frame; one number of what does not change."""
+    """Return the place of a body in each frame; a constant as one number."""
     return {
         "x": rounded_frames(own.place.real, 2),
         "y": rounded_frames(-own.place.imag, 2),
@@ -200,13 +207,13 @@ def body_data(own: MovingBody) -> dict[str, Any]:
 
 
 def rounded_frames(values: Real, digits: int) -> Any:
-    """Rounded; one number where all are the same."""
+    """Round values; a constant becomes one number."""
     found = [round(value, digits) + 0.0 for value in np.asarray(values, float).tolist()]
     return found[0] if min(found) == max(found) else found
 
 
 def point_paths(picture: MechanismPicture) -> Iterable[list[list[float]]]:
-    """Ways of all moving points."""
+    """Yield the paths of all moving points."""
     for name in picture.scene.linkage.moving_points:
         yield [
             page_coordinates(z) for z in (picture.sheet.origin + picture.motion.spot(name) / picture.sheet.mu).tolist()
@@ -219,7 +226,7 @@ TEXT = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"})  # nothin
 
 
 def animation_page(results: Results) -> str:
-    """The page of a mechanism, with fewer frames where it would be larger than it may be. Raises ProblemError."""
+    """Return the page of a mechanism, with fewer frames if it would exceed MOST_BYTES. Raises ProblemError."""
     count = FRAMES
     made = _build_page(results, count)
     while len(made.encode()) > MOST_BYTES and count > FEWEST_FRAMES:
@@ -254,7 +261,7 @@ def _build_page(results: Results, count: int) -> str:
 
 
 def fill_page(folder: str, **texts: str) -> str:
-    """The page in a folder here, with its style and its script, which alone its policy allows, and with these texts."""
+    """Fill the page template of a folder with its style, its script and these texts."""
     own = files("tmm_cli.animation")
     whole, style, script = (own.joinpath(f"{folder}page.{kind}").read_text("utf-8") for kind in ("html", "css", "js"))
     policy = f"default-src 'none';style-src '{_digest(style)}';script-src '{_digest(script)}'"
@@ -262,7 +269,7 @@ def fill_page(folder: str, **texts: str) -> str:
 
 
 def data_text(data: Any) -> str:
-    """JSON that may stand in a script element."""
+    """Return JSON that is safe inside a script element."""
     return json.dumps(data, separators=(",", ":"), allow_nan=False).translate(TEXT)
 
 
@@ -271,5 +278,5 @@ def _path_html(way: Iterable[Iterable[float]]) -> str:
 
 
 def _digest(text: str) -> str:
-    """How a policy names a text that it allows."""
+    """Hash of a text as in a content security policy."""
     return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()

@@ -1,4 +1,6 @@
-"""Many linkages of one kind at once: a batch at places of the driver, or variants whose numbers come later."""
+"""Many linkages of one kind at once: a batch of linkages, or variants whose numbers are given later; and
+parallel work.
+"""
 
 from .family import (
     VariantFamily as VariantFamily,

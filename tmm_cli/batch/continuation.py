@@ -1,7 +1,8 @@
-"""Where Newton's steps on a tape begin: tables along the driver's way, of groups that are found by iteration.
+"""Initial guesses of Newton's method for traced groups that are solved by iteration.
 
-A table is made once, from the trace that continuation has left: between its places the unknowns are cubic polynomials
-with the group's own rates at both ends (Hermite), which miss by some 1e-12.
+For one linkage they come from a table, made once from the path that continuation found: cubic Hermite
+polynomials through the unknowns and their rates, with errors of some 1e-12. For many variants the
+unknowns are followed from the first linkage, then along the driver's range.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ Placeholders = Sequence[Any]
 
 
 def unroll_groups(linkage: Linkage, kernels: Sequence[GroupSolver]) -> tuple[GroupSolver, ...]:
-    """The groups with those that are found by iteration as straight lines. Raises NotUnrolledError."""
+    """Convert groups that are solved by iteration to a fixed number of Newton steps. Raises NotUnrolledError."""
     there = link_states(linkage, kernels, np.array([linkage.sketch.at]), 0)
     geared = {link for mesh in linkage.meshes for link in (mesh.i, mesh.j, mesh.carrier)}
     return tuple(
@@ -46,14 +47,17 @@ def unroll_groups(linkage: Linkage, kernels: Sequence[GroupSolver]) -> tuple[Gro
 
 
 def count_initial_guesses(kernels: Sequence[GroupSolver]) -> int:
-    """How many starts the groups take."""
+    """Return the number of initial guesses that the groups need."""
     return sum(len(kernel.free) for kernel in kernels if isinstance(kernel, UnrolledNewton) and not kernel.linear)
 
 
 def with_initial_guesses(
     kernels: Sequence[GroupSolver], stands: Placeholders, steps: int | None = None
 ) -> tuple[GroupSolver, ...]:
-    """The groups with their starts, one after another; steps: of Newton's method, if not the usual ones."""
+    """Return the groups with their initial guesses, taken one after another.
+
+    steps: number of Newton steps, if not the default.
+    """
     found, at = [], 0
     for kernel in kernels:
         if isinstance(kernel, UnrolledNewton) and not kernel.linear:
@@ -65,7 +69,7 @@ def with_initial_guesses(
 
 
 def newton_converged(states: LinkStates) -> Any:
-    """Where the steps on a tape have closed all groups that take such."""
+    """Mask of positions where the Newton steps of all traced groups have converged."""
     found: Any = np.ones(np.shape(states.q), dtype=bool)
     for kernel, at in zip(states.kernels, states.placements, strict=True):
         if isinstance(kernel, UnrolledNewton):
@@ -74,7 +78,7 @@ def newton_converged(states: LinkStates) -> Any:
 
 
 def accumulated_angles_agree(states: LinkStates) -> Any:
-    """Where turns of wheels are those of the tables that groups in closed form have."""
+    """Mask of positions where the accumulated angles of gears are those of the tables of groups in closed form."""
     found: Any = np.ones(np.shape(states.q), dtype=bool)
     for kernel, at in zip(states.kernels, states.placements, strict=True):
         if isinstance(kernel, ClosedFormSolver) and kernel.winding is not None:
@@ -83,7 +87,9 @@ def accumulated_angles_agree(states: LinkStates) -> Any:
 
 
 def free_unknowns(states: LinkStates) -> Mapping[str, Any]:
-    """Free unknowns x and their rates v by the driver's place, numbered; and where they are `sure`."""
+    """Free unknowns x0, x1, ... of all iterated groups, their rates v0, v1, ... by the driver, and whether they
+    converged.
+    """
     found: dict[str, Any] = {"sure": newton_converged(states)}
     number = 0
     for kernel in states.kernels:
@@ -103,9 +109,10 @@ def _components(vector: Any, angle: Any) -> tuple[Any, Any, Any]:
 
 @dataclass(frozen=True)
 class StartTable:
-    """Unknowns of a group at places of the driver: polynomials (4, unknowns, pieces), of equal pieces from low on.
+    """Unknowns of a group as polynomials (4, unknowns, pieces), on pieces of equal width from the coordinate
+    `low`.
 
-    gain: what they grow by in a cycle of that many pieces, where the way is closed; else None.
+    gain: increase of the unknowns in a cycle of all pieces, if the motion is cyclic; else None.
     """
 
     low: float
@@ -115,14 +122,14 @@ class StartTable:
 
     @classmethod
     def of(cls, q: Real, x: Real, v: Real, *, closed: bool) -> StartTable:
-        """From unknowns and rates (unknowns, places) at even places; nan where they are not known."""
+        """Build the table from unknowns and rates (unknowns, places) at equal steps; nan where they are unknown."""
         h = float(q[1] - q[0])
         a, b, one, other = x[:, :-1], x[:, 1:], h * v[:, :-1], h * v[:, 1:]
         pieces = np.stack([a, one, 3 * (b - a) - 2 * one - other, 2 * (a - b) + one + other])
         return cls(float(q[0]), h, pieces, x[:, -1:] - x[:, :1] if closed else None)
 
     def __call__(self, q: Real) -> Real:
-        """Unknowns at places, (unknowns, ...); nan beyond the ends."""
+        """Return the unknowns at driver coordinates, (unknowns, ...); nan beyond the ends."""
         many = self.pieces.shape[-1]
         share = (q - self.low) / self.step
         number = np.floor(share)
@@ -142,10 +149,10 @@ class StartTable:
 
 
 class InitialGuesses:
-    """Starts of all groups of a linkage at any places of its driver."""
+    """Initial guesses of all groups of a linkage at any driver coordinates."""
 
     def __init__(self, linkage: Linkage, kernels: Sequence[GroupSolver]) -> None:
-        """kernels: as straight lines."""
+        """Tabulate the unknowns of the unrolled groups `kernels`."""
         own = [kernel for kernel in kernels if isinstance(kernel, UnrolledNewton) and not kernel.linear]
         traces = [kernel.trace for kernel in own if kernel.trace is not None]
         self.tables: list[StartTable] = []
@@ -167,7 +174,7 @@ class InitialGuesses:
 
 
 def _closing_program(linkage: Linkage, kernels: Sequence[GroupSolver]) -> TraceProgram:
-    """Unknowns by places of the driver and starts that may be far."""
+    """Program that closes the groups at driver coordinates from initial guesses that may be far off."""
 
     def stages(q: TracedArray, *stands: TracedArray) -> Mapping[str, Any]:
         guessed = with_initial_guesses(kernels, stands, TABLE_NEWTON_STEPS)
@@ -177,14 +184,14 @@ def _closing_program(linkage: Linkage, kernels: Sequence[GroupSolver]) -> TraceP
 
 
 def _table_coordinates(trace: BranchTrace, *, turns: bool) -> Real:
-    """Even places along a trace."""
+    """Driver coordinates at equal steps along a path."""
     low, high = float(trace.q[0]), float(trace.q[-1])
     count = TABLE_PIECES * max(1, round((high - low) / (2 * np.pi))) if turns else TABLE_PIECES
     return low + (high - low) * np.arange(count + 1) / count
 
 
 def _unknowns_from_trace(kernel: UnrolledNewton, trace: BranchTrace, q: Real) -> list[Real]:
-    """Free unknowns near places of a trace."""
+    """Free unknowns of a group at driver coordinates on its path."""
     state, _ = trace.start(q)
     parts = [state.x.real, state.x.imag, state.unwrapped]
     return [parts[column % 3][:, column // 3] for column in kernel.free]
@@ -212,10 +219,11 @@ LinkageMaker = Callable[[Sequence[Any]], Linkage]  # a linkage for numbers, each
 
 @dataclass(frozen=True)
 class ContinuedPaths:
-    """Unknowns of variants along their ways from `at` on: x and their rates v (unknowns, variants, 2 n + 1).
+    """Unknowns of variants along their paths from the coordinate `at`: x and rates v, (unknowns, variants, 2 n +
+    1).
 
-    steps: their lengths down and up (variants, 1), 0 where nothing was looked at. gain: by what unknowns grow in a
-    cycle, (unknowns, variants, 1); None where there is none. nan where a variant was not followed.
+    steps: step lengths down and up (variants, 1), 0 where nothing was computed. gain: increase of the
+    unknowns in a cycle, (unknowns, variants, 1), or None. nan where a variant was not continued.
     """
 
     at: float
@@ -225,17 +233,17 @@ class ContinuedPaths:
     gain: Real | None
 
     def take(self, rows: Real) -> ContinuedPaths:
-        """Of some variants."""
+        """Return the paths of some variants."""
         gain = None if self.gain is None else self.gain[:, rows]
         down, up = self.steps
         return replace(self, x=self.x[:, rows], v=self.v[:, rows], steps=(down[rows], up[rows]), gain=gain)
 
     def of(self, part: slice) -> ContinuedPaths:
-        """Of some unknowns."""
+        """Return the paths of some unknowns."""
         return replace(self, x=self.x[part], v=self.v[part], gain=None if self.gain is None else self.gain[part])
 
     def __call__(self, q: Real) -> list[Real]:
-        """Starts at places (variants, positions)."""
+        """Return initial guesses at driver coordinates (variants, positions)."""
         unknowns, variants, many = self.x.shape
         n, (down, up) = many // 2, self.steps
         q = np.broadcast_to(q, (variants, q.shape[-1])) - self.at
@@ -260,7 +268,15 @@ class ContinuedPaths:
 
 
 class Continuation:
-    """Of linkages of one kind; kernels: those of the first one, as straight lines; first: its numbers."""
+    """Continuation of linkages of one kind.
+
+    At the position of the sketch numbers change from those of the first linkage to those of each variant;
+    from there all variants move along their driver ranges, up and down together. A step is predicted from the
+    rates and corrected by Newton's method on a trace. A step with too large a correction, or to another side
+    of a dead position, is halved; a variant whose quarter steps fail has come to its end.
+
+    kernels: unrolled groups of the first linkage. first: its numbers.
+    """
 
     def __init__(
         self, varied: LinkageMaker, first: Sequence[float], linkage: Linkage, kernels: Sequence[GroupSolver]
@@ -292,9 +308,13 @@ class Continuation:
         _, self.signs = self._closed(self.first[None, :], np.array([self.at]), self.x[:, None], None)
 
     def _closed(self, numbers: Real, q: Real, x: Real, signs: Real | None) -> tuple[Real, Real]:
-        """Unknowns closed from x and their rates, (2, unknowns, variants); signs of determinants (groups, variants).
+        """Correct the unknowns x of variants.
 
-        signs: of the first linkage; unknowns of variants that do not close, or have others, are nan.
+        signs: signs of determinants of the first linkage (groups, 1); variants that do not converge, or have
+        other signs, become nan.
+
+        Returns:
+            Unknowns and rates (2, unknowns, variants), and the signs (groups, variants).
         """
         data = [*split_columns(numbers), q[:, None], *(part[:, None] for part in x)]
         found = self.program(*data)
@@ -306,15 +326,15 @@ class Continuation:
         return there, dets
 
     def _near(self, found: Real, start: Real) -> Real:
-        """Which variants closed near to their start."""
+        """Mask of the variants whose correction was small."""
         with np.errstate(invalid="ignore"):
             near: Real = np.max(np.abs(found - start) / self.scale[:, None], axis=0) < LARGEST_CORRECTION
         return near
 
     def sketched(self, numbers: Real) -> Real:
-        """Unknowns of variants (variants, n) at the place of the sketch and their rates, (2, unknowns, variants).
+        """Unknowns and rates of variants (variants, n) at the position of the sketch, (2, unknowns, variants).
 
-        nan where they are lost.
+        nan where the continuation failed.
         """
         variants = len(numbers)
         there = np.repeat(np.stack([self.x, np.full_like(self.x, np.nan)])[:, :, None], variants, axis=2)
@@ -336,9 +356,9 @@ class Continuation:
         return np.where(gone == 1, there, np.nan)
 
     def __call__(self, numbers: Real, low: Real, high: Real, count: int, *, closed: bool) -> ContinuedPaths:
-        """Ways of variants over ranges (variants, 1), in so many steps up and down at most.
+        """Continue variants over driver ranges (variants, 1), in at most `count` steps.
 
-        closed: they come round again after a range, which is then laid about the sketch.
+        closed: the motion repeats after the range, which is then centred on the sketch.
         """
         if closed:
             half = (high - low) / 2
@@ -357,9 +377,9 @@ class Continuation:
         return ContinuedPaths(self.at, x, v, (-ends[0][:, None] / n, ends[1][:, None] / n), gain)
 
     def _marched(self, numbers: Real, there: Real, steps: Real, n: int) -> Real:
-        """Unknowns and rates (2, unknowns, variants, 2 n + 1) from those at the sketch on.
+        """Unknowns and rates (2, unknowns, variants, 2 n + 1), from those at the sketch.
 
-        steps: their lengths down and up, (2, variants).
+        steps: step lengths down and up, (2, variants).
         """
         variants = len(numbers)
         sides = [side for side in (0, 1) if np.any(steps[side])]  # which ways lead anywhere
@@ -392,12 +412,12 @@ class Continuation:
 
 
 def _with_loose_tolerance(kernel: GroupSolver) -> GroupSolver:
-    """A group that is closed as well as starts need be."""
+    """Group with the tolerance that initial guesses need."""
     return replace(kernel, enough=CONVERGED) if isinstance(kernel, UnrolledNewton) else kernel
 
 
 def _unknown_at_sketch(kernel: UnrolledNewton, column: int) -> float:
-    """A free unknown of a group at the sketch."""
+    """Free unknown of a group at the position of the sketch."""
     assert kernel.start is not None
     x, angle = kernel.start.x[0, column // 3], kernel.start.unwrapped[0, column // 3]
     return float((x.real, x.imag, angle)[column % 3])

@@ -1,4 +1,10 @@
-"""Groups that are found by iteration, of many variants at once: Newton's method from the ways of all of them."""
+"""Variants of a linkage as one linkage whose numbers are arrays (variants, 1), with positions and strokes of
+each.
+
+All stages then work on (variants, positions) at once. Variants that cannot be treated together
+(untraceable groups, several drivers, drivers with a stroke, outputs with more than two strokes) are
+families of one, solved like a file of their own.
+"""
 
 from __future__ import annotations
 
@@ -46,7 +52,7 @@ from tmm_cli.mechanics.structure import Structure, output_link
 
 @dataclass(frozen=True)
 class ContinuedGroup(NewtonSolver):
-    """Such a group. lines: the same as straight lines; ways: of its free unknowns, nan where none was found."""
+    """Group solved by iteration for many variants. lines: its unrolled form; ways: paths of its free unknowns."""
 
     lines: UnrolledNewton = field(kw_only=True)
     ways: ContinuedPaths = field(kw_only=True)
@@ -56,7 +62,7 @@ class ContinuedGroup(NewtonSolver):
         return replace(self, group=lines.group, size=lines.size, constraints=lines.constraints, lines=lines)
 
     def take(self, rows: Real) -> ContinuedGroup:
-        """Of some variants."""
+        """Return the group of some variants."""
         return replace(self, ways=self.ways.take(rows))
 
     def begun(self, poses: Poses, q: Real, drives: DriverStates) -> tuple[GroupState, Real]:
@@ -66,9 +72,10 @@ class ContinuedGroup(NewtonSolver):
         return GroupState(x, turned), np.full(x.shape[:-1], -1.0)
 
     def kept(self, found: LinkStates) -> Real:
-        """Which variants lie along their ways, far from dead positions, and as their sketch surely shows them.
+        """Mask of the variants that follow their paths, far from dead positions, in the assembly that their sketch
+        shows.
 
-        found: of all variants, (variants, positions), from the place of the sketch on.
+        found: states of all variants, (variants, positions), beginning at the position of the sketch.
         """
         number = [kernel.group for kernel in found.kernels].index(self.group)
         at, later = found.placements[number], {link for k in found.kernels[number:] for link in k.group.links}
@@ -89,9 +96,12 @@ class ContinuedGroup(NewtonSolver):
 def continue_groups(
     varied: LinkageMaker, columns: Real, linkage: Linkage, kernels: tuple[GroupSolver, ...]
 ) -> tuple[GroupSolver, ...]:
-    """The groups of the first variant as those of all, whose numbers are rows of columns; still to be rebound.
+    """Continue the groups of the first variant to all variants, whose numbers are the rows of columns.
 
-    Raises NoTapeError, DependsOnData.
+    The groups must still be rebound to the linkage of all variants.
+
+    Raises:
+        NoTapeError, DependsOnData: the groups cannot be traced.
     """
     traces = [kernel.trace for kernel in kernels if isinstance(kernel, NewtonSolver) and not kernel.by_angle]
     if not traces:
@@ -126,10 +136,11 @@ SCAN = 72  # places in a turn of the driver: two ends of strokes nearer to one a
 
 @dataclass(frozen=True, eq=False)
 class VariantFamily:
-    """Variants that are assembled as the first one is. Their numbers are scalars or arrays (variants, 1).
+    """Variants in the assembly of the first one; numbers are scalars or arrays (variants, 1).
 
-    q: places of the driver (variants, positions), rad or m. strokes: with arrays (variants, 1) in the place of numbers;
-    None where no output has any. sound: which variants go through all their cycle and have the strokes of the first.
+    q: driver coordinates (variants, positions), rad or m. strokes: with arrays (variants, 1) as numbers; None
+    if no output has any. sound: mask of feasible variants, which move through the whole cycle with the
+    strokes of the first.
     """
 
     linkage: Linkage
@@ -144,28 +155,28 @@ class VariantFamily:
         return len(self.q)
 
     def take(self, rows: Sequence[int] | Real) -> VariantFamily:
-        """Some of the variants, or some of them again and again."""
+        """Return some of the variants, perhaps repeated."""
         rows = np.asarray(rows)
         kernels = tuple(kernel.take(rows) if isinstance(kernel, ContinuedGroup) else kernel for kernel in self.kernels)
         new = replace(self, kernels=kernels).changed(take_rows(self.linkage, rows), self.q[rows])
         return replace(new, strokes=take_rows(self.strokes, rows), sound=self.sound[rows])
 
     def changed(self, linkage: Linkage, q: Real | None = None) -> VariantFamily:
-        """The same assemblies and strokes with other numbers, at other places."""
+        """Return the same assemblies and strokes with other numbers, at other driver coordinates."""
         kernels = tuple(kernel.rebind(linkage) for kernel in self.kernels)
         structure = self.structure.rebind(linkage)
         return replace(self, linkage=linkage, structure=structure, kernels=kernels, q=self.q if q is None else q)
 
 
 def take_rows(record: Any, rows: Real) -> Any:
-    """A record with these rows of its arrays (variants, 1)."""
+    """Return a record with some rows of its arrays (variants, 1)."""
     return map_record(lambda _, value: value[rows] if np.ndim(value) == 2 else value, record, skip=("sketch",))
 
 
 def split_families(make: Make, columns: Real) -> Iterator[tuple[Real, VariantFamily | LinkageError]]:
-    """Families of the variants whose numbers are the rows of columns (variants, n): which rows, and the family.
+    """Split variants into families: yields the rows of columns (variants, n), and the family.
 
-    A variant that no stage takes comes with its error instead. Raises what `make` raises.
+    A variant that cannot be solved comes with its error instead. Raises the errors of `make`.
     """
     rows = np.arange(len(columns))
     every = build_family(make, columns) if len(columns) > 1 else None
@@ -180,7 +191,11 @@ def split_families(make: Make, columns: Real) -> Iterator[tuple[Real, VariantFam
 
 
 def build_family(make: Make, columns: Real) -> VariantFamily | None:
-    """All at once, sound or not, assembled as the first one; None where that cannot be. Raises what `make` raises."""
+    """Build one family of all variants, feasible or not, in the assembly of the first; None if that is
+    impossible.
+
+    Raises the errors of `make`.
+    """
     first = columns[0].tolist()
     try:
         varied = make([TracedNumber(x, column) for x, column in zip(first, split_columns(columns), strict=True)])
@@ -213,7 +228,7 @@ def build_family(make: Make, columns: Real) -> VariantFamily | None:
 
 
 def _single_family(make: Make, row: Real) -> VariantFamily:
-    """One variant, found as a file of its own. Raises LinkageError."""
+    """Family of one variant, solved like a file of its own. Raises LinkageError."""
     variant = make(row.tolist())
     structure = analyse_mobile_structure(variant.linkage)
     mechanism = Mechanism(Inputs(variant.linkage, variant.request), structure)
@@ -223,8 +238,12 @@ def _single_family(make: Make, row: Real) -> VariantFamily:
 
 
 def _all_strokes(linkage: Linkage, kernels: tuple[GroupSolver, ...], count: int) -> tuple[Strokes | None, Real]:
-    """Strokes of the main output of all variants, with those of further links on which loads depend; None where one of
-    these has none. And which variants have one working and one idle stroke of each, and turn fully."""
+    """Strokes of the main output of all variants, with those of further links on which loads depend.
+
+    Returns:
+        The strokes, None if one of these outputs has none; and the mask of variants with one working and one
+        idle stroke of each and a fully rotating driver.
+    """
     link = output_link(linkage, tuple(kernel.group for kernel in kernels))
     main, sound = _output_strokes(linkage, kernels, count, link)
     others = []
@@ -240,7 +259,7 @@ def _all_strokes(linkage: Linkage, kernels: tuple[GroupSolver, ...], count: int)
 def _output_strokes(
     linkage: Linkage, kernels: tuple[GroupSolver, ...], count: int, link: str | None
 ) -> tuple[Strokes | None, Real]:
-    """Strokes of one output of all variants, and which have one working and one idle stroke and turn fully."""
+    """Strokes of one output of all variants, and the mask of variants with one working and one idle stroke."""
     q = linkage.sketch.at + np.linspace(0, 2 * np.pi, SCAN + 1) + np.zeros((count, 1))
     whole = link_states(linkage, kernels, q, 1)
     sound = np.all(whole.moving, axis=1)
@@ -265,7 +284,14 @@ def _output_strokes(
 
 
 def working_and_idle_strokes(linkage: Linkage, curve: StrokeCurve, ends: Real, resists: Any) -> Strokes:
-    """The two strokes between the driver's places (variants, 2), the working one first: see kinematics.strokes."""
+    """Return the two strokes between driver coordinates (variants, 2), the working one first.
+
+    Args:
+        linkage: linkage of the variants.
+        curve: the output as a function of the driver.
+        ends: driver coordinates of the ends of strokes, (variants, 2).
+        resists: sense of the loads, which decides between strokes of equal length.
+    """
     sense, cycle = linkage.driver.sense, 2 * np.pi
     ends = np.mod(ends, cycle)
     lengths = np.mod(sense * (ends[:, ::-1] - ends), cycle)
@@ -288,7 +314,9 @@ def working_and_idle_strokes(linkage: Linkage, curve: StrokeCurve, ends: Real, r
 
 
 def position_coordinates(request: Request, strokes: Strokes | None, sense: int, count: int) -> Real | None:
-    """The positions of every variant, (variants, positions); None where they need strokes that are not there."""
+    """Driver coordinates of the positions, (variants, positions); None if they depend on strokes that do not
+    exist.
+    """
     ones = np.ones((count, 1))
     if request.places:
         return np.concatenate([place * ones for place in request.places], axis=1)

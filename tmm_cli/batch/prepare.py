@@ -1,9 +1,9 @@
-"""Many positions of a linkage, or many linkages of one kind, at once: the stages written on a tape and played back.
+"""Batches: many positions of a linkage, or many linkages of one kind, solved by a trace of the stages.
 
-The tape holds what the ordinary stages do for this linkage, without what its numbers and the wanted results make
-superfluous; it is worth its writing (some milliseconds) from thousands of positions on. Groups that are found by
-iteration take a fixed number of Newton's steps on it, from starts that are read from a table of their way; positions
-where these were not enough are solved by the ordinary stages.
+The trace holds the operations of the stages for this linkage, without those that its numbers and the
+requested results make superfluous; recording it takes some milliseconds and pays off from thousands of
+positions. Groups solved by iteration take a fixed number of Newton steps from tabulated guesses;
+positions where these do not converge are solved by the ordinary stages.
 """
 
 from __future__ import annotations
@@ -59,10 +59,10 @@ TIME_LAW = DriverMotion(0.0, 1.0, 0.0, 1)  # when the parameter of the motion is
 
 
 def read_all(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
-    """Motion of all named points, centres of mass and links, all reactions, what balances the drivers.
+    """Read motion of all points, centres of mass and links, all reactions, and balancing moments or forces.
 
-    Keys: `A.x`, `A.v`, `A.a` (m, m/s, m/s2), `S2.x` ..., `2.omega`, `2.epsilon`, `R.A` (force on the pair's second
-    link, N), `M.x` (couple in a guide, N m), `T.1` (balancing moment or force).
+    Keys: `A.x`, `A.v`, `A.a` (m, m/s, m/s2), `S2.x` ..., `2.omega`, `2.epsilon`, `R.A` (force on the pair's
+    second link, N), `M.x` (couple in a guide, N m), `T.1` (balancing moment or force).
     """
     found: dict[str, Any] = {}
     for quantity, name, value in leading_values(motion, reactions, first=True):
@@ -73,10 +73,11 @@ def read_all(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
 
 @dataclass(frozen=True)
 class Batch:
-    """Linkages of one kind, ready to be solved at places of their driver; all assembled as the first one is.
+    """Linkages of one kind in the assembly of the first one, ready to be solved at driver coordinates.
 
-    program is None where they cannot be written on a tape; checks tells where they can be assembled. columns: what
-    varies, (variants, 1). starts: of Newton's steps at places of the driver, (positions,) or (variants, positions).
+    program: None if they cannot be traced. checks: computes where they can be assembled. columns: numbers
+    that vary, (variants, 1). starts: initial guesses at driver coordinates, (positions,) or (variants,
+    positions). others: groups of linkages that were solved by the ordinary stages.
     """
 
     linkages: tuple[Linkage, ...]
@@ -94,22 +95,25 @@ class Batch:
     )  # groups of linkages that were looked at alone
 
     def __call__(self, q: Real) -> TraceOutputs | Mapping[str, Real]:
-        """What was wanted, by name, at q (rad or m): (positions,), or (variants, positions) with places of their own.
+        """Return the requested results by name at q (rad or m): (positions,), or (variants, positions) with
+        coordinates of each.
 
-        Results are (variants, positions), or (positions,) of one linkage. Where `sound` says no they mean nothing.
+        Results are (variants, positions), or (positions,) for one linkage. They are meaningless where `sound` is
+        False.
         """
         return self._one_by_one(q) if self.program is None else self._played(self.program, q)
 
     def sound(self, q: Real) -> TraceOutputs | Mapping[str, Real]:
-        """Where the linkages can be assembled, `placed`, and where they are not dead either, `moving`.
+        """Return where the linkages can be assembled (`placed`), where they are also not in a dead position
+        (`moving`), and `margin`.
 
-        `margin` is the least distance of a group from a dead position, 1 at best: a result has lost about as many of
-        its 16 digits as it has zeros. What these results are in truth is told by `solve`, with bounds, not here.
+        `margin` is the least distance of a group from a dead position, at best 1: a result has lost about as many
+        of its 16 digits as the margin has zeros. Error bounds are given by `solve`, not here.
         """
         return self._one_by_one(q) if self.checks is None else self._played(self.checks, q)
 
     def closed(self, q: Real) -> Real:
-        """Where the tape alone closes all groups, and needs no other stages, at q."""
+        """Mask of positions q where the trace alone closes all groups."""
         if self.checks is None:
             return np.zeros(np.shape(q), dtype=bool)
         q = np.asarray(q, dtype=float)
@@ -119,7 +123,7 @@ class Batch:
         return found[CONVERGED] if CONVERGED in found else np.ones(found.several_shape, dtype=bool)
 
     def _played(self, program: TraceProgram, q: Real) -> TraceOutputs:
-        """What a program gives, and the rest of it by the ordinary stages."""
+        """Replay a program; positions that it does not close are solved by the ordinary stages."""
         q = np.asarray(q, dtype=float)
         found = program(*self.columns, q, *(self.starts(q) if self.starts else ()))
         if CONVERGED not in found:
@@ -130,7 +134,7 @@ class Batch:
         return found
 
     def _solved(self, k: int, q: Real) -> Mapping[str, Real]:
-        """One of the linkages by the ordinary stages."""
+        """Solve one of the linkages by the ordinary stages."""
         linkage = self.linkages[k]
         if k not in self.others:
             self.others[k] = self.kernels if k == 0 else assemble(linkage, self.structure.rebind(linkage))
@@ -156,11 +160,20 @@ def prepare_batch(
     own_places: bool = False,
     strokes: Strokes | None = None,
 ) -> Batch:
-    """Linkages that differ in their numbers only, ready to be solved for what is asked.
+    """Prepare linkages that differ in their numbers only.
 
-    forces: whether that needs reactions. own_places: whether each variant will be solved at places of its own.
-    strokes: those of a single linkage, if its loads act in them; without strokes such loads act always.
-    Raises NotAlikeError, ValueError (loads by the strokes of several linkages), and what assembly raises.
+    Args:
+        linkages: one linkage or several.
+        wanted: reads the requested results.
+        forces: the results need reactions.
+        own_places: each variant will be solved at its own driver coordinates.
+        strokes: strokes of a single linkage, if its loads act in them; without strokes such loads act at all
+            positions.
+
+    Raises:
+        NotAlikeError: the linkages differ in more than numbers.
+        ValueError: loads depend on strokes of several linkages.
+        LinkageError: errors of assembly.
     """
     linkages = (linkages,) if isinstance(linkages, Linkage) else tuple(linkages)
     first = linkages[0]
@@ -207,7 +220,7 @@ def prepare_batch(
 def continue_linkages(
     varied: Callable[[Sequence[Any]], Linkage], columns: Sequence[Real], first: Linkage, lines: Sequence[GroupSolver]
 ) -> ContinuedPaths:
-    """Ways of all linkages as far as that of the first one goes."""
+    """Continue all linkages over the range of the first one."""
     numbers = np.hstack(list(columns))
     traces = [kernel.followed for kernel in lines if kernel.followed is not None]
     low, high = max(trace.q[0] for trace in traces), min(trace.q[-1] for trace in traces)
@@ -219,7 +232,7 @@ def continue_linkages(
 
 
 def traceable_groups(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> tuple[GroupSolver, ...] | None:
-    """The groups as a tape can hold them; None where it cannot."""
+    """Return the groups in a form that can be traced; None if there is none."""
     if any(kernel.way is not None for kernel in kernels if isinstance(kernel, ClosedFormSolver)):
         return None
     try:
@@ -240,9 +253,21 @@ def solve_stages(
     blank: bool = True,
     start: Any = None,
 ) -> Mapping[str, Any]:
-    """The stages with time as the parameter of the motion, so that no transfer function needs be scaled.
+    """Run the stages with time as the parameter of the motion, so that transfer functions need no scaling.
 
-    start: where the driver's law begins (rad or m); in the sketch when left out.
+    Args:
+        linkage: the linkage.
+        structure: its structure.
+        kernels: its groups in their assemblies.
+        q: driver coordinates.
+        wanted: reads the requested results.
+        forces: also solve reactions.
+        strokes: strokes, if loads depend on them.
+        blank: replace results at positions that cannot be reached by nan.
+        start: driver coordinate at which its law begins (rad or m); None: that of the sketch.
+
+    Returns:
+        The requested results, and the masks of CHECK_OUTPUTS.
     """
     lead = linkage.driver
     law = DriverMotion(linkage.sketch.at if start is None else start, lead.rate, lead.acceleration, lead.sense)
@@ -262,7 +287,7 @@ def solve_stages(
 
 
 def solve_forces(motion: Motion, structure: Structure, strokes: Strokes | None) -> Reactions:
-    """The force plan under all that acts, friction too."""
+    """Solve the reactions under all loads, with friction if there is any."""
     acting = collect_loads(motion, strokes)
     free = solve_reactions(motion, structure, acting)
     if not motion.linkage.friction:

@@ -1,4 +1,4 @@
-"""Tasks with variants: blocks `variants` and `grading` of a file, free parameters and their values, questions."""
+"""Tasks for a group of students: a problem file with its blocks `variants` and `grading`."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ Two = Annotated[list[Value], Field(min_length=2, max_length=2)]
 
 
 class Chosen(Strict):
-    """A parameter that has some values only, as numbers of teeth or lengths from a series have."""
+    """Parameter with a finite set of values, such as numbers of teeth or a standard series of lengths."""
 
     from_: Value | None = Field(default=None, alias="from", description="the first of equal steps")
     to: Value | None = Field(default=None, description="which they do not go beyond")
@@ -89,7 +89,7 @@ Range = Annotated[Two | Chosen, BeforeValidator(_bounds_or_choices)]
 
 
 def bounds_text(low: Any, high: Any) -> str:
-    """Two bounds as they are told in a refusal."""
+    """Two bounds as text of a refusal."""
     return _("{low} and {high}").format(low=low, high=high)
 
 
@@ -101,7 +101,7 @@ def _as_list(found: object) -> object:
 
 
 class AnswerRule(Strict):
-    """A quantity that is asked, at one position or several."""
+    """Quantity that students are asked for, at one position or several."""
 
     of: str = Field(max_length=40, description="v of E, a of S3, omega of 3, R_34, M_b, W, class, H, k")
     at: Annotated[list[int], BeforeValidator(_as_list)] = Field(
@@ -115,7 +115,7 @@ class AnswerRule(Strict):
 
 
 class Grading(Strict):
-    """What students are asked, and how it is marked."""
+    """Questions to the students, and rules for marking."""
 
     answers: list[AnswerRule] = Field(min_length=1, max_length=MOST_ANSWERS)
     count: int = Field(default=0, ge=0, le=1, description="number of the first position on the students' sheets")
@@ -129,7 +129,7 @@ class Grading(Strict):
 
 
 class Blocks(Strict):
-    """The two blocks, as they stand in a file."""
+    """The blocks `variants` and `grading` of a file."""
 
     variants: dict[Name, Range] = Field(default_factory=dict, max_length=20)
     grading: Grading | None = None
@@ -148,10 +148,10 @@ DRAWN_KINEMATICS_TOLERANCE, DRAWN_FORCES_TOLERANCE, COMPUTED_TOLERANCE = (
 
 @dataclass(frozen=True)
 class Question:
-    """One answer that is asked: a quantity, at a position (from 0, as the product counts; None: of the whole).
+    """One requested answer: a quantity at a position (from 0; None: of the whole mechanism).
 
-    number: the position as the students count it. tolerance: share of the largest value in the cycle. drawn: measured
-    off a drawing.
+    number: position as the students count it. tolerance: fraction of the largest value in the cycle. drawn:
+    the answer is measured on a drawing.
     """
 
     quantity: NamedQuantity
@@ -167,7 +167,7 @@ class Question:
 
     @property
     def name(self) -> str:
-        """In tables: `v of E at 7`."""
+        """Name in tables: `v of E at 7`."""
         name = self.quantity.name
         return (
             name if self.number is None else _("{quantity} at {position}").format(quantity=name, position=self.number)
@@ -176,19 +176,19 @@ class Question:
 
 @dataclass(frozen=True)
 class Task:
-    """A task's file. Every method raises ProblemError."""
+    """Problem file of a task. All methods raise ProblemError."""
 
     tree: Tree
 
     @cached_property
     def blocks(self) -> Blocks:
-        """Its blocks `variants` and `grading`."""
+        """Blocks `variants` and `grading` of the file."""
         own: dict[str, Any] = {key: self.tree.data[key] for key in ("variants", "grading") if key in self.tree.data}
         return validate_shape(Blocks, replace(self.tree, data=own))
 
     @property
     def rules(self) -> Grading:
-        """Its block `grading`."""
+        """Block `grading` of the file."""
         if self.blocks.grading is None:
             raise ProblemError(
                 _("there is nothing to grade"), path=("grading",), allowed="grading: {answers: [{of: H}]}"
@@ -196,17 +196,17 @@ class Task:
         return self.blocks.grading
 
     def __reduce__(self) -> tuple[type[Task], tuple[Tree]]:
-        """What it found is found again in another process."""
+        """Pickle the file only; the rest is computed again in the other process."""
         return Task, (self.tree,)
 
     def revealing(self) -> Task:
-        """The same, the students being told what is right."""
+        """Return the task with the right values shown to the students."""
         rules = {**self.tree.data["grading"], "reveal": True}
         return Task(replace(self.tree, data={**self.tree.data, "grading": rules}))
 
     @cached_property
     def problem(self) -> Problem | TaskProblem:
-        """The file's own variant."""
+        """Problem of the file's own variant."""
         return build_any_problem(self.tree)
 
     @cached_property
@@ -215,20 +215,20 @@ class Task:
 
     @cached_property
     def quantities(self) -> dict[str, NamedQuantity]:
-        """All that could be asked, by name."""
+        """All quantities that could be asked, by name."""
         whole = self.problem.whole
         with translate_errors(whole):
             return list_quantities(whole.linkage, analyse_mobile_structure(whole.linkage))
 
     @property
     def positions(self) -> int:
-        """How many positions a cycle has."""
+        """Number of positions in a cycle."""
         request = self.problem.whole.request
         return len(request.places) or request.count
 
     @cached_property
     def asked(self) -> tuple[Question, ...]:
-        """What is asked, in the order of the file."""
+        """Questions in the order of the file."""
         rules, last = self.rules, self.positions
         values = ValueReader(self._parameters({}), self.units)
         with locate_errors_in(self.tree):
@@ -274,7 +274,7 @@ class Task:
     def _parameters(
         self, given: Mapping[str, PhysicalValue], units: UnitSystem | None = None
     ) -> dict[str, PhysicalValue]:
-        """All parameters; of a file with a task of synthesis those that do not rest on what it finds."""
+        """All parameters; with a synthesis, only those that do not depend on its results."""
         if "synthesis" in self.tree.data:
             return {**early_parameters(self.tree), **given}
         raw = self._shape.parameters
@@ -286,7 +286,7 @@ class Task:
         return validate_planar(self.tree)
 
     def own(self, names: Sequence[str]) -> tuple[PhysicalValue, ...]:
-        """The file's own values of parameters."""
+        """Return the file's own values of parameters."""
         found = self._parameters({})
         for name in names:
             if name not in found:
@@ -295,19 +295,19 @@ class Task:
         return tuple(found[name] for name in names)
 
     def dimensions(self, names: Sequence[str]) -> tuple[Dimension | None, ...]:
-        """What the file's own values of parameters measure; None for bare numbers."""
+        """Return the dimensions of parameters; None for plain numbers."""
         return tuple(value.dimension for value in self.own(names))
 
     def number(self, value: PhysicalValue, dimension: Dimension | None) -> float:
-        """In SI; bare where there is no dimension."""
+        """Return a value in SI, or as a plain number if there is no dimension."""
         return self.units.si(value.value, dimension) if dimension and not value.dimension else value.value
 
     def value(self, text: str) -> PhysicalValue:
-        """A value of a table of variants."""
+        """Read a value of a table of variants."""
         return evaluate_quantity(text, {}, self.units)
 
     def make(self, names: Sequence[str], dimensions: Sequence[Dimension | None], numbers: Sequence[Any]) -> Variant:
-        """The linkage for numbers of parameters (SI, or bare), which may be TracedNumbers."""
+        """Build the linkage for numbers of parameters (SI, or plain), which may be TracedNumbers."""
         traced = any(isinstance(x, TracedNumber) for x in numbers)
         if "synthesis" in self.tree.data:
             if traced:
@@ -322,19 +322,19 @@ class Task:
         return Variant(found.linkage, found.request)
 
     def variant(self, values: Mapping[str, str]) -> Problem | TaskProblem:
-        """One variant as a problem of its own, its values as text."""
+        """Return one variant as a problem of its own; values as texts."""
         return build_any_problem(apply_settings(self.tree, [f"{name}={value}" for name, value in values.items()]))
 
 
 def read_task(tree: Tree) -> Task:
-    """The task of a file, its blocks checked. Raises ProblemError."""
+    """Read the task of a file and check its blocks. Raises ProblemError."""
     task = Task(tree)
     task.blocks  # noqa: B018  refuses what is wrong in them
     return task
 
 
 def _quantity_kind(name: str) -> tuple[str, bool]:
-    """What names of the same quantity of other things have in common."""
+    """Common part of the names of one quantity of different objects."""
     kind, _of, thing = name.partition(" of ")
     return ("R" if kind.startswith("R_") else kind), " on " in thing
 
@@ -346,7 +346,7 @@ NUMBER_WITH_UNIT = re.compile(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
 
 @dataclass(frozen=True)
 class FreeParameter:
-    """A parameter that is free. texts: its values; dimension: None for bare numbers."""
+    """Parameter with its possible values as texts; dimension: None for plain numbers."""
 
     name: str
     texts: tuple[str, ...]
@@ -354,7 +354,7 @@ class FreeParameter:
 
 
 def with_vary(tree: Tree, vary: Sequence[str]) -> Tree:
-    """The file with these ranges, `OA=80..140:5`, in the place of its own. Raises ProblemError."""
+    """Return the file with ranges `OA=80..140:5` in place of its own. Raises ProblemError."""
     own = tree.data.get("variants")
     ranges: dict[str, Any] = dict(own) if isinstance(own, Mapping) else {}
     given: dict[Path, str] = {}
@@ -374,7 +374,7 @@ def with_vary(tree: Tree, vary: Sequence[str]) -> Tree:
 
 
 def read_free_parameters(task: Task) -> tuple[FreeParameter, ...]:
-    """What the block `variants` frees. Raises ProblemError."""
+    """Read the free parameters of the block `variants`. Raises ProblemError."""
     try:
         return _free_parameters(task, task.blocks)
     except ProblemError as error:
@@ -404,7 +404,7 @@ def _free_parameters(task: Task, blocks: Blocks) -> tuple[FreeParameter, ...]:
 
 
 def _with_common_unit(texts: Sequence[str]) -> list[str]:
-    """Numbers without a unit get that of the first one that has any."""
+    """Give numbers without a unit the unit of the first number that has one."""
     parts = [NUMBER_WITH_UNIT.fullmatch(text) for text in texts]
     unit = next((part[2] for part in parts if part and part[2]), "")
     return [
@@ -415,7 +415,7 @@ def _with_common_unit(texts: Sequence[str]) -> list[str]:
 def _step_texts(
     task: Task, values: Sequence[Any], sizes: Sequence[float], dimension: Dimension | None, first: str
 ) -> list[str]:
-    """From low to high, in the unit in which the first was written."""
+    """Values from low to high, in the unit of the first one."""
     low, high = sizes[:2]
     if not low < high:
         raise ProblemError(_("the lower bound comes first"), found=bounds_text(*values[:2]), allowed=_("[low, high]"))
@@ -435,5 +435,5 @@ def _step_texts(
 
 
 def parameter_values(task: Task, choice: FreeParameter) -> Real:
-    """The values of a choice: in SI, bare where it has no dimension."""
+    """Return the values of a free parameter in SI, or as plain numbers if it has no dimension."""
     return np.array([task.number(task.value(text), choice.dimension) for text in choice.texts])

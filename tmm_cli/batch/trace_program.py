@@ -1,4 +1,4 @@
-"""What a program gives: planes of real numbers, by name."""
+"""Programs of traced operations, and their outputs as planes of real numbers."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ Array = np.ndarray[Any, Any]
 
 
 class TraceOutputs(Mapping[str, Array]):
-    """Results by name, (variants, positions), or (positions,) where no data are over variants.
+    """Results by name, (variants, positions), or (positions,) if no data depend on variants.
 
-    Real and imaginary parts lie in planes of their own, `part` gives one of them; an array of complex numbers is put
-    together when it is asked for.
+    Real and imaginary parts are stored in separate planes, `part` returns one of them; complex arrays are
+    combined on request.
     """
 
     def __init__(
@@ -38,7 +38,7 @@ class TraceOutputs(Mapping[str, Array]):
         return len(self.names)
 
     def part(self, name: str, imaginary: bool = False) -> Array:
-        """Real or imaginary part of a result."""
+        """Return the real or imaginary part of a result."""
         value = self.names[name][imaginary]
         found = self.planes[value.number] if isinstance(value, Term) else np.asarray(0.0 if value is None else value)
         if found.shape != self.shape:
@@ -46,17 +46,17 @@ class TraceOutputs(Mapping[str, Array]):
         return (found.T if self.turned else found) if self.several else found.reshape(-1)
 
     def without(self, name: str) -> TraceOutputs:
-        """All but one."""
+        """Return all results but one."""
         names = {one: parts for one, parts in self.names.items() if one != name}
         return TraceOutputs(names, self.planes, self.turned, self.several, self.shape)
 
     @property
     def several_shape(self) -> tuple[int, int]:
-        """Variants and positions."""
+        """Numbers of variants and positions."""
         return self.shape[::-1] if self.turned else self.shape
 
     def put(self, variant: int, where: Array, values: Mapping[str, Array]) -> TraceOutputs:
-        """With other values of a variant at the positions of a mask; there are as many as it has, in their order."""
+        """Return outputs with other values of a variant at the positions of a mask, in their order."""
         planes = dict(self.planes)
         for name, parts in self.names.items():
             for imaginary, term in enumerate(parts):
@@ -88,19 +88,27 @@ CHUNK = 9000  # numbers in a register: shorter ones cost more calls, longer ones
 
 @dataclass(frozen=True)
 class TraceProgram:
-    """inputs: axes of each input (bit 1: variants, bit 2: positions); outputs: by name, real and imaginary terms."""
+    """Program of traced operations: a sequence of NumPy calls on registers.
+
+    Memory is allocated once, each call writes its result in place, and long data are processed in chunks that
+    fit into the processor cache. If there are more variants than positions, variants are on the last axis,
+    where NumPy is fast.
+
+    inputs: axes of each input (bit 1: variants, bit 2: positions). outputs: by name, real and imaginary
+    terms.
+    """
 
     terms: tuple[Term, ...]
     inputs: tuple[int, ...]
     outputs: Mapping[str, tuple[Any, Any]]
 
     def only(self, *names: str) -> TraceProgram:
-        """The program of some of its outputs alone."""
+        """Return the program for some of its outputs."""
         return replace(self, outputs={name: self.outputs[name] for name in names})
 
     @property
     def operations(self) -> int:
-        """How many calls of NumPy a chunk takes."""
+        """Number of NumPy calls per chunk."""
         return self._code.operations
 
     @cached_property
@@ -108,7 +116,9 @@ class TraceProgram:
         return _CompiledProgram(self)
 
     def __call__(self, *data: Any) -> TraceOutputs:
-        """Outputs for data of shapes (variants, 1), (positions,) or (variants, positions), as the inputs' axes say."""
+        """Return outputs for data of shapes (variants, 1), (positions,) or (variants, positions), by the axes of the
+        inputs.
+        """
         columns = [np.asarray(d, dtype=float) for d in data]
         variants = positions = 1
         for column, axes in zip(columns, self.inputs, strict=True):
@@ -132,9 +142,11 @@ def _laid_out(value: Array, axes: int, turned: bool) -> Array:
 
 
 class _CompiledProgram:
-    """A program's two parts: what is the same in all positions (or all variants), once, and the rest chunk by chunk.
+    """Two parts of a program: what does not depend on both axes, computed once, and the rest, computed in
+    chunks.
 
-    The second part is a generated function: a call of NumPy a line, on its inputs i, outputs o and registers r.
+    The second part is a generated function with one NumPy call per line, on inputs i, outputs o and registers
+    r.
     """
 
     def __init__(self, program: TraceProgram) -> None:
@@ -160,7 +172,7 @@ class _CompiledProgram:
         self.space: dict[tuple[int, int], list[Array]] = {}
 
     def registers(self, shape: tuple[int, int]) -> list[Array]:
-        """Working memory for a chunk of a shape, kept for the next one."""
+        """Return the working memory for a chunk of a shape; it is kept for the next one."""
         if shape not in self.space:
             if len(self.space) > 4:
                 self.space.clear()
@@ -171,7 +183,7 @@ class _CompiledProgram:
         return self.space[shape]
 
     def run(self, data: Sequence[Array], shape: tuple[int, int]) -> dict[Any, Array]:
-        """All terms that are outputs, by number."""
+        """Return all terms that are outputs, by number."""
         with np.errstate(all="ignore"):
             known = {number: data[k] for number, k in self.inputs.items()}
             for term in self.before:
@@ -196,7 +208,7 @@ class _CompiledProgram:
 
 
 def _chunk_of(data: Array, here: tuple[slice, slice]) -> Array:
-    """A chunk of data, where it has that axis."""
+    """Chunk of data along the axes that it has."""
     return data[here[0] if data.shape[0] > 1 else slice(None), here[1] if data.shape[1] > 1 else slice(None)]
 
 
@@ -221,7 +233,7 @@ def _interpolate(x: Array, table: tuple[Any, Any], out: Array) -> None:
 
 
 def _needed_terms(program: TraceProgram) -> tuple[Term, ...]:
-    """Terms that some output needs, in order."""
+    """Terms on which some output depends, in order."""
     wanted: set[int] = set()
     left = [v for parts in program.outputs.values() for v in parts if isinstance(v, Term)]
     while left:
@@ -233,9 +245,9 @@ def _needed_terms(program: TraceProgram) -> tuple[Term, ...]:
 
 
 class _ProgramWriter:
-    """Writes the source of terms one after another; a register is free again after its last use.
+    """Writes the source code of terms one after another; a register is reused after its last use.
 
-    slots: which terms are outputs, and where. Results of outputs are written where they are wanted.
+    slots: terms that are outputs, and their places. Outputs are written in place.
     """
 
     def __init__(self, terms: Sequence[Term], slots: Mapping[int, int]) -> None:

@@ -1,9 +1,9 @@
-"""What is written on a tape: real numbers that are not there yet, and what is done to them.
+"""Traced operations on real numbers whose values are given later.
 
-A term knows its operation and its operands, which are terms or plain numbers. Every operation is written once: the same
-operation on the same operands is the same term. Numbers are worked out at once, and what does not depend on the data
-(a frame at rest, a coordinate that is zero) vanishes from the work. Signs are carried outward, where they mostly vanish
-in the next sum.
+A term knows its operation and its operands, which are terms or plain numbers. The same operation on the
+same operands is recorded once. Operations on plain numbers are evaluated at once, so what does not depend
+on the data (a frame at rest, a zero coordinate) disappears. Signs are moved outwards, where most of them
+cancel in the next sum.
 """
 
 from __future__ import annotations
@@ -77,10 +77,10 @@ BOOLEAN_OPERATIONS = {
 
 @dataclass(eq=False)
 class Term:
-    """A number for every variant and position. axes: on which of the data's axes it depends, a bit each.
+    """Traced number for every variant and position. axes: bits of the axes on which it depends.
 
-    op: `input` (args: its number among the data), `where`, `table` (args: what it is read by, then the table), `call`
-    (args: a function of whole arrays in a tuple, then its operands) or the name of a NumPy function.
+    op: `input` (args: index of the data), `where`, `table` (args: argument, then the table), `call` (args: a
+    function of whole arrays in a tuple, then its operands), or the name of a NumPy function.
     """
 
     number: int
@@ -95,9 +95,9 @@ class Term:
 
 @dataclass(repr=False)
 class Trace:
-    """All terms in the order in which they were written.
+    """All terms in the order of recording.
 
-    data: of inputs, where they are known already; what is true of all of them needs not be asked for each.
+    data: known inputs; a condition that is the same for all of them is decided at once.
     """
 
     data: dict[int, Any] = field(default_factory=dict)
@@ -106,7 +106,7 @@ class Trace:
     known: dict[int, Any] = field(default_factory=dict)
 
     def term(self, op: str, *args: Any, axes: int = 0, truth: bool = False) -> Term:
-        """The term of an operation, written if it is new."""
+        """Return the term of an operation; record it if it is new."""
         key = (op, *(("term", a.number) if isinstance(a, Term) else (type(a).__name__, a) for a in args))
         found = self.written.get(key)
         if found is None:
@@ -118,7 +118,7 @@ class Trace:
         return found
 
     def apply(self, op: str, *args: Any) -> Any:
-        """An operation on terms and numbers: a number where it can be worked out, else a term."""
+        """Apply an operation to terms and numbers; returns a number if it can be evaluated, else a term."""
         if not any(isinstance(a, Term) for a in args):
             return UFUNCS[op](*args)[()]
         simple: Any = SIMPLIFICATIONS.get(op)
@@ -131,7 +131,7 @@ class Trace:
         return self.term(op, *args)
 
     def value(self, term: Term) -> Any:
-        """What a term is for the data that are known; None where it depends on others."""
+        """Return the value of a term for known data; None if it depends on unknown data."""
         if term.number not in self.known:
             args = [self.value(a) if isinstance(a, Term) else a for a in term.args]
             if term.op == "input":
@@ -145,12 +145,12 @@ class Trace:
         return self.known[term.number]
 
     def settled(self, truth: Any) -> Any:
-        """A truth as a plain one, if it is the same for all data that are known."""
+        """Return a condition as a bool if it is the same for all known data."""
         found = self.value(truth) if isinstance(truth, Term) else None
         return truth if found is None or np.any(found != found.flat[0]) else bool(found.flat[0])
 
     def where(self, truth: Any, one: Any, other: Any) -> Any:
-        """One of two numbers."""
+        """Select one of two numbers."""
         truth = self.settled(truth)
         if not isinstance(truth, Term):
             return one if truth else other
@@ -161,17 +161,17 @@ class Trace:
 
 
 def axes_of(value: Any) -> int:
-    """The axes on which an operand depends."""
+    """Return the axes on which an operand depends."""
     return value.axes if isinstance(value, Term) else 0
 
 
 def is_number(value: Any, number: float) -> bool:
-    """Whether an operand is this very number."""
+    """Return True if an operand is this plain number."""
     return not isinstance(value, Term) and bool(value == number)
 
 
 def negated_operand(value: Any) -> Any:
-    """What an operand is the negative of, if it is one."""
+    """Return the operand of a negation; None for other terms."""
     return value.args[0] if isinstance(value, Term) and value.op == "negative" else None
 
 
@@ -217,7 +217,7 @@ def _multiply(tape: Trace, a: Any, b: Any) -> Any:
 
 
 def _group_factors(tape: Trace, a: Any, b: Any) -> Any:
-    """Factors that are the same everywhere, or in all positions, are multiplied among themselves."""
+    """Multiply factors that depend on fewer axes among themselves first."""
     for one, other in ((a, b), (b, a)):
         if isinstance(one, Term) and isinstance(other, Term) and one.op == "divide" and one.args[1] is other:
             return one.args[0]  # (x / y) y
@@ -257,7 +257,7 @@ def _negative(tape: Trace, a: Any) -> Any:
 
 
 def _simplify_logic(settles: bool) -> Callable[[Trace, Any, Any], Any]:
-    """Two truths, where one that is known may settle it: False an `and`, True an `or`."""
+    """Simplify a logical operation in which a known operand decides: False for `and`, True for `or`."""
 
     def joined(tape: Trace, a: Any, b: Any) -> Any:
         for one, other in ((a, b), (b, a)):

@@ -1,7 +1,8 @@
-"""Stand-ins for arrays: whatever NumPy function is called on them is written on a tape instead.
+"""Placeholders for arrays and numbers: operations on them are recorded in a trace.
 
-So the ordinary code of the groups runs once, on stand-ins, and the tape holds the straight line of real operations that
-it comes to for this linkage. A complex number is two real ones; what is known to be zero in them is not computed.
+The ordinary code of the groups runs once on placeholders, and the trace holds the sequence of real
+operations of this linkage. A complex number is two real ones; components that are known to be zero are
+not computed.
 """
 
 from __future__ import annotations
@@ -18,12 +19,12 @@ from tmm_cli.batch.trace_terms import UFUNCS, Term, Trace
 
 
 class DependsOnData(TypeError):  # noqa: N818 - what it says, not an error of somebody's
-    """The code asks for a number (a truth, a length) that is not there before the data are."""
+    """The code needs a value (a condition, a length) that depends on data not yet given."""
 
 
 @dataclass(eq=False)
 class TracedArray(NDArrayOperatorsMixin):
-    """An array of numbers to come. re and im: terms or numbers; im is None for real numbers and truths."""
+    """Array of traced numbers. re and im: terms or numbers; im is None for real numbers and conditions."""
 
     tape: Trace
     re: Any
@@ -52,7 +53,7 @@ class TracedArray(NDArrayOperatorsMixin):
         return TracedArray(self.tape, 0.0 if self.im is None else self.im)
 
     def astype(self, _: Any) -> TracedArray:
-        """All numbers of a tape are of one type."""
+        """Return itself: a trace has one number type."""
         return self
 
     def conjugate(self) -> TracedArray:
@@ -94,7 +95,7 @@ class TracedArray(NDArrayOperatorsMixin):
         return known(self, *args)
 
     def _of(self, value: Any) -> tuple[Any, Any]:
-        """Real and imaginary part of an operand; an array all of one number is that number."""
+        """Real and imaginary part of an operand; an array of equal numbers counts as that number."""
         if isinstance(value, TracedArray):
             return value.re, value.im
         array = np.asarray(value)
@@ -113,11 +114,11 @@ class TracedArray(NDArrayOperatorsMixin):
         return TracedArray(self.tape, re, self.tape.where(truth[0], _im(one), _im(other)))
 
     def called(self, function: Any, *operands: Any) -> TracedArray:
-        """A function of whole real arrays, as one operation."""
+        """Record a function of whole real arrays as one operation."""
         return TracedArray(self.tape, self.tape.term("call", (function,), *(self._of(x)[0] for x in operands)))
 
     def interp(self, x: Any, at: Any, values: Any) -> TracedArray:
-        """A piecewise linear table (np.interp)."""
+        """Record a piecewise linear table (np.interp)."""
         table = (tuple(float(v) for v in at), tuple(float(v) for v in values))
         return TracedArray(self.tape, self.tape.term("table", self._of(x)[0], table))
 
@@ -199,11 +200,15 @@ FUNCTIONS: dict[Any, Callable[..., Any]] = {
 def trace_function(
     function: Callable[..., Mapping[str, Any]], *axes: int, data: Mapping[int, Any] | None = None
 ) -> TraceProgram:
-    """Run a function on stand-ins for real arrays; what it gives by name are the outputs of the program.
+    """Run a function on placeholders for real arrays and return the program of its outputs.
 
-    axes: on what each argument depends: 1 on the variant, 2 on the position, 3 on both. data: of some arguments, by
-    their number, if the program is for these alone. Raises DependsOnData where the code takes a branch by numbers that
-    differ.
+    Args:
+        function: returns outputs by name.
+        axes: for each argument, 1 if it depends on the variant, 2 on the position, 3 on both.
+        data: values of some arguments, by index, if the program is made for these only.
+
+    Raises:
+        DependsOnData: the code branches on numbers that differ.
     """
     tape = Trace(dict(data or {}))
     stands = [TracedArray(tape, tape.term("input", k, axes=axis)) for k, axis in enumerate(axes)]
@@ -224,10 +229,11 @@ def trace_function(
 
 
 class TracedNumber(NDArrayOperatorsMixin):
-    """A real or complex number: `value` for one linkage, `stand` for all.
+    """Real or complex number that varies between linkages: `value` for one linkage, `stand`, a placeholder, for
+    all.
 
-    otherwise: where it is given, gets an array of truths for every choice of the building code: which stands would have
-    chosen otherwise than the value did.
+    Code that builds a linkage branches by the value. otherwise: if given, collects for every branch the mask
+    of the variants that would have branched differently.
     """
 
     __hash__ = object.__hash__
@@ -288,7 +294,7 @@ def _placeholder(x: Any) -> Any:
 
 
 def _power(base: Any, exponent: Any) -> Any:
-    """Whole powers as products, halves by roots."""
+    """Write integer powers as products, half powers with roots."""
     if isinstance(exponent, TracedArray) or 2 * exponent != int(2 * exponent):
         raise DependsOnData("such a power cannot be written on a tape")
     found, whole = 1.0, int(abs(exponent))

@@ -1,7 +1,7 @@
-"""Variants of a linkage by its tape: for loads that ask for no strokes.
+"""Variants solved by a trace whose numbers are given anew at every call; or one after another.
 
-Unlike a Batch, whose program is for the linkages that it was made of, this one takes numbers anew at every call; which
-assembly the groups have is that of the first linkage.
+All variants have the assembly of the first linkage. Loads must not depend on strokes for a trace. Solved
+one after another, each variant takes a hundred to a thousand times as long as by a trace.
 """
 
 from __future__ import annotations
@@ -46,13 +46,16 @@ from tmm_cli.mechanics.numerics import Real
 
 
 class TracedVariants:
-    """Called with numbers (variants, n) and places; gives the outputs, (variants, places), by name.
+    """Variants by a trace: called with numbers (variants, n) and samples of the driver; outputs are (variants,
+    samples).
 
-    Raises NoTapeError or DependsOnData where there is no tape, and what assembly raises.
+    Raises NoTapeError or DependsOnData if there is no trace, and the errors of assembly.
     """
 
     def __init__(self, make: Make, first: Sequence[float], wanted: OutputReader, *, forces: bool = False) -> None:
-        """make: a variant for given numbers; first: those of the linkage whose assembly all have."""
+        """Trace the variants. make: builds a variant from numbers; first: numbers of the linkage whose assembly all
+        have.
+        """
         self.make, self.first, self.variant = make, first, make(first)
         self.linkage = self.variant.linkage
         self.structure = analyse_mobile_structure(self.linkage)
@@ -79,7 +82,7 @@ class TracedVariants:
         return placeholder_linkage(self.make, self.first, data, self.linkage.sketch)
 
     def _program(self, wanted: OutputReader, forces: bool, own: bool) -> TraceProgram:
-        """Of the varying numbers, each (variants, 1), and the driver's places; own: each variant has its own."""
+        """Trace the stages. own: each variant has its own driver coordinates."""
 
         many = len(self.first)
 
@@ -94,7 +97,7 @@ class TracedVariants:
         return whole.only(*(name for name in whole.outputs if name not in CHECK_OUTPUTS), ANGLES_AGREE)
 
     def _ends(self, *columns: TracedArray) -> Mapping[str, Any]:
-        """Ends of the driver's range, the places asked about and what is wanted there, of each variant."""
+        """Ends of the driver's range, queried coordinates and values requested there, for each variant."""
         varied = self.make([TracedNumber(x, c) for x, c in zip(self.first, columns, strict=True)])
         return {
             str(k): place.stand if isinstance(place, TracedNumber) else place
@@ -102,7 +105,7 @@ class TracedVariants:
         }
 
     def driver_range(self, columns: Real) -> DriverRanges:
-        """The crank's turn, or the range of the driver."""
+        """Return the driver ranges of variants: a revolution of the crank, or the range of the driver."""
         if self.ends is None:
             return DriverRanges.of(self.variant, len(columns), self.turns, self.start)
         found = self.ends(*split_columns(columns))
@@ -114,13 +117,13 @@ class TracedVariants:
         return DriverRanges.of(variant, len(columns), self.turns, self.start)
 
     def without(self, part: str) -> TracedVariants:
-        """Without results whose names have such a part."""
+        """Return the variants without results whose names contain `part`."""
         new = copy(self)
         new.program = self.program.only(*(name for name in self.program.outputs if part not in name))
         return new
 
     def sketch(self, numbers: Real) -> Sketch:
-        """How one variant looks at the place of the sketch."""
+        """Return the sketch of one variant at the sketched position."""
         linkage = self.make([float(number) for number in numbers]).linkage
         kernels: Sequence[GroupSolver] = [kernel.rebind(linkage) for kernel in self.lines]
         if self.marches is not None:
@@ -139,7 +142,7 @@ class TracedVariants:
         return {**found, WANTED: ranges.wanted_at(places)} if self.variant.wanted else found
 
     def _ways(self, columns: Real, ranges: DriverRanges) -> ContinuedPaths:
-        """Of variants through their ranges; those that are asked for again and again are kept."""
+        """Paths of variants over their ranges; those of the last call are kept."""
         assert self.marches is not None
         key = columns.tobytes()
         if self._last is None or self._last[0] != key:
@@ -151,7 +154,7 @@ class TracedVariants:
 
 
 def _traceable_groups(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> tuple[GroupSolver, ...]:
-    """The groups as a tape of variants can hold them. Raises NoTapeError."""
+    """Groups in a form that a trace of variants can hold. Raises NoTapeError."""
     lines = traceable_groups(linkage, kernels)
     if lines is None:
         raise NoTapeError
@@ -163,7 +166,7 @@ def _traceable_groups(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> tup
 
 
 def _extra_numbers(variant: Variant) -> tuple[Any, ...]:
-    """Numbers of a variant beside its linkage."""
+    """Numbers of a variant besides its linkage."""
     return (*(variant.ends or ()), *variant.asked, *variant.wanted)
 
 
@@ -177,10 +180,11 @@ MOST_KEPT = 30  # variants
 
 
 class SequentialVariants:
-    """Called with numbers (variants, n) and places; gives the outputs, (variants, places), by name.
+    """Variants solved one after another: called with numbers (variants, n) and samples of the driver.
 
-    All come round again after as many turns of the crank as the first one. A variant that cannot be assembled as it is
-    sketched, or not be moved, has nothing but nan. Raises what assembly raises, for the first linkage.
+    The motion of all repeats after as many revolutions as that of the first one. Groups solved by iteration
+    start from the nearest known variant. A variant that cannot be assembled as sketched, or cannot move, has
+    nan outputs. Raises the errors of assembly of the first linkage.
     """
 
     def __init__(self, make: Make, first: Sequence[float], wanted: OutputReader, *, forces: bool = False) -> None:
@@ -195,15 +199,15 @@ class SequentialVariants:
         self.names = tuple(self._one(tuple(first), DriverSamples(np.zeros(1), np.zeros(0))))
 
     def driver_range(self, columns: Real) -> DriverRanges:
-        """That of the first linkage, for each."""
+        """Return the driver range of the first linkage for each variant."""
         return DriverRanges.of(self.variant, len(columns), self.turns)
 
     def without(self, part: str) -> SequentialVariants:
-        """The same: what is not wanted costs little here."""
+        """Return itself: unused results cost little here."""
         return self
 
     def sketch(self, numbers: Real) -> Sketch:
-        """How one variant looks at the place of the sketch. Raises what assembly raises."""
+        """Return the sketch of one variant at the sketched position. Raises the errors of assembly."""
         linkage = self.make([float(number) for number in numbers]).linkage
         return compute_sketch(linkage, assemble(linkage, self.structure.rebind(linkage)))
 
@@ -218,7 +222,7 @@ class SequentialVariants:
         return {name: np.stack([row.get(name, lost) for row in rows]) for name in self.names}
 
     def _moved(self, numbers: tuple[float, ...]) -> tuple[Variant, Mechanism]:
-        """A variant, which is moved once though it is looked at at several places in turn."""
+        """Build a variant, or return it from the cache."""
         if numbers not in self.known:
             if len(self.known) > MOST_KEPT:
                 self.known.clear()
@@ -230,7 +234,7 @@ class SequentialVariants:
         return self.known[numbers]
 
     def _nearest(self, numbers: tuple[float, ...]) -> tuple[GroupSolver, ...]:
-        """The groups of that known variant whose numbers differ least, as shares of their sizes."""
+        """Groups of the known variant whose numbers have the least relative differences."""
         if not self.known:
             return self.kernels
         here, known = np.array(numbers), np.array(list(self.known))
@@ -267,10 +271,16 @@ class SequentialVariants:
 def make_variants(
     make: Make, first: Sequence[float], wanted: OutputReader, *, forces: bool, one_sense: bool
 ) -> TracedVariants | SequentialVariants:
-    """By the tape, else one after another.
+    """Return variants solved by a trace if possible, else one after another.
 
-    one_sense: all drivers go the same way round, which a tape cannot tell. Raises what assembly raises, for the first
-    linkage.
+    Args:
+        make: builds a variant from numbers.
+        first: numbers of the first variant.
+        wanted: reads the requested results.
+        forces: the results need reactions.
+        one_sense: all drivers rotate in the same sense, without which there is no trace.
+
+    Raises the errors of assembly of the first linkage.
     """
     if one_sense:
         try:

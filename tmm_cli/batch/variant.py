@@ -1,4 +1,4 @@
-"""Linkages of one kind with different numbers, as one linkage whose numbers are arrays over variants."""
+"""Variants of a linkage: their numbers, driver ranges and sketches."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ NOT_COMPARED = ("sketch",)  # what says how a linkage is assembled, not what it 
 
 
 class NotAlikeError(ValueError):
-    """Two linkages differ in more than their numbers. path: where."""
+    """Two linkages differ in more than their numbers. path: place of the difference."""
 
     def __init__(self, path: str) -> None:
         super().__init__(f"the linkages differ in {path}, which is no number")
@@ -26,27 +26,29 @@ class NotAlikeError(ValueError):
 
 
 def numeric_leaves(record: Any) -> Iterator[tuple[str, Any]]:
-    """All numbers of a record with their paths, and all else that must be equal in linkages of one kind."""
+    """Yield all numbers of a record with their paths, and everything else that must be equal in linkages of one
+    kind.
+    """
     return record_leaves(record, NOT_COMPARED)
 
 
 def with_numbers(record: Any, new: Mapping[str, Any]) -> Any:
-    """A record with the numbers at some paths exchanged."""
+    """Return a record with the numbers at some paths replaced."""
     return map_record(lambda path, value: new.get(path, value), record, skip=NOT_COMPARED)
 
 
 def resolve_traced(record: Any) -> Any:
-    """A record built of traced numbers with the arrays that they stand for."""
+    """Replace traced numbers in a record by the arrays that they stand for."""
     return with_numbers(record, {path: x.stand for path, x in numeric_leaves(record) if isinstance(x, TracedNumber)})
 
 
 def split_columns(columns: Real) -> list[Real]:
-    """The columns (variants, n) one by one, (variants, 1)."""
+    """Split columns (variants, n) into arrays (variants, 1)."""
     return [columns[:, k : k + 1] for k in range(columns.shape[1])]
 
 
 def varying_numbers(linkages: Sequence[Linkage]) -> dict[str, Real]:
-    """Numbers that are not the same in all linkages, (variants, 1), by path. Raises NotAlikeError."""
+    """Return the numbers that differ between linkages, (variants, 1), by path. Raises NotAlikeError."""
     first = dict(numeric_leaves(linkages[0]))
     rows = [list(first.values())]
     for linkage in linkages[1:]:
@@ -64,7 +66,11 @@ def varying_numbers(linkages: Sequence[Linkage]) -> dict[str, Real]:
 
 
 def split_real_columns(found: Mapping[str, Real]) -> tuple[list[Real], Callable[..., dict[str, Any]]]:
-    """Real columns of varying numbers, and what puts numbers together from (stand-ins for) such columns again."""
+    """Split varying numbers into real columns.
+
+    Returns:
+        The columns, and a function that combines such columns, or placeholders for them, to numbers by path.
+    """
     columns: list[Real] = []
     places: dict[str, tuple[int | complex, ...]] = {}
     for path, values in found.items():
@@ -93,15 +99,15 @@ WANTED = "wanted"  # name of what is wanted at places asked about, among the out
 
 
 class NoTapeError(ValueError):
-    """No tape holds the stages: friction, loads by strokes, passive constraints, dead positions that are passed."""
+    """No trace is possible: friction, loads by strokes, redundant constraints, or passed dead positions."""
 
 
 @dataclass(frozen=True)
 class Variant:
-    """A linkage, the positions that its file asks for, and where its driver goes.
+    """A linkage, the requested positions of its file, and the range of its driver.
 
-    ends: from and to (rad or m); None: it turns on and on, and all comes round again. asked: places of its driver that
-    a task asks about; wanted: a number for each of them that goes with the variant, as what is wanted there.
+    ends: range of the driver (rad or m); None: it rotates on and the motion repeats. asked: queried driver
+    coordinates of a task. wanted: for each of them, a required number that varies with the variant.
     """
 
     linkage: Linkage
@@ -112,14 +118,14 @@ class Variant:
 
     @property
     def accelerated(self) -> bool:
-        """Whether its speed depends on where it started."""
+        """True if the driver speed depends on where it started."""
         return bool(self.linkage.driver.acceleration) and not self.linkage.others
 
     @property
     def start(self) -> Any:
-        """The driver's place (rad or m) at position 0, as kinematics.strokes.places has it; None: it does not count.
+        """Driver coordinate (rad or m) of position 0; None if it does not matter.
 
-        Raises NoTapeError where the variant must be moved first, through its strokes or its whole range.
+        Raises NoTapeError if the variant must be moved first, through its strokes or its whole range.
         """
         if not self.accelerated:
             return None
@@ -137,7 +143,10 @@ Make = Callable[[Sequence[Any]], Variant]  # a variant for numbers, which may be
 
 
 def placeholder_linkage(make: Make, first: Sequence[float], data: Sequence[Any], sketch: Sketch) -> Linkage:
-    """The linkage with stand-ins (of a tape, or columns) for its numbers; first, sketch: those of the first variant."""
+    """Return the linkage with placeholders (of a trace, or columns) for its numbers.
+
+    first, sketch: numbers and sketch of the first variant.
+    """
     varied = make([TracedNumber(x, stand) for x, stand in zip(first, data, strict=True)])
     linkage: Linkage = replace(resolve_traced(varied.linkage), sketch=sketch)
     return linkage
@@ -145,8 +154,8 @@ def placeholder_linkage(make: Make, first: Sequence[float], data: Sequence[Any],
 
 @dataclass(frozen=True)
 class DriverSamples:
-    """Where variants are wanted: at shares of their driver ranges, then at the places that each is asked about, then at
-    places of the driver (rad or m), for all.
+    """Samples of the driver range: at fractions of it, then at queried coordinates if `asked`, then at fixed
+    ones (rad or m).
     """
 
     shares: Real
@@ -156,8 +165,10 @@ class DriverSamples:
 
 @dataclass(frozen=True)
 class DriverRanges:
-    """From low by span, of each variant (variants, 1); closed: the driver turns on, and all comes round again; asked:
-    places, and wanted: a number for each, both (variants, n).
+    """Driver ranges of variants from `low` by `span`, (variants, 1).
+
+    closed: the driver rotates on and the motion repeats. asked, wanted: queried coordinates and required
+    numbers, (variants, n).
     """
 
     low: Real
@@ -168,7 +179,9 @@ class DriverRanges:
 
     @classmethod
     def of(cls, variant: Variant, variants: int, turns: int, start: Any = None) -> DriverRanges:
-        """turns: of a driver that turns on and on; start: where its law begins, if that counts."""
+        """Build the ranges. turns: revolutions of a cycle; start: driver coordinate at which its law begins, if it
+        matters.
+        """
         ones = np.ones((variants, 1))
         none = np.zeros((variants, 0))
         asked, wanted = (
@@ -183,18 +196,18 @@ class DriverRanges:
         return cls(low, high - low, False, asked, wanted)
 
     def at(self, places: DriverSamples) -> Real:
-        """Places of the driver, (variants, places)."""
+        """Return driver coordinates of samples, (variants, samples)."""
         fixed = np.broadcast_to(places.driver, (len(self.low), len(places.driver)))
         asked = self.asked if places.asked else self.asked[:, :0]
         return np.concatenate([self.low + places.shares * self.span, asked, fixed], axis=1)
 
     def wanted_at(self, places: DriverSamples) -> Real:
-        """What is wanted at the places asked about, in their columns of `at`; other columns tell nothing."""
+        """Return required numbers in the columns of queried coordinates of `at`; other columns are meaningless."""
         return replace(self, low=self.low * np.nan, asked=self.wanted).at(places)
 
 
 def compute_sketch(linkage: Linkage, kernels: Iterable[GroupSolver]) -> Sketch:
-    """All points and angles of the moving links where the sketch is, for groups whose assembly is known."""
+    """Compute all points and angles of the moving links at the sketched position, for groups of known assembly."""
     at = linkage.sketch.at
     poses = compute_motion(linkage, kernels, np.array([at]), DriverMotion(at, 1.0, 0.0, 1), 0).poses
     points = {
@@ -208,6 +221,6 @@ def compute_sketch(linkage: Linkage, kernels: Iterable[GroupSolver]) -> Sketch:
 
 
 def same_assembly(one: Sketch, other: Sketch) -> bool:
-    """Whether both show the same assembly."""
+    """Return True if two sketches show the same assembly."""
     size = max((abs(place) for place in one.points.values()), default=1.0)
     return all(abs(place - other.points[name]) <= SAME_SKETCH * size for name, place in one.points.items())

@@ -1,4 +1,4 @@
-"""Who does the work: this process, several of them, or a Dask cluster."""
+"""Workers for independent jobs: this process, several processes, or a Dask cluster."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ JobRunner = Callable[
 
 
 def run_here(jobs: Sequence[Job], stopped: Stopped) -> Iterator[tuple[int, Any]]:
-    """One after the other."""
+    """Run jobs one after another in this process."""
     for number, job in enumerate(jobs):
         if stopped():
             return
@@ -45,7 +45,7 @@ def run_here(jobs: Sequence[Job], stopped: Stopped) -> Iterator[tuple[int, Any]]
 
 
 def in_processes(count: int) -> JobRunner:
-    """In so many processes; when stopped, what they have begun comes to its end."""
+    """Return a runner that uses this many processes; when stopped, running jobs are completed."""
     return partial(_processes, count)
 
 
@@ -67,13 +67,13 @@ def _processes(count: int, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
 
 
 def initialize_worker() -> None:
-    """Ctrl-C reaches all processes: the first one tells the others. What has no value is told in words."""
+    """Ignore Ctrl-C, which the main process handles, and warnings about undefined numbers."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     warnings.simplefilter("ignore", RuntimeWarning)
 
 
 def on_cluster(address: str) -> JobRunner:
-    """On the workers of a Dask scheduler, which gives the work of a lost one to the others."""
+    """Return a runner that uses the workers of a Dask scheduler, which reassigns jobs of lost workers."""
     return partial(_cluster, address)
 
 
@@ -106,7 +106,7 @@ def _cluster(address: str, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
 
 
 def _fetch_result(client: Any, future: Any, address: str) -> Any:
-    """What a finished job gave; its worker may be lost before it is fetched. Raises ProblemError if none is left."""
+    """Fetch the result of a finished job; its worker may be lost meanwhile. Raises ProblemError if none is left."""
     while True:
         try:
             return future.result(timeout=ANSWER_TIMEOUT)
@@ -116,7 +116,7 @@ def _fetch_result(client: Any, future: Any, address: str) -> Any:
 
 
 def _wait_for_greeting(address: str) -> None:
-    """Wait until a scheduler introduces itself; a client would wait for ever where none does. Raises OSError."""
+    """Wait until a scheduler introduces itself; a client would wait forever without one. Raises OSError."""
     host, __, port = address.removeprefix("tcp://").rpartition(":")
     with socket.create_connection((host.strip("[]"), int(port)), timeout=ANSWER_TIMEOUT) as connection:
         if not connection.recv(1):
@@ -124,7 +124,7 @@ def _wait_for_greeting(address: str) -> None:
 
 
 def _iterate_finished(client: Any, completed: Any, count: int, address: str) -> Iterator[Any]:
-    """Futures as they finish. Raises ProblemError when no worker is left for so long that none will come."""
+    """Yield futures as they finish. Raises ProblemError if there has been no worker for too long."""
     worked = asked = time.monotonic()
     while count:
         batch = completed.next_batch(block=False)
@@ -143,7 +143,7 @@ def _iterate_finished(client: Any, completed: Any, count: int, address: str) -> 
 
 
 def _refuse_other_programs(client: Any, address: str) -> None:
-    """Refuse workers that would mark by other rules. Raises ProblemError."""
+    """Refuse workers with another version of the program, which might mark differently. Raises ProblemError."""
 
     def version_there() -> tuple[str, str]:  # pickled by value: the worker may have no such function
         try:
@@ -174,7 +174,7 @@ def _no_workers_error(address: str) -> ProblemError:
 
 
 def _run_with_same_program(program: str, spoken: CourseNotation, job: Job) -> Any:
-    """What a job gives on a worker that has the same program; workers may join later. Raises ProblemError."""
+    """Run a job on a worker that has the same program; workers may join later. Raises ProblemError."""
     if program_digest() != program:
         raise ProblemError(_("a worker has another version of tmm than this one"))
     return speaking(spoken, job)
@@ -182,7 +182,7 @@ def _run_with_same_program(program: str, spoken: CourseNotation, job: Job) -> An
 
 @cache
 def program_digest() -> str:
-    """A digest of the program and its translations: another one may give other marks."""
+    """Return a digest of the program and its translations; another one may give other marks."""
     folder = Path(tmm_cli.__file__).parent
     files = sorted(folder.rglob("*.[pm][yo]"), key=lambda file: file.relative_to(folder).as_posix())
     digest = blake2b(digest_size=16)

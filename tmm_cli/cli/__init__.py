@@ -1,4 +1,4 @@
-"""One file a command: parse, call, print. Heavy packages are imported inside, when their command runs."""
+"""Command line: the commands parse, call and print. Heavy packages are imported when their command runs."""
 
 from tmm_cli.interfaces import lazy
 

@@ -43,7 +43,7 @@ def add_commands(app: typer.Typer, lines: Mapping[str, str], words: Sequence[str
 
 
 def _list_only() -> None:
-    """What is listed only is not called."""
+    """Placeholder of a command that is only listed."""
 
 
 # The command `tmm`. A new command is a function of its name in the module of its name, or in one named in HOMES, and a
@@ -82,7 +82,7 @@ HOMES = {  # modules of commands that share one
 
 
 def application(words: Sequence[str]) -> typer.Typer:
-    """The application with the command that the words of a command line ask for, or with the names of all."""
+    """Return the application with the command that a command line requests, or with the names of all commands."""
     app = typer.Typer(
         name="tmm",
         help="Course-project calculator for the theory of mechanisms and machines: planar lever mechanisms.",
@@ -110,7 +110,7 @@ def _options(
 
 
 def main() -> None:
-    """Entry point of the command."""
+    """Run the command line."""
     warnings.simplefilter("ignore", RuntimeWarning)  # of numbers: what has no value is said in the product's own words
     gc.set_threshold(100_000)  # a short run makes little rubbish, and importing makes much that only looks like it
     # looking for plugins of pydantic reads every installed package; there is nothing here for them to do
@@ -130,7 +130,9 @@ def main() -> None:
 
 
 def _open_streams() -> None:
-    """A stream that is closed swallows all; one whose encoding lacks a character (cp866) gets a question mark."""
+    """Prepare the standard streams: a closed one discards output; unencodable characters (cp866) become question
+    marks.
+    """
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:
@@ -140,7 +142,7 @@ def _open_streams() -> None:
 
 
 def _flush_output(code: Any) -> Any:
-    """The exit code when all that was printed has gone out: a full disk is an error, a reader that left is none."""
+    """Return the exit code after flushing output: a full disk is an error, a reader that has left is none."""
     try:
         sys.stdout.flush()
     except OSError as error:

@@ -45,7 +45,7 @@ MEASUREMENTS = {
 
 
 def group(words: Sequence[str]) -> typer.Typer:
-    """The command with the measurement that the further words of a command line ask for."""
+    """Return the command group with the requested measurement."""
     app = typer.Typer(
         name="bench",
         help="Measure speed, accuracy, stability, savings and synthesis on this machine.",
@@ -58,7 +58,7 @@ def group(words: Sequence[str]) -> typer.Typer:
 
 
 def _keep_group() -> None:
-    """One measurement alone is a command of its group too."""
+    """Make a command group even for a single measurement."""
 
 
 Charts = Mapping[str, Figure]  # by the names of their files
@@ -72,7 +72,9 @@ Out = Annotated[
 
 
 def requested_names(asked: Sequence[str] | None, names: Iterable[str], unknown: str) -> list[str]:
-    """Those asked for, or all; an unknown one ends the command with the words for that (of {name} and {names})."""
+    """Return the requested names, or all; exit with the message `unknown` (with {name} and {names}) for an
+    unknown one.
+    """
     known = list(names)
     found = list(dict.fromkeys(asked or known))
     for name in found:
@@ -83,7 +85,7 @@ def requested_names(asked: Sequence[str] | None, names: Iterable[str], unknown: 
 
 
 def show_and_write(name: str, measured: M, charts: Callable[[M], Charts], out: Path | None, as_json: bool) -> NoReturn:
-    """Show tables or JSON, write the files; then the verdict."""
+    """Show tables or JSON, write the files, print the verdict and exit."""
     if as_json:
         emit_json(measured.to_dict())
     else:
@@ -105,7 +107,7 @@ def show_and_write(name: str, measured: M, charts: Callable[[M], Charts], out: P
 
 
 def _write(name: str, measured: Measured, charts: Charts, folder: Path) -> str:
-    """name.json, name.csv of the lines or of the one table, charts."""
+    """Write NAME.json, NAME.csv of the lines or of the only table, and charts."""
     contents = {f"{name}.json": json_bytes(measured.to_dict())}
     lines = io.StringIO()
     csv.writer(lines, lineterminator="\n").writerows(measured.lines())

@@ -1,4 +1,4 @@
-"""Problems computed again and compared with their golden runs."""
+"""`tmm check`: compute problems again and compare them with their golden runs."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ TOLERANCE = 1e-9
 
 
 class CheckOutcome(NamedTuple):
-    """A problem, what is wrong with it as a whole, what differs, and the exit code of that."""
+    """Result for one problem: an error of the whole problem, differences, exit code."""
 
     name: str
     wrong: str = ""
@@ -42,7 +42,7 @@ class CheckOutcome(NamedTuple):
 
 
 def check_problem(file: Path, update: bool) -> CheckOutcome:
-    """A problem computed again, and compared with what is expected; update: what is expected is written anew."""
+    """Compute a problem again and compare it with its expected values; update: write them anew."""
     expected_file = file.parent / "expected" / f"{file.stem}.json"
     return _check_expected(
         file.stem, expected_file, lambda: to_json(compute_file(str(file), "forces", silent=True)), update
@@ -50,7 +50,7 @@ def check_problem(file: Path, update: bool) -> CheckOutcome:
 
 
 def check_grades(task: Path, update: bool) -> CheckOutcome:
-    """A graded example likewise, with expected.json beside its task."""
+    """Grade an example again and compare it with expected.json beside its task."""
     return _check_expected(f"grading/{task.parent.name}", task.parent / "expected.json", lambda: grades(task), update)
 
 
@@ -83,7 +83,7 @@ def _check_expected(
 
 
 def _read_expected(file: Path) -> Any:
-    """The expected values, or what is wrong with them."""
+    """Return the expected values, or an error message."""
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
         float(content["tolerance"])
@@ -98,7 +98,7 @@ def _read_expected(file: Path) -> Any:
 
 
 def show_outcomes(outcomes: Sequence[CheckOutcome]) -> None:
-    """What differs as a table, and what is wrong with whole problems."""
+    """Show differences as a table, and errors of whole problems."""
     table = difference_table({outcome.name: outcome.different for outcome in outcomes})
     if table.rows:
         show(table, UnitSystem(), console(), more=_("... and {rows} rows more"))
@@ -108,7 +108,7 @@ def show_outcomes(outcomes: Sequence[CheckOutcome]) -> None:
 
 
 def write_junit(path: Path, outcomes: Sequence[CheckOutcome]) -> None:
-    """The outcomes as a JUnit report."""
+    """Write the outcomes as a JUnit report."""
     failures = sum(bool(outcome.different) for outcome in outcomes)
     errors = sum(bool(outcome.wrong) for outcome in outcomes)
     suite = ElementTree.Element(

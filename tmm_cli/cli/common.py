@@ -1,4 +1,4 @@
-"""What the commands share: arguments, reading files one after the other, errors, exit codes."""
+"""Common parts of the commands: options, reading several files, errors, exit codes."""
 
 from __future__ import annotations
 
@@ -63,13 +63,15 @@ Pictures = Iterable[tuple[str, bytes]]
 def draw_pictures(
     what: Literal["whole", "hodographs", "centres", "assemblies", "synthesis", "group-table"], *of: Any, **how: Any
 ) -> Pictures:
-    """Files of pictures by their names; whole: those of a run. What draws them is imported for them alone."""
+    """Return pictures by file name; the drawing modules are imported only here. what: kind of drawings, `whole`
+    for a run.
+    """
     found: Pictures = import_module("tmm_cli.cli.pictures").PICTURES[what](*of, **how)
     return found
 
 
 class _VisibleConsole(Console):
-    """A console that escapes control characters of texts; its own commands to the terminal stay."""
+    """Console that escapes control characters in texts, but keeps its own terminal commands."""
 
     def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterable[Segment]:
         for segment in super().render(renderable, options):
@@ -78,7 +80,7 @@ class _VisibleConsole(Console):
 
 
 def console() -> Console:
-    """For results: standard output, as wide as the tables need when it is not a terminal."""
+    """Return the console for results on standard output; 200 columns wide if it is not a terminal."""
     return _VisibleConsole(width=None if sys.stdout.isatty() else 200, highlight=False, markup=False)
 
 
@@ -90,10 +92,16 @@ def for_each_file(
     headed: bool = True,
     out: Path | None = None,
 ) -> NoReturn:
-    """Do the work on every file, with a progress bar when there are several; exit with the worst code.
+    """Do the work on every file, with a progress bar for several, and exit with the worst code.
 
-    out: where each of them has a folder of its name, so that no two may have the same. headed: the tables of each of
-    several files come under its name. Bad input is one message and does not keep the other files from being worked on.
+    An error in one file is reported and does not stop the others.
+
+    Args:
+        files: problem files.
+        work: processes a file and returns an exit code.
+        as_json: errors are also printed as JSON.
+        headed: results of several files are printed under their names.
+        out: folder with a subfolder for each file, whose names must differ.
     """
     worst = OK
     if out is not None:
@@ -118,9 +126,9 @@ def for_each_file(
 
 @contextmanager
 def reporting_errors(as_json: bool = False, name: str = "") -> Iterator[None]:
-    """Bad input inside is one message, with --json as JSON too. Raises typer.Exit.
+    """Report input errors of the enclosed code, with --json also as JSON. Raises typer.Exit.
 
-    name: of what is read or written, where the system does not say it.
+    name: name of what is read or written, where the system does not give it.
     """
     try:
         yield
@@ -137,7 +145,7 @@ def reporting_errors(as_json: bool = False, name: str = "") -> Iterator[None]:
 
 
 def _refuse_same_folder(files: Sequence[str]) -> None:
-    """Files whose results would take the place of one another's end the command before its work."""
+    """Refuse files whose results would go into the same folder."""
     first: dict[str, str] = {}
     for file in files:
         other = first.setdefault(folder_name(Path(file).stem).casefold(), file)
@@ -151,7 +159,9 @@ def _refuse_same_folder(files: Sequence[str]) -> None:
 
 
 def write_new_file(file: Path, text: str) -> bool:
-    """Whether a file that was not there is written; `-` prints the text instead. Raises ProblemError."""
+    """Write a new file and return True; for `-` print the text and return False. Raises ProblemError if it
+    exists.
+    """
     if str(file) == "-":
         typer.echo(text, nl=False)
         return False
@@ -165,7 +175,9 @@ def write_new_file(file: Path, text: str) -> bool:
 
 
 def problems_in(paths: Sequence[Path], further: Sequence[Path] = ()) -> list[Path]:
-    """These files, of each folder its problems and those of the folders in it, and further ones. Raises typer.Exit."""
+    """Return the given files, the problems in folders and their subfolders, and further files. Raises
+    typer.Exit.
+    """
     depths = ("*.yaml", "*/*.yaml")
     files = [f for p in paths for f in ([f for d in depths for f in sorted(p.glob(d))] if p.is_dir() else [p])]
     if not files and not further:
@@ -176,17 +188,17 @@ def problems_in(paths: Sequence[Path], further: Sequence[Path] = ()) -> list[Pat
 
 
 def with_progress(files: Sequence[Any]) -> Iterable[Any]:
-    """The same, counted by a bar when there are several."""
+    """Iterate over files, with a progress bar if there are several."""
     if len(files) < 2:
         return files
     return track(files, description="", console=Console(stderr=True), transient=True)
 
 
 def progress_bars(quiet: bool = False) -> Progress:
-    """Progress on a terminal; elsewhere, or when quiet, nothing."""
+    """Return progress bars for a terminal; elsewhere, or when quiet, they are disabled."""
     return Progress(console=Console(stderr=True), transient=True, disable=quiet or not sys.stderr.isatty())
 
 
 def emit_json(content: dict[str, Any]) -> None:
-    """Pure JSON on standard output, one document a file."""
+    """Print JSON on standard output, one document per file."""
     sys.stdout.write(json.dumps(content, ensure_ascii=False, allow_nan=False, indent=1) + "\n")

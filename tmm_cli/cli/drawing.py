@@ -1,4 +1,4 @@
-"""Drawing by all cores, with a progress bar."""
+"""Drawing on all cores, with a progress bar."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ JobResult = TypeVar("JobResult")
 
 
 def run_on_all_cores(jobs: Sequence[Callable[[], JobResult]], *, quiet: bool = False) -> Iterable[JobResult]:
-    """What the jobs give, in their order; a few are done in this process. quiet: without a bar.
+    """Yield the results of jobs in their order, computed by all cores. quiet: no progress bar.
 
-    Other processes begin at the end; this one does from the beginning what they have not come to.
+    Other processes start at the end of the list, while this one starts at its beginning.
     """
     others = min(os.cpu_count() or 1, len(jobs)) - 1
     if others < 1 or len(jobs) < LEAST_JOBS:
@@ -45,7 +45,7 @@ def run_on_all_cores(jobs: Sequence[Callable[[], JobResult]], *, quiet: bool = F
 
 
 def _fetch_result(future: Future[JobResult], job: Callable[[], JobResult]) -> JobResult:
-    """What another process found; if that was ended, perhaps for want of memory, it is found here."""
+    """Result of another process; if that was killed, for instance by lack of memory, the job is done here."""
     try:
         return future.result()
     except BrokenProcessPool:

@@ -1,4 +1,4 @@
-"""`tmm grade`: what the students of a group handed in is marked, what went wrong is explained."""
+"""`tmm grade`: mark the submissions of a group and explain the mistakes."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def _grade_group(
     jobs: int | None,
     scheduler: str | None,
 ) -> int:
-    """Grade, write, show; the exit code. Raises ProblemError, OSError."""
+    """Grade, write and show; returns the exit code. Raises ProblemError, OSError."""
     reason = _("there is no such format of the gradebook")
     names = list(EXPORTS) if formats is None else parse_names(formats, EXPORTS, "--formats", reason)
     print_file_summary(task.problem)
@@ -125,7 +125,9 @@ def _grade_group(
 
 @contextmanager
 def _stop_on_interrupt() -> Iterator[Callable[[], bool]]:
-    """Whether Ctrl-C was pressed: what is in work comes to its end; pressed again, it ends the command at once."""
+    """On the first Ctrl-C let running work finish; on the second end the command. Yields a function that tells
+    whether to stop.
+    """
     pressed = []
 
     def note(number: int, frame: FrameType | None) -> None:
@@ -141,7 +143,7 @@ def _stop_on_interrupt() -> Iterator[Callable[[], bool]]:
 
 
 def _print_summary(handed: Sequence[Submission], marks: Sequence[StudentMarks], out: Path) -> int:
-    """Say how many were graded; the exit code."""
+    """Print the numbers of graded students; returns the exit code."""
     both = list(zip(handed, marks, strict=True))
     left = sum(one.unread or own.problems != one.problems for one, own in both)
     none = sum(not (one.unread or one.answers or one.by_angle) for one, own in both if own.problems == one.problems)

@@ -1,4 +1,4 @@
-"""A file is read, and what was understood is said, before anything is computed."""
+"""Reading a problem file and printing how it was understood, before anything is computed."""
 
 from __future__ import annotations
 
@@ -23,15 +23,12 @@ from tmm_cli.reports import bare_units, doubts, summarise_file
 
 
 def read_tree(file: str, settings: Sequence[str] | None = None) -> Tree:
-    """The file as it is read, with other parameters; its language is spoken from here on. Raises ProblemError."""
+    """Read a file with other parameters, and switch to its language. Raises ProblemError."""
     return apply_settings(read_in_file_language(file), settings or ())
 
 
 def read_in_file_language(file: str) -> Tree:
-    """The file as it is read; its language is spoken from here on, also by what refuses to read it.
-
-    Raises ProblemError.
-    """
+    """Read a file and switch to its language, also for errors in the file itself. Raises ProblemError."""
     data = read_bytes(file)
     use_file_language(find_language(data))
     tree = read_text(decode_text(data, file), file)
@@ -43,9 +40,9 @@ def read_in_file_language(file: str) -> Tree:
 def open_problem(
     file: str, settings: Sequence[str] | None = None, positions: Sequence[int] | None = None, digits: bool = False
 ) -> Problem | TaskProblem:
-    """The problem of a file with other parameters; says what was understood.
+    """Read the problem of a file with other parameters, and print its summary.
 
-    positions, digits: as a command was asked for them. Raises ProblemError, also where they are too much work.
+    positions, digits: requested options. Raises ProblemError, also if they are too much work.
     """
     problem = build_any_problem(read_tree(file, settings))
     print_file_summary(problem)
@@ -55,7 +52,7 @@ def open_problem(
 
 
 def variant_settings(file: str, variants: str | None, variant: str | None, settings: Sequence[str] | None) -> list[str]:
-    """Settings that make one variant of a table out of a file; those that are given too. Raises ProblemError."""
+    """Return the settings of one variant of a table, and the given ones. Raises ProblemError."""
     given = list(settings or ())
     if variants is None and variant is None:
         return given
@@ -81,7 +78,7 @@ def refuse_excess_work(
     plans: int = 0,
     centres: int = 0,
 ) -> None:
-    """Refuse more work than the budget holds, before it starts: as budget.refuse_options. Raises ProblemError."""
+    """Refuse work beyond the budget before it starts, see `refuse_options`. Raises ProblemError."""
     request = problem.request
     count = len(positions or request.places) or request.count
     try:
@@ -91,12 +88,12 @@ def refuse_excess_work(
 
 
 def count_detailed_positions(problem: Problem) -> int:
-    """How many positions are drawn in detail; where the file names none, that of the largest balancing moment."""
+    """Number of detailed positions; if the file names none, one."""
     return len(problem.request.detail) or 1
 
 
 def print_file_summary(problem: Problem | TaskProblem, *, drafted: bool = False) -> None:
-    """Say what was understood, and what is probably a slip; drafted: without what a task would find."""
+    """Print how the file was understood, and probable slips. drafted: without what a synthesis would find."""
     if drafted and isinstance(problem, TaskProblem):
         say(f"{problem.name}: {bare_units(problem.units)}")
         return

@@ -1,4 +1,4 @@
-"""What commands draw. It is imported where pictures are asked for alone (common.drawn): matplotlib is slow to load."""
+"""Drawings of the commands; imported only when pictures are requested, as matplotlib is slow to load."""
 
 from __future__ import annotations
 

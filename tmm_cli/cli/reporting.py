@@ -1,4 +1,4 @@
-"""Computing a file of either form, and showing and writing what was found; commands import it when they work."""
+"""Computing a problem file and showing or writing the results."""
 
 from __future__ import annotations
 
@@ -46,10 +46,17 @@ def compute_file(
     digits: bool = False,
     drawings: bool = False,
 ) -> Results | ChainResults:
-    """Read and compute one file of either form, a linkage with another driver if one is named. Raises ProblemError.
+    """Read and compute a problem file, of a mechanism or a chain. Raises ProblemError.
 
-    drafted: the structure without the lengths that a task of synthesis finds; silent: without what was understood;
-    settings: other values of parameters; digits, drawings: what will be asked of the results.
+    Args:
+        file: the problem file.
+        stage: last stage.
+        positions: numbers of positions; None: all.
+        driver: link that drives instead of the file's own driver.
+        drafted: structure only, without the lengths that a synthesis finds.
+        silent: without the summary of the file.
+        settings: other values of parameters.
+        digits, drawings: options that add work, which is checked against the budget.
     """
     tree = read_tree(file, settings)
     if is_chain(tree):
@@ -68,9 +75,8 @@ def compute_file(
 
 
 def accuracy_of(results: Results | ChainResults, digits: bool, shown: Collection[str] = ()) -> AccuracyReport | None:
-    """How far each number is to be trusted, with `digits` in full; None where nothing moves.
-
-    shown: tables that alone are shown.
+    """Return the accuracy of results, complete with `digits`; None if nothing moves. shown: tables that are
+    shown, if not all.
     """
     if isinstance(results, ChainResults) or results.motion is None:
         return None
@@ -85,9 +91,9 @@ def report(
     digits: bool = False,
     people: Kind | None = None,
 ) -> int:
-    """Show the results as tables or JSON, write the files if asked, say the warnings; the exit code.
+    """Show results as tables or JSON, write files if requested, print warnings; returns the exit code.
 
-    digits: show bounds and sensitivities beside the values; people: write tables for spreadsheets too.
+    digits: show bounds and sensitivities beside the values. people: also write tables for spreadsheets.
     """
     if not properties_met(results):
         names = {*names, "properties"}  # they end the command with an exit code
@@ -104,7 +110,7 @@ def report(
 
 
 def find_exit_code(results: Results | ChainResults) -> int:
-    """The exit code: whether properties are as expected, the lever holds, and a synthesis gave what it was asked."""
+    """Return the exit code: properties as expected, lever within its limit, synthesis met."""
     if not properties_met(results):
         return CHECK_FAILED
     if isinstance(results, ChainResults) or results.motion is None:
@@ -113,20 +119,21 @@ def find_exit_code(results: Results | ChainResults) -> int:
 
 
 def properties_met(results: Results | ChainResults) -> bool:
-    """Whether the properties that the file shows are what it expects."""
+    """Return True if the shown properties have their expected values."""
     return all(one.met for one in properties_shown(results))
 
 
 def emit_results(results: Results | ChainResults, digits: AccuracyReport | None = None) -> None:
-    """The content of result.json on standard output, as it comes."""
+    """Write result.json to standard output piece by piece."""
     with words_of_files():
         sys.stdout.writelines(json_text(sections(results, None if digits is None else digits.json())))
 
 
 def write_pictures(results: Results, out: Path | None, pictures: Mapping[str, bytes], part: str = "") -> None:
-    """With the tables into the folder asked for; alone beside what is in the usual one, but never in place of it.
+    """Write pictures with the tables into the requested folder, or alone beside the usual results, without
+    replacing them.
 
-    part: what they are, where the results do not say it.
+    part: kind of the pictures, where the results do not tell it.
     """
     if out is not None:
         print_written(write_results(results, out, pictures.items(), part=part))
@@ -140,7 +147,7 @@ def write_pictures(results: Results, out: Path | None, pictures: Mapping[str, by
 
 
 def write_sheets(results: Results, out: Path, pictures: Iterable[tuple[str, bytes]]) -> None:
-    """Beside the results of the problem, in place of sheets of the same formats that an earlier run drew."""
+    """Write sheets beside the results of the problem, replacing sheets of the same formats from an earlier run."""
     with Staged(out / folder_name(results.problem.name)) as staged:
         for name, content in pictures:
             staged.write(name, (content,))
@@ -152,7 +159,7 @@ def write_sheets(results: Results, out: Path, pictures: Iterable[tuple[str, byte
 
 
 def print_written(written: WrittenFolder) -> None:
-    """Where the results are, what went of earlier ones, and what stays."""
+    """Print where the results are, and which files of earlier runs were removed or kept."""
     folder, removed, kept = written
     if kept is None:
         say(_("written: {folder}").format(folder=printable(folder)))
@@ -168,7 +175,7 @@ def print_written(written: WrittenFolder) -> None:
 
 
 def show_tables(results: Results | ChainResults, names: Iterable[str], found: AccuracyReport | None = None) -> None:
-    """Tables of these names, of a chain all; of long ones the positions in detail."""
+    """Print tables by name, of a chain all; of long ones only detailed positions."""
     screen = console()
     shown = walk(results, () if isinstance(results, ChainResults) else set(names))
     if found is not None:
@@ -179,7 +186,7 @@ def show_tables(results: Results | ChainResults, names: Iterable[str], found: Ac
 
 
 def detailed_rows(results: Results | ChainResults, table: Table) -> set[int] | None:
-    """Rows of a long table that belong to positions in detail, or to the first one; None: all rows of a short one."""
+    """Rows of a long table that belong to detailed positions, or to the first one; None: all rows."""
     if isinstance(results, ChainResults) or not table.long:
         return None
     chosen = {results.numbers.index(n) for n in results.problem.request.detail if n in results.numbers}

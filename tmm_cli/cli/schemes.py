@@ -1,4 +1,4 @@
-"""Schemes and chains that are asked for; their problem files: the first good pose of each, tried as by `tmm run`."""
+"""`tmm schemes`: schemes and kinematic chains, and problem files of schemes with a good pose."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ MOST_FILES = 300  # each takes some tenths of a second
 
 @dataclass(frozen=True)
 class SchemeFile:
-    """A problem file of a scheme. solved: whether it was computed with its forces; else its structure was."""
+    """Problem file of a scheme. solved: it was computed with forces; else only its structure was."""
 
     text: str
     solved: bool
@@ -61,7 +61,9 @@ class SchemeFile:
 
 
 def write_scheme(scheme: Scheme, title: str) -> SchemeFile | None:
-    """The first good pose, or that with the fewest warnings; None when no pose can be assembled."""
+    """Return the problem file of the first good pose, or that with fewest warnings; None if no pose can be
+    assembled.
+    """
     closed = all(group.type.grade == 2 for group in scheme.groups)
     best: SchemeFile | None = None
     for layout in find_layouts(scheme)[: CANDIDATES if closed else FEW_CANDIDATES]:
@@ -74,7 +76,9 @@ def write_scheme(scheme: Scheme, title: str) -> SchemeFile | None:
 
 
 def _try_layout(text: str, scheme: Scheme, closed: bool) -> SchemeFile | None:
-    """The problem with its forces; of groups that are not closed, whose assembly may not be found, its structure."""
+    """Compute a problem with its forces; for groups without closed form, whose assembly may not be found, its
+    structure.
+    """
     problem = build_problem(read_text(text, scheme.name))
     try:
         results = solve(problem)
@@ -87,10 +91,10 @@ def _try_layout(text: str, scheme: Scheme, closed: bool) -> SchemeFile | None:
 
 
 def write_scheme_files(found: Sequence[Scheme], folder: Path, each: Iterable[Scheme]) -> WrittenSchemes:
-    """A problem file a scheme in the folder.
+    """Write one problem file per scheme into the folder. Raises ProblemError.
 
-    each: the schemes once more, as a progress bar counts them. Nothing is written before all files are made, and no
-    file that is there already with other contents is touched. Raises ProblemError.
+    Nothing is written before all files are ready, and no existing file with other contents is replaced. each:
+    the schemes again, counted by a progress bar.
     """
     if len(found) > MOST_FILES:
         raise ProblemError(
@@ -122,7 +126,7 @@ def write_scheme_files(found: Sequence[Scheme], folder: Path, each: Iterable[Sch
 
 
 def read_group_types(text: str) -> tuple[str, ...]:
-    """Types of groups from a list of types and classes, `RRR,RRP` or `II,III`. Raises ProblemError."""
+    """Read a list of group types and classes, `RRR,RRP` or `II,III`. Raises ProblemError."""
     found: list[str] = []
     for word in text.split(","):
         name = word.strip().upper()
@@ -134,7 +138,7 @@ def read_group_types(text: str) -> tuple[str, ...]:
 
 
 def find_schemes(links: int, mobility: int, types: tuple[str, ...]) -> tuple[Scheme, ...]:
-    """The schemes, or a ProblemError that says what can be asked for."""
+    """Return the schemes. Raises ProblemError with the allowed numbers."""
     _refuse_numbers(links, "--links", mobility, MOST_CRANKS, range(mobility + 2, MOST_LINKS_OF_SCHEME + 1, 2))
     try:
         return all_schemes(links, mobility, types)
@@ -148,13 +152,13 @@ def find_schemes(links: int, mobility: int, types: tuple[str, ...]) -> tuple[Sch
 
 
 def find_chains(links: int, mobility: int) -> tuple[KinematicChain, ...]:
-    """The chains, or a ProblemError that says what can be asked for."""
+    """Return the kinematic chains. Raises ProblemError with the allowed numbers."""
     _refuse_numbers(links, "--chains", mobility, MOST_CHAIN_LINKS - 3, range(mobility + 3, MOST_CHAIN_LINKS + 1, 2))
     return enumerate_chains(links, mobility)
 
 
 def _refuse_numbers(links: int, option: str, mobility: int, most: int, allowed: range) -> None:
-    """Refuse a mobility above the most, and numbers of links that no structure of this mobility has."""
+    """Refuse a mobility above the largest, and numbers of links that are impossible for this mobility."""
     if not 1 <= mobility <= most:
         raise ProblemError(
             _("structures of this mobility are not built"),

@@ -124,7 +124,7 @@ def kinematics(
 
 
 def _draw_centres(results: Results, as_json: bool, out: Path | None) -> int:
-    """Instantaneous centres, listed and drawn; the exit code."""
+    """List and draw instantaneous centres; returns the exit code."""
     code = report(results, ("extremes", "centres", "advantage"), as_json, None)
     write_pictures(results, out, dict(draw_pictures("centres", results)))
     return code
@@ -133,7 +133,7 @@ def _draw_centres(results: Results, as_json: bool, out: Path | None) -> int:
 def _list_assemblies(
     file: str, as_json: bool, out: Path | None, positions: Sequence[int] | None, settings: Sequence[str] | None
 ) -> int:
-    """Kinematics with every real assembly of the groups, listed and drawn; the exit code. Raises ProblemError."""
+    """List and draw every real assembly of the groups; returns the exit code. Raises ProblemError."""
     problem = open_problem(file, settings).whole
     with translate_errors(problem):
         results = with_assemblies(inputs_of(problem), positions, problem)

@@ -103,13 +103,13 @@ def sweep(
 
 
 def _announce(points: int, taped: bool) -> None:
-    """Print how much work it is, before it starts."""
+    """Print the amount of work before it starts."""
     text = _("{points} mechanisms, all at once") if taped else _("{points} mechanisms, one after another")
     say(text.format(points=points))
 
 
 def _write(found: SweepResults, problem: Problem, out: Path) -> None:
-    """All files at once, or none. Raises OSError."""
+    """Write all files at once, or none. Raises OSError."""
     folder = out / folder_name(f"{problem.name}-sweep")
     with Staged(folder) as staged:
         with words_of_files():

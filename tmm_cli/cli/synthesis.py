@@ -41,7 +41,7 @@ def synthesis(files: Files, as_json: Json = False, out: Out = None, settings: Se
 
 
 def _solve_and_report(file: str, as_json: bool, out: Path | None, settings: Sequence[str] | None) -> int:
-    """Solve the task of a file, show and write what was found and measured; the exit code. Raises ProblemError."""
+    """Solve the synthesis of a file, show and write the results; returns the exit code. Raises ProblemError."""
     name, title, found, units, results = _solve_task(file, settings)
     measured = None if results is None else measure_problem(results)
     with words_of_files():
@@ -71,7 +71,10 @@ def _solve_and_report(file: str, as_json: bool, out: Path | None, settings: Sequ
 
 
 def _solve_task(file: str, settings: Sequence[str] | None) -> tuple[str, str, Synthesised, UnitSystem, Results | None]:
-    """Name and title of the problem, what was found, units, the motion if there is a linkage. Raises ProblemError."""
+    """Return name and title of the problem, synthesis results, units, and the motion if there is a linkage.
+
+    Raises ProblemError.
+    """
     tree = read_tree(file, settings)
     if "synthesis" not in tree.data:
         build_synthesised(tree)  # refuses a misspelt key

@@ -1,4 +1,4 @@
-"""What every file of the command line leans on: exit codes, where talk goes, and in which language."""
+"""Messages of the command line: exit codes, printing to standard error, language of the output."""
 
 from __future__ import annotations
 
@@ -32,24 +32,24 @@ _asked_for: ContextVar[str | None] = ContextVar("asked_for", default=None)
 
 
 def say(text: str) -> None:
-    """Talk goes to standard error, with control characters escaped."""
+    """Print a message to standard error, with control characters escaped."""
     typer.echo(escape_controls(text), err=True)
 
 
 def warn(text: str) -> None:
-    """Say a warning."""
+    """Print a warning."""
     say(_("warning: {warning}").format(warning=text))
 
 
 def printable(path: object) -> str:
-    """A path on one line, safe to print."""
+    """Return a path on one line, safe to print."""
     return clean(str(path), 300)
 
 
 def report_fault(error: Exception, words: Sequence[str]) -> int:
-    """Say in one line what to report of an internal fault, or that the memory is exhausted; the exit code.
+    """Print one line to report an internal fault, or that memory is exhausted; returns the exit code.
 
-    words: of the command line. The traceback is printed where the environment variable TMM_TRACEBACK asks for it.
+    words: the command line. The traceback is printed if the environment variable TMM_TRACEBACK is set.
     """
     if os.environ.get(TRACEBACK, "0") not in ("", "0"):
         traceback.print_exception(error)
@@ -68,7 +68,7 @@ def report_fault(error: Exception, words: Sequence[str]) -> int:
 
 
 def _program_line(error: Exception) -> str:
-    """The innermost line of the program that an exception passed, in the process where it was raised."""
+    """Innermost line of this program in a traceback, also of another process."""
     remote = getattr(error.__cause__, "tb", "")  # text of the traceback in another process
     frames = re.findall(r'File "([^"]+)", line (\d+)', remote if isinstance(remote, str) else "")
     frames = frames or [(frame.filename, frame.lineno) for frame in traceback.extract_tb(error.__traceback__)]
@@ -82,7 +82,7 @@ def _program_line(error: Exception) -> str:
 
 
 def refuse_addresses(named: Mapping[str, Any]) -> None:
-    """Refuse an address of a network as the place of results. Raises typer.Exit."""
+    """Refuse network addresses as places for results. Raises typer.Exit."""
     for name in ("out", "template", "junit"):
         path = named.get(name)
         if isinstance(path, Path) and ADDRESS.match(str(path)):
@@ -93,7 +93,7 @@ def refuse_addresses(named: Mapping[str, Any]) -> None:
 
 
 def with_language_option(command: Callable[..., None]) -> Callable[..., None]:
-    """The command with an option for the language; it goes before what a file says."""
+    """Add the option --lang to a command; it overrides the language of a file."""
 
     @wraps(command)
     def spoken_command(*arguments: Any, lang: Language | None = None, **named: Any) -> None:
@@ -114,13 +114,13 @@ def with_language_option(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def use_file_language(language: object) -> None:
-    """Speak the language of a file from here on, unless the command was asked for another."""
+    """Use the language of a file from now on, unless --lang was given."""
     if _asked_for.get() is None and language in get_args(Language):
         speak(str(language))
 
 
 def use_file_notation(file: Mapping[str, object]) -> None:
-    """Print from here on the number of the frame and the letter of inertia forces that a file wants, unchecked."""
+    """Use the frame number and the letter of inertia forces of a file from now on, unchecked."""
     note = file.get("note")
     letter = note.get("inertia") if isinstance(note, dict) else ""
     write(str(file.get("frame", USUAL.frame)), str(letter))

@@ -83,7 +83,7 @@ def variants(
 
 
 def _print_drawn(variety: Variety, table: VariantTable) -> None:
-    """What was drawn and thrown away."""
+    """Print how many variants were drawn and rejected."""
     rows = [(why, str(count)) for why, count in variety.thrown.most_common() if count]
     told = _("{count} variants of {free}, drawn from {tried} candidates")
     say(told.format(count=len(table.rows), free=", ".join(table.names), tried=variety.tried))
@@ -93,7 +93,7 @@ def _print_drawn(variety: Variety, table: VariantTable) -> None:
 
 
 def _write(task: Task, text: str, table: VariantTable, out: Path) -> None:
-    """All files at once, or none. Raises ProblemError, OSError."""
+    """Write all files at once, or none. Raises ProblemError, OSError."""
     with Staged(out) as folder:
         rows = rows_of_table(table)
         folder.write(TABLE, [csv_of(rows)])

@@ -73,7 +73,7 @@ def gallery(
 
 
 def _try_card(file: str) -> Card | str:
-    """A card, or why there is none."""
+    """Card of a file, or an error message."""
     try:
         return make_card(file)
     except ProblemError as error:

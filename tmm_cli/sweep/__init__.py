@@ -1,4 +1,4 @@
-"""A mechanism over its parameters: what comes of many variants, and where they cease to be mechanisms."""
+"""Sweeps: quantities of a mechanism over one or two parameters, and the borders of the feasible region."""
 
 from tmm_cli.interfaces import lazy
 

@@ -1,4 +1,4 @@
-"""Quantities over one parameter as curves, over two as lines of equal value; where no mechanism goes is hatched."""
+"""Drawings of a sweep: curves over one parameter, contour lines over two; infeasible regions are hatched."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ LEAST = 15.0  # mm of a line that gets its value
 
 
 def sweep_sheets(title: str, sweep: SweepResults, units: UnitSystem) -> Iterable[tuple[str, Drawing]]:
-    """Every sheet with its file's stem."""
+    """Yield every sheet with the stem of its file name."""
     if len(sweep.axes) == 1:
         parts = [range(first, min(first + PANELS, len(sweep.shown))) for first in range(0, len(sweep.shown), PANELS)]
         for number, part in enumerate(parts):
@@ -71,7 +71,7 @@ def sweep_sheets(title: str, sweep: SweepResults, units: UnitSystem) -> Iterable
 
 
 def curve_sheet(title: str, sweep: SweepResults, part: Sequence[int], units: UnitSystem) -> Drawing:
-    """Some of the quantities over the one parameter, each in a panel."""
+    """Draw some of the quantities over one parameter, one panel each."""
     (axis,) = sweep.axes
     caption = _("Quantities over {parameter}; hatched: no such mechanism; hatched wide: beyond a limit")
     sheet = DrawingSheet(title, caption.format(parameter=axis.name), paper=LANDSCAPE)
@@ -100,7 +100,7 @@ def curve_sheet(title: str, sweep: SweepResults, part: Sequence[int], units: Uni
 
 
 def _hatch_stretch(panel: Panel, low: float, high: float, *, fails: bool) -> None:
-    """A hatched stretch of a panel."""
+    """Hatch an interval of a panel."""
     left, right = (float(panel.x.on(value)) for value in (low, high))
     corners = [
         complex(left, panel.y.start),
@@ -113,14 +113,14 @@ def _hatch_stretch(panel: Panel, low: float, high: float, *, fails: bool) -> Non
 
 
 def _label_border(panel: Panel, axis: SweepAxis, mark: Border) -> None:
-    """Of a border, beside it in the first panel."""
+    """Write the value of a border beside it in a panel."""
     place = float(panel.x.on(mark.at[0]))
     text = f"{numeral(mark.at[0], '.6g')} {spelt(axis.unit)}".strip()
     panel.sheet.label(text, complex(place, panel.y.end - TEXT_ROW), SMALL_TEXT, DARK_COLOUR)
 
 
 def contour_sheet(title: str, sweep: SweepResults, k: int, units: UnitSystem) -> Drawing:
-    """A quantity over both parameters."""
+    """Draw contour lines of quantity k over both parameters."""
     one = sweep.shown[k]
     caption = _("{quantity}: lines of equal value over two parameters").format(quantity=_quantity_label(one, units))
     sheet = DrawingSheet(title, caption, paper=LANDSCAPE)
@@ -156,12 +156,12 @@ def contour_sheet(title: str, sweep: SweepResults, k: int, units: UnitSystem) ->
 
 
 def _drawn_nodes(count: int) -> Real:
-    """Which of so many nodes are drawn, the ends among them."""
+    """Indices of the grid nodes that are drawn, both ends included."""
     return np.unique(np.round(np.linspace(0, count - 1, min(count, MOST_NODES))).astype(int))
 
 
 class _Grid:
-    """Nodes of a sweep on a panel. drawn: which of each parameter."""
+    """Grid nodes of a sweep on a panel. drawn: indices of the drawn nodes of each parameter."""
 
     def __init__(self, panel: Panel, sweep: SweepResults, drawn: Sequence[Real]) -> None:
         self.panel = panel
@@ -175,14 +175,14 @@ class _Grid:
                 self.marks.setdefault((mark.along, line), []).append(mark.at[mark.along])
 
     def on(self, places: Any) -> Any:
-        """Places column + i row on paper, mm."""
+        """Return places column + i row on paper, mm."""
         found = np.asarray(places)
         x = np.interp(found.real, np.arange(len(self.x)), self.x)
         y = np.interp(found.imag, np.arange(len(self.y)), self.y)
         return self.panel.at(x, y)
 
     def share(self, one: tuple[int, int], other: tuple[int, int]) -> float:
-        """Where between two nodes a border was found."""
+        """Return the fraction of the distance between two nodes at which a border was found."""
         along = 0 if one[0] != other[0] else 1
         values = (self.x, self.y)[along]
         low, high = float(values[one[along]]), float(values[other[along]])
@@ -190,7 +190,7 @@ class _Grid:
         return (found[0] - low) / (high - low) if found else 0.5
 
     def hatched(self, state: Any, *, fails: bool) -> None:
-        """Where no mechanism goes, or a limit is exceeded, with the outline against what works."""
+        """Hatch the region without a mechanism, or beyond a limit, and outline it."""
         inside, outline = (state >= STOPS, state >= STOPS) if fails else (state == LIMIT, state != WORKS)
         pieces = [self.on(piece).tolist() for piece in region_polygons(inside, self.share)]
         for start, end in hatch_polygons(pieces, PITCH[fails]):
@@ -202,7 +202,7 @@ class _Grid:
 
 
 def _draw_levels(lines: _Grid, values: Any, *, degrees: bool) -> None:
-    """Lines of equal value at round values, each with its value on its longest stretch."""
+    """Draw contour lines at round values, each with its value on its longest line."""
     low, high = finite_limits([values])
     if not high > low:
         return
@@ -221,7 +221,7 @@ def _draw_levels(lines: _Grid, values: Any, *, degrees: bool) -> None:
 
 
 def _draw_legend(panel: Panel, drawn: Sequence[tuple[bool, str]]) -> None:
-    """What the hatching means, above the panel on the right."""
+    """Explain the hatching above the panel, on the right."""
     at = panel.x.end - sum(SAMPLE + 5 + text_width(text, SMALL_TEXT * POINT) for __, text in drawn)
     height = panel.sheet.ground.high.imag - TEXT_ROW / 2
     for fails, text in drawn:

@@ -1,4 +1,4 @@
-"""Mechanisms at points of a grid of parameters: how each goes, and what is shown of it; by the tape, or one by one."""
+"""Mechanisms at the points of a parameter grid: their state and their quantities, by a trace or one by one."""
 
 from __future__ import annotations
 
@@ -37,7 +37,9 @@ BLOCK = 1_000  # variants at once: what all of them have at the places of a scan
 
 
 class FirstLinkMotion(Motion):
-    """A motion on a tape: where links share a point the first tells its motion, as nothing is there to choose by."""
+    """Motion in a trace: the first link that has a shared point determines its motion, as no numbers are there
+    to choose by.
+    """
 
     def _sway(self, link: str, point: str) -> float:
         return 0.0
@@ -45,7 +47,7 @@ class FirstLinkMotion(Motion):
 
 @dataclass(frozen=True, eq=False)
 class SolvedVariants:
-    """What quantities are read from, see analysis.quantities.base.Solved."""
+    """Solved state of variants, from which quantities are read (see `SolvedState`)."""
 
     linkage: Any
     motion: Any = None
@@ -55,10 +57,11 @@ class SolvedVariants:
 
 @dataclass(frozen=True, eq=False)
 class SweepPoints:
-    """Of points (points,): how they go, why (a limit, or a refusal); what is shown of them, (points, quantities).
+    """Results at points of a sweep: state and reason per point, (points,); requested quantities, (points,
+    quantities).
 
-    reach: of each load tabulated against the stroke in lengths, its last row and the stroke (points, loads, 2), m or
-    rad; nan where there is none.
+    why: the exceeded limit, or a refusal. reach: last argument of each load table against the stroke in
+    lengths, and the stroke, (points, loads, 2), m or rad; nan if there is none.
     """
 
     state: Real
@@ -68,7 +71,9 @@ class SweepPoints:
 
 
 class SweptMechanisms:
-    """Of a file over some of its parameters. Raises ProblemError where its own numbers give no mechanism."""
+    """Mechanisms of a file over some of its parameters. Raises ProblemError if the file's own numbers give no
+    mechanism.
+    """
 
     def __init__(self, tree: Tree, axes: Sequence[SweepAxis], show: Sequence[str]) -> None:
         self.given = tree, tuple(axes), tuple(show)
@@ -86,12 +91,12 @@ class SweptMechanisms:
         )
 
     def __reduce__(self) -> tuple[type[SweptMechanisms], tuple[Any, ...]]:
-        """What it found is found again in another process."""
+        """Pickle the input only; the rest is computed again in the other process."""
         return SweptMechanisms, self.given
 
     @cached_property
     def turning(self) -> CrankVariants | None:
-        """The tape, where there is one."""
+        """Trace of variants with a rotating crank; None if there is none."""
         problem = self.task.problem.whole
         if "synthesis" in self.task.tree.data or problem.dynamics is not None:
             return None
@@ -119,17 +124,17 @@ class SweptMechanisms:
 
     @cached_property
     def limits(self) -> dict[str, float]:
-        """Of what is limited, by the names of the tape."""
+        """Limits of limited curves, by their names in the trace."""
         assert self.turning is not None
         return {one.name: curve_limit(one, self.allowed) for one in self.turning.limited}
 
     @cached_property
     def goes(self) -> bool:
-        """Whether the driver of the file's own variant turns fully, or goes its whole stroke."""
+        """True if the driver of the file's own variant rotates fully, or covers its whole stroke."""
         return measures.completes_range(pipeline.solve(inputs_of(self.task.problem.whole), "kinematics"))
 
     def at(self, points: Real, *, values: bool = True) -> SweepPoints:
-        """Points as they are written (points, parameters). values: else it is only told how they go."""
+        """Solve points in the units of the file, (points, parameters). values: False: states only."""
         count = len(points)
         found = SweepPoints(
             np.zeros(count, dtype=int),
@@ -159,7 +164,11 @@ class SweptMechanisms:
             found.state[row], found.why[row], found.values[row], found.reach[row] = self._alone(points[row])
 
     def _taped(self, points: Real, part: Real, found: SweepPoints, values: bool) -> tuple[Real, Real]:
-        """Fill in what the tape tells; which rows other stages tell, and which are built otherwise."""
+        """Solve the points `part` by the trace and store them in `found`.
+
+        Returns:
+            Rows that need the ordinary stages, and rows whose linkage is built differently.
+        """
         turning, nothing = self.turning, np.zeros(0, dtype=int)
         assert turning is not None
         columns = points[part] * self.factors
@@ -192,7 +201,7 @@ class SweptMechanisms:
         return part[unsure], part[otherwise]
 
     def _pressures(self) -> list[str]:
-        """Names of the tape whose largest peak is the pressure angle, where it is shown."""
+        """Names of the limited curves whose largest peak is the pressure angle, if it is shown."""
         assert self.turning is not None
         if not any(one.name == PRESSURE for one in self.shown):
             return []
@@ -200,7 +209,7 @@ class SweptMechanisms:
         return [one.name for one in angles if one.link == self.turning.output] or [one.name for one in angles]
 
     def _values(self, columns: Real, looked: ScanResults, varied: Any) -> tuple[Real, Real]:
-        """What is shown of variants that work, and how far their tables of loads reach."""
+        """Requested quantities of feasible variants, and the reach of their load tables."""
         turning = self.turning
         assert turning is not None
         strokes = variant_strokes(turning, columns, looked, varied)
@@ -221,7 +230,7 @@ class SweptMechanisms:
         return found, self._reach(varied.linkage, strokes, len(columns))
 
     def _reach(self, linkage: Linkage, strokes: Strokes | None, count: int) -> Real:
-        """Last rows of tables against the stroke, and strokes, (variants, loads, 2)."""
+        """Last rows of load tables against the stroke, and the strokes, (variants, loads, 2)."""
         found = np.full((count, len(self.tables), 2), np.nan)
         for load, last, stroke in table_lengths(linkage, strokes):
             k = self.tables.index(load.name)
@@ -229,7 +238,7 @@ class SweptMechanisms:
         return found
 
     def _alone(self, point: Real) -> tuple[int, str, Real, Real]:
-        """A point by the ordinary stages: how it goes, why, what is shown, how far its tables reach."""
+        """Solve one point by the ordinary stages: state, reason, quantities, reach of its load tables."""
         nothing = np.full(len(self.shown), np.nan), np.full((len(self.tables), 2), np.nan)
         texts = {axis.name: axis.text(float(value)) for axis, value in zip(self.axes, point, strict=True)}
         forces = any(one.forces for one in self.shown)
@@ -252,7 +261,7 @@ class SweptMechanisms:
             return state, why, self._of(results), reach
 
     def _as_own(self, problem: Problem) -> Problem:
-        """The same, sketched in the assembly of the file's own variant where a tape knows that for all."""
+        """Problem with the sketch computed for the assembly of the file's own variant, if a trace knows that."""
         if self.turning is None:
             return problem
         linkage = problem.linkage
@@ -263,7 +272,7 @@ class SweptMechanisms:
         return replace(problem, linkage=replace(linkage, sketch=shown), extended=None)
 
     def _of(self, results: Results) -> Real:
-        """What is shown of a mechanism that was solved by the ordinary stages."""
+        """Requested quantities of a mechanism that was solved by the ordinary stages."""
         assert results.motion is not None
         searched = {
             "H": measures.arc_or_stroke,
@@ -292,13 +301,15 @@ def _curve_reader(
 
 
 class _ResultsAtPlaces:
-    """A solved mechanism at other places of its driver; the last ones are kept for the next quantity."""
+    """Solved mechanism at other driver coordinates; the last ones are kept for the next quantity."""
 
     def __init__(self, results: Results) -> None:
         self.results, self.q, self.there = results, np.empty(0), results
 
     def curves(self, one: ShownQuantity, rows: Real, q: Real) -> Real:
-        """Values of a quantity at places (k, n), the same mechanism in every row; nan where it cannot move."""
+        """Return a quantity at driver coordinates (rows, n), the same mechanism in each row; nan where it cannot
+        move.
+        """
         if not np.array_equal(q.ravel(), self.q):
             self.q, self.there = q.ravel(), pipeline.results_at(self.results, q.ravel())
         assert self.there.motion is not None

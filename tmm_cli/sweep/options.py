@@ -24,9 +24,10 @@ EXAMPLE = "--over OA=80..120:41"
 
 @dataclass(frozen=True, eq=False)
 class SweepAxis:
-    """A parameter that is swept. values: as they are written, in `unit` (none: bare numbers); dimension: of these.
+    """Swept parameter. values: as written, in `unit` (empty for plain numbers). dimension: None for plain
+    numbers.
 
-    factor: what a written value is multiplied by: to SI, by 1 where it is bare.
+    factor: factor from written values to SI, 1 for plain numbers.
     """
 
     name: str
@@ -37,16 +38,16 @@ class SweepAxis:
 
     @property
     def words(self) -> str:
-        """Its name with the unit."""
+        """Name with the unit."""
         return f"{self.name}, {self.unit}" if self.unit else self.name
 
     def text(self, value: float) -> str:
-        """A value as `--set` reads it."""
+        """Return a value as `--set` reads it."""
         return f"{value!r} {self.unit}".strip()
 
 
 def read_axes(task: Task, over: Sequence[str]) -> tuple[SweepAxis, ...]:
-    """What one or two options `--over` say. Raises ProblemError."""
+    """Read one or two options `--over`. Raises ProblemError."""
     if not 1 <= len(over) <= 2:
         raise ProblemError(_("one or two parameters are swept"), found=", ".join(over) or None, allowed=EXAMPLE)
     axes = []
@@ -94,7 +95,7 @@ def _read_axis(task: Task, text: str, usual: int) -> SweepAxis:
 
 
 def _unit_in_file(task: Task, name: str) -> str:
-    """In which the file writes the parameter; none of arithmetic on others."""
+    """Unit of the parameter in the file; empty if it is computed from others."""
     written = NUMBER_WITH_UNIT.fullmatch(str(task.tree.data.get("parameters", {}).get(name, "")))
     try:
         task.value(f"1 {written[2]}" if written else "")
@@ -104,7 +105,7 @@ def _unit_in_file(task: Task, name: str) -> str:
 
 
 def grid_points(axes: Sequence[SweepAxis]) -> Real:
-    """All points as they are written, (points, axes): the last parameter changes first."""
+    """Return all points in the units of the file, (points, axes); the last parameter changes first."""
     return np.stack([part.ravel() for part in np.meshgrid(*(axis.values for axis in axes), indexing="ij")], axis=1)
 
 
@@ -115,7 +116,7 @@ MOST_QUANTITIES = 12  # quantities at once
 
 @dataclass(frozen=True)
 class ShownQuantity:
-    """A quantity that is shown. quantity: how it is read from a solution; none of what is searched for."""
+    """Requested quantity. quantity: reads it from a solved state; None for a number that is found by a search."""
 
     name: str
     dimension: Dimension
@@ -123,17 +124,17 @@ class ShownQuantity:
 
     @property
     def whole(self) -> bool:
-        """Whether it belongs to the mechanism, and to no position."""
+        """True if the quantity describes the whole mechanism (stroke, k) rather than one position."""
         return self.quantity is None or self.quantity.whole
 
     @property
     def forces(self) -> bool:
-        """Whether it wants the force plan."""
+        """True if it needs the force plan."""
         return self.quantity is not None and self.quantity.stage in ("forces", "balance")
 
     @property
     def words(self) -> str:
-        """For people."""
+        """Name for people, in the current language."""
         if self.whole:
             return {PRESSURE: _("largest pressure angle")}.get(self.name, self.name)
         if self.ranges:
@@ -145,15 +146,16 @@ class ShownQuantity:
         return self.quantity is not None and self.quantity.against in ("range", "angle")
 
     def at_positions(self, solved: SolvedState) -> Any:
-        """What a tape is to give of it at positions, see `over_cycle`."""
+        """Return its values at positions, as `over_cycle` needs them."""
         assert self.quantity is not None
         found = self.quantity.read(solved)
         return found if self.ranges else np.abs(found)
 
     def over_cycle(self, curves: Callable[[Real, Real], Real], q: Real, values: Real) -> Real:
-        """One number of each variant, (variants,): the largest value over the cycle, or the range; nan of none.
+        """Return one number per variant, (variants,): the largest value over the cycle, or the range.
 
-        curves, q, values: see `roots.greatest`.
+        Args:
+            curves, q, values: as in `greatest`.
         """
         if not self.ranges:
             return greatest_values(curves, q, values)
@@ -165,7 +167,7 @@ class ShownQuantity:
 
 
 def showable_quantities(task: Task) -> Mapping[str, ShownQuantity]:
-    """All that can be shown of a file, by the names in its tables. Raises ProblemError."""
+    """Return all quantities of a file that can be shown, by name. Raises ProblemError."""
     named = {
         name: ShownQuantity(name, quantity.dimension, quantity)
         for name, quantity in task.quantities.items()
@@ -175,7 +177,7 @@ def showable_quantities(task: Task) -> Mapping[str, ShownQuantity]:
 
 
 def read_shown(task: Task, given: Sequence[str]) -> tuple[ShownQuantity, ...]:
-    """What options `--show` ask for: names with commas between; `v_E` is v of E. Raises ProblemError."""
+    """Read options `--show`: names separated by commas; `v_E` is v of E. Raises ProblemError."""
     every = showable_quantities(task)
     names = {
         **{name.replace(" of ", "_").replace(" on ", "_"): name for name in every},
@@ -202,7 +204,7 @@ def read_shown(task: Task, given: Sequence[str]) -> tuple[ShownQuantity, ...]:
 
 
 def _split_names(text: str, names: Mapping[str, str]) -> list[str]:
-    """Names between commas; a name may have a comma itself, R_10,11."""
+    """Split names at commas; a name may contain a comma itself, R_10,11."""
     found: list[str] = []
     for part in re.split(r"\s*,\s*", text.strip()):
         if found and f"{found[-1]},{part}" in names:
@@ -213,6 +215,6 @@ def _split_names(text: str, names: Mapping[str, str]) -> list[str]:
 
 
 def _example_names(every: Mapping[str, ShownQuantity]) -> list[str]:
-    """One of each kind."""
+    """One example of each kind of quantity."""
     kinds = {re.split(r" of |_(?=[^b])", name)[0]: name for name in reversed(list(every))}
     return list(kinds.values())[::-1]

@@ -28,9 +28,10 @@ STATE_WORDS = (
 
 @dataclass(frozen=True)
 class Border:
-    """Where how the mechanism goes changes: the point (as parameters are written), and how it goes before and after.
+    """Point (in the units of the file) at which the state of the mechanism changes, and the states before and
+    after.
 
-    along: the number of the parameter on whose line it was looked for. why: the limit, or what was refused.
+    along: index of the parameter along whose grid line it was found. why: the exceeded limit, or a refusal.
     """
 
     at: tuple[float, ...]
@@ -42,10 +43,11 @@ class Border:
 
 @dataclass(frozen=True, eq=False)
 class SweepResults:
-    """A sweep. state: how the mechanism goes, (points,); values: (points, quantities), SI, nan where it does not go.
+    """Results of a sweep. state: state of the mechanism, (points,). values: (points, quantities), SI, nan where
+    infeasible.
 
-    Points are in the order of sweep.grid. taped: whether a tape did it. reach: by the name of each load tabulated
-    against the stroke in lengths, its last row and the stroke of each point that has one (m or rad).
+    points: in the order of `grid_points`. taped: a trace was used. reach: for each load tabulated against the
+    stroke in lengths, its last argument and the stroke of each point (m or rad).
     """
 
     axes: tuple[SweepAxis, ...]
@@ -68,7 +70,7 @@ TITLE, BORDERS = N_("Sweep"), N_("Where that changes")
 
 
 def points_table(sweep: SweepResults, *, words: bool = False) -> Table:
-    """A row a point. words: how it goes is said for people, else as in files."""
+    """Return a table with one row per point. words: states in words for people, else as in files."""
     names = [translated(word) for word in STATE_WORDS] if words else list(STATES)
     columns = [Column(axis.words, sweep.points[:, k], NUMBER) for k, axis in enumerate(sweep.axes)]
     columns += [Column(one.name, sweep.values[:, k], one.dimension) for k, one in enumerate(sweep.shown)]
@@ -79,7 +81,7 @@ def points_table(sweep: SweepResults, *, words: bool = False) -> Table:
 
 
 def borders_table(sweep: SweepResults, *, words: bool = False) -> Table:
-    """A row a place where how the mechanism goes changes."""
+    """Return a table with one row per border. words: states in words for people, else as in files."""
     names = [translated(word) for word in STATE_WORDS] if words else list(STATES)
     columns = [
         Column(axis.words, np.array([mark.at[k] for mark in sweep.marks]), NUMBER, digits=9)
@@ -94,7 +96,7 @@ def borders_table(sweep: SweepResults, *, words: bool = False) -> Table:
 
 
 def sections(sweep: SweepResults, problem: Problem) -> Iterator[tuple[str, Any]]:
-    """result.json of a sweep, part by part: values in SI and radians, parameters as they are written."""
+    """Yield result.json of a sweep part by part: values in SI and radians, parameters in the units of the file."""
     yield "format", FORMAT
     yield "problem", problem.name
     yield "title", problem.title
@@ -135,7 +137,7 @@ def sections(sweep: SweepResults, problem: Problem) -> Iterator[tuple[str, Any]]
 
 
 def _reason_text(text: str, state: int) -> str:
-    """For people."""
+    """Reason in words for people."""
     kind, _space, thing = text.partition(" ")
     if state == LIMIT and kind == "pressure":
         return _("pressure angle of link {link}").format(link=thing)
@@ -149,7 +151,6 @@ def _quantity_kind(one: Any) -> str:
 
 
 def _si_unit(dimension: Any) -> str:
-    """The SI unit."""
     bases = {"m": dimension.length, "kg": dimension.mass, "s": dimension.time, "rad": dimension.angle}
     named = {DIMENSIONS["force"].dimension: "N", DIMENSIONS["moment of force"].dimension: "N*m"}
     return named.get(dimension, product_text(bases))

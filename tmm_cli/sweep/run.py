@@ -1,4 +1,4 @@
-"""A sweep chunk by chunk, here, in processes or on a cluster; then the places where how the mechanism goes changes."""
+"""Runs a sweep in chunks, in this process, in several or on a cluster, and finds the borders between states."""
 
 from __future__ import annotations
 
@@ -30,9 +30,10 @@ SINGLE_HALVINGS = (20, 4)  # one by one: of one parameter, of two
 
 @dataclass(frozen=True, eq=False)
 class BorderSearch:
-    """Pairs of points (pairs, parameters) between which how the mechanism goes changes from a state.
+    """Bisection between pairs of points (pairs, parameters) with different states; `inside` has the state
+    `state`.
 
-    Gives the last points with that state, the first ones beyond, how the mechanism goes there, and why.
+    Returns the last points with that state, the first ones beyond, and their states and reasons.
     """
 
     mechanisms: SweptMechanisms
@@ -56,9 +57,14 @@ class BorderSearch:
 
 
 def refuse_points(problem: Problem, points: int, *, peaks: bool, taped: bool, cores: int | None) -> None:
-    """Refuse what would take longer than a minute on every core. Raises ProblemError.
+    """Refuse a sweep that would take longer than a minute on all cores. Raises ProblemError.
 
-    peaks: something is shown whose peak over the cycle is searched for. cores: None of a cluster.
+    Args:
+        problem: the problem of the file.
+        points: number of points.
+        peaks: a quantity is shown whose peak over the cycle is searched.
+        taped: a trace is used.
+        cores: None for a cluster.
     """
     refuse_work(problem.linkage, problem.request)
     positions = 2 * CYCLE if peaks else 0  # a scan, and finer grids about its peaks
@@ -80,7 +86,13 @@ def refuse_points(problem: Problem, points: int, *, peaks: bool, taped: bool, co
 def run_sweep(
     mechanisms: SweptMechanisms, way: JobRunner = run_here, seen: Callable[[int], None] = lambda count: None
 ) -> SweepResults:
-    """All points, and the borders between them. seen: is told of so many more points. Raises ProblemError."""
+    """Solve all points, and find the borders between them. Raises ProblemError.
+
+    Args:
+        mechanisms: the mechanisms and their grid.
+        way: runs the jobs.
+        seen: called with the number of points after each chunk.
+    """
     axes, points = mechanisms.axes, grid_points(mechanisms.axes)
     taped = mechanisms.turning is not None
     size = CHUNK if taped else SINGLE_CHUNK
@@ -103,7 +115,7 @@ def run_sweep(
 
 @dataclass(frozen=True, eq=False)
 class GridEdge:
-    """Two points (parameters,) of a line of the grid, and how the mechanism goes at each, and why."""
+    """Two neighbouring grid points (parameters,) with different states, and the reasons."""
 
     along: int
     points: tuple[Real, Real]
@@ -112,7 +124,7 @@ class GridEdge:
 
 
 def _find_edges(axes: Sequence[SweepAxis], points: Real, state: Real, why: Sequence[str]) -> list[GridEdge]:
-    """Neighbours of the grid at which the mechanism goes differently."""
+    """Grid edges whose ends have different states."""
     number = np.arange(len(points)).reshape([len(axis.values) for axis in axes])
     found = []
     for along in range(len(axes)):
@@ -125,7 +137,7 @@ def _find_edges(axes: Sequence[SweepAxis], points: Real, state: Real, why: Seque
 
 
 def _find_borders(mechanisms: SweptMechanisms, edges: Sequence[GridEdge], way: JobRunner) -> tuple[Border, ...]:
-    """Borders between neighbours of the grid; between two of them there may be several."""
+    """Borders on grid edges; one edge may contain several."""
     taped = mechanisms.turning is not None
     halvings = HALVINGS if taped else SINGLE_HALVINGS[len(mechanisms.axes) - 1]
     size = CHUNK if taped else max(1, SINGLE_CHUNK // halvings)

@@ -1,7 +1,8 @@
-"""Whether variants assemble, turn and keep their limits, where their strokes end: by their tape, (variants,) at once.
+"""Scan of many variants at once by their trace: assembly, full rotation, limits, ends of strokes.
 
-Places of a turn are looked at first; what decides between two of them (a group that may fall short, ends of strokes,
-peaks of what has a limit) is then found there. Variants in which much happens between two places are looked at finely.
+Driver positions of one revolution are scanned first; what decides between two of them (a group that may
+fail to close, ends of strokes, peaks of limited quantities) is then searched there. Variants in which
+much happens between two positions are scanned with a finer step.
 """
 
 from __future__ import annotations
@@ -30,9 +31,10 @@ SCAN_WORKS, SCAN_STOPS, SCAN_APART = range(3)  # what a variant does
 
 @dataclass(frozen=True)
 class ScanRequest:
-    """What is looked for. peaks: names of what is limited whose largest values are wanted to the last digit.
+    """What a scan looks for. peaks: names of limited curves whose peaks are needed with full precision.
 
-    limits: of what is limited, near which that is wanted of all. strokes: whether their ends are.
+    limits: limits of curves, near which all peaks are computed precisely. strokes: also find the ends of
+    strokes.
     """
 
     peaks: Sequence[str] = ()
@@ -42,11 +44,12 @@ class ScanRequest:
 
 @dataclass(frozen=True, eq=False)
 class ScanResults:
-    """How variants go (WORKS, ...), (variants,); of those that work the peaks of what is limited, by name, else nan.
+    """State of each variant (SCAN_WORKS, ...), (variants,); for working ones the peaks of limited curves by
+    name, else nan.
 
-    sure: whether all is told: the outputs have as many strokes as those of the first one, nothing nearly happens. A
-    peak that is far below its limit, and was not asked for, is that of the scan. ends: the driver's places where
-    strokes of each of `Turning.stroke_links` end, (variants, links, 2).
+    sure: the scan is conclusive: outputs have the number of strokes of the first variant, no near misses. A
+    peak far below its limit that was not requested has the precision of the scan. ends: driver coordinates of
+    the ends of strokes of `CrankVariants.stroke_links`, (variants, links, 2).
     """
 
     does: Real
@@ -55,13 +58,13 @@ class ScanResults:
     ends: Real
 
     def take(self, rows: Real) -> ScanResults:
-        """Some of the variants."""
+        """Return the results of some variants."""
         peaks = {name: peak[rows] for name, peak in self.peaks.items()}
         return ScanResults(self.does[rows], self.sure[rows], peaks, self.ends[rows])
 
 
 def scan_variants(turning: CrankVariants, columns: Real, wish: ScanRequest) -> ScanResults:
-    """Variants whose numbers are the rows of columns (variants, n)."""
+    """Scan the variants whose numbers are the rows of columns (variants, n)."""
     found = _VariantScan(turning, columns, wish, SCAN).looked
     again = np.flatnonzero(~found.sure)
     for rows in np.array_split(again, -(-len(again) // BLOCK)) if again.size else ():
@@ -73,7 +76,7 @@ def scan_variants(turning: CrankVariants, columns: Real, wish: ScanRequest) -> S
 
 
 class _VariantScan:
-    """Variants at so many places of a turn."""
+    """Variants at equally spaced driver positions of one revolution."""
 
     def __init__(self, turning: CrankVariants, columns: Real, wish: ScanRequest, places: int) -> None:
         self.turning, self.columns, self.wish = turning, columns, wish
@@ -81,12 +84,12 @@ class _VariantScan:
         self.found = turning.scan(*split_columns(columns), self.at(np.arange(places)))
 
     def at(self, numbers: Real) -> Real:
-        """The driver at places."""
+        """Return driver coordinates of scan positions."""
         return self.turning.linkage.sketch.at + self.step * numbers
 
     @property
     def looked(self) -> ScanResults:
-        """All that is looked for."""
+        """Results of the scan."""
         does, sure = self._assembled()
         ends = np.full((len(self.columns), len(self.turning.stroke_links), 2), np.nan)
         if self.wish.strokes and np.any(does == SCAN_WORKS):
@@ -105,7 +108,9 @@ class _VariantScan:
         return ScanResults(does, sure | ~works, peaks, ends)
 
     def _assembled(self) -> tuple[Real, Real]:
-        """Whether they are assembled where the sketch is, and all round, in no dead position; whether surely so."""
+        """State of each variant by assembly at the sketch, full rotation and dead positions; and whether it is
+        certain.
+        """
         does = np.full(len(self.columns), SCAN_WORKS)
         apart, lost, doubtful = np.zeros((3, len(does)), dtype=bool)
         for k in range(len(self.turning.kernels)):
@@ -128,7 +133,7 @@ class _VariantScan:
         return does, ~doubtful
 
     def _peak(self, name: str, works: Real) -> Real:
-        """The largest value of a curve of each variant; of what is not wanted, between places near its limit only."""
+        """Largest value of a curve of each variant; if not requested, refined only near its limit."""
         curve = self.found[name]
         top: Real = np.max(curve, axis=1)
         limit = self.wish.limits.get(name)
@@ -143,7 +148,7 @@ class _VariantScan:
 
 
 def _nearly_reaches(curve: Real, where: Real) -> Real:
-    """Which variants' curves below zero may reach it between two places. where: places that count."""
+    """Variants whose negative curves may reach zero between two positions. where: positions that count."""
     rows, _at = candidate_peaks(curve, np.zeros(len(curve)), where)
     found = np.zeros(len(curve), dtype=bool)
     found[rows] = True
@@ -151,7 +156,7 @@ def _nearly_reaches(curve: Real, where: Real) -> Real:
 
 
 def _stroke_ends(slope: Callable[[Real], Real], low: Real, high: Real) -> Real:
-    """Roots between places; that at a place itself is there, though rounding has it on neither side."""
+    """Roots between scan positions; a root at a position itself may be lost by rounding, and is taken there."""
     at_low, at_high = slope(low), slope(high)
     outside = np.sign(at_low) == np.sign(at_high)
     found = find_roots(slope, low, high)
@@ -159,7 +164,7 @@ def _stroke_ends(slope: Callable[[Real], Real], low: Real, high: Real) -> Real:
 
 
 def _curve_of_variants(turning: CrankVariants, name: str, columns: Real) -> Callable[[Real], Real]:
-    """One of the curves of variants, over places of each."""
+    """One curve of variants, as a function of driver coordinates of each."""
     close = VariantCurves(turning.part(name), columns)
     return lambda q: close(q)[name]
 
@@ -169,7 +174,7 @@ def _negated_curve(close: VariantCurves, name: str) -> Callable[[Real], Real]:
 
 
 def variant_strokes(turning: CrankVariants, columns: Real, looked: ScanResults, varied: Variant) -> Strokes | None:
-    """Of variants that work, as arrays (variants, 1)."""
+    """Strokes of working variants, as arrays (variants, 1)."""
     every = []
     for k, link in enumerate(turning.stroke_links):
         curve = _TracedOutputCurve(
@@ -185,7 +190,7 @@ def variant_strokes(turning: CrankVariants, columns: Real, looked: ScanResults, 
 
 @dataclass(frozen=True)
 class _TracedOutputCurve:
-    """The curve of one of the outputs, see kinematics.strokes.Curve."""
+    """Curve of one output, see `kinematics.Curve`."""
 
     link: str
     swings: bool

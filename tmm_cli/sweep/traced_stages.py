@@ -1,4 +1,9 @@
-"""Peaks of curves round a cycle, of many variants at once, between the places at which they are known."""
+"""Trace of the stages for variants with a fully rotating crank, and peaks of their curves between scan
+positions.
+
+Unlike `batch.TracedVariants` it also handles loads that act in strokes: start and length of strokes are
+inputs.
+"""
 
 from __future__ import annotations
 
@@ -43,9 +48,10 @@ SHIFTS = 12  # of a window whose largest value lies at its edge
 
 
 def candidate_peaks(curve: Real, level: Real, where: Real) -> tuple[Real, Real]:
-    """Peaks of closed curves (variants, places) that may reach a level (variants,) between two places: row and place.
+    """Find peaks of closed curves (variants, places) that may reach a level (variants,) between two places.
 
-    Between places a curve rises by no more than twice what it rises from one to the next. where: places that count.
+    Between places a curve is assumed to rise by at most twice its rise from one place to the next. where:
+    places that count. Returns row and place.
     """
     before, after = np.roll(curve, 1, axis=1), np.roll(curve, -1, axis=1)
     with np.errstate(invalid="ignore"):
@@ -56,9 +62,13 @@ def candidate_peaks(curve: Real, level: Real, where: Real) -> tuple[Real, Real]:
 
 
 def refine_peaks(curve: Callable[[Real], Real], q: Real, step: float, values: tuple[Real, Real, Real]) -> Real:
-    """The peak of each of many curves about a place q of its own (peaks,), with its values before, there and after.
+    """Refine one peak of each curve.
 
-    curve: values at places (peaks, n), for every curve its own.
+    Args:
+        curve: values at places (peaks, n) of each curve.
+        q: place of each peak, (peaks,).
+        step: distance of scan places.
+        values: values of the curves before, at and after q.
     """
     before, here, after = values
     bend = 2 * here - before - after
@@ -87,7 +97,9 @@ FINE_SCAN = 1440  # places in a turn of the driver, as the ordinary stages look 
 
 @dataclass(frozen=True)
 class LimitedCurve:
-    """A curve that has a limit: pressure angle of a link (rad), share of a slot by which a stone is beyond its end."""
+    """Curve with a limit: pressure angle of a link (rad), or distance beyond the end of a slot as a fraction of
+    its length.
+    """
 
     name: str
     kind: str
@@ -96,9 +108,10 @@ class LimitedCurve:
 
 
 class CrankVariants:
-    """Raises NoTapeError or DependsOnData where there is no tape, and what assembly raises.
+    """Variants by a trace, each at driver positions of its own.
 
-    read: what is wanted at the positions, by name; forces: whether that needs reactions.
+    read: reads the requested quantities at positions; forces: they need reactions. Raises NoTapeError or
+    DependsOnData if there is no trace, and the errors of assembly.
     """
 
     def __init__(
@@ -141,16 +154,16 @@ class CrankVariants:
         self._some: dict[tuple[str, ...], TraceProgram] = {}
 
     def part(self, *names: str) -> TraceProgram:
-        """Some of the curves at places of each variant; made once."""
+        """Return the program for some curves at places of each variant; cached."""
         if names not in self._parts:
             self._parts[names] = self.close.only(*names)
         return self._parts[names]
 
     @cached_property
     def strokes(self) -> tuple[int, ...]:
-        """How many strokes each of `stroke_links` has in the first linkage: two or none.
+        """Number of strokes of each of `stroke_links` in the first linkage: two or none.
 
-        Raises NoTapeError if the main output has more, or another link has not two.
+        Raises NoTapeError if the main output has more than two, or another link has not exactly two.
         """
         places = self.linkage.sketch.at + 2 * np.pi * np.arange(FINE_SCAN) / FINE_SCAN
         names = [f"slope{k}" for k in range(len(self.stroke_links))]
@@ -161,7 +174,7 @@ class CrankVariants:
         return counts
 
     def _linkage(self, data: Sequence[Any]) -> Any:
-        """Linkage and groups with stands in the places of their numbers."""
+        """Linkage and groups with placeholders for their numbers."""
         linkage = placeholder_linkage(self.make, self.first, data, self.linkage.sketch)
         return linkage, tuple(kernel.rebind(linkage) for kernel in self.kernels)
 
@@ -201,7 +214,7 @@ class CrankVariants:
         return solve_stages(linkage, structure, kernels, q, read, forces, strokes, blank=False, start=begin)
 
     def varied(self, columns: Real) -> tuple[Variant, Real]:
-        """The variants as one with arrays for numbers; which of them would have been built otherwise, (variants,)."""
+        """Return the variants as one with arrays as numbers, and the mask of those that would be built differently."""
         otherwise: list[Any] = []
         both = zip(self.first, split_columns(columns), strict=True)
         made = self.make([TracedNumber(x, column, otherwise) for x, column in both])
@@ -213,9 +226,10 @@ class CrankVariants:
     def over_cycle(
         self, columns: Real, strokes: Strokes | None
     ) -> tuple[Real, Callable[[Real, Real, Sequence[str]], Mapping[str, Real]]]:
-        """Places of the driver over a cycle, (places,), and what is wanted at places of some variants.
+        """Return driver coordinates over a cycle, (places,), and a function for requested quantities at other
+        places.
 
-        The function takes numbers of variants (k,), places of each (k, n) and names.
+        The function takes indices of variants (k,), places of each (k, n) and names.
         """
         every = () if strokes is None else (strokes, *strokes.others)
         firsts = [next(iter(x.strokes), Stroke(0.0, 0.0, 0.0, 0.0, True)) for x in every]
@@ -230,7 +244,7 @@ class CrankVariants:
         return start + sense * np.linspace(0, 2 * np.pi, CYCLE + 1), at
 
     def _wanted(self, *names: str) -> TraceProgram:
-        """Some of what is wanted at positions; made once."""
+        """Program for some requested quantities at positions; cached."""
         if names not in self._some:
             self._some[names] = self.forces.only(*names)
         return self._some[names]
@@ -238,7 +252,7 @@ class CrankVariants:
 
 @dataclass(frozen=True)
 class VariantCurves:
-    """A program at places of variants of its own: q is (variants, n), or (m variants,), which is m rounds of them."""
+    """Program for certain variants; q is (variants, n), or (m variants,) for m values per variant."""
 
     program: TraceProgram
     columns: Real
@@ -250,12 +264,12 @@ class VariantCurves:
 
 
 def sign_changes(slope: Real) -> Real:
-    """After which places of a turn a slope has another sign."""
+    """Mask of the places of a revolution after which a slope changes its sign."""
     forward = slope >= 0
     found: Real = forward != np.roll(forward, -1, axis=1)
     return found
 
 
 def curve_limit(one: LimitedCurve, allowed: tuple[float, float]) -> float:
-    """The limit of a curve; allowed: pressure angles of sliding and of turning links (rad)."""
+    """Limit of a curve. allowed: pressure angles of sliding and of rotating links (rad)."""
     return END_OF_SLOT if one.kind == "slot" else allowed[0 if one.sliding else 1]

@@ -1,4 +1,4 @@
-"""Synthesis: lengths from what a mechanism must do, a module or a package a task."""
+"""Synthesis of mechanisms: dimensions from required strokes, positions or functions; enumeration of schemes."""
 
 from . import measures as measures, solving as solving
 from .construction import (

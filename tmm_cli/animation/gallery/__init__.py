@@ -1,1 +1,3 @@
-"""Many mechanisms on one page: found by what they are and do, each of them drawn and turning."""
+"""Gallery: many mechanisms on one page, each drawn and moving, with search by structure, purpose and
+properties.
+"""

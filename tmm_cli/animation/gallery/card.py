@@ -1,4 +1,4 @@
-"""What a mechanism is for, by what its outputs do when it moves."""
+"""Cards of a gallery: class, groups, purposes and properties of a mechanism, and its moving picture."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ PURPOSES: Final = {
 
 
 def purposes(results: Results) -> tuple[str, ...]:
-    """Keys of PURPOSES, in their order, of results that have a motion."""
+    """Return keys of PURPOSES, in their order, for results with a motion."""
     found = set(_iterate_purposes(results))
     return tuple(key for key in PURPOSES if key in found)
 
@@ -75,7 +75,7 @@ def _iterate_purposes(results: Results) -> Iterable[str]:
 
 
 def _has_dwell(results: Results, link: str) -> bool:
-    """Whether an output hardly moves at an end of its way, while the crank goes on."""
+    """Return True if an output hardly moves near an end of its stroke while the crank rotates."""
     motion = motion_at_positions(results, results.closely(360 * results.turns + 1)[:-1])
     run = output_run(motion, link)[0]
     run = np.unwrap(run) if results.linkage.output_swings(link) else run
@@ -97,7 +97,7 @@ Value = tuple[str, float, Dimension]
 
 @dataclass(frozen=True)
 class Fact:
-    """A property: its words, its value with the unit for people, and the number (in that unit) for searches."""
+    """Property: its name, its value with unit for people, and the number in that unit for searches."""
 
     name: str
     told: str
@@ -106,10 +106,10 @@ class Fact:
 
 @dataclass(frozen=True)
 class Card:
-    """A mechanism; texts are as the file has them, and may be anything.
+    """Card of a mechanism; texts are those of the file, which may contain anything.
 
-    number: of its class, empty in space; groups: with class and type, II RRR; purposes: keys of PURPOSES.
-    language: of the file. turning: of a chain given by pairs alone, which has no dimensions, its scheme.
+    number: class, empty for spatial chains. groups: class and type, II RRR. purposes: keys of PURPOSES.
+    language: of the file. turning: moving picture; for a chain given by pairs only, its scheme.
     """
 
     file: str
@@ -126,7 +126,7 @@ class Card:
 
 
 def make_card(file: str) -> Card:
-    """The card of a problem file. Raises ProblemError."""
+    """Make the card of a problem file. Raises ProblemError."""
     tree = read_file(file)
     if is_chain(tree):
         return _chain_card(file, tree, count(build_chain(tree)))
@@ -170,7 +170,7 @@ def _chain_card(file: str, tree: Tree, results: ChainResults) -> Card:
 
 
 def leading_comment(file: str) -> str:
-    """The remark at the head of a file, where people say what it is."""
+    """Return the comment at the beginning of a file, which usually describes it."""
     lines = []
     with open(file, encoding="utf-8-sig") as stream:
         for line in stream:
@@ -186,7 +186,7 @@ def _file_language(tree: Tree) -> str:
 
 
 def _facts(results: Results) -> Iterator[Value]:
-    """What the file shows; what every mechanism has."""
+    """Properties shown in the file, and those that every mechanism has."""
     structure, linkage = results.structure, results.linkage
     yield from _shown_properties(results)
     yield _("mobility W"), float(structure.mobility + structure.redundant), NUMBER
@@ -216,7 +216,7 @@ def _shown_properties(results: Results | ChainResults) -> Iterable[Value]:
 
 
 def _format_facts(values: Iterable[Value], units: UnitSystem) -> Iterator[Fact]:
-    """With the units of the file; of one name the first, and none that has no value."""
+    """Values in the units of the file; the first one of each name, without those that are undefined."""
     told = set[str]()
     for name, value, dimension in values:
         if name not in told and math.isfinite(value):

@@ -1,6 +1,7 @@
-"""A mechanism that turns on a card: its bodies as SVG, and where they are in few frames, as whole numbers.
+"""Moving picture of a card: bodies as SVG, and their places in few frames as integers.
 
-The page interpolates between frames by cubic curves, so few are enough.
+The page interpolates between frames by cubic curves, so few are enough. A chain given by pairs alone is
+drawn as a scheme: links in rows by their distance from the frame, pairs between them.
 """
 
 from __future__ import annotations
@@ -29,10 +30,11 @@ FrameValues = int | list[int]
 
 @dataclass(frozen=True)
 class MovingPicture:
-    """The drawing of the first frame, its sides (mm), and the frames; none of what does not move.
+    """Drawing of the first frame, its view box (mm), and the frames, which are empty if nothing moves.
 
-    bodies: x, y, turn and stretch of each, in PLACE and TURN: a number of what does not change, else the first value
-    and the difference of each next one. loops: whether the last frame is the first one again. seconds: of all frames.
+    bodies: x, y, angle and stretch of each body, in STEPS_PER_MM and STEPS_PER_RADIAN: a constant as one
+    number, else the first value and the differences. loops: the last frame is the first one again. seconds:
+    duration of all frames.
     """
 
     svg: str
@@ -43,7 +45,7 @@ class MovingPicture:
 
 
 def draw_moving_picture(results: Results) -> MovingPicture:
-    """Of results with kinematics."""
+    """Draw the moving picture of results with kinematics."""
     turns = results.turns or 1
     motion = _choose_motion(results, min(FRAMES * turns, MOST_FRAMES) + 1)
     still = len(motion.q) < 2
@@ -59,7 +61,7 @@ def draw_moving_picture(results: Results) -> MovingPicture:
 
 
 def _choose_motion(results: Results, count: int) -> Motion:
-    """Where it moves over what is asked for, or else as far as its driver can go; or the sketch alone."""
+    """Motion over the requested range, else over the driver's range, else the sketched position."""
     reach = results.driver_range
     assert reach is not None
     for q in (results.closely(count), np.linspace(reach.start, reach.end, count)):
@@ -70,7 +72,7 @@ def _choose_motion(results: Results, count: int) -> Motion:
 
 
 def _group_attributes(picture: MechanismPicture, name: str, moving: list[str]) -> str:
-    """Where the body is in the first frame, and its number if it moves."""
+    """SVG attributes of a body: its place in the first frame, and its index if it moves."""
     body = picture.bodies[name]
     if name == FRAME:
         return ""
@@ -82,7 +84,7 @@ def _group_attributes(picture: MechanismPicture, name: str, moving: list[str]) -
 
 
 def _body_frames(body: MovingBody) -> tuple[FrameValues, FrameValues, FrameValues, FrameValues]:
-    """With y down, as the page has it."""
+    """Frames of a body with y pointing down, as on the page."""
     return (
         _frame_values(body.place.real * STEPS_PER_MM),
         _frame_values(-body.place.imag * STEPS_PER_MM),
@@ -110,7 +112,7 @@ EDGE, LEAST = 4.0, 110.0  # mm: about the scheme, and its least width
 
 
 def draw_chain(chain: SpatialChain) -> MovingPicture:
-    """The frame below; at each pair the number of its freedoms."""
+    """Draw a chain with the frame at the bottom; each pair shows the number of its freedoms."""
     places = chain_places(chain)
     marks: list[Mark] = []
     between = Counter[frozenset[str]]()
@@ -132,7 +134,7 @@ def draw_chain(chain: SpatialChain) -> MovingPicture:
 
 
 def _link_box(name: str, place: complex) -> list[Mark]:
-    """A link, with as much of its name as there is room for."""
+    """Box of a link, with as much of its name as fits."""
     most = int((APART - 2) / (SHARE * LETTER))
     text = name if len(name) <= most else f"{name[: most - 1]}…"
     half = max(SHARE * LETTER * len(text), HIGH) / 2 + 0.5 + 0.5j * HIGH
@@ -142,7 +144,7 @@ def _link_box(name: str, place: complex) -> list[Mark]:
 
 
 def chain_places(chain: SpatialChain) -> dict[str, complex]:
-    """Middles of the links: row by row, each link as near to those that it hangs on as its row allows."""
+    """Return the centres of the links: in rows, each link as near to its neighbours below as its row allows."""
     rows = [[FRAME]]
     known = {FRAME}
     while rows[-1]:

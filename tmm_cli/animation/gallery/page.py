@@ -1,6 +1,7 @@
-"""The page of a gallery: one HTML file, cards as they stand and frames as JSON, and a script that finds and moves them.
+"""Page of a gallery: one HTML file with cards, frames as JSON, and a script that searches and moves them.
 
-It asks nothing of any network: its policy allows its own style and its own script alone. What comes from files is data.
+It loads nothing from the network: its content security policy allows its own style and script only. Texts
+of files are escaped.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from tmm_cli.mechanics.structure import ROMAN
 
 
 def gallery_page(cards: Sequence[Card]) -> str:
-    """The page of so many mechanisms, in their order."""
+    """Return the HTML page of these mechanisms, in their order."""
     groups = Counter(group for card in cards for group in card.groups)
     numbers = Counter(card.number for card in cards if card.number)
     purposes = Counter(purpose for card in cards for purpose in card.purposes)
@@ -74,7 +75,7 @@ def _card_data(card: Card) -> dict[str, Any]:
 
 
 def _display_names(files: Sequence[str]) -> list[str]:
-    """Names for readers: of what was named by a full path, the part below the folder that all of these have."""
+    """File names for readers: absolute paths are shortened to the part below their common folder."""
     full = [os.path.dirname(file) for file in files if os.path.isabs(file)]
     try:
         above = os.path.commonpath(full) if full else ""
@@ -125,5 +126,5 @@ def _options_html(words: Mapping[str, str], counts: Mapping[str, int]) -> str:
 
 
 def _escape(text: str) -> str:
-    """As data of the page: no markup, and no signs that a page may not have."""
+    """Escape text for HTML, without characters that a page must not contain."""
     return escape(text.translate(NOT_XML).encode(errors="replace").decode())

@@ -1,4 +1,4 @@
-"""How many digits are to be trusted."""
+"""Accuracy of results: bounds by rounding, and sensitivity to the lengths of the file."""
 
 from .length_sensitivity import (
     as_double_doubles as as_double_doubles,

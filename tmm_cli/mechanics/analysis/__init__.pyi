@@ -1,4 +1,4 @@
-"""Which stage needs which, and what they found."""
+"""Stages of the analysis of a mechanism, and their results."""
 
 from . import mechanism as mechanism, pipeline as pipeline
 from .checks import Check as Check, run_checks as run_checks

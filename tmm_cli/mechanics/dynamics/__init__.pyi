@@ -1,4 +1,4 @@
-"""The law of motion: what drives the machine, the flywheel, balancing."""
+"""Dynamics of machines: motors, law of motion, flywheel, single runs, balancing."""
 
 from .balancing import (
     BalancedCycle as BalancedCycle,

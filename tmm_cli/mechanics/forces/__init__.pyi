@@ -1,4 +1,4 @@
-"""Loads, the force plan group by group, and the Zhukovsky lever that checks it."""
+"""Loads, reactions of the Assur groups, friction, and the Zhukovsky lever that checks the balancing moment."""
 
 from .energy import (
     Energy as Energy,

@@ -1,4 +1,6 @@
-"""Velocity, acceleration and force plans and the lever, as named vectors with scale factors; nothing is drawn here."""
+"""Velocity, acceleration and force plans and the Zhukovsky lever as named vectors with scale factors,
+without drawing.
+"""
 
 from .force_polygons import ForcePlan as ForcePlan, force_plans as force_plans
 from .lever_drawing import (
