@@ -153,7 +153,7 @@ def test_every_equation_gives_the_same_with_arms_on_paper_as_in_metres(name):
 
 def test_the_note_tells_arms_in_millimetres_of_its_drawings(tmp_path):
     text = note_text(tmp_path, "frame: 6\nnote: {arms: paper}")
-    assert "The arms are in millimetres of the drawing, whose scale is μl = 0.01 m/mm" in text
+    assert "The moment arms are given in millimetres of the drawing, whose scale factor is μl = 0.01 m/mm" in text
     assert re.search(r"=\s*22\.15\s*mm", text), "R65 acts 221.5 mm from E: 22.15 mm at 10 mm a millimetre"
 
 
@@ -161,12 +161,12 @@ def test_the_note_follows_the_steps_of_the_guidelines_where_the_file_asks(tmp_pa
     text = note_text(tmp_path, "frame: 6\nnote: {sections: MATI}")
     steps = (
         "4.1 Plan of the mechanism",
-        "4.2 Weights and useful loads",
-        "4.3 Plan of accelerations and inertia forces",
+        "4.2 Weights and useful resistance",
+        "4.3 Acceleration plan and inertia forces",
         "4.4 Reactions in the kinematic pairs",
         "4.4.1 Group of links 4, 5",
         "4.4.2 Group of links 2, 3",
-        "4.4.3 Driving link 1",
+        "4.4.3 Input link 1",
         "4.5 Zhukovsky lever",
     )
     body = text[text.rindex("4 Force analysis") :]

@@ -232,8 +232,8 @@ def test_what_was_understood_of_loads_is_told():
         "f",
         "2 from 3",
         "",
-        "2 N*m against the motion",
-        "crank from 0 deg to 90 deg",
+        "2 N*m, opposite to the motion",
+        "crank angle from 0 deg to 90 deg",
     ]
 
 
@@ -370,17 +370,24 @@ def test_a_load_along_the_motion_in_its_working_stroke_is_told_both_ways_out():
     [
         (
             "on: 3, force: [0, -100]",
-            "its force is perpendicular to the motion of its point. "
-            "Write it against the motion: force: {size: 100 N, angle: 180 deg}",
+            (
+"its force is perpendicular to the motion of its point. Write it, opposite to the motion: force: "
+"{size: 100 N, angle: 180 deg}"
+),
         ),
         (
             "on: 3, axes: link, force: [0, 100]",
-            "its force is perpendicular to the motion of its point. "
-            "Write it against the motion: force: {size: 100 N, angle: 180 deg}",
+            (
+"its force is perpendicular to the motion of its point. Write it, opposite to the motion: force: "
+"{size: 100 N, angle: 180 deg}"
+),
         ),
         (
             "on: 3, force: {angle: 90, against: stroke, table: [[0, 50], [100, 100]]}",
-            "its force is perpendicular to the motion of its point. Write it against the motion: angle: 180 deg",
+            (
+"its force is perpendicular to the motion of its point. Write it, opposite to the motion: angle: "
+"180 deg"
+),
         ),
         ("on: 3, moment: 5", "link 3 does not rotate. Write a force"),
         ("on: 1, force: [100, 0]", "its point is at rest. Write the link or the point that moves"),

@@ -164,7 +164,7 @@ def printed(text: str) -> list[str]:
     for apart in ("nav", "header", "ol", "h1", "h2", "svg", "caption", "figcaption", 'math display="block"'):
         body = re.sub(rf"<{apart}[ >].*?</{apart.partition(' ')[0]}>", " ", body, flags=re.S)
     body = re.sub(r"·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)", lambda power: f"e{power[1].translate(LOWERED)}", body)
-    body = re.sub(r"<p>With arms and segments read off.*?</p>", " ", body)  # as drawn: test_course_notation.py
+    body = re.sub(r"<p>If moment arms and segments are measured.*?</p>", " ", body)  # as drawn: test_course_notation.py
     return re.findall(FIGURES, re.sub(r"<[^>]+>", " ", body))
 
 

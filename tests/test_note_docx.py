@@ -85,7 +85,7 @@ NOTE = Note(
         Rows(
             "Velocities", (("position",), (Symbol("v", "B"),)), tuple(((str(k),), (f"0,{k}",)) for k in range(12)), "v"
         ),
-        Heading("Literature"),
+        Heading("References"),
         Sources((Source("a", "И. И. Артоболевский, Теория механизмов и машин"),)),
     ),
 )
@@ -114,7 +114,7 @@ def test_styles_are_those_of_word(file):
     styles = [p.style.name for p in read.paragraphs]
     assert {"Title", "Heading 1", "Heading 2", "Caption", "List Number"} <= set(styles)
     headings = [p.text for p in read.paragraphs if p.style.name == "Heading 1"]
-    assert headings == ["Forces", "Literature"]
+    assert headings == ["Forces", "References"]
     levels = read.styles["Heading 2"].element.find(f"{W}pPr/{W}numPr/{W}ilvl").get(f"{W}val")
     assert levels == "1"  # of the list that numbers them: 1, 1.1
     assert read.core_properties.title == "Crank shaper"

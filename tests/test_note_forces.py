@@ -58,7 +58,7 @@ def test_no_reaction_is_put_in_before_it_is_found(name):
     links = list(solved(name).linkage.links)
     known: set[Symbol] = set()
     for block in chapter(name):
-        if isinstance(block, Heading) and block.text.startswith("Loads of the links"):
+        if isinstance(block, Heading) and block.text.startswith("Loads on the links"):
             known = set()
         if not isinstance(block, Found) or block.name.letter == "ΣM":
             continue
@@ -87,7 +87,7 @@ def test_a_sine_mechanism_has_a_force_analysis_at_any_one_position(at):
 
 def test_moments_that_cancel_are_written_out():
     """With the crank at 0 deg the four reactions of a four-cylinder engine have moments about the shaft that cancel."""
-    driving = section(at_one_position("engine-four", at="0"), "Driving link 1")
+    driving = section(at_one_position("engine-four", at="0"), "Input link 1")
     (equation,) = [b for b in driving if isinstance(b, Equation) and "ΣM" in repr(b)]
     assert [name for name in ("R₂₁", "R₄₁", "R₆₁", "R₈₁") if name in names(equation)] == ["R₂₁", "R₄₁", "R₆₁", "R₈₁"]
     (moment,) = [b for b in driving if isinstance(b, Found) and b.name.letter == "M"]
@@ -105,10 +105,10 @@ def test_groups_come_from_the_last_to_the_driving_link():
     headings = [block.text for block in chapter("shaper") if isinstance(block, Heading)]
     assert headings == [
         "Force analysis",
-        "Loads of the links",
+        "Loads on the links",
         "Group of links 4, 5",
         "Group of links 2, 3",
-        "Driving link 1",
+        "Input link 1",
         "Zhukovsky lever",
         "Forces in all positions",
     ]

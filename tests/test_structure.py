@@ -405,7 +405,7 @@ def test_several_primary_mechanisms_have_as_many_freedoms_together():
         (
             "shaper",
             (
-                "Chain, and kind of structure: closed, complex: the driver and several groups, of several types.",
+                "Type of chain and of structure: closed, complex: the driver and several groups, of several types.",
                 "Independent contours K = p − n: 2.",
             ),
         ),
@@ -416,7 +416,7 @@ def test_several_primary_mechanisms_have_as_many_freedoms_together():
             "five-bar",
             (
                 "Primary mechanisms: I(0,1), I(0,4); together W = 2.",
-                "Chain, and kind of structure: closed, simple: the driver and one group.",
+                "Type of chain and of structure: closed, simple: the driver and one group.",
             ),
         ),
         # p = 5 + 1 on n = 4 links
@@ -424,7 +424,7 @@ def test_several_primary_mechanisms_have_as_many_freedoms_together():
             "cam-lever",
             (
                 "Independent contours K = p − n: 2.",
-                "With each higher pair replaced by a link with two turning pairs: W = 3·5 − 2·7 = 1.",
+                "With each higher pair replaced by a link with two revolute pairs: W = 3·5 − 2·7 = 1.",
             ),
         ),
     ],

@@ -66,11 +66,11 @@ def _explained(found: BalancingResults) -> Iterable[Block]:
     pivot: Inline = Symbol(found.pivot) if found.pivot else _("the origin")
     yield said(
         _(
-            "At constant speed of the driving link the links act on the frame by their forces of inertia: by the force "
-            "{F} and, about {pivot}, by the moment {M}. {m} is the mass of a link, {a} the acceleration of its "
-            "centre of "
-            "mass, {x} and {y} the coordinates of this centre from {pivot}, {J} the moment of inertia about it, "
-            "{epsilon} the angular acceleration."
+            "At constant speed of the input link the inertia forces of the links act on the frame with the "
+            "resultant force {F} and, about {pivot}, the resultant moment {M}. Here {m} is the mass of a link, "
+            "{a} the acceleration of its centre of mass, {x} and {y} are the coordinates of the centre of mass "
+            "relative to {pivot}, {J} is the moment of inertia about the centre of mass and {epsilon} the "
+            "angular acceleration of the link."
         ),
         F=FORCE,
         M=MOMENT,
@@ -127,10 +127,9 @@ def write_counterweights(subject: Subject, found: BalancedCycle, task: Balancing
     if replaced.solved():
         yield said(
             _(
-                "A counterweight has the product {D} = m·r of its mass and its radius. Links that carry none are "
-                "replaced by masses in their hinges, so that the common centre of mass does not change; a "
-                "counterweight "
-                "then balances the masses of its link about its pivot, on the side that is away from them."
+                "The mass-radius product of a counterweight is {D} = m·r. A link without a counterweight is "
+                "replaced by point masses at its hinges, chosen so that the common centre of mass does not change. "
+                "A counterweight then balances the masses of its link about its pivot and is placed opposite to them."
             ),
             D=MASS_RADIUS,
         )
@@ -138,8 +137,8 @@ def write_counterweights(subject: Subject, found: BalancedCycle, task: Balancing
     else:
         yield said(
             _(
-                "The product {D} = m·r of the mass of a counterweight and its radius, and its angle, are such that the "
-                "mean square of the force over the cycle is least; it depends on them linearly."
+                "The mass-radius product {D} = m·r of each counterweight and its angle are chosen so that the mean "
+                "square of the shaking force over the cycle is least; the force depends on them linearly."
             ),
             D=MASS_RADIUS,
         )
@@ -153,10 +152,12 @@ def write_counterweights(subject: Subject, found: BalancedCycle, task: Balancing
             yield Found(Symbol("m", f"c{link}"), mass, weight.mass, _("kg"))
     before, after = (float(np.nanmax(np.abs(one.force))) for one in (found.before, found.after))
     if found.left < ON_LINE:
-        yield said(_("They leave no shaking force: the common centre of mass of the links does not move."))
+        yield said(
+            _("With the counterweights no shaking force remains: the common centre of mass of the links does not move.")
+        )
         return
     yield said(
-        _("The largest shaking force is {F} without them and {Fb} with them; the share that is left:"),
+        _("The largest shaking force is {F} without counterweights and {Fb} with them; the remaining fraction is"),
         F=Symbol("F", "max"),
         Fb=Symbol("F", "max").primed,
     )
@@ -215,7 +216,7 @@ class _Replaced:
         if not 0 <= share <= 1:
             return False
         self.told.append(
-            said(_("Link {link} is replaced by masses in {a} and {b}:"), link=name, a=hinges[0], b=hinges[1])
+            said(_("Link {link} is replaced by masses at points {a} and {b}:"), link=name, a=hinges[0], b=hinges[1])
         )
         for (point, part), other in (((hinges[0], 1 - share), hinges[1]), ((hinges[1], share), hinges[0])):
             symbol, value = Symbol("m", f"{name}{point}"), mass * part
@@ -251,7 +252,7 @@ class _Replaced:
             return False
         if evaluate(expression, EXACT) < 0:
             expression = -expression
-        text = _("The counterweight of link {link} balances its masses about {pivot}:")
+        text = _("The counterweight of link {link} balances the masses of the link about {pivot}:")
         self.told.append(said(text, link=name, pivot=pivot))
         self.told.append(Found(Symbol("D", name), expression, weight.size, _("kg·m")))
         if self._fixed(place) is None:
@@ -264,7 +265,11 @@ class _Replaced:
         every = [*(one for one in masses if one.value), Leaf(Symbol("m", f"c{name}"), weight.mass or 0.0)]
         total = Leaf(Symbol("m", f"{name}{pivot}"), sum(one.value for one in every))
         self.told.append(
-            said(_("With its counterweight, of {m}, it counts as a mass in {pivot}:"), m=every[-1].symbol, pivot=pivot)
+            said(
+                _("The link with its counterweight of mass {m} is replaced by one mass at {pivot}:"),
+                m=every[-1].symbol,
+                pivot=pivot,
+            )
         )
         own = Leaf(Symbol("D", name), weight.size) / Leaf(Symbol("r", name), weight.place.radius)
         self.told.append(Found(total.symbol, added((*every[:-1], own)), total.value, _("kg")))
@@ -290,7 +295,7 @@ class _Replaced:
                     yield signed(dot(along, arm), share * one * length)
                 self.told.append(
                     said(
-                        _("Of the masses in {point}, which go to and fro, the share {k} is balanced:"),
+                        _("The fraction {k} of the reciprocating masses at {point} is balanced:"),
                         point=point,
                         k=SHARE,
                     )
@@ -303,11 +308,11 @@ PLANES = ("I", "II")
 def write_rotor_balancing(subject: Subject, rotor: UnbalancedShaft, corrections: Vector) -> Iterable[Block]:
     """In the second plane what leaves no couple about the first one, then in the first what leaves no force."""
     two = len(rotor.planes) > 1
-    static = _("A shaft is balanced statically when the vectors {D} = m·r of all its masses add up to nothing.")
+    static = _("A rotor is statically balanced if the vectors {D} = m·r of all its masses sum to zero.")
     dynamic = _(
-        "A shaft is balanced dynamically when the vectors {D} = m·r of all its masses add up to nothing, and "
-        "their moments about one of the planes too; {alpha} is the angle of a mass, {z} its place along the "
-        "shaft."
+        "A rotor is dynamically balanced if the vectors {D} = m·r of all its masses sum to zero, and so do "
+        "their moments about one of the correction planes; {alpha} is the angle of a mass, {z} its "
+        "coordinate along the axis."
     )
     yield said(dynamic if two else static, D=Symbol("D"), alpha=Symbol("α"), z=Symbol("z"))
     if two:
@@ -318,7 +323,7 @@ def write_rotor_balancing(subject: Subject, rotor: UnbalancedShaft, corrections:
 def _mass(subject: Subject, rotor: UnbalancedShaft, corrections: Vector, k: int) -> Iterable[Block]:
     found, name = complex(corrections[k]), PLANES[k]
     own = Symbol("D", name)
-    yield said(_("In plane {plane}:"), plane=name)
+    yield said(_("Correction mass in plane {plane}:"), plane=name)
     parts = []
     for axis, function, take in (("x", "cos", np.real), ("y", "sin", np.imag)):
         whole: Expression = -added(_share(rotor, number, function, moment=k > 0) for number in range(len(rotor.sizes)))

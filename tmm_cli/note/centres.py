@@ -25,8 +25,8 @@ def write_centres(subject: Subject) -> Iterable[Block]:
     yield Heading(_("Instantaneous centres"))
     yield said(
         _(
-            "Two links have an instantaneous centre: the point in which both move alike. {k} links, the frame among "
-            "them, have this number of centres:"
+            "Any two links have an instantaneous centre: the point at which both have the same velocity. The "
+            "number of instantaneous centres of {k} links, including the frame, is"
         ),
         k=LINKS,
     )
@@ -35,16 +35,17 @@ def write_centres(subject: Subject) -> Iterable[Block]:
     yield Found(ALL, own * (own - 1) / 2, count * (count - 1) / 2, whole=True)
     yield said(
         _(
-            "The centre of two links that a hinge joins is the hinge; that of two links that slide along one "
-            "another is at infinity, across the guide. By Kennedy's theorem the centres of any three links lie on a "
-            "line, so that every other centre is where two such lines cross; the table says which."
+            "The instantaneous centre of two links joined by a hinge is the hinge; that of two links joined by "
+            "a prismatic pair is at infinity, perpendicular to the guide. By Kennedy's theorem the three "
+            "centres of any three links lie on one line, so every other centre is the intersection of two such "
+            "lines; the table names these lines."
         )
     )
     yield from (rows_of(subject, table) for table in walk(results, ("centres",)))
     yield from subject.figures(
         "centres",
-        _("The centres of a position are shown in figure {figure}."),
-        further=_("Those of another position are shown in figure {figure}."),
+        _("The instantaneous centres are shown in figure {figure}."),
+        further=_("The instantaneous centres in another position are shown in figure {figure}."),
     )
     if results.linkage.driver.kind == "turn" and not results.linkage.others:
         yield from _speeds(subject)
@@ -54,9 +55,9 @@ def _speeds(subject: Subject) -> Iterable[Block]:
     results = subject.results
     assert results.centres is not None
     text = _(
-        "The centre of a link and the driving one has the same velocity on both, so that distances between "
-        "centres give the angular velocities of links, and the velocities of those that do not turn. "
-        "Position {number}:"
+        "At the instantaneous centre of a link and the input link both have the same velocity. The "
+        "distances between centres therefore give the angular velocity of the link or, if it does not "
+        "rotate, its velocity. Position {number}:"
     )
     for k, found in results.centres.items():
         told = list(_of_position(subject, k, {centre.links: centre for centre in found}))

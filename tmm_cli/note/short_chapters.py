@@ -17,7 +17,7 @@ def write_title_page(subject: Subject) -> Iterable[Block]:
     above = "\n".join(text for text in (texts.institution, texts.department) if text)
     yield Title(
         above,
-        _("Explanatory note to the course project in the theory of mechanisms and machines"),
+        _("Explanatory note for the course project in the theory of mechanisms and machines"),
         subject.results.problem.title,
         people,
         texts.code,
@@ -43,7 +43,7 @@ def write_checks(subject: Subject) -> Iterable[Block]:
 
 def write_literature(subject: Subject) -> Iterable[Block]:
     """A list."""
-    yield Heading(_("Literature"))
+    yield Heading(_("References"))
     yield Sources(tuple(Source(key, text) for key, text in _sources()))
 
 

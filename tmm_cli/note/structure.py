@@ -100,9 +100,11 @@ def _mobility(structure: Structure) -> Iterable[Block]:
     turning = sum(pair.kind == "R" for pair in structure.pairs)
     yield said(
         _(
-            "The mobility {w} of the mechanism is found by Chebyshev's formula {source}, in which {n} is the number of "
-            "moving links, {lower} that of lower pairs (turning: {turning}, sliding: {sliding}) and {higher} that of "
-            "higher pairs:"
+            (
+"The mobility {w} of the mechanism is found by Chebyshev's formula {source}, in which {n} is the "
+"number of moving links, {lower} the number of lower pairs (revolute: {turning}, prismatic: "
+"{sliding}) and {higher} the number of higher pairs:"
+)
         ),
         source=Link("artobolevskii"),
         w=W,
@@ -113,22 +115,24 @@ def _mobility(structure: Structure) -> Iterable[Block]:
         sliding=str(lower - turning),
     )
     yield Found(W, chebyshev(n, lower, higher), structure.mobility, whole=True)
-    classes = _("By classes of pairs the same is W = 3n - 2 p5 - p4 = {count}.")
+    classes = _("In terms of the classes of pairs, W = 3n - 2 p5 - p4 = {count}.")
     yield paragraph(typeset(classes.format(count=counted_by_classes((n, lower, higher)))))
-    general = _("By the generalised formula W = Hn - sum((H - i) p_i) with H = 3 it is {count}.")
+    general = _("The generalised formula W = Hn - sum((H - i) p_i) with H = 3 gives {count}.")
     yield paragraph(typeset(general.format(count=counted_generally((n, lower, higher)))))
     if higher:
-        text = _("With each higher pair replaced by a link with two turning pairs: W = {count}.")
+        text = _("With each higher pair replaced by a link with two revolute pairs: W = {count}.")
         yield paragraph(typeset(text.format(count=counted_with_replacements((n, lower, higher)))))
     if any(pair.mesh is not None and pair.mesh.roller for pair in structure.pairs):
-        text = _("With rollers as links W = {count}.").format(count=mobility_with_rollers(structure))
+        text = _("If rollers are counted as links, W = {count}.").format(count=mobility_with_rollers(structure))
         yield paragraph(typeset(text))
     if structure.passive:
         yield said(
             _(
-                "The rank of the equations shows passive constraints (in number {count}, in {pairs}), which "
-                "only repeat "
-                "others by the special sizes of the mechanism; its true mobility is {w} = {true}."
+                (
+"The rank of the equations shows redundant constraints (number: {count}; {pairs}), which only "
+"repeat other constraints because of the special dimensions of the mechanism; its true mobility is "
+"{w} = {true}."
+)
             ),
             count=str(structure.redundant),
             w=W,
@@ -137,7 +141,7 @@ def _mobility(structure: Structure) -> Iterable[Block]:
         )
     if structure.reduction:
         yield said(
-            _("For the structural formula: {what}. The links and pairs that are left give:"),
+            _("For the structural formula: {what}. The remaining links and pairs give:"),
             what="; ".join(left_out(structure)),
         )
         yield Found(W, chebyshev(*structure.count), len(structure.drivers), whole=True)
@@ -152,26 +156,31 @@ def chebyshev(n: int, lower: int, higher: int) -> Expression:
 def _groups(subject: Subject) -> Iterable[Block]:
     structure = subject.results.structure
     if structure.groups:
-        head = cells(_("group"), _("class"), _("order"), _("type"), _("inner pairs"), _("outer pairs"), _("mobility"))
+        head = cells(_("group"), _("class"), _("order"), _("type"), _("internal pairs"), _("external pairs"), _("mobility"))
         rows = tuple(_group(group) for group in structure.groups)
         yield from tabled(
             _(
-                "When the driving links and the frame are taken away, the Assur groups of table {table} are left; the "
-                "mobility of each of them is zero."
+                (
+"When the input links and the frame are removed, the Assur groups of table {table} remain; the "
+"mobility of each group is zero."
+)
             ),
-            Rows(_("Assur groups, in the order in which they are joined"), head, rows, "groups"),
+            Rows(_("Assur groups in the order of their connection"), head, rows, "groups"),
         )
-    yield paragraph(_("The formula of structure of the mechanism is:"))
+    yield paragraph(_("The structural formula of the mechanism is:"))
     yield Equation(Words(structure.formula.replace("->", "→")))
     if len(structure.drivers) > 1:
         yield paragraph(_("Primary mechanisms: {names}.").format(names=primary_mechanisms_in_words(structure)))
-    yield paragraph(_("Chain, and kind of structure: {words}.").format(words=kind_in_words(structure)))
-    yield paragraph(typeset(_("Independent contours K = p - n: {count}.").format(count=contours_in_words(structure))))
-    text = _("The class of a mechanism is the highest of its groups' classes {source}: this one is of class {number}.")
+    yield paragraph(_("Type of chain and of structure: {words}.").format(words=kind_in_words(structure)))
+    yield paragraph(typeset(_("Number of independent loops K = p - n: {count}.").format(count=contours_in_words(structure))))
+    text = _((
+"The class of a mechanism is the highest class of its groups {source}; this mechanism is of class "
+"{number}."
+))
     yield said(text, source=Link("frolov"), number=structure.roman)
     schemes = schemes_in_words(structure)
     if schemes:
-        yield paragraph(_("Basic schemes in it: {schemes}.").format(schemes=schemes))
+        yield paragraph(_("Basic mechanisms it contains: {schemes}.").format(schemes=schemes))
     yield from _apart(subject)
 
 

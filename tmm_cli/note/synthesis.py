@@ -29,10 +29,10 @@ def write_synthesis(subject: Subject) -> Iterable[Block]:
     tables = {t.name: t for t in tables_of_synthesis(task, measure_problem(results), results.problem.units, FOUND)}
     asked = tables.pop("synthesis-asked", None)
     if asked is None:
-        yield paragraph(_("The sizes of the mechanism are found from its requirements."))
+        yield paragraph(_("The dimensions of the mechanism are determined from the requirements."))
     else:
         rows = rows_of(subject, asked, _("Requirements"), "asked", FOUND)
-        yield from tabled(_("The sizes of the mechanism are found from its requirements (table {table})."), rows)
+        yield from tabled(_("The dimensions of the mechanism are determined from the requirements (table {table})."), rows)
     source = by_hand(translated(task.outcome.source).rstrip("."))
     yield paragraph(_("Method of solution: {source}.").format(source=source))
     yield from _formulas(task)
@@ -47,14 +47,14 @@ def write_synthesis(subject: Subject) -> Iterable[Block]:
     for drawn in task.outcome.drawings:
         sentence = _("The construction is drawn in figure {figure}.")
         if drawn in diagrams[:1]:
-            sentence = _("How the result depends on what may be chosen is shown in figure {figure}.")
+            sentence = _("Figure {figure} shows how the result depends on the free choice.")
         elif drawn in diagrams:
-            sentence = _("What else depends on this choice is shown in figure {figure}.")
+            sentence = _("Figure {figure} shows other quantities that depend on this choice.")
         yield from subject.figures("synthesis", sentence, only=f"synthesis-{drawn.name}")
-    sentence = _("The extreme positions of the mechanism that was found are shown in figure {figure}.")
+    sentence = _("The extreme positions of the resulting mechanism are shown in figure {figure}.")
     yield from subject.figures("synthesis", sentence, only="synthesis-extremes")
     if measured is not None:
-        text = _("The same quantities, measured on the mechanism with these sizes, are given in table {table}.")
+        text = _("Table {table} gives the same quantities measured on the mechanism with these dimensions.")
         rows = rows_of(subject, measured, _("Requirements, measured on the mechanism"), "measured", FOUND)
         yield from tabled(text, rows)
 
@@ -66,7 +66,7 @@ def _formulas(task: Synthesised) -> Iterable[Block]:
     }
     if "k" in values:
         theta = float(theta_of(values["k"]))
-        yield said(_("The angle {theta} follows from the coefficient {k} of change of mean speed:"), theta=THETA, k=K)
+        yield said(_("The angle {theta} follows from the time ratio {k} (coefficient of change of mean speed):"), theta=THETA, k=K)
         ratio = Leaf(K, values["k"])
         share = (ratio - 1) / (ratio + 1)
         yield Found(THETA, Constant(math.pi, "180°") * share, theta, "°", angle=True)

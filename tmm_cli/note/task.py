@@ -24,13 +24,16 @@ def write_task(subject: Subject) -> Iterable[Block]:
     """What is given and what is to be found."""
     results = subject.results
     problem, linkage = results.problem, results.linkage
-    yield Heading(_("Task and data"))
+    yield Heading(_("Problem statement and input data"))
     if problem.description:
         yield paragraph(problem.description.strip())
-    sentence = _("The sizes of the links are given in table {table}.")
+    sentence = _("The dimensions of the links are given in table {table}.")
     if problem.synthesis is not None:
         sentence = _(
-            "The sizes of the links are given in table {table}; those that the task leaves open are found by synthesis."
+            (
+"The dimensions of the links are given in table {table}; those not given in the problem statement "
+"are found by synthesis."
+)
         )
     yield from tabled(sentence, _sizes(subject))
     sentence = _("The coordinates of the fixed points are given in table {table}.")
@@ -38,15 +41,16 @@ def write_task(subject: Subject) -> Iterable[Block]:
         sentence = _("The coordinates of the fixed points and guides are given in table {table}.")
     yield from tabled(sentence, _fixed(subject))
     for driver in linkage.drivers:
-        yield paragraph(_("Link {link} is a driving link: {motion}.").format(link=driver.link, motion=motion(driver)))
+        yield paragraph(_("Link {link} is an input link: {motion}.").format(link=driver.link, motion=motion(driver)))
     if any(np.any(linkage.links[name].mass != 0) for name in linkage.moving):
         yield from tabled(
             _(
-                "Table {table} gives the masses {m} of the links, their moments of inertia {J} about the "
-                "centres of mass "
-                "and the coordinates of these centres. The axes of a link begin in its first point; the axis x goes to "
-                "its second point, or as the coordinates in table {sizes} say; a slider with one point has the axes of "
-                "the link on which it slides."
+                (
+"Table {table} gives the masses {m} of the links, their moments of inertia {J} about the centres "
+"of mass and the coordinates of the centres of mass. The local axes of a link have their origin at "
+"its first point; the x axis points to the second point or as the coordinates in table {sizes} "
+"indicate. A slider with one point has axes parallel to those of the link on which it slides."
+)
             ),
             _masses(subject),
             m=Symbol("m"),
@@ -71,7 +75,7 @@ def write_task(subject: Subject) -> Iterable[Block]:
         for table in further:
             yield rows_of(subject, table, key=table.name)
             yield from (paragraph(with_degrees(note)) for note in table.notes)
-    yield paragraph(_("It is required to find:"))
+    yield paragraph(_("To be found:"))
     yield Items(tuple((text,) for text in _wanted(subject)))
 
 
@@ -82,7 +86,7 @@ def _gravity(subject: Subject) -> Iterable[Block]:
         yield paragraph(_("The weights of the links are not taken into account."))
         return
     yield said(
-        _("The acceleration of gravity is {g} = {size} m/s²; it is directed at {angle} to the axis x."),
+        _("The acceleration of gravity is {g} = {size} m/s²; it is directed at {angle} to the x axis."),
         g=Symbol("g"),
         size=subject.text(size),
         angle=subject.value(float(np.angle(pull)), ANGLE, 4),
@@ -96,7 +100,7 @@ def _sizes(subject: Subject) -> Rows:
         for name, link in linkage.links.items()
         if name != FRAME
     )
-    return Rows(_("Links and their sizes"), cells(_("link"), _("is called"), _("sizes")), rows, "sizes")
+    return Rows(_("Links and their dimensions"), cells(_("link"), _("name of the link"), _("sizes")), rows, "sizes")
 
 
 def _lengths(subject: Subject, link: Link) -> Line:
@@ -153,7 +157,7 @@ def _masses(subject: Subject) -> Rows:
         (Symbol("y", "S"), LENGTH),
     )
     head = cells(_("link"), *((symbol, f", {unit(dimension)}") for symbol, dimension in quantities))
-    caption = _("Masses, moments of inertia, and centres of mass in the axes of each link")
+    caption = _("Masses, moments of inertia and centres of mass in the axes of each link")
     return Rows(caption, head, tuple(rows), "masses")
 
 
@@ -173,10 +177,10 @@ def _load(subject: Subject, load: Load) -> tuple[Line, ...]:
         x, y = (subject.number(part, FORCE) for part in (load.force.real, load.force.imag))
         size = f"({x}; {y}) {subject.unit(FORCE)}"
     if load.table is not None:
-        size = _("by a table")
+        size = _("given by a table")
     elif load.resists:
         against = subject.value(abs(load.force), FORCE) if load.force else subject.value(load.moment, MOMENT)
-        size = _("{size} against the motion").format(size=against)
+        size = _("{size}, opposite to the motion").format(size=against)
     when = _("in the working stroke") if load.working_stroke_only else _("always")
     if load.stroke_link:
         when = _("in the working stroke of link {link}").format(link=load.stroke_link)
@@ -190,8 +194,8 @@ def _load(subject: Subject, load: Load) -> tuple[Line, ...]:
 def _wanted(subject: Subject) -> Iterable[str]:
     results = subject.results
     if results.problem.synthesis is not None:
-        yield _("the sizes of the mechanism from what it must do;")
-    yield _("the structure of the mechanism: its mobility, Assur groups, formula and class;")
+        yield _("the dimensions of the mechanism from the requirements;")
+    yield _("the structure of the mechanism: its mobility, Assur groups, structural formula and class;")
     if results.motion is None:
         return
     count = len(results.numbers)
@@ -202,5 +206,8 @@ def _wanted(subject: Subject) -> Iterable[str]:
     )
     if subject.acts:
         yield _(
-            "the reactions in the pairs and the balancing load of the driving link, checked by the Zhukovsky lever."
+            (
+"the reactions in the pairs and the balancing moment or force on the input link, checked by the "
+"Zhukovsky lever."
+)
         )

@@ -40,15 +40,15 @@ def in_words(results: Results) -> Iterable[str]:
     structure = results.structure
     yield _mobility(structure)
     count = (len(structure.links), len(structure.pairs) - structure.higher, structure.higher)
-    yield _("By classes of pairs the same is W = 3n - 2 p5 - p4 = {count}.").format(count=counted_by_classes(count))
-    yield _("By the generalised formula W = Hn - sum((H - i) p_i) with H = 3 it is {count}.").format(
+    yield _("In terms of the classes of pairs, W = 3n - 2 p5 - p4 = {count}.").format(count=counted_by_classes(count))
+    yield _("The generalised formula W = Hn - sum((H - i) p_i) with H = 3 gives {count}.").format(
         count=counted_generally(count)
     )
     if structure.higher:
-        text = _("With each higher pair replaced by a link with two turning pairs: W = {count}.")
+        text = _("With each higher pair replaced by a link with two revolute pairs: W = {count}.")
         yield text.format(count=counted_with_replacements(count))
     if any(pair.mesh is not None and pair.mesh.roller for pair in structure.pairs):
-        yield _("With rollers as links W = {count}.").format(count=mobility_with_rollers(structure))
+        yield _("If rollers are counted as links, W = {count}.").format(count=mobility_with_rollers(structure))
     if structure.passive:
         yield _("The rank of its equations shows passive constraints: {count}; the true mobility is W = {w}.").format(
             count=structure.redundant, w=structure.mobility + structure.redundant
@@ -63,11 +63,11 @@ def in_words(results: Results) -> Iterable[str]:
     )
     if len(structure.drivers) > 1:
         yield _("Primary mechanisms: {names}.").format(names=primary_mechanisms_in_words(structure))
-    yield _("Chain, and kind of structure: {words}.").format(words=kind_in_words(structure))
-    yield _("Independent contours K = p - n: {count}.").format(count=contours_in_words(structure))
+    yield _("Type of chain and of structure: {words}.").format(words=kind_in_words(structure))
+    yield _("Number of independent loops K = p - n: {count}.").format(count=contours_in_words(structure))
     schemes = schemes_in_words(structure)
     if schemes:
-        yield _("Basic schemes in it: {schemes}.").format(schemes=schemes)
+        yield _("Basic mechanisms it contains: {schemes}.").format(schemes=schemes)
     motions = (f"{link}: {motion_in_words(results, link)}" for link in structure.links)
     yield _("Motion of the links: {motions}.").format(motions="; ".join(motions))
     for sentence in left_out(structure):

@@ -74,7 +74,7 @@ def _load(problem: Problem, load: Load) -> tuple[str, ...]:
             rows=len(load.table.values), against=_first_column(load.table)
         )
     elif load.resists:
-        size = _("{size} against the motion").format(size=show(problem, abs(value), dimension))
+        size = _("{size}, opposite to the motion").format(size=show(problem, abs(value), dimension))
     elif load.force:
         size = f"{show_vector(problem, load.force, FORCE)} {problem.units.spelt(FORCE)}"
     else:
@@ -86,7 +86,7 @@ def _load(problem: Problem, load: Load) -> tuple[str, ...]:
         when = _("working stroke of link {link}").format(link=load.stroke_link)
     if load.window is not None:
         first, last = (show(problem, angle, ANGLE) for angle in load.window)
-        when = _("crank from {first} to {last}").format(first=first, last=last)
+        when = _("crank angle from {first} to {last}").format(first=first, last=last)
     return load.name, link, place, size, when
 
 

@@ -171,7 +171,7 @@ def pressure_tables(results: Results) -> Iterable[Table]:
             Column(N_("group"), [p.group for p in found]),
             Column(N_("driven link"), [p.link for p in found]),
             Column(N_("it"), [_("slides") if p.slides else _("turns") for p in found]),
-            Column(N_("driven in pair"), [p.pair for p in found]),
+            Column(N_("driven through pair"), [p.pair for p in found]),
             Column(N_("largest"), [p.largest for p in found], ANGLE),
             Column(N_("driver there at"), places, coordinate_dimension(driver.kind)),
             Column(N_("other extreme"), [p.other for p in found], ANGLE),

@@ -99,8 +99,8 @@ GROUP = record(
     Field("name", TEXT, "II(2,3)", "title"),
     Field("type_number", NUMBER, "1 to 5 for a class II group of two links", there="type_number"),
     Field("letters", TEXT, "its type as ВВВ, ВВП, ВПВ, ПВП, ВПП", there="type_number"),
-    Field("inner", NAMES, "inner pairs", lambda group: [pair.name for pair in group.inner]),
-    Field("outer", NAMES, "outer pairs", lambda group: [pair.name for pair in group.outer]),
+    Field("inner", NAMES, "internal pairs", lambda group: [pair.name for pair in group.inner]),
+    Field("outer", NAMES, "external pairs", lambda group: [pair.name for pair in group.outer]),
 )
 RIGID = record(
     "links that are rigid to one another",

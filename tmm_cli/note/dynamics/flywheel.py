@@ -29,8 +29,8 @@ def write_extreme_speeds(here: Here) -> Iterable[Block]:
     middle, half = Leaf(MEAN, (low + high) / 2), Leaf(DELTA, steady.delta) / 2
     yield said(
         _(
-            "The largest and the least speed of the driving link follow from their mean {mean} and the coefficient of "
-            "fluctuation {delta}:"
+            "The largest and the smallest angular velocity of the input link follow from the mean angular "
+            "velocity {mean} and the coefficient of fluctuation of speed {delta}:"
         ),
         mean=MEAN,
         delta=DELTA,
@@ -45,12 +45,11 @@ def write_energy_mass_diagram(here: Here) -> Iterable[Block]:
     slope = Leaf(Symbol("μ", "J")) * Leaf(Symbol("ω")) ** 2 / (2 * Leaf(Symbol("μ", "A")))
     yield said(
         _(
-            "The kinetic energy of the machine is {T} in position 0 and grows by the work {A} of all moments "
-            "from there "
-            "on. Over the reduced moment of inertia {J} this work gives the energy-mass diagram of Wittenbauer. A line "
-            "that touches it from above with the slope {up}, and one that touches it from below with the slope {low}, "
-            "belong to the largest and the least speed: on paper their angles are {psi}. They cut off from the axis on "
-            "which {J} is zero the energies {Ea} and {Eb}:"
+            "The kinetic energy of the machine is {T} in position 0 and then increases by the work {A} of all "
+            "moments. This work, plotted against the reduced moment of inertia {J}, gives the energy-mass "
+            "diagram (Wittenbauer's diagram). The upper tangent with the slope {up} corresponds to the largest "
+            "speed, the lower tangent with the slope {low} to the smallest; on the drawing their angles are "
+            "given by {psi}. On the axis {J} = 0 the tangents cut off the energies {Ea} and {Eb}:"
         ),
         T=START,
         A=WORK,
@@ -71,13 +70,14 @@ def write_flywheel_by_tangents(here: Here) -> Iterable[Block]:
     """Its inertia from what they cut off."""
     steady = here.steady
     upper, lower = here.tangents
-    text = _("The moment of inertia of the flywheel, reduced to the driving link:")
+    text = _("The moment of inertia of the flywheel, reduced to the input link:")
     if steady.task.delta is None:
-        text = _("The moment of inertia of the given flywheel, reduced to the driving link, is found there again:")
+        text = _("The same construction gives the moment of inertia of the given flywheel, reduced to the input link:")
     elif steady.task.motor is not None:
         text = _(
-            "The flywheel changes what the motor gives, so it is sought with the motor, and the diagram is that "
-            "of the machine with it. Its moment of inertia, reduced to the driving link:"
+            "The flywheel affects the moment of the motor, so both are determined together, and the diagram is "
+            "drawn for the machine with the flywheel. The moment of inertia of the flywheel, reduced to the "
+            "input link:"
         )
     yield said(text)
     cut = Leaf(OFFSETS[0], upper.offset) - Leaf(OFFSETS[1], lower.offset)
@@ -97,8 +97,8 @@ def write_flywheel_by_mertsalov(here: Here) -> Iterable[Block]:
     second = Leaf(INERTIA) - Leaf(CONSTANT) if constant else Leaf(INERTIA)
     yield said(
         _(
-            "With the squares {plus} and {minus} of the speeds, as they are taken in a course, the same tangents give "
-            "{found} kg·m²."
+            "If the squares of the speeds are taken approximately as {plus} and {minus}, as is usual in a "
+            "course, the same tangents give {found} kg·m²."
         ),
         plus=letters(square * (1 + delta)),
         minus=letters(square * (1 - delta)),
@@ -107,12 +107,10 @@ def write_flywheel_by_mertsalov(here: Here) -> Iterable[Block]:
     if constant:
         yield said(
             _(
-                "By the method of Mertsalov the flywheel and the links with a constant speed ratio to the "
-                "driving link, "
-                "whose moment of inertia is {constant} = {value} kg·m², are the first group. The energy of the other "
-                "links, the second group, is taken at the mean speed; then the energy of the first group "
-                "changes between "
-                "{most} and {least}, the largest and the least of {rest}:"
+                "By Mertsalov's method the flywheel and the links with a constant velocity ratio to the input link "
+                "form the first group; the moment of inertia of these links is {constant} = {value} kg·m². The "
+                "energy of the other links, the second group, is taken at the mean speed. The energy of the first "
+                "group then varies between {most} and {least}, the largest and the smallest value of {rest}:"
             ),
             constant=CONSTANT,
             value=here.subject.text(constant),
@@ -123,8 +121,8 @@ def write_flywheel_by_mertsalov(here: Here) -> Iterable[Block]:
     else:
         yield said(
             _(
-                "By the method of Mertsalov the energy of the links is taken at the mean speed; then the energy of the "
-                "flywheel changes between {most} and {least}, the largest and the least of {rest}:"
+                "By Mertsalov's method the energy of the links is taken at the mean speed. The energy of the "
+                "flywheel then varies between {most} and {least}, the largest and the smallest value of {rest}:"
             ),
             most=most.symbol,
             least=least.symbol,
@@ -137,7 +135,7 @@ def write_flywheel_by_mertsalov(here: Here) -> Iterable[Block]:
         yield Found(FLYWHEEL.primed, inertia, steady.mertsalov, _("kg·m²"))
         return
     yield Found(FIRST_GROUP, inertia, steady.first_group, _("kg·m²"))
-    yield said(_("Without the links of the first group the flywheel has the moment of inertia"))
+    yield said(_("Without the links of the first group, the moment of inertia of the flywheel is"))
     flywheel = Leaf(FIRST_GROUP, steady.first_group) - Leaf(CONSTANT, constant)
     yield Found(FLYWHEEL.primed, flywheel, steady.mertsalov, _("kg·m²"))
 
@@ -149,9 +147,8 @@ def write_flywheel_on_its_shaft(here: Here) -> Iterable[Block]:
         return
     yield said(
         _(
-            "The flywheel sits on a shaft that turns {u} times as fast as the driving link; there its moment "
-            "of inertia "
-            "is"
+            "The flywheel is mounted on a shaft that rotates {u} times as fast as the input link; its moment "
+            "of inertia on this shaft is"
         ),
         u=RATIO,
     )
@@ -169,9 +166,8 @@ def write_flywheel_size(here: Here) -> Iterable[Block]:
     if form.shape == "disk":
         yield said(
             _(
-                "The flywheel is a solid disk of the density {rho}, whose width is the share {beta} of its "
-                "diameter; its "
-                "moment of inertia is {J}, and so its diameter is"
+                "The flywheel is a solid disk of density {rho}. Its width is {beta} times its diameter and its "
+                "moment of inertia is {J}, so its diameter is"
             ),
             rho=DENSITY,
             beta=SHARE,
@@ -181,8 +177,8 @@ def write_flywheel_size(here: Here) -> Iterable[Block]:
     else:
         yield said(
             _(
-                "The flywheel is a rim of the density {rho}, whose section has the shares {beta} and {eta} of its mean "
-                "diameter as width and height; spokes and hub are left out. Its moment of inertia is {J}, and so its "
+                "The flywheel is a rim of density {rho}. The width and the height of its section are {beta} and "
+                "{eta} times the mean diameter; spokes and hub are neglected. Its moment of inertia is {J}, so its "
                 "mean diameter is"
             ),
             rho=DENSITY,
@@ -193,7 +189,7 @@ def write_flywheel_size(here: Here) -> Iterable[Block]:
         section = section * Leaf(HEIGHT, form.height)
         numbers = 4, 1
     yield Found(DIAMETER, Raised(numbers[0] * inertia / section, 1, 5), diameter.value, _("m"))
-    yield said(_("Its width and its mass:"))
+    yield said(_("The width and the mass of the flywheel:"))
     yield Found(WIDTH, share * diameter, steady.width, _("m"))
     mass = section * diameter**3
     yield Found(MASS, mass if numbers[1] == 1 else mass / numbers[1], steady.mass, _("kg"))

@@ -33,8 +33,8 @@ def write_steady_running(subject: Subject) -> Iterable[Block]:
         yield from reduced_model.write_reduced_moment(one)
     yield from subject.figures(
         "law",
-        _("Reduced moments, works and energies are shown in figure {figure}."),
-        _("Reduced moments, works and energies over the cycle"),
+        _("The reduced moments, the work and the energies are shown in figure {figure}."),
+        _("Reduced moments, work and energies over the cycle"),
         only="law-moments",
     )
     yield Heading(_("Driving moment"), 2)
@@ -56,7 +56,7 @@ def write_steady_running(subject: Subject) -> Iterable[Block]:
             flywheel.write_flywheel_size,
         ):
             yield from part(here)
-    yield Heading(_("Speed and acceleration of the driving link"), 2)
+    yield Heading(_("Velocity and acceleration of the input link"), 2)
     yield from _energy_at_start(here)
     for one in every:
         yield from _position(one, explained=one is here)
@@ -64,7 +64,7 @@ def write_steady_running(subject: Subject) -> Iterable[Block]:
     yield from subject.figures(
         "law",
         _("The law of motion is shown in figure {figure}."),
-        _("Law of motion of the driving link"),
+        _("Law of motion of the input link"),
         only="law-motion",
     )
     if here.running.sense < 0:
@@ -75,7 +75,7 @@ def write_steady_running(subject: Subject) -> Iterable[Block]:
 def tables(subject: Subject) -> Iterable[Block]:
     """What was found, and the law of motion at every position."""
     found = list(walk(subject.results, TABLES))
-    sentences = _("What was found is put together in table {table}."), _("The law of motion is given in table {table}.")
+    sentences = _("The results are summarised in table {table}."), _("The law of motion is given in table {table}.")
     for table, sentence in zip(found, sentences, strict=True):
         rows = rows_of(subject, table, key=table.name, zeros=table.name == "law-of-motion")
         yield from tabled(sentence, rows)
@@ -95,9 +95,9 @@ def _position(here: Here, *, explained: bool) -> Iterable[Block]:
     text = _("Position {number}:")
     if explained:
         text = _(
-            "The speed of the driving link follows from the kinetic energy, and its acceleration from the "
-            "equation of motion, in which {slope} is the derivative of the reduced moment of inertia by the angle "
-            "of the driving link. Position {number}:"
+            "The angular velocity of the input link follows from the kinetic energy, its angular acceleration "
+            "from the equation of motion, in which {slope} is the derivative of the reduced moment of inertia "
+            "with respect to the angle of the input link. Position {number}:"
         )
     yield said(text, slope=SLOPE, number=here.number)
     steady, link = here.steady, here.motion.linkage.driver.link
@@ -115,7 +115,9 @@ def _position(here: Here, *, explained: bool) -> Iterable[Block]:
 def _time(here: Here) -> Iterable[Block]:
     """The time from position 0 on."""
     omega = Letter(Symbol("ω", here.motion.linkage.driver.link))
-    yield said(_("The time from position 0 on is the integral of the slowness over the angle:"))
+    yield said(
+        _("The time from position 0 is the integral of the reciprocal angular velocity over the angle of rotation:")
+    )
     yield Equation(row(Letter(Symbol("t")), "=", Sign("∫"), Fraction(row("d", Letter(Symbol("φ"))), omega)))
     yield said(_("A cycle takes {time} s."), time=here.subject.text(here.steady.law.period))
 
@@ -129,7 +131,9 @@ def write_single_run(subject: Subject) -> Iterable[Block]:
     assert single is not None
     yield Heading(_("Law of motion"))
     yield from _energies(single, crank=subject.results.linkage.driver.kind == "turn")
-    yield from subject.figures("run", _("The run is shown in figure {figure}."), _("Law of motion of the driving link"))
+    yield from subject.figures(
+        "run", _("The motion of the machine is shown in figure {figure}."), _("Law of motion of the input link")
+    )
     yield from tables(subject)
 
 
@@ -138,19 +142,20 @@ def _energies(single: SingleRun, *, crank: bool) -> Iterable[Block]:
     run = single.run
     yield said(
         _(
-            "The machine is replaced by its driving link, to which all masses and all loads are reduced, and its "
-            "equation of motion is integrated from the beginning of the run on."
+            "The machine is replaced by its input link, to which all masses and all loads are reduced; the "
+            "equation of motion of this link is integrated from the beginning of the run."
         )
     )
     parts = [(START, run.kinetic[0]), (DRIVEN, run.driven[-1]), (LOADED, run.loaded[-1])]
     text = _(
-        "The kinetic energy {T0} at the beginning grows by the work {Ad} of what drives and the work {Al} of the loads:"
+        "The kinetic energy at the end of the run is the sum of the initial kinetic energy {T0}, the work "
+        "{Ad} of the driving forces and the work {Al} of the loads:"
     )
     if single.task.brake:
         parts.append((BRAKED, run.braked[-1]))
         text = _(
-            "The kinetic energy {T0} at the beginning grows by the work {Ad} of what drives, the work {Al} of the "
-            "loads and the work {Ab} of the brake:"
+            "The kinetic energy at the end of the run is the sum of the initial kinetic energy {T0}, the work "
+            "{Ad} of the driving forces, the work {Al} of the loads and the work {Ab} of the brake:"
         )
     yield said(text, T0=START, Ad=DRIVEN, Al=LOADED, Ab=BRAKED)
     end = Leaf(END, float(run.kinetic[-1]))
@@ -160,7 +165,7 @@ def _energies(single: SingleRun, *, crank: bool) -> Iterable[Block]:
     if single.task.flywheel:
         every = Leaf(FLYWHEEL, single.task.flywheel) + every
     if run.speed[-1] > 0:
-        yield said(_("With the reduced inertia at the end of the run the speed there is"))
+        yield said(_("With the reduced inertia at the end of the run, the final velocity is"))
         root = Function("sqrt", 2 * end / every)
         unit = _("rad/s") if crank else _("m/s")
         yield Found(Symbol("ω" if crank else "v", "1"), root, float(run.speed[-1]), unit)

@@ -75,10 +75,10 @@ def explain_reduction(here: Here) -> Iterable[Block]:
     link = here.motion.linkage.driver.link
     yield said(
         _(
-            "The machine is replaced by its driving link {link}, to which all masses and all loads are reduced; what "
-            "moves or acts in the sense of its rotation is positive. The reduced moment of inertia {J} has the kinetic "
-            "energy of all links, the reduced moment {M} has the power of all loads. Both follow from ratios of "
-            "velocities, which do not depend on how fast the driving link turns."
+            "The machine is replaced by its input link {link}, to which all masses and all loads are reduced; "
+            "quantities in its sense of rotation are positive. With the reduced moment of inertia {J} the "
+            "input link has the kinetic energy of all links; the power of the reduced moment {M} is that of "
+            "all loads. Both follow from velocity ratios, which do not depend on the speed of the input link."
         ),
         link=link,
         J=INERTIA,
@@ -93,8 +93,9 @@ def write_reduced_inertia(here: Here) -> Iterable[Block]:
         return
     yield said(
         _(
-            "Position {number}: the reduced moment of inertia, {m} being the mass of a link, {v} the velocity of its "
-            "centre of mass, {J} its moment of inertia about this centre and {omega} its angular velocity:"
+            "Position {number}: the reduced moment of inertia, where {m} is the mass of a link, {v} the "
+            "velocity of its centre of mass, {J} its moment of inertia about the centre of mass and {omega} "
+            "its angular velocity:"
         ),
         number=here.number,
         m=Symbol("m"),
@@ -121,8 +122,9 @@ def write_reduced_moment(here: Here) -> Iterable[Block]:
         return
     yield said(
         _(
-            "The reduced moment of the loads, {v} being the velocity of the point in which a force acts, {alpha} the "
-            "angle between the two, and a couple acting with or against the angular velocity of its link:"
+            "The reduced moment of the loads, where {v} is the velocity of the point of action of a force and "
+            "{alpha} the angle between the force and this velocity; the power of a couple is positive if it "
+            "acts in the sense of the angular velocity of its link:"
         ),
         v=Symbol("v"),
         alpha=Symbol("α"),
@@ -171,10 +173,9 @@ def write_mean_driving_moment(here: Here) -> Iterable[Block]:
     turns = round(steady.machine.length / (2 * math.pi))
     yield said(
         _(
-            "In steady running the machine comes back to the same speed after every cycle, so that all moments "
-            "together "
-            "do no work over the cycle. The work {A} of the loads is the area between the diagram of their reduced "
-            "moment {M} and its axis, and {phi} is the angle of the cycle."
+            "In steady running the machine returns to the same speed after every cycle, so the total work of "
+            "all moments over the cycle is zero. The work {A} of the loads is the area under the diagram of "
+            "their reduced moment {M}, and {phi} is the angle of the cycle."
         ),
         A=CYCLE,
         M=MOMENT,
@@ -182,9 +183,9 @@ def write_mean_driving_moment(here: Here) -> Iterable[Block]:
     )
     text = _("The driving moment is constant:")
     if steady.moment < 0:
-        text = _("The loads do work, and what the machine drives takes it with a constant moment:")
+        text = _("The loads do positive work over the cycle; the driven machine absorbs it with a constant moment:")
     if steady.task.motor is not None:
-        text = _("The mean moment of the motor, reduced to the driving link:")
+        text = _("The mean moment of the motor, reduced to the input link:")
     yield said(text)
     way = 2 * turns * Constant(math.pi, "π")
     work = Leaf(CYCLE, steady.machine.work_of_cycle) / Leaf(WHOLE, 2 * math.pi * turns, of=way)
@@ -197,8 +198,8 @@ def write_motor_moment(here: Here) -> Iterable[Block]:
         case LinearMotor() as found:
             yield said(
                 _(
-                    "The characteristic of the motor is a straight line; reduced to the driving link, it gives {M} at "
-                    "rest and nothing at {omega}. At the speed of position {number}:"
+                    "The characteristic of the motor is a straight line: reduced to the input link, the moment is {M} "
+                    "at rest and zero at the speed {omega}. At the speed in position {number}:"
                 ),
                 M=STALL,
                 omega=FREE,
@@ -213,11 +214,9 @@ def write_motor_moment(here: Here) -> Iterable[Block]:
 def _asynchronous(here: Here, motor: KlossMotor) -> Iterable[Block]:
     yield said(
         _(
-            "The motor is an asynchronous one, whose moment follows its slip {s} by the formula of Kloss. "
-            "Reduced to the "
-            "driving link its synchronous speed is {omega}; {M} is its largest moment, at the slip {sk}. At "
-            "the speed of "
-            "position {number}:"
+            "The motor is asynchronous; its moment depends on the slip {s} according to Kloss's formula. "
+            "Reduced to the input link, the synchronous speed is {omega} and the breakdown torque (the largest "
+            "moment) {M}; it is reached at the slip {sk}. At the speed in position {number}:"
         ),
         s=SLIP,
         omega=FREE,

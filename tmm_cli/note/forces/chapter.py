@@ -25,12 +25,13 @@ def write_forces(subject: Subject) -> Iterable[Block]:
     yield Heading(_("Force analysis"))
     yield said(
         _(
-            "The reactions in the kinematic pairs and the balancing load of the driving link are found by the method "
-            "of kinetostatics: when the forces of inertia are added to the acting forces (d'Alembert's principle), "
-            "every group of links is in equilibrium. The groups are taken in the order opposite to that of the "
-            "kinematic analysis, the driving link last. The subscript of a reaction {R} has the numbers of two links: "
-            "the first one acts on the second. The figures show all forces in their actual senses, so that their "
-            "magnitudes are positive; the arms {h} are measured in the figures."
+            "The reactions in the kinematic pairs and the balancing moment or force on the input link are "
+            "found by kinetostatics: if the inertia forces are added to the acting forces (d'Alembert's "
+            "principle), every group of links is in equilibrium. The groups are considered in the reverse "
+            "order of the kinematic analysis, the input link last. The subscript of a reaction {R} contains "
+            "the numbers of two links: the first acts on the second. The figures show all forces in their "
+            "actual directions, so that their magnitudes are positive; the moment arms {h} are measured in the "
+            "figures."
         ),
         R=Symbol("R"),
         h=Symbol("h"),
@@ -63,7 +64,7 @@ def _position(subject: Subject, k: int) -> Iterable[Block]:
 def _by_parts(subject: Subject, k: int, heading: Callable[[str], str]) -> Iterable[Block]:
     """All loads, then a section for each group and each driving link."""
     first = k == subject.detail[0]
-    yield Heading(heading(_("Loads of the links")), 2)
+    yield Heading(heading(_("Loads on the links")), 2)
     if first:
         yield from loads.weights(subject)
     yield from loads.inertia(subject, k, explained=first)
@@ -77,13 +78,13 @@ def _by_steps(subject: Subject, k: int, heading: Callable[[str], str]) -> Iterab
     yield Heading(heading(_("Plan of the mechanism")), 2)
     stem = subject.position(k).stem("position")
     yield said(
-        _("The plan of the mechanism is drawn in {position}; its scale factor is {mu} = {value} m/mm."),
+        _("The plan of the mechanism is drawn for {position}; its scale factor is {mu} = {value} m/mm."),
         position=caption,
         mu=MU,
         value=subject.text(subject.scale("position", k, stem)),
     )
-    yield Heading(heading(_("Weights and useful loads")), 2)
-    yield said(_("They are applied to the links as arrows of one length, without a scale."))
+    yield Heading(heading(_("Weights and useful resistance")), 2)
+    yield said(_("They are drawn on the links as arrows of equal length, not to scale."))
     if first:
         yield from loads.weights(subject)
     yield from subject.figures(
@@ -92,10 +93,10 @@ def _by_steps(subject: Subject, k: int, heading: Callable[[str], str]) -> Iterab
         _("The mechanism under its loads, {position}").format(position=caption),
         k,
     )
-    yield Heading(heading(_("Plan of accelerations and inertia forces")), 2)
+    yield Heading(heading(_("Acceleration plan and inertia forces")), 2)
     plans = list(subject.drawings("acceleration", k))
     if plans:
-        yield said(_("The plan of accelerations is that of figure {figure}."), figure=Ref(plans[0]))
+        yield said(_("For the acceleration plan see figure {figure}."), figure=Ref(plans[0]))
     yield from loads.inertia(subject, k, explained=first)
     yield from _further_loads(subject, k)
     yield Heading(heading(_("Reactions in the kinematic pairs")), 2)
@@ -114,7 +115,7 @@ def _reactions(subject: Subject, k: int, heading: Callable[[str], str], level: i
         if part.forces is not None:
             text = _("Group of links {links}") if len(part.links) > 1 else _("Group of link {links}")
         else:
-            text = _("Driving link {links}")
+            text = _("Input link {links}")
         text = heading(text.format(links=", ".join(part.links)))
         yield from sections.written(part, Heading(text, level), first=k == subject.detail[0] and not number)
 
@@ -131,9 +132,9 @@ def reactions(subject: Subject) -> Iterable[Block]:
     pairs = [(r.pair.name, reaction_symbol(r.by, r.on), r.force, r.angle) for r in found.directed]
     tables = list(_sized(subject, _("Reactions in the pairs {names}"), pairs, "reactions"))
     yield several(
-        _("Table {first} gives the reactions in all positions and their angles with the axis x."),
-        _("Tables {first} and {last} give the reactions in all positions and their angles with the axis x."),
-        _("Tables {first} to {last} give the reactions in all positions and their angles with the axis x."),
+        _("Table {first} gives the reactions in all positions and their angles to the x axis."),
+        _("Tables {first} and {last} give the reactions in all positions and their angles to the x axis."),
+        _("Tables {first} to {last} give the reactions in all positions and their angles to the x axis."),
         [table.key for table in tables],
     )
     yield from tables
@@ -187,12 +188,13 @@ def transmission(subject: Subject) -> Iterable[Block]:
         return
     P, Q, angle = Symbol("P"), Symbol("Q"), Symbol("λ")
     head = cells(
-        _("driven link"), _("driven in pair"), _("position"), (P, ", ", _("N")), (angle, ", °"), (Q, ", ", _("N"))
+        _("driven link"), _("driven through pair"), _("position"), (P, ", ", _("N")), (angle, ", °"), (Q, ", ", _("N"))
     )
     yield from tabled(
         _(
-            "The force {P} that drives a link moves it by its component along the velocity of its point alone, {Q} = "
-            "{P} cos {angle}, where {angle} is the angle between them with all loads acting; table {table} gives both."
+            "Only the component of the driving force {P} along the velocity of its point of action moves the "
+            "driven link: {Q} = {P} cos {angle}, where {angle} is the angle between force and velocity with "
+            "all loads acting. Table {table} gives the values."
         ),
         Rows(_("Transmission of force"), head, tuple(rows), "transmission"),
         P=P,
@@ -226,28 +228,38 @@ def balancing(subject: Subject) -> Iterable[Block]:
     told = _("{symbol}, {unit}, by the force plan")
     head = [filled(told, symbol=s, unit=u) for s, u in zip(symbols, units, strict=True)]
     of_all = balance_symbol(balances[0].driver.link, several=False, turns=balances[0].moment is not None)
-    head.append(filled(_("{symbol}, {unit}, by the lever"), symbol=of_all, unit=units[0]))
+    head.append(filled(_("{symbol}, {unit}, by the Zhukovsky lever"), symbol=of_all, unit=units[0]))
     columns = [*(b.generalized for b in balances), lever.balancing]
     if several:
         yield said(
-            _("The lever gives what all drivers do together, reduced to the driving link {link}."),
+            _("The Zhukovsky lever gives the combined effect of all drivers, reduced to the input link {link}."),
             link=balances[0].driver.link,
         )
     else:
         percent = 100 * lever.difference
         head.append((_("difference, %"),))
         columns.append(np.where(percent > NO_DIFFERENCE, percent, 0.0))
-    caption = _("Balancing loads of the driven links") if several else _("Balancing load of the driving link")
-    text = _("{balance} is positive counterclockwise, however the driving link turns.")
+    caption = (
+        _("Balancing moments and forces on the input links")
+        if several
+        else _("Balancing moment or force on the input link")
+    )
+    text = _("{balance} is positive counterclockwise, whatever the sense of rotation of the input link.")
     if results.linkage.driver.kind == "slide":
-        text = _("{balance} is positive along the guide of the driving link, however this link moves.")
+        text = _(
+            "{balance} is positive in the positive direction of the guide of the input link, whatever the "
+            "direction of motion of this link."
+        )
     yield said(text, balance=of_all)
     texts = [_texts(subject, column, Subject.shown) for column in columns]
     rows = over_positions(subject, caption, list(zip(head, texts, strict=True)), "balance")
-    yield from tabled(_("The balancing load found in both ways is given in table {table}."), rows)
+    yield from tabled(_("The values found by both methods are given in table {table}."), rows)
     if has_flywheel(results) and balances[0].moment is not None:
         yield said(
-            _("The flywheel is not a link: {balance} moves the links alone, and the driving moment is {whole}."),
+            _(
+                "The flywheel is not one of the links: {balance} balances the links alone, and the driving moment "
+                "is {whole}."
+            ),
             balance=of_all,
             whole=row(
                 Letter(CourseSymbol("M_d")),

@@ -29,14 +29,14 @@ def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Itera
     yield from _couples(subject, plan, k)
     yield from subject.figures(
         "lever",
-        _("The lever is shown in figure {figure}."),
+        _("The Zhukovsky lever is shown in figure {figure}."),
         _("Zhukovsky lever, {position}").format(position=subject.at_position(k)),
         k,
     )
     yield said(_("The equation of moments about the pole {p}:"), p=Symbol("p"))
     found = by_moments(plan.equation, unit)
     if found is None:
-        yield said(_("Nothing has a moment about the pole: nothing has to be balanced."))
+        yield said(_("No force has a moment about the pole, so there is nothing to balance."))
     elif plan.equation.sought is None:
         yield found
         yield from _of_several(subject, k, unit)
@@ -49,14 +49,16 @@ def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Itera
 def _explained(*, turns: bool) -> Block:
     """What the lever is, for a driver that turns or slides."""
     turning = _(
-        "The balancing moment is checked by the Zhukovsky lever: the velocity plan, drawn for 1 rad/s of the "
-        "driving link and turned by 90° clockwise, is treated as a rigid lever that can turn about its pole {p}. "
-        "All forces act on it at the ends of the velocities of their points, and it is in equilibrium."
+        "The balancing moment is checked by the Zhukovsky lever: the velocity plan, drawn for an angular "
+        "velocity of the input link of 1 rad/s and rotated by 90° clockwise, is treated as a rigid lever "
+        "that can rotate about its pole {p}. Each force acts on it at the end of the velocity vector of "
+        "its point of action, and the lever is in equilibrium."
     )
     sliding = _(
-        "The balancing force is checked by the Zhukovsky lever: the velocity plan, drawn for 1 m/s of the driving "
-        "link and turned by 90° clockwise, is treated as a rigid lever that can turn about its pole {p}. All forces "
-        "act on it at the ends of the velocities of their points, and it is in equilibrium."
+        "The balancing force is checked by the Zhukovsky lever: the velocity plan, drawn for a velocity of "
+        "the input link of 1 m/s and rotated by 90° clockwise, is treated as a rigid lever that can rotate "
+        "about its pole {p}. Each force acts on it at the end of the velocity vector of its point of "
+        "action, and the lever is in equilibrium."
     )
     return said(turning if turns else sliding, p=Symbol("p"))
 
@@ -66,8 +68,8 @@ def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
     if plan.pairs:
         yield said(
             _(
-                "A couple on a link is replaced by a pair of forces, {P} and {Pp}, perpendicular to the line through "
-                "two of its points, a distance {l} apart:"
+                "A couple on a link is replaced by two opposite forces {P} and {Pp} perpendicular to the line "
+                "through two points of the link, at the distance {l} from each other:"
             ),
             P=Symbol("P"),
             Pp=Symbol("P").primed,
@@ -79,8 +81,8 @@ def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
     if plan.couples:
         yield said(
             _(
-                "The other couples act on the lever as {M}: multiplied by the ratio of the speed of the link to that "
-                "of the driving link:"
+                "The other couples act on the lever multiplied by the ratio of the velocity of their link to that "
+                "of the input link, {M}:"
             ),
             M=Symbol("M").primed,
         )
@@ -119,8 +121,9 @@ def _of_several(subject: Subject, k: int, unit: str) -> Iterable[Block]:
     name = balance_symbol(first.driver.link, several=False, turns=first.moment is not None)
     yield said(
         _(
-            "The drivers are in it as the force plan gives them, and the lever is in equilibrium. Reduced to the link "
-            "{link}, each driver in the ratio {i} of its speed to the speed of this link, they do together:"
+            "The balancing loads of all drivers enter the equation with their values from the force plan, and "
+            "the lever is in equilibrium. Reduced to link {link}, that is multiplied by the ratio {i} of the "
+            "velocity of the driver to the velocity of this link, their sum is"
         ),
         link=first.driver.link,
         i=Symbol("i"),
@@ -141,8 +144,8 @@ def _compared(subject: Subject, k: int) -> Iterable[Block]:
         return
     yield said(
         _(
-            "The difference {delta} from the value {plan} of the force plan is given in percent of {largest}, the "
-            "largest magnitude in all positions:"
+            "The difference {delta} from the value {plan} found by the force plan, in per cent of {largest}, "
+            "the largest magnitude in all positions:"
         ),
         delta=Symbol("Δ"),
         plan=Symbol(name.letter, name.below, "R"),
@@ -169,9 +172,9 @@ def _on_paper(subject: Subject, k: int) -> Iterable[Block]:
     moment = subject.reactions.balance.kind == "moment"
     yield said(
         _(
-            "With arms and segments read off the drawings to 0.5 mm, the force plan gives {plan} {unit} and the lever "
-            "{lever} {unit}. Their difference, {share} % of the largest magnitude, is one of drawing; the difference "
-            "above is one of calculation."
+            "If moment arms and segments are measured on the drawings to 0.5 mm, the force plan gives {plan} "
+            "{unit} and the lever {lever} {unit}. This difference, {share} % of the largest magnitude, is due "
+            "to the accuracy of drawing; the difference above comes from the calculation."
         ),
         plan=subject.shown(abs(check.plan)),
         lever=subject.shown(abs(check.lever)),

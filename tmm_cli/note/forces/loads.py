@@ -37,8 +37,7 @@ def weights(subject: Subject) -> Iterable[Block]:
     yield said(
         _(
             "The weight {G} of a link is the product of its mass {m} and the acceleration of gravity {g}; it "
-            "acts in the "
-            "centre of mass of the link:"
+            "acts at the centre of mass of the link:"
         ),
         G=course_symbol("G"),
         m=Symbol("m"),
@@ -57,12 +56,12 @@ def inertia(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
         return
     explanation = (
         _(
-            "The force of inertia {U} of a link acts at its centre of mass and is opposite to the acceleration of "
-            "this point; the couple {M} of the forces of inertia is opposite to the angular acceleration {epsilon} of "
-            "the link; {J} is its moment of inertia about the centre of mass:"
+            "The inertia force {U} of a link acts at its centre of mass, opposite to the acceleration of this "
+            "point; the inertia couple {M} is opposite to the angular acceleration {epsilon} of the link; {J} "
+            "is the moment of inertia of the link about its centre of mass:"
         )
         if explained
-        else _("Forces and couples of inertia:")
+        else _("Inertia forces and couples:")
     )
     yield said(explanation, U=course_symbol("U"), M=course_symbol("M"), epsilon=Symbol("ε"), J=Symbol("J", "S"))
     units = {one.unit for one in found}
@@ -71,9 +70,9 @@ def inertia(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
     yield from there
     nothing = [one.name for one in found if one not in there]
     if nothing:
-        text = _("These vanish together with the accelerations: {names}.")
+        text = _("These are zero because the accelerations are zero: {names}.")
         if len(nothing) == 1:
-            text = _("This vanishes together with the acceleration: {names}.")
+            text = _("This is zero because the acceleration is zero: {names}.")
         yield said(text, names=listed(nothing))
 
 
@@ -105,14 +104,18 @@ def _spring(subject: Subject, spring: Spring, load: AppliedLoad, k: int) -> Iter
         letter = "M"
         omegas = [float(motion.link(n).omega[k]) if n in motion.linkage.moving else 0.0 for n in (spring.j, spring.i)]
         rate, size, unit = Leaf(Symbol("ω"), omegas[0] - omegas[1]), abs(float(load.moment[k])), _("N·m")
-        text = _("The moment of the spring {name} follows its angle {now} from the free one, {c} being its rate:")
+        text = _(
+            "The moment of the spring {name} depends on its angle {now} from the free position; {c} is its stiffness:"
+        )
     else:
         i, j = motion.point(spring.i, spring.at_i), motion.point(spring.j, spring.at_j)
         apart, faster = complex((j.x - i.x)[k]), complex((j.v - i.v)[k])
         letter, now, free = "F", Leaf(Symbol("l"), abs(apart)), Leaf(Symbol("l", "0"), float(spring.free))
         rate = Leaf(Symbol("v"), float(dot(apart, faster)) / (abs(apart) or 1.0))
         size, unit = abs(complex(load.force[k])), _("N")
-        text = _("The force of the spring {name} follows its length {now}; {c} is its rate, {free} its free length:")
+        text = _(
+            "The force of the spring {name} depends on its length {now}; {c} is its stiffness, {free} its free length:"
+        )
     c = Leaf(Symbol("c"), float(spring.rate))
     stretch: Expression = now - free if free.value else now
     whole: Expression = c * stretch
@@ -131,15 +134,14 @@ def friction(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
         return
     explanation = (
         _(
-            "Friction {T} acts against the motion in the pairs. In a hinge with a journal of radius {r} it is a "
-            "moment, on "
-            "a guide a force; both are in proportion to the reaction, {f} being the coefficient of friction. "
-            "The name of "
-            "the pair stands below the line, after it the link on which the friction acts. Reactions and friction are "
-            "found together, so that each friction is that of the reactions below:"
+            "Friction {T} acts against the relative motion in the pairs. In a hinge with a journal of radius "
+            "{r} it is a moment, on a guide a force; both are proportional to the reaction, and {f} is the "
+            "coefficient of friction. The subscript contains the name of the pair and the link on which the "
+            "friction acts. Reactions and friction are determined together, so that the friction corresponds "
+            "to the reactions given below:"
         )
         if explained
-        else _("Friction, of the reactions below:")
+        else _("Friction for the reactions given below:")
     )
     yield said(explanation, T=Symbol("T"), r=Symbol("r"), f=Symbol("f"))
     for one in given:
@@ -194,7 +196,7 @@ def table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
             rows.append(cells(couple, load.link, told, sense(moment)))
     if rows:
         text = _("Table {table} lists everything that acts on the links in this position except the reactions.")
-        head = cells(_("acts"), _("on link"), _("size"), _("angle from x, or sense"))
+        head = cells(_("force or couple"), _("on link"), _("size"), _("angle to the x axis, or sense"))
         yield from tabled(text, Rows(caption, head, tuple(rows), f"loads-{k}"))
 
 
@@ -206,15 +208,18 @@ def losses(subject: Subject) -> Iterable[Block]:
         if ranges:
             yield said(
                 _(
-                    "The mechanism locks itself by friction {ranges}: no force of the driver moves it there, and "
-                    "there is no efficiency over the cycle."
+                    "The mechanism is self-locking because of friction {ranges}: no driving force moves it there, so "
+                    "the efficiency over the cycle is not defined."
                 ),
                 ranges="; ".join(ranges),
             )
         return
     work = Leaf(Symbol("A", "d"), lost.drivers)
     taken = [Leaf(Symbol("A", pair), value) for pair, value in lost.pairs.items()]
-    yield said(_("Over the cycle the drivers do the work {work}, and friction in the pairs does:"), work=work.symbol)
+    yield said(
+        _("The work {work} of the driving forces and the work of friction in the pairs over the cycle:"),
+        work=work.symbol,
+    )
     for one in (work, *taken):
         yield read(one.symbol, one.value, _("J"))
     if lost.efficiency is not None:

@@ -157,14 +157,14 @@ def written(part: Part, heading: Heading, *, first: bool) -> Iterable[Block]:
     """All of a section. first: of the note, which says how to read the sum of vectors."""
     yield heading
     if not part.loaded.acting:
-        yield said(_("Nothing acts here ({links}): all reactions are zero."), links=_links(part.links))
+        yield said(_("No loads act here ({links}): all reactions are zero."), links=_links(part.links))
         return
     yield from _taken_apart(part)
     if part.at_once:
         yield said(
             _(
-                "There is no point about which one unknown alone has a moment, so the equations of equilibrium of all "
-                "these links are solved together. As a check, the moments on each link come to nothing:"
+                "There is no point about which only one unknown has a moment, so the equilibrium equations of all "
+                "these links are solved together. As a check, the sum of the moments on each link is zero:"
             )
         )
     ready, later = part.sums
@@ -208,11 +208,11 @@ def _taken_apart(part: Part) -> Iterable[Block]:
     """What acts, what is unknown of the outer reactions, and a figure."""
     given = listed(dict.fromkeys(one.symbol for one in part.given))
     group = "" if part.forces is None else part.forces.group.title
-    text = _("The driving link is taken last. Known are: {given}. It is required to find:")
+    text = _("The input link is considered last. Known: {given}. To be found:")
     if group:
-        text = _("The group {group} is separated from the mechanism. Known are: {given}. It is required to find:")
+        text = _("Group {group} is separated from the mechanism. Known: {given}. To be found:")
     if group and not given:
-        text = _("The group {group} is separated from the mechanism. It is required to find:")
+        text = _("Group {group} is separated from the mechanism. To be found:")
     yield said(text, group=group, given=given or _("nothing"))
     leads = [] if part.forces is None else external_pairs(part.here, part.forces.group)
     unknown = [_unknown(r, next((lead for lead in leads if lead.pair == r.pair), None)) for r in part.outer]
@@ -224,20 +224,19 @@ def _taken_apart(part: Part) -> Iterable[Block]:
         mu = part.on_paper(part.loaded.equations[0])
         yield said(
             _(
-                "The arms are in millimetres of the drawing, whose scale is {mu} = {value} m/mm; a couple is "
-                "divided by "
-                "this scale."
+                "The moment arms are given in millimetres of the drawing, whose scale factor is {mu} = {value} "
+                "m/mm; couples are divided by this factor."
             ),
             mu=MU,
             value=part.subject.text(mu or 1.0),
         )
     yield from part.subject.figures(
         "group-loads",
-        _("Everything that acts is shown in figure {figure}: the forces not to scale, their arms to scale."),
+        _("All loads and reactions are shown in figure {figure}: the forces not to scale, their moment arms to scale."),
         _("Loads and reactions: {links}; {position}").format(links=_links(part.links), position=part.caption),
         part.here.k,
         part.stem("group-loads"),
-        further=_("The other arms are shown in figure {figure}."),
+        further=_("The other moment arms are shown in figure {figure}."),
     )
 
 
@@ -245,7 +244,7 @@ def _unknown(reaction: Reaction, lead: ExternalPair | None) -> Line:
     """Of an outer reaction; lead: of the hinge or guide."""
     pair, line = reaction.pair, ""
     if not pair.lower:
-        text = _("in pair {pair}: magnitude of the reaction {R} along the normal to the profiles")
+        text = _("in pair {pair}: magnitude of the reaction {R} along the common normal of the profiles")
     elif pair.slide is not None:
         text = _(
             "on guide {guide}: magnitude and point of action of the reaction {R}, which is perpendicular to the guide"
@@ -276,26 +275,26 @@ def _moments(part: Part, equation: MomentEquation) -> Iterable[Block]:
         yield from () if found is None else (found,)
         return
     if sought.arm and found is None:
-        text = _("No other force has a moment about the point {point} ({links}), so {symbol} goes through this point.")
+        text = _("No other force has a moment about point {point} ({links}), so {symbol} passes through this point.")
     elif sought.arm and equation.found is not None and equation.found.acting.couple:
         text = _(
-            "The equation of moments about the point {point} ({links}) gives the couple that the guide bears "
-            "beside the reaction {symbol}:"
+            "The equation of moments about point {point} ({links}) gives the couple that the guide carries in "
+            "addition to the reaction {symbol}:"
         )
     elif sought.arm:
         text = _(
-            "The equation of moments about the point {point} ({links}) gives the distance from it to the line "
-            "of action of the reaction {symbol}:"
+            "The equation of moments about point {point} ({links}) gives the distance from it to the line of "
+            "action of the reaction {symbol}:"
         )
     elif found is None and not equation.terms:
-        text = _("Nothing has a moment about the point {point} ({links}), so {symbol} is zero:")
+        text = _("No force has a moment about point {point} ({links}), so {symbol} is zero:")
     elif equation.special:
         text = _(
-            "In the special point {point} of Assur the lines of two unknown reactions meet; the equation of "
-            "moments about it ({links}) gives {symbol}:"
+            "The lines of action of two unknown reactions intersect at the Assur point {point}; the equation "
+            "of moments about it ({links}) gives {symbol}:"
         )
     else:
-        text = _("The equation of moments about the point {point} ({links}) gives {symbol}:")
+        text = _("The equation of moments about point {point} ({links}) gives {symbol}:")
     yield said(text, point=equation.about, links=_links(equation.links), symbol=sought.symbol)
     if found is not None:
         yield from (Equation(moments(equation, mu)), found)
@@ -314,8 +313,8 @@ def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
     lines = part.guided | {v.symbol for v in vectors if v.kind in ("normal", "tangential")}
     yield said(
         _(
-            "The forces form a closed polygon. Vectors that are known completely are underlined twice, those of which "
-            "only the line of action is known once:"
+            "The forces form a closed polygon. Vectors known in magnitude and direction are underlined twice, "
+            "vectors with a known line of action once:"
         )
         if explained
         else _("The forces form a closed polygon:")
@@ -330,12 +329,14 @@ def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
     )
     unknown = [v for v in vectors if v.symbol not in known]
     if sum(1 if v.symbol in lines else 2 for v in unknown) > SIZES:
-        yield said(_("It closes with these reactions, with which every link is in equilibrium by itself too:"))
+        yield said(
+            _("The polygon closes with the following reactions, with which each link is also in equilibrium by itself:")
+        )
     elif unknown:
-        text = _("The lengths of its sides, multiplied by the scale factor {mu}, give what is still unknown:")
+        text = _("The lengths of its sides, multiplied by the scale factor {mu}, give the remaining unknowns:")
         yield said(text, mu=Symbol("μ", "F"))
     else:
-        yield said(_("All its vectors are known already; its closing serves as a check."))
+        yield said(_("All its vectors are already known; the closure of the polygon serves as a check."))
     least = NO_FORCE * part.plan.plan.size
     for vector in unknown:
         size = abs(vector.value)
@@ -365,8 +366,8 @@ def _guide_between(part: Part) -> Iterable[Block]:
     own = reaction_symbol(inner.pair.other(link), link)
     yield said(
         _(
-            "The reaction in the inner pair {pair} is perpendicular to this guide, so only two magnitudes are unknown "
-            "in the polygon of the forces on one link ({links}), and it gives them:"
+            "The reaction in the internal pair {pair} is perpendicular to the guide of this pair, so the "
+            "polygon of the forces on one link ({links}) has only two unknown magnitudes and determines them:"
         ),
         pair=inner.pair.name,
         links=_links([link]),
@@ -390,13 +391,16 @@ def _inner(part: Part) -> Iterable[Block]:
     if len(inner) == 1:
         (reaction,) = inner
         yield said(
-            _("The reaction in the inner pair {pair} closes the polygon of the forces on one of its links ({links}):"),
+            _(
+                "The reaction in the internal pair {pair} closes the polygon of the forces on one of its links "
+                "({links}):"
+            ),
             pair=reaction.pair.name,
             links=_links([reaction.on]),
         )
         yield _polygon(part, reaction.on, {reaction_symbol(reaction.by, reaction.on): 0})
     elif inner:
-        yield said(_("The reactions in the inner pairs follow from the equilibrium of the links, taken one by one:"))
+        yield said(_("The reactions in the internal pairs follow from the equilibrium of the individual links:"))
     for reaction in inner:
         yield read(reaction_symbol(reaction.by, reaction.on), part.size(reaction), _("N"))
 
@@ -406,5 +410,5 @@ def _balance(part: Part) -> Iterable[Block]:
     for one in part.loaded.acting:
         if one.pair == DRIVE:
             way = sense(one.moment) if one.couple else part.subject.direction(one.force)
-            text = _("{symbol} acts {way}.") if one.couple else _("{symbol} acts at {way} from the axis x.")
+            text = _("{symbol} acts {way}.") if one.couple else _("{symbol} acts at {way} to the x axis.")
             yield said(text, symbol=one.symbol, way=way)

@@ -25,7 +25,7 @@ def formats_of(text: str) -> list[str]:
     wanted = parse_names(text, FORMATS, "--as", _("there is no such format of notes"))
     if "docx" in wanted and find_spec("docx") is None:
         raise ProblemError(
-            _("DOCX is written by python-docx, which is not installed"),
+            _("DOCX requires the package python-docx, which is not installed"),
             allowed=_("html; or: pip install 'tmm-cli[note]'"),
         )
     return wanted

@@ -32,8 +32,10 @@ def drivers(subject: Subject) -> Iterable[Block]:
         if running is not None:
             yield said(
                 _(
-                    "How fast driving link {link} moves follows from its law of motion, which is found below: it needs "
-                    "ratios of velocities only, and these are the same at every speed."
+                    (
+"The velocity of input link {link} follows from its law of motion, which is determined below. The "
+"law of motion requires only velocity ratios, and these are the same at every velocity."
+)
                 ),
                 link=driver.link,
             )
@@ -45,17 +47,23 @@ def _rotating_driver(subject: Subject, driver: Driver) -> Iterable[Block]:
     own = driver.link if driver.base == FRAME else driver.link + driver.base
     omega, n = Symbol("ω", "0" if driver.acceleration else own), driver.rate * 30 / np.pi
     rpm = abs(n - float(f"{n:.7g}")) <= ROUND * n
-    text = _("Driving link {link} turns about point {point} {sense} with the angular velocity")
+    text = _("Input link {link} rotates about point {point} {sense} with the angular velocity")
     if driver.law is not None:
         text = _(
-            "Driving link {link} turns about point {point} {sense}; its angular velocity is given by a table ({how})."
+            (
+"Input link {link} rotates about point {point} {sense}; its angular velocity is given by a table "
+"({how})."
+)
         )
     elif driver.base != FRAME:
         text = _(
-            "Driving link {link} turns about point {point} of link {base}, {sense}, with the relative angular velocity"
+            (
+"Input link {link} rotates about point {point} of link {base} {sense} with the relative angular "
+"velocity"
+)
         )
     elif rpm:
-        text = _("Driving link {link} turns about point {point} {sense} at {n} = {speed} rpm; its angular velocity is")
+        text = _("Input link {link} rotates about point {point} {sense} at {n} = {speed} rpm; its angular velocity is")
     how = "" if driver.law is None else between_rows(driver.law)
     yield said(
         text,
@@ -74,22 +82,22 @@ def _rotating_driver(subject: Subject, driver: Driver) -> Iterable[Block]:
     else:
         yield _given(subject, omega, driver.rate)
     if driver.acceleration:
-        yield said(_("in position 0 and with the angular acceleration"))
+        yield said(_("in position 0 and with the constant angular acceleration"))
         yield _given(subject, Symbol("ε", own), driver.acceleration)
 
 
 def _sliding_driver(subject: Subject, driver: Driver) -> Iterable[Block]:
     slide = subject.results.linkage.slide(driver.joint)
     own = slide.point if driver.base == FRAME else f"{slide.point}{slide.point}{slide.carrier}"
-    text = _("Driving link {link} slides along its guide on the frame with the velocity")
+    text = _("Input link {link} slides along its guide on the frame with the velocity")
     if driver.base != FRAME:
         text = _(
-            "Driving link {link} is moved along link {base} (a cylinder with its piston) with the relative velocity"
+            "Input link {link} moves along link {base} (a piston in its cylinder) with the relative velocity"
         )
     yield said(text, link=driver.link, base=driver.base)
     yield _given(subject, Symbol("v", "0" if driver.acceleration else own), driver.rate)
     if driver.acceleration:
-        yield said(_("in position 0 and with the acceleration"))
+        yield said(_("in position 0 and with the constant acceleration"))
         yield _given(subject, Symbol("a", own), driver.acceleration)
 
 
@@ -102,7 +110,7 @@ def speed_here(here: Here) -> Iterable[Block]:
     results, motion = here.subject.results, here.motion
     driver, turns = motion.linkage.driver, motion.linkage.driver.kind == "turn"
     if driver.law is not None or results.running is not None:
-        yield said(_("By the law of motion its speed and its acceleration are here"))
+        yield said(_("By the law of motion, its velocity and its acceleration in this position are"))
         for letter, values in zip("ωε" if turns else "va", (motion.rate, motion.acceleration), strict=True):
             value = float(np.broadcast_to(values, motion.q.shape)[here.k])
             yield _given(here.subject, Symbol(letter, driver.link), value)
@@ -115,8 +123,10 @@ def speed_here(here: Here) -> Iterable[Block]:
     run, start, now = Leaf(Symbol(f"Δ{way}"), gone), Leaf(Symbol(letter, "0"), driver.rate), Symbol(letter, driver.link)
     yield said(
         _(
-            "Since position 0 the driving link has gone through {gone}; its speed {speed} follows from the even "
-            "acceleration:"
+            (
+"The input link has moved through {gone} since position 0; its velocity {speed} follows from the "
+"constant acceleration:"
+)
         ),
         gone=run.symbol,
         speed=now,
@@ -130,9 +140,9 @@ def positions(subject: Subject) -> Iterable[Block]:
     results = subject.results
     request, count = results.inputs.request, len(results.asked)
     full = results.driver_range is not None and results.driver_range.full and results.linkage.driver.kind == "turn"
-    text = _("The way of the driving link is studied in {count} positions.")
+    text = _("The motion is studied in {count} positions of the input link.")
     if request.places:
-        text = _("The mechanism is studied in {count} given positions of the driving link.")
+        text = _("The mechanism is studied in {count} given positions of the input link.")
     elif full and request.start == "working stroke":
         text = _("The cycle is divided into {count} equal parts; position 0 is the beginning of the working stroke.")
     elif full:
@@ -159,13 +169,17 @@ def _extremes(subject: Subject, strokes: Strokes) -> Iterable[Block]:
     size, letter = (strokes.travel, "H") if slides else (float(np.degrees(strokes.travel)), "ψ")
     shown = (Letter(Symbol(letter)), "=", Number(subject.text(size)), Words(" " + _("m") if slides else "°"))
     text = _(
-        "The output, {output}, is in its extreme positions at the angles {phi} = {places} of the driving link; "
-        "it swings between them through {size}."
+        (
+"The output ({output}) is in its extreme positions at the input angles {phi} = {places}; its swing "
+"angle is {size}."
+)
     )
     if slides:
         text = _(
-            "The output, {output}, is in its extreme positions at the angles {phi} = {places} of the driving "
-            "link; its stroke between them is {size}."
+            (
+"The output ({output}) is in its extreme positions at the input angles {phi} = {places}; its "
+"stroke is {size}."
+)
         )
     yield said(text, output=output(subject, strokes.link), phi=Symbol("φ"), places=places, size=row(*shown))
     if not np.isfinite(strokes.k):
@@ -173,13 +187,17 @@ def _extremes(subject: Subject, strokes: Strokes) -> Iterable[Block]:
     working = sum(s.length for s in strokes.working)
     idle = sum(s.length for s in strokes.strokes if not s.working)
     text = _(
-        "During the working stroke the driving link turns through {working}, during the idle one through {idle}; "
-        "the coefficient of change of mean speed is {k}:"
+        (
+"The input link rotates through {working} during the working stroke and through {idle} during the "
+"return stroke; the time ratio {k} (coefficient of change of mean speed) is"
+)
     )
     if len(strokes.strokes) > 2:
         text = _(
-            "During the working strokes of a cycle the driving link turns through {working} in all, during the "
-            "idle ones through {idle}; the coefficient of change of mean speed is {k}:"
+            (
+"The input link rotates through {working} during all working strokes of a cycle and through {idle} "
+"during all return strokes; the time ratio {k} (coefficient of change of mean speed) is"
+)
         )
     yield said(text, k=Symbol("k"), working=Symbol("φ", symbol("w")), idle=Symbol("φ", symbol("i")))
     ratio = Leaf(Symbol("φ", symbol("w")), working, angle=True) / Leaf(Symbol("φ", symbol("i")), idle, angle=True)
@@ -190,7 +208,7 @@ def _travel(subject: Subject, travel: OutputTravel) -> Iterable[Block]:
     slides = travel.kind == "slide"
     ends = (travel.low, travel.high)
     low, high = (f"{subject.text(end)} {_('m')}" if slides else f"{subject.text(_degrees(end))}°" for end in ends)
-    text = _("Over this way the output, {output}, goes from {low} to {high}.")
+    text = _("In this range the output ({output}) moves from {low} to {high}.")
     yield said(text, output=output(subject, travel.link), low=low, high=high)
 
 
@@ -209,10 +227,10 @@ def place_here(here: Here) -> Block:
     """Where the driving link is in a position."""
     driver, q, number = here.motion.linkage.driver, float(here.motion.q[here.k]), here.subject.called(here.k)
     if driver.kind == "turn":
-        text = _("In position {number} the driving link is at the angle {phi} = {angle}° to the axis x.")
+        text = _("In position {number} the input link is at the angle {phi} = {angle}° to the x axis.")
         angle = here.subject.text(_degrees(q % (2 * np.pi)))
         return said(text, number=number, phi=Symbol("φ", driver.link), angle=angle)
-    text = _("In position {number} the driving link is at {run} = {place} m.")
+    text = _("In position {number} the displacement of the input link is {run} = {place} m.")
     return said(text, number=number, run=Symbol("s", driver.link), place=here.subject.text(q))
 
 
@@ -232,7 +250,7 @@ def tables(subject: Subject) -> Iterable[Block]:
         for letter, per, (__, values, ___) in zip(letters, units, output_motion(results, motion, link), strict=True):
             own = without_rounding(values, largest_magnitude(values))
             columns.append(((Symbol(letter, link), f", {per}"), np.degrees(own) if per == "°" else own))
-        caption = _("Motion of the output, {output}").format(output=output(subject, link))
+        caption = _("Motion of the output ({output})").format(output=output(subject, link))
         text = _("The motion of the output in all positions is given in table {table}.")
         yield from tabled(text, _table(subject, caption, columns, f"output-{link}"))
     yield from _rate_tables(subject)
@@ -312,7 +330,7 @@ def write_kinematics(subject: Subject) -> Iterable[Block]:
     if results.motion is None:
         return
     yield Heading(_("Kinematic analysis"))
-    yield Heading(_("Driving links and positions"), 2)
+    yield Heading(_("Input links and positions"), 2)
     yield from drivers(subject)
     yield from positions(subject)
     every = solution_steps(results.linkage, results.structure.all_groups)
@@ -328,21 +346,22 @@ def _position(here: Here, every: list[SolutionStep]) -> Iterable[Block]:
     if here.first:
         yield said(
             _(
-                "Velocities are found from plans: first for the driving links, then for the groups in the order of the "
-                "structural formula. A vector underlined twice is known in magnitude and direction, one "
-                "underlined once "
-                "in direction only."
+                (
+"Velocities are found from velocity plans: first for the input links, then for the groups in the "
+"order of the structural formula. A vector underlined twice is known in magnitude and direction, a "
+"vector underlined once in direction only."
+)
             )
         )
         slid = next((e for step in every for e in step.equations if isinstance(e, MovingGuideEquation)), None)
         if slid is not None:
             yield said(
                 _(
-                    "The point of a guide that coincides with the stone in this position is named after the "
-                    "link of the "
-                    "guide: {under} of link {link} lies at {point}; its distances to other points of the link "
-                    "are those "
-                    "in this position."
+                    (
+"The point of the guide that coincides with the sliding block in this position is denoted with the "
+"number of the link of the guide: {under} of link {link} lies at {point}; its distances to other "
+"points of the link are those in this position."
+)
                 ),
                 under=name_of(slid.base),
                 link=slid.slide.carrier,
@@ -352,8 +371,8 @@ def _position(here: Here, every: list[SolutionStep]) -> Iterable[Block]:
     yield from speed_here(here)
     yield from subject.figures(
         "velocity",
-        _("The plan of velocities is shown in figure {figure}."),
-        _("Plan of velocities, position {number}").format(number=number),
+        _("The velocity plan is shown in figure {figure}."),
+        _("Velocity plan, position {number}").format(number=number),
         here.k,
     )
     yield from velocities(here, every)
@@ -368,16 +387,17 @@ def _position(here: Here, every: list[SolutionStep]) -> Iterable[Block]:
         if any(isinstance(e, MovingGuideEquation) for step in every for e in step.equations):
             yield said(
                 _(
-                    "The acceleration of a stone relative to the coincident point of the guide has a component "
-                    "along the "
-                    "guide and, if the guide turns, the Coriolis component, whose direction is that of the relative "
-                    "velocity turned through 90° in the sense of the guide's rotation."
+                    (
+"The acceleration of the sliding block relative to the coincident point of the guide has a "
+"component along the guide and, if the guide rotates, the Coriolis component; its direction is "
+"that of the relative velocity rotated by 90° in the sense of rotation of the guide."
+)
                 )
             )
     yield from subject.figures(
         "acceleration",
-        _("The plan of accelerations is shown in figure {figure}."),
-        _("Plan of accelerations, position {number}").format(number=number),
+        _("The acceleration plan is shown in figure {figure}."),
+        _("Acceleration plan, position {number}").format(number=number),
         here.k,
     )
     yield from accelerations(here, every)

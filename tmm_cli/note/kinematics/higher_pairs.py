@@ -20,9 +20,9 @@ def begun(here: Here, step: SolutionStep, letter: str) -> Iterable[Block]:
     """How a group begins: what its higher pairs give of ω, or of ε."""
     assert step.group is not None
     if step.ratios:
-        yield said(_("Group {group} is found from its higher pairs."), group=step.group.title)
+        yield said(_("The motion of group {group} follows from its higher pairs."), group=step.group.title)
     elif not here.first:
-        yield said(_("Group {group} gives:"), group=step.group.title)
+        yield said(_("Group {group}:"), group=step.group.title)
     for ratio in step.ratios:
         yield from _by_ratio(here, step, ratio, letter)
 
@@ -36,7 +36,7 @@ def _by_ratio(here: Here, step: SolutionStep, ratio: HigherPairRatio, letter: st
         yield _wheel(here, mesh, ratio.link, letter)
     elif mesh.kind == "rack":
         if first:
-            text = _("Wheel {wheel} of radius {radius} rolls without sliding on the rack, so that")
+            text = _("Gear {wheel} of radius {radius} rolls on the rack without slipping, so")
             yield said(text, wheel=mesh.i, radius=Symbol("r", mesh.i))
         yield _rolls(here, step, ratio, letter)
     else:
@@ -44,7 +44,7 @@ def _by_ratio(here: Here, step: SolutionStep, ratio: HigherPairRatio, letter: st
             yield _law(mesh, letter)
         yield _follower(here, step, ratio, letter)
     if letter == "ω" and here.omega.get(ratio.link):
-        yield said(_("Link {link} turns {sense}."), link=ratio.link, sense=sense(here.omega[ratio.link]))
+        yield said(_("Link {link} rotates {sense}."), link=ratio.link, sense=sense(here.omega[ratio.link]))
 
 
 def _turning(here: Here, link: str, letter: str) -> Leaf | None:
@@ -70,20 +70,26 @@ def _willis(here: Here, mesh: Mesh) -> Iterable[Block]:
     over, under, carrier = (Leaf(Symbol("ω", link)) for link in (mesh.j, mesh.i, mesh.carrier))
     share = over / under
     text = _(
-        "Wheels {i} and {j} with pitch radii {ri} and {rj} are in mesh; their ratio is (positive counterclockwise)"
+        (
+"Gears {i} and {j} with the pitch radii {ri} and {rj} are in mesh; their ratio (angular velocities "
+"are positive counterclockwise) is"
+)
     )
     if carried:
         share = (over - carrier) / (under - carrier)
         text = _(
-            "Wheels {i} and {j} with pitch radii {ri} and {rj} are in mesh; their axes are on carrier {carrier}. "
-            "By Willis' method all links are given the carrier's rotation backwards, so that it rests; then the "
-            "ratio of the wheels is (positive counterclockwise)"
+            (
+"Gears {i} and {j} with the pitch radii {ri} and {rj} are in mesh; their axes are on carrier "
+"{carrier}. By Willis's method all links are given the reverse rotation of the carrier, so that "
+"the carrier is at rest. The ratio of the gears (angular velocities are positive counterclockwise) "
+"is then"
+)
         )
     ri, rj = Symbol("r", mesh.i), Symbol("r", mesh.j)
     yield said(text, i=mesh.i, j=mesh.j, carrier=mesh.carrier, ri=ri, rj=rj)
     yield Equation(row(Letter(_ratio(mesh)), "=", letters(share)))
     yield Found(_ratio(mesh), signed(mesh.ratio, radii), mesh.ratio)
-    yield said(_("The angular velocity sought follows from this:"))
+    yield said(_("The required angular velocity is therefore:"))
 
 
 def _ratio(mesh: Mesh) -> Symbol:
@@ -144,15 +150,20 @@ def _rolls(here: Here, step: SolutionStep, ratio: HigherPairRatio, letter: str) 
 
 
 def _law(mesh: Mesh, letter: str) -> Block:
-    text = _("The second derivative {second} of the law of motion gives")
+    text = _("The second derivative {second} of the motion law gives")
     if letter == "ω" and mesh.slide:
         text = _(
-            "The law of motion of follower {follower} gives the derivative {first} of its run by the angle of cam "
-            "{cam}:"
+            (
+"The motion law of follower {follower} gives the derivative {first} of its displacement with "
+"respect to the angle of cam {cam}:"
+)
         )
     elif letter == "ω":
         text = _(
-            "The law of motion of follower {follower} gives the derivative {first} of its angle by that of cam {cam}:"
+            (
+"The motion law of follower {follower} gives the derivative {first} of its angle with respect to "
+"the angle of cam {cam}:"
+)
         )
     return said(text, follower=mesh.j, cam=mesh.i, first=_derivative(mesh, 1), second=_derivative(mesh, 2))
 

@@ -30,8 +30,10 @@ def velocities(here: Here, steps: Sequence[SolutionStep]) -> Iterable[Block]:
         here.v,
         [vector for step in steps for vector in _known(here, step)],
         _(
-            "The plan of velocities begins at its pole {pole}. The segment {segment} stands for {v}; the scale factor "
-            "of the plan is"
+            (
+"The velocity plan begins at its pole {pole}. The segment {segment} represents {v}; the scale "
+"factor of the plan is"
+)
         ),
         _("All points are at rest in this position."),
     )
@@ -47,18 +49,22 @@ def _driving(here: Here, step: SolutionStep) -> Iterable[Block]:
     turned = words.further(step)
     if here.first and turned:
         one = _(
-            "The velocity of point {points} of the driving link is perpendicular to {line}, in the sense of its "
-            "rotation:"
+            (
+"The velocity of point {points} of the input link is perpendicular to {line} and directed in the "
+"sense of its rotation:"
+)
         )
         several = _(
-            "The velocities of points {points} of the driving link are perpendicular to their radii, in the "
-            "sense of its rotation:"
+            (
+"The velocities of points {points} of the input link are perpendicular to their radii and directed "
+"in the sense of its rotation:"
+)
         )
         line = turned[0].base.at + turned[0].point.at
         points = listed(words.name_of(about.point) for about in turned)
         yield said(one if len(turned) == 1 else several, points=points, line=line)
     elif here.first and step.equations:
-        text = _("Link {link} does not turn: all its points move with the given velocity {v}.")
+        text = _("Link {link} does not rotate: all its points move with the given velocity {v}.")
         yield said(text, link=step.links[0], v=here.v.of(step.equations[0].point).symbol)
     for about in turned:
         yield _turned(here, about)
@@ -87,8 +93,8 @@ def _group(here: Here, step: SolutionStep, known: Collection[str]) -> Iterable[B
         yield from _known_about(here, about, found)
         found.add(about.point.name)
     if here.first and together:
-        one = _("Group {group}: the velocity of point {points} is found from")
-        several = _("Group {group}: the velocities of points {points} are found from")
+        one = _("Group {group}: the velocity of point {points} is found from the equations")
+        several = _("Group {group}: the velocities of points {points} are found from the equations")
         yield words.introduced(step, points, one, several)
         yield from equations(here, step, together, "v", found)
         for link in dict.fromkeys(e.link for e in together if isinstance(e, SameLinkEquation) and e.idle):
@@ -104,8 +110,8 @@ def _group(here: Here, step: SolutionStep, known: Collection[str]) -> Iterable[B
         together,
         "ω",
         lambda about: here.v.relative(about.point, about.base),
-        _("Vector {v}, carried over to point {point}, turns link {link} {sense}."),
-        _("Link {link} turns {sense}."),
+        _("Vector {v}, transferred to point {point}, shows that link {link} rotates {sense}."),
+        _("Link {link} rotates {sense}."),
     )
     yield from words.turning_as_one(here, step, "ω")
     for about in words.further(step):
@@ -145,18 +151,23 @@ def _driving_accelerations(here: Here, step: SolutionStep) -> Iterable[Block]:
     """Points of a driving link."""
     for equation in step.equations:
         a = here.a.of(equation.point)
-        text = _("The driving link {link} moves uniformly, so that {a} = 0.")
+        text = _("Input link {link} moves uniformly, so {a} = 0.")
         if a.segment:
-            text = _("All points of link {link} have the acceleration {a} of the drive.")
+            text = _("All points of link {link} have the acceleration {a} of the driver.")
         yield said(text, link=step.links[0], a=a.symbol)
     turned = words.further(step)
     if turned and here.first:
         even = _(
-            "Driving link {link} turns uniformly: the accelerations of its points are normal ones, towards its axis."
+            (
+"Input link {link} rotates uniformly: the accelerations of its points are purely normal, directed "
+"towards the axis of rotation."
+)
         )
         uneven = _(
-            "Driving link {link} does not turn uniformly: the accelerations of its points have normal and "
-            "tangential parts."
+            (
+"Input link {link} does not rotate uniformly: the accelerations of its points have normal and "
+"tangential components."
+)
         )
         yield said(uneven if step.links[0] in here.epsilon else even, link=step.links[0])
     for about in turned:
@@ -201,10 +212,12 @@ def _scale(here: Here, steps: Sequence[SolutionStep]) -> Iterable[Block]:
         here.a,
         [vector for step in steps for vector in _known_accelerations(here, step)],
         _(
-            "The plan of accelerations begins at its pole {pole}. The segment {segment} stands for {a}; the scale "
-            "factor of the plan is"
+            (
+"The acceleration plan begins at its pole {pole}. The segment {segment} represents {a}; the scale "
+"factor of the plan is"
+)
         ),
-        _("Nothing accelerates in this position."),
+        _("All accelerations are zero in this position."),
     )
 
 
@@ -227,12 +240,12 @@ def _before(here: Here, step: SolutionStep, known: Collection[str]) -> Iterable[
     points, together = words.sought(step, known), words.solved(step)
     yield from begun(here, step, "ε")
     if here.first and together:
-        one = _("Group {group}: the acceleration of point {points} is found from")
-        several = _("Group {group}: the accelerations of points {points} are found from")
+        one = _("Group {group}: the acceleration of point {points} is found from the equations")
+        several = _("Group {group}: the accelerations of points {points} are found from the equations")
         yield words.introduced(step, points, one, several)
         yield from equations(here, step, together, "a", {*known, *(about.point.name for about in words.direct(step))})
         if any(_has_known_part(here, equation) for equation in together):
-            yield said(_("The velocities give:"))
+            yield said(_("From the velocities:"))
     for about in words.direct(step):
         yield from _parts(here, about)
     for equation in together:
@@ -265,7 +278,7 @@ def _solved(here: Here, step: SolutionStep, known: Collection[str]) -> Iterable[
         together,
         "ε",
         lambda about: _part(here, about, "τ"),
-        _("Vector {a}, carried over to point {point}, shows that {epsilon} is {sense}."),
+        _("Vector {a}, transferred to point {point}, shows that {epsilon} is {sense}."),
         _("Angular acceleration {epsilon} is {sense}."),
     )
     yield from words.turning_as_one(here, step, "ε")
