@@ -1,22 +1,16 @@
-(
-"A fuzzer: files of the bank, changed by the grammar of the format, are loaded, solved, run by "
-"commands and graded.\n"
-"\n"
-"    python tests/fuzz.py --minutes 10 --seed 1\n"
-"    python tests/fuzz.py --loads 100000 --solves 10000 --runs 1000 --grades 300\n"
-"\n"
-"A load reads a file. A solve computes it, with all its tables. A run draws it and writes its note "
-"and its sheets, and\n"
-"takes one of the other commands. A grade marks a group twice. With counts each kind ends at its "
-"own; without counts each\n"
-"takes its share of the time.\n"
-"\n"
-"What is right: a problem, or the product's own error. Reported, with a file that shows it: any "
-"other exception, a\n"
-"warning of Python, work beyond the limits of LONGEST, a number that is not finite where it name "
-"of the link sound, and one that\n"
-"is farther from the truth than its bound says.\n"
-)
+"""A fuzzer: files of the bank, changed by the grammar of the format, are loaded, solved, run by commands and graded.
+
+    python tests/fuzz.py --minutes 10 --seed 1
+    python tests/fuzz.py --loads 100000 --solves 10000 --runs 1000 --grades 300
+
+A load reads a file. A solve computes it, with all its tables. A run draws it and writes its note and its sheets, and
+takes one of the other commands. A grade marks a group twice. With counts each kind ends at its own; without counts each
+takes its share of the time.
+
+What is right: a problem, or the product's own error. Reported, with a file that shows it: any other exception, a
+warning of Python, work beyond the limits of LONGEST, a number that is not finite where it is called sound, and one that
+is farther from the truth than its bound says.
+"""
 
 from __future__ import annotations
 

@@ -109,7 +109,7 @@ def test_a_rocker_runs_off_its_velocity_as_the_root_of_the_distance_from_a_dead_
 
 
 def test_the_doubles_of_a_scene_are_its_data():
-    "So the distance is not quite what it name of the link, and the answers are for what it is."
+    """So the distance is not quite what it is called, and the answers are for what it is."""
     at = near("outer-tangent", "1e-15", 2)
     linkage = at.scene.linkage
     it = {key: mp.mpc(linkage.local(FRAME, key)) for key in "OD"}

@@ -26,7 +26,7 @@ KEPT, UPDATED = cache(messages.catalogue), cache(messages.updated)  # read once 
 
 
 def said_at_import(tree: ast.AST) -> Iterator[int]:
-    "Lines on which `_()` or `translated()` name of the link when the module is imported."
+    """Lines on which `_()` or `translated()` is called when the module is imported."""
     for node in ast.iter_child_nodes(tree):
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
             now = [*node.args.defaults, *(d for d in node.args.kw_defaults if d), *getattr(node, "decorator_list", [])]

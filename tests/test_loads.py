@@ -370,24 +370,17 @@ def test_a_load_along_the_motion_in_its_working_stroke_is_told_both_ways_out():
     [
         (
             "on: 3, force: [0, -100]",
-            (
-"its force is perpendicular to the motion of its point. Write it, opposite to the motion: force: "
-"{size: 100 N, angle: 180 deg}"
-),
+            "its force is perpendicular to the motion of its point. "
+            "Write it against the motion: force: {size: 100 N, angle: 180 deg}",
         ),
         (
             "on: 3, axes: link, force: [0, 100]",
-            (
-"its force is perpendicular to the motion of its point. Write it, opposite to the motion: force: "
-"{size: 100 N, angle: 180 deg}"
-),
+            "its force is perpendicular to the motion of its point. "
+            "Write it against the motion: force: {size: 100 N, angle: 180 deg}",
         ),
         (
             "on: 3, force: {angle: 90, against: stroke, table: [[0, 50], [100, 100]]}",
-            (
-"its force is perpendicular to the motion of its point. Write it, opposite to the motion: angle: "
-"180 deg"
-),
+            "its force is perpendicular to the motion of its point. Write it against the motion: angle: 180 deg",
         ),
         ("on: 3, moment: 5", "link 3 does not rotate. Write a force"),
         ("on: 1, force: [100, 0]", "its point is at rest. Write the link or the point that moves"),

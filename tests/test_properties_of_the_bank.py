@@ -543,10 +543,7 @@ def course(number):
 
 
 def engine():
-    (
-"Pistons at 0.04 m on rods without mass: gas given by a table against the crank's angle from the "
-"first dead centre."
-)
+    """Pistons at 0.04 m on rods without mass: gas by a table against the crank's angle from the first dead centre."""
     rows = [(0, 0), (90, 0), (100, 9000), (120, 7000), (180, 2000), (250, 400), (270, 0), (360, 0)]
 
     def piston(q):

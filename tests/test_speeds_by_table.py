@@ -1,7 +1,4 @@
-(
-"A crank whose speed is given given by a table of its angle: squares of speeds are interpolated, "
-"their slope accelerates."
-)
+"""A crank whose speed is given by a table of its angle: squares of speeds are interpolated, their slope accelerates."""
 
 import numpy as np
 import pytest
@@ -199,10 +196,8 @@ def test_what_cannot_be_is_refused_with_its_place(driver, told):
     [
         (
             "dynamics: {delta: 1/30}",
-            (
-"x.yaml:9:19: driver.speed: a law of motion is found, or it is given given by a table\n"
-"  allowed: one speed beside dynamics"
-),
+            "x.yaml:9:19: driver.speed: a law of motion is found, or it is given by a table\n"
+            "  allowed: one speed beside dynamics",
         ),
         (
             "grading: {answers: [{of: H}]}",

@@ -406,11 +406,11 @@ def test_several_primary_mechanisms_have_as_many_freedoms_together():
             "shaper",
             (
                 "Type of chain and of structure: closed, complex: the driver and several groups, of several types.",
-                "Independent contours K = p − n: 2.",
+                "Number of independent loops K = p − n: 2.",
             ),
         ),
         # p = 6 hinges on n = 4 links; the contour through the second coupler repeats the first
-        ("parallel-couplers", ("Independent contours K = p − n: 2, of which dependent: 1.",)),
+        ("parallel-couplers", ("Number of independent loops K = p − n: 2, of which dependent: 1.",)),
         # five hinges on four links, 3*4 - 2*5 = 2
         (
             "five-bar",
@@ -423,7 +423,7 @@ def test_several_primary_mechanisms_have_as_many_freedoms_together():
         (
             "cam-lever",
             (
-                "Independent contours K = p − n: 2.",
+                "Number of independent loops K = p − n: 2.",
                 "With each higher pair replaced by a link with two revolute pairs: W = 3·5 − 2·7 = 1.",
             ),
         ),

@@ -171,25 +171,19 @@ def test_explain_says_the_structure_in_sentences_for_a_note():
         "The mechanism has n = 5 moving links and p1 = 7 lower pairs (turning: 5, sliding: 2); by Chebyshev's "
         "formula its mobility is W = 3n − 2 p1 = 3·5 − 2·7 = 1.",
         "By classes of pairs the same is W = 3n − 2 p5 − p4 = 3·5 − 2·7 − 0 = 1.",
-        "By the generalised formula W = Hn − sum((H − i) p_i) with H = 3 it is 3·5 − 2·7 − 1·0 = 1.",
+        "The generalised formula W = Hn − sum((H − i) p_i) with H = 3 gives 3·5 − 2·7 − 1·0 = 1.",
         "Pairs, with their classes and codes: O 0-1 (5, 1в), C 0-3 (5, 1в), A 1-2 (5, 1в), D 3-4 (5, 1в), E 4-5 "
         "(5, 1в), A' 3-2 (5, 1п), x 0-5 (5, 1п).",
-        "Link 1 (crank) is an input link: 8.587 rad/s = 82 rpm, counterclockwise.",
+        "Link 1 (crank) is a driving link: 8.587 rad/s = 82 rpm, counterclockwise.",
         "The formula of structure is I(0,1) → II(2,3) → II(4,5); the mechanism is of class II.",
         "Type of chain and of structure: closed, complex: the driver and several groups, of several types.",
-        "Independent contours K = p − n: 2.",
+        "Number of independent loops K = p − n: 2.",
         "Basic mechanisms it contains: slotted-lever 0-1-2-3-0, crank-slider 0-3-4-5-0, six-bar: Watt II.",
         "Motion of the links: 1: turns about O; 2: plane motion; 3: turns about C; 4: plane motion; 5: slides "
         "along guide x.",
-        (
-"The group II(2,3) is of class II, order 2, type RPR (ВПВ, 3); its external pairs are A (link 1), "
-"C (frame)."
-),
+        "The group II(2,3) is of class II, order 2, type RPR (ВПВ, 3); its outer pairs are A (link 1), C (frame).",
         "For the group II(2,3), 3n − 2 p1 − p2 = 3·2 − 2·3 = 0.",
-        (
-"The group II(4,5) is of class II, order 2, type RRP (ВВП, 2); its external pairs are D (link 3), "
-"x (frame)."
-),
+        "The group II(4,5) is of class II, order 2, type RRP (ВВП, 2); its outer pairs are D (link 3), x (frame).",
         "For the group II(4,5), 3n − 2 p1 − p2 = 3·2 − 2·3 = 0.",
         "Positions, velocities and accelerations are found group by group in this order, reactions in the "
         "opposite one; the balancing moment acts on link 1, and Zhukovsky's lever checks it.",

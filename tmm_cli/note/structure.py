@@ -100,11 +100,9 @@ def _mobility(structure: Structure) -> Iterable[Block]:
     turning = sum(pair.kind == "R" for pair in structure.pairs)
     yield said(
         _(
-            (
-"The mobility {w} of the mechanism is found by Chebyshev's formula {source}, in which {n} is the "
-"number of moving links, {lower} the number of lower pairs (revolute: {turning}, prismatic: "
-"{sliding}) and {higher} the number of higher pairs:"
-)
+            "The mobility {w} of the mechanism is found by Chebyshev's formula {source}, in which {n} is the "
+            "number of moving links, {lower} the number of lower pairs (revolute: {turning}, prismatic: "
+            "{sliding}) and {higher} the number of higher pairs:"
         ),
         source=Link("artobolevskii"),
         w=W,
@@ -128,11 +126,9 @@ def _mobility(structure: Structure) -> Iterable[Block]:
     if structure.passive:
         yield said(
             _(
-                (
-"The rank of the equations shows redundant constraints (number: {count}; {pairs}), which only "
-"repeat other constraints because of the special dimensions of the mechanism; its true mobility is "
-"{w} = {true}."
-)
+                "The rank of the equations shows redundant constraints (number: {count}; {pairs}), which only "
+                "repeat other constraints because of the special dimensions of the mechanism; its true mobility is "
+                "{w} = {true}."
             ),
             count=str(structure.redundant),
             w=W,
@@ -156,14 +152,14 @@ def chebyshev(n: int, lower: int, higher: int) -> Expression:
 def _groups(subject: Subject) -> Iterable[Block]:
     structure = subject.results.structure
     if structure.groups:
-        head = cells(_("group"), _("class"), _("order"), _("type"), _("internal pairs"), _("external pairs"), _("mobility"))
+        head = cells(
+            _("group"), _("class"), _("order"), _("type"), _("internal pairs"), _("external pairs"), _("mobility")
+        )
         rows = tuple(_group(group) for group in structure.groups)
         yield from tabled(
             _(
-                (
-"When the input links and the frame are removed, the Assur groups of table {table} remain; the "
-"mobility of each group is zero."
-)
+                "When the input links and the frame are removed, the Assur groups of table {table} remain; the "
+                "mobility of each group is zero."
             ),
             Rows(_("Assur groups in the order of their connection"), head, rows, "groups"),
         )
@@ -172,11 +168,12 @@ def _groups(subject: Subject) -> Iterable[Block]:
     if len(structure.drivers) > 1:
         yield paragraph(_("Primary mechanisms: {names}.").format(names=primary_mechanisms_in_words(structure)))
     yield paragraph(_("Type of chain and of structure: {words}.").format(words=kind_in_words(structure)))
-    yield paragraph(typeset(_("Number of independent loops K = p - n: {count}.").format(count=contours_in_words(structure))))
-    text = _((
-"The class of a mechanism is the highest class of its groups {source}; this mechanism is of class "
-"{number}."
-))
+    yield paragraph(
+        typeset(_("Number of independent loops K = p - n: {count}.").format(count=contours_in_words(structure)))
+    )
+    text = _(
+        "The class of a mechanism is the highest class of its groups {source}; this mechanism is of class {number}."
+    )
     yield said(text, source=Link("frolov"), number=structure.roman)
     schemes = schemes_in_words(structure)
     if schemes:

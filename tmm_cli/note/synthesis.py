@@ -32,7 +32,9 @@ def write_synthesis(subject: Subject) -> Iterable[Block]:
         yield paragraph(_("The dimensions of the mechanism are determined from the requirements."))
     else:
         rows = rows_of(subject, asked, _("Requirements"), "asked", FOUND)
-        yield from tabled(_("The dimensions of the mechanism are determined from the requirements (table {table})."), rows)
+        yield from tabled(
+            _("The dimensions of the mechanism are determined from the requirements (table {table})."), rows
+        )
     source = by_hand(translated(task.outcome.source).rstrip("."))
     yield paragraph(_("Method of solution: {source}.").format(source=source))
     yield from _formulas(task)
@@ -66,7 +68,11 @@ def _formulas(task: Synthesised) -> Iterable[Block]:
     }
     if "k" in values:
         theta = float(theta_of(values["k"]))
-        yield said(_("The angle {theta} follows from the time ratio {k} (coefficient of change of mean speed):"), theta=THETA, k=K)
+        yield said(
+            _("The angle {theta} follows from the time ratio {k} (coefficient of change of mean speed):"),
+            theta=THETA,
+            k=K,
+        )
         ratio = Leaf(K, values["k"])
         share = (ratio - 1) / (ratio + 1)
         yield Found(THETA, Constant(math.pi, "180°") * share, theta, "°", angle=True)

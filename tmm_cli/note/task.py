@@ -30,10 +30,8 @@ def write_task(subject: Subject) -> Iterable[Block]:
     sentence = _("The dimensions of the links are given in table {table}.")
     if problem.synthesis is not None:
         sentence = _(
-            (
-"The dimensions of the links are given in table {table}; those not given in the problem statement "
-"are found by synthesis."
-)
+            "The dimensions of the links are given in table {table}; those not given in the problem statement "
+            "are found by synthesis."
         )
     yield from tabled(sentence, _sizes(subject))
     sentence = _("The coordinates of the fixed points are given in table {table}.")
@@ -45,12 +43,10 @@ def write_task(subject: Subject) -> Iterable[Block]:
     if any(np.any(linkage.links[name].mass != 0) for name in linkage.moving):
         yield from tabled(
             _(
-                (
-"Table {table} gives the masses {m} of the links, their moments of inertia {J} about the centres "
-"of mass and the coordinates of the centres of mass. The local axes of a link have their origin at "
-"its first point; the x axis points to the second point or as the coordinates in table {sizes} "
-"indicate. A slider with one point has axes parallel to those of the link on which it slides."
-)
+                "Table {table} gives the masses {m} of the links, their moments of inertia {J} about the centres "
+                "of mass and the coordinates of the centres of mass. The local axes of a link have their origin at "
+                "its first point; the x axis points to the second point or as the coordinates in table {sizes} "
+                "indicate. A slider with one point has axes parallel to those of the link on which it slides."
             ),
             _masses(subject),
             m=Symbol("m"),
@@ -186,7 +182,7 @@ def _load(subject: Subject, load: Load) -> tuple[Line, ...]:
         when = _("in the working stroke of link {link}").format(link=load.stroke_link)
     if load.window is not None:
         first, last = (subject.value(angle, ANGLE) for angle in load.window)
-        when = _("crank from {first} to {last}").format(first=first, last=last)
+        when = _("crank angle from {first} to {last}").format(first=first, last=last)
     name = symbol_of_name(load.name, "P" if load.force else "M")
     return cells(name, link_name(load.link), place if load.force else NONE, size, when)
 
@@ -206,8 +202,6 @@ def _wanted(subject: Subject) -> Iterable[str]:
     )
     if subject.acts:
         yield _(
-            (
-"the reactions in the pairs and the balancing moment or force on the input link, checked by the "
-"Zhukovsky lever."
-)
+            "the reactions in the pairs and the balancing moment or force on the input link, checked by the "
+            "Zhukovsky lever."
         )

@@ -172,7 +172,7 @@ def without_friction(subject: Subject, k: int) -> Iterable[Block]:
         return
     loads = tuple(load for load in subject.results.loads if load.kind != "friction")
     free = solve_reactions(subject.motion, subject.results.structure, loads)
-    yield said(_("Without friction it would be:"))
+    yield said(_("Without friction the balancing load would be:"))
     for balance in free.balances:
         turns = balance.moment is not None
         symbol = balance_symbol(balance.driver.link, len(free.balances) > 1, turns=turns)

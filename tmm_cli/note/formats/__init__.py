@@ -22,7 +22,7 @@ FORMATS: dict[str, Callable[[Note], bytes]] = {"html": html, "docx": _docx}
 
 def formats_of(text: str) -> list[str]:
     """Formats from their names with commas. Raises ProblemError."""
-    wanted = parse_names(text, FORMATS, "--as", _("there is no such format of notes"))
+    wanted = parse_names(text, FORMATS, "--as", _("unknown format of the note"))
     if "docx" in wanted and find_spec("docx") is None:
         raise ProblemError(
             _("DOCX requires the package python-docx, which is not installed"),

@@ -32,10 +32,8 @@ def drivers(subject: Subject) -> Iterable[Block]:
         if running is not None:
             yield said(
                 _(
-                    (
-"The velocity of input link {link} follows from its law of motion, which is determined below. The "
-"law of motion requires only velocity ratios, and these are the same at every velocity."
-)
+                    "The velocity of input link {link} follows from its law of motion, which is determined below. The "
+                    "law of motion requires only velocity ratios, and these are the same at every velocity."
                 ),
                 link=driver.link,
             )
@@ -50,17 +48,11 @@ def _rotating_driver(subject: Subject, driver: Driver) -> Iterable[Block]:
     text = _("Input link {link} rotates about point {point} {sense} with the angular velocity")
     if driver.law is not None:
         text = _(
-            (
-"Input link {link} rotates about point {point} {sense}; its angular velocity is given by a table "
-"({how})."
-)
+            "Input link {link} rotates about point {point} {sense}; its angular velocity is given by a table ({how})."
         )
     elif driver.base != FRAME:
         text = _(
-            (
-"Input link {link} rotates about point {point} of link {base} {sense} with the relative angular "
-"velocity"
-)
+            "Input link {link} rotates about point {point} of link {base} {sense} with the relative angular velocity"
         )
     elif rpm:
         text = _("Input link {link} rotates about point {point} {sense} at {n} = {speed} rpm; its angular velocity is")
@@ -91,9 +83,7 @@ def _sliding_driver(subject: Subject, driver: Driver) -> Iterable[Block]:
     own = slide.point if driver.base == FRAME else f"{slide.point}{slide.point}{slide.carrier}"
     text = _("Input link {link} slides along its guide on the frame with the velocity")
     if driver.base != FRAME:
-        text = _(
-            "Input link {link} moves along link {base} (a piston in its cylinder) with the relative velocity"
-        )
+        text = _("Input link {link} moves along link {base} (a piston in its cylinder) with the relative velocity")
     yield said(text, link=driver.link, base=driver.base)
     yield _given(subject, Symbol("v", "0" if driver.acceleration else own), driver.rate)
     if driver.acceleration:
@@ -123,10 +113,8 @@ def speed_here(here: Here) -> Iterable[Block]:
     run, start, now = Leaf(Symbol(f"Δ{way}"), gone), Leaf(Symbol(letter, "0"), driver.rate), Symbol(letter, driver.link)
     yield said(
         _(
-            (
-"The input link has moved through {gone} since position 0; its velocity {speed} follows from the "
-"constant acceleration:"
-)
+            "The input link has moved through {gone} since position 0; its velocity {speed} follows from the "
+            "constant acceleration:"
         ),
         gone=run.symbol,
         speed=now,
@@ -169,17 +157,13 @@ def _extremes(subject: Subject, strokes: Strokes) -> Iterable[Block]:
     size, letter = (strokes.travel, "H") if slides else (float(np.degrees(strokes.travel)), "ψ")
     shown = (Letter(Symbol(letter)), "=", Number(subject.text(size)), Words(" " + _("m") if slides else "°"))
     text = _(
-        (
-"The output ({output}) is in its extreme positions at the input angles {phi} = {places}; its swing "
-"angle is {size}."
-)
+        "The output ({output}) is in its extreme positions at the input angles {phi} = {places}; its swing "
+        "angle is {size}."
     )
     if slides:
         text = _(
-            (
-"The output ({output}) is in its extreme positions at the input angles {phi} = {places}; its "
-"stroke is {size}."
-)
+            "The output ({output}) is in its extreme positions at the input angles {phi} = {places}; its "
+            "stroke is {size}."
         )
     yield said(text, output=output(subject, strokes.link), phi=Symbol("φ"), places=places, size=row(*shown))
     if not np.isfinite(strokes.k):
@@ -187,17 +171,13 @@ def _extremes(subject: Subject, strokes: Strokes) -> Iterable[Block]:
     working = sum(s.length for s in strokes.working)
     idle = sum(s.length for s in strokes.strokes if not s.working)
     text = _(
-        (
-"The input link rotates through {working} during the working stroke and through {idle} during the "
-"return stroke; the time ratio {k} (coefficient of change of mean speed) is"
-)
+        "The input link rotates through {working} during the working stroke and through {idle} during the "
+        "return stroke; the time ratio {k} (coefficient of change of mean speed) is"
     )
     if len(strokes.strokes) > 2:
         text = _(
-            (
-"The input link rotates through {working} during all working strokes of a cycle and through {idle} "
-"during all return strokes; the time ratio {k} (coefficient of change of mean speed) is"
-)
+            "The input link rotates through {working} during all working strokes of a cycle and through {idle} "
+            "during all return strokes; the time ratio {k} (coefficient of change of mean speed) is"
         )
     yield said(text, k=Symbol("k"), working=Symbol("φ", symbol("w")), idle=Symbol("φ", symbol("i")))
     ratio = Leaf(Symbol("φ", symbol("w")), working, angle=True) / Leaf(Symbol("φ", symbol("i")), idle, angle=True)
@@ -346,22 +326,18 @@ def _position(here: Here, every: list[SolutionStep]) -> Iterable[Block]:
     if here.first:
         yield said(
             _(
-                (
-"Velocities are found from velocity plans: first for the input links, then for the groups in the "
-"order of the structural formula. A vector underlined twice is known in magnitude and direction, a "
-"vector underlined once in direction only."
-)
+                "Velocities are found from velocity plans: first for the input links, then for the groups in the "
+                "order of the structural formula. A vector underlined twice is known in magnitude and direction, a "
+                "vector underlined once in direction only."
             )
         )
         slid = next((e for step in every for e in step.equations if isinstance(e, MovingGuideEquation)), None)
         if slid is not None:
             yield said(
                 _(
-                    (
-"The point of the guide that coincides with the sliding block in this position is denoted with the "
-"number of the link of the guide: {under} of link {link} lies at {point}; its distances to other "
-"points of the link are those in this position."
-)
+                    "The point of the guide that coincides with the sliding block in this position is denoted with the "
+                    "number of the link of the guide: {under} of link {link} lies at {point}; its distances to other "
+                    "points of the link are those in this position."
                 ),
                 under=name_of(slid.base),
                 link=slid.slide.carrier,
@@ -387,11 +363,9 @@ def _position(here: Here, every: list[SolutionStep]) -> Iterable[Block]:
         if any(isinstance(e, MovingGuideEquation) for step in every for e in step.equations):
             yield said(
                 _(
-                    (
-"The acceleration of the sliding block relative to the coincident point of the guide has a "
-"component along the guide and, if the guide rotates, the Coriolis component; its direction is "
-"that of the relative velocity rotated by 90° in the sense of rotation of the guide."
-)
+                    "The acceleration of the sliding block relative to the coincident point of the guide has a "
+                    "component along the guide and, if the guide rotates, the Coriolis component; its direction is "
+                    "that of the relative velocity rotated by 90° in the sense of rotation of the guide."
                 )
             )
     yield from subject.figures(

@@ -83,7 +83,13 @@ def equal(*symbols: Symbol) -> Block:
 def introduced(step: SolutionStep, points: Sequence[PlanPoint], one: str, several: str) -> Block:
     """What the equations of a group are for: one point, several ones, or none."""
     assert step.group is not None
-    text = one if len(points) == 1 else several if points else _("Group {group}: the remaining unknowns are found from the equations")
+    text = (
+        one
+        if len(points) == 1
+        else several
+        if points
+        else _("Group {group}: the remaining unknowns are found from the equations")
+    )
     return said(text, group=step.group.title, points=listed(map(name_of, points)))
 
 
@@ -142,10 +148,8 @@ def remaining(here: Here, plan: OnPaper, known: Collection[str]) -> Iterable[Blo
     if here.first:
         yield said(
             _(
-                (
-"The ends of the vectors of all other points and of the centres of mass are found by similarity: "
-"the image of a link on the plan is similar to the link."
-)
+                "The ends of the vectors of all other points and of the centres of mass are found by similarity: "
+                "the image of a link on the plan is similar to the link."
             )
         )
     named = [point for point in (*linkage.moving_points, *known) if point in known and point in plan.ends]
@@ -159,11 +163,9 @@ def not_on_paper() -> Block:
     """Of a group that no polygon solves."""
     return said(
         _(
-            (
-"These equations contain more unknown magnitudes than a vector polygon can give, and none of them "
-"can be found before the others. The equations of the group were therefore solved together by a "
-"numerical method; the plan shows the solution:"
-)
+            "These equations contain more unknown magnitudes than a vector polygon can give, and none of them "
+            "can be found before the others. The equations of the group were therefore solved together by a "
+            "numerical method; the plan shows the solution:"
         )
     )
 

@@ -70,20 +70,16 @@ def _willis(here: Here, mesh: Mesh) -> Iterable[Block]:
     over, under, carrier = (Leaf(Symbol("ω", link)) for link in (mesh.j, mesh.i, mesh.carrier))
     share = over / under
     text = _(
-        (
-"Gears {i} and {j} with the pitch radii {ri} and {rj} are in mesh; their ratio (angular velocities "
-"are positive counterclockwise) is"
-)
+        "Gears {i} and {j} with the pitch radii {ri} and {rj} are in mesh; their ratio (angular velocities "
+        "are positive counterclockwise) is"
     )
     if carried:
         share = (over - carrier) / (under - carrier)
         text = _(
-            (
-"Gears {i} and {j} with the pitch radii {ri} and {rj} are in mesh; their axes are on carrier "
-"{carrier}. By Willis's method all links are given the reverse rotation of the carrier, so that "
-"the carrier is at rest. The ratio of the gears (angular velocities are positive counterclockwise) "
-"is then"
-)
+            "Gears {i} and {j} with the pitch radii {ri} and {rj} are in mesh; their axes are on carrier "
+            "{carrier}. By Willis's method all links are given the reverse rotation of the carrier, so that "
+            "the carrier is at rest. The ratio of the gears (angular velocities are positive counterclockwise) "
+            "is then"
         )
     ri, rj = Symbol("r", mesh.i), Symbol("r", mesh.j)
     yield said(text, i=mesh.i, j=mesh.j, carrier=mesh.carrier, ri=ri, rj=rj)
@@ -153,17 +149,13 @@ def _law(mesh: Mesh, letter: str) -> Block:
     text = _("The second derivative {second} of the motion law gives")
     if letter == "ω" and mesh.slide:
         text = _(
-            (
-"The motion law of follower {follower} gives the derivative {first} of its displacement with "
-"respect to the angle of cam {cam}:"
-)
+            "The motion law of follower {follower} gives the derivative {first} of its displacement with "
+            "respect to the angle of cam {cam}:"
         )
     elif letter == "ω":
         text = _(
-            (
-"The motion law of follower {follower} gives the derivative {first} of its angle with respect to "
-"the angle of cam {cam}:"
-)
+            "The motion law of follower {follower} gives the derivative {first} of its angle with respect to "
+            "the angle of cam {cam}:"
         )
     return said(text, follower=mesh.j, cam=mesh.i, first=_derivative(mesh, 1), second=_derivative(mesh, 2))
 

@@ -30,10 +30,8 @@ def velocities(here: Here, steps: Sequence[SolutionStep]) -> Iterable[Block]:
         here.v,
         [vector for step in steps for vector in _known(here, step)],
         _(
-            (
-"The velocity plan begins at its pole {pole}. The segment {segment} represents {v}; the scale "
-"factor of the plan is"
-)
+            "The velocity plan begins at its pole {pole}. The segment {segment} represents {v}; the scale "
+            "factor of the plan is"
         ),
         _("All points are at rest in this position."),
     )
@@ -49,16 +47,12 @@ def _driving(here: Here, step: SolutionStep) -> Iterable[Block]:
     turned = words.further(step)
     if here.first and turned:
         one = _(
-            (
-"The velocity of point {points} of the input link is perpendicular to {line} and directed in the "
-"sense of its rotation:"
-)
+            "The velocity of point {points} of the input link is perpendicular to {line} and directed in the "
+            "sense of its rotation:"
         )
         several = _(
-            (
-"The velocities of points {points} of the input link are perpendicular to their radii and directed "
-"in the sense of its rotation:"
-)
+            "The velocities of points {points} of the input link are perpendicular to their radii and directed "
+            "in the sense of its rotation:"
         )
         line = turned[0].base.at + turned[0].point.at
         points = listed(words.name_of(about.point) for about in turned)
@@ -98,7 +92,7 @@ def _group(here: Here, step: SolutionStep, known: Collection[str]) -> Iterable[B
         yield words.introduced(step, points, one, several)
         yield from equations(here, step, together, "v", found)
         for link in dict.fromkeys(e.link for e in together if isinstance(e, SameLinkEquation) and e.idle):
-            yield said(_("Link {link} does not turn, so that all its points move as one."), link=link)
+            yield said(_("Link {link} does not rotate, so all its points have the same velocity."), link=link)
         yield said(_("The plan gives:")) if step.on_paper else words.not_on_paper()
     for spot in points:
         yield here.v.read(here.v.of(spot))
@@ -158,16 +152,12 @@ def _driving_accelerations(here: Here, step: SolutionStep) -> Iterable[Block]:
     turned = words.further(step)
     if turned and here.first:
         even = _(
-            (
-"Input link {link} rotates uniformly: the accelerations of its points are purely normal, directed "
-"towards the axis of rotation."
-)
+            "Input link {link} rotates uniformly: the accelerations of its points are purely normal, directed "
+            "towards the axis of rotation."
         )
         uneven = _(
-            (
-"Input link {link} does not rotate uniformly: the accelerations of its points have normal and "
-"tangential components."
-)
+            "Input link {link} does not rotate uniformly: the accelerations of its points have normal and "
+            "tangential components."
         )
         yield said(uneven if step.links[0] in here.epsilon else even, link=step.links[0])
     for about in turned:
@@ -212,10 +202,8 @@ def _scale(here: Here, steps: Sequence[SolutionStep]) -> Iterable[Block]:
         here.a,
         [vector for step in steps for vector in _known_accelerations(here, step)],
         _(
-            (
-"The acceleration plan begins at its pole {pole}. The segment {segment} represents {a}; the scale "
-"factor of the plan is"
-)
+            "The acceleration plan begins at its pole {pole}. The segment {segment} represents {a}; the scale "
+            "factor of the plan is"
         ),
         _("All accelerations are zero in this position."),
     )
