@@ -58,7 +58,7 @@ from tmm_cli.problem import (
     is_chain,
     read_text,
 )
-from tmm_cli.reports import accuracy, cells_with_digits, computed_tables, json_text, keys_of, sections, walk
+from tmm_cli.reports import assess_accuracy, computed_tables, json_text, numbers_at_positions, row_keys, sections, walk
 from tmm_cli.synthesis import TASKS, block_module, read_task
 
 ROOT = Path(__file__).parents[1]
@@ -367,11 +367,11 @@ def beyond(results: Any) -> str | None:
         q, first = places[list(results.numbers)], places[0]
     with np.errstate(all="ignore"):
         found, wide = (
-            accuracy(results),
-            cells_with_digits(results_with_linkage(results, exact_linkage(results), q, first)),
+            assess_accuracy(results),
+            numbers_at_positions(results_with_linkage(results, exact_linkage(results), q, first)),
         )
         for table in computed_tables(results):
-            keys = keys_of(table, len(results.numbers))
+            keys = row_keys(table, len(results.numbers))
             for k, column in enumerate(found.table(table).columns if keys else ()):
                 if column.dimension is None or not all(key in wide for key in keys[k]):
                     continue

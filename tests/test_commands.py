@@ -28,10 +28,10 @@ from tmm_cli.reports import (
     MORE_ROWS,
     MORE_ROWS_AS_JSON,
     MOST_ROWS,
-    Difference,
+    ResultDifference,
     difference_table,
-    differences,
-    show,
+    find_differences,
+    print_on_terminal,
     tables,
 )
 
@@ -300,9 +300,9 @@ def test_a_table_that_is_cut_advises_only_options_that_its_command_has():
 
 
 def test_a_table_of_differences_that_is_cut_says_how_many_are_left_out():
-    table = difference_table({"shaper": [Difference(f"q{k}", None, 0.0, 1.0, 1.0) for k in range(MOST_ROWS + 7)]})
+    table = difference_table({"shaper": [ResultDifference(f"q{k}", None, 0.0, 1.0, 1.0) for k in range(MOST_ROWS + 7)]})
     console = Console(file=io.StringIO(), record=True)
-    show(table, UnitSystem(), console, more="... and {rows} rows more")
+    print_on_terminal(table, UnitSystem(), console, more="... and {rows} rows more")
     assert "... and 7 rows more\n" in console.export_text()
 
 
@@ -403,7 +403,7 @@ def test_a_narrow_terminal_breaks_tables_into_parts_and_no_number_is_cut():
     for width in (60, 80, 120, 300):
         console = Console(width=width, record=True, file=io.StringIO(), highlight=False)
         for table in tables(results):
-            show(table, results.problem.units, console, {0, 1} if table.long else None)
+            print_on_terminal(table, results.problem.units, console, {0, 1} if table.long else None)
         text = console.export_text()
         assert "…" not in text
         assert all(len(line) <= width for line in text.splitlines())
@@ -419,7 +419,7 @@ def test_zeros_of_a_golden_run_are_compared_with_the_largest_value_of_their_kind
     found = json.loads(json.dumps(expected))
     found["links"]["3"]["second"] = [1e-12, 2e-13]
     found["energy"]["slope"] = [-5.5e-11, 1e-11]
-    assert differences(expected, found, 1e-9) == []
+    assert find_differences(expected, found, 1e-9) == []
     found["links"]["3"]["second"][0] = 1e-10
     found["energy"]["slope"][1] = 1e-8
-    assert [one.quantity for one in differences(expected, found, 1e-9)] == ["links.3.second", "energy.slope"]
+    assert [one.quantity for one in find_differences(expected, found, 1e-9)] == ["links.3.second", "energy.slope"]

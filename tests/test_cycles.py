@@ -5,7 +5,7 @@ import pytest
 from test_loads import MACHINE, load, refused, solved, work_of_cycle
 
 from tmm_cli import prepare
-from tmm_cli.reports import doubts
+from tmm_cli.reports import find_slips
 
 AREA = 1e-3  # m2
 FOUR_STROKES = """cycle: 2 turns
@@ -64,7 +64,7 @@ def test_many_at_once_are_as_one_alone():
 
 def test_a_load_of_the_working_stroke_is_told_to_act_in_each_of_them():
     results = solved("cycle: 2 turns\nloads: {f: {on: 3, force: [-9, 0], when: working stroke}}")
-    assert list(doubts(results.problem)) == [
+    assert list(find_slips(results.problem)) == [
         "load f acts in every working stroke of the 2 turns: `when: [from, to]` picks one of them"
     ]
 

@@ -60,9 +60,9 @@ from tmm_cli.mechanics.quantities import (
 from tmm_cli.mechanics.structure import analyse_structure
 from tmm_cli.problem import build_any_problem, build_problem, read_text
 from tmm_cli.reports import (
-    accuracy,
-    cells_with_digits,
+    assess_accuracy,
     computed_tables,
+    numbers_at_positions,
     tables_of,
     terminal_cells as shown,
     true_digits,
@@ -268,7 +268,7 @@ def test_margins_of_the_groups_bound_the_errors_on_the_way_and_near_its_ends(kin
 @pytest.mark.parametrize("name", ["shaper", "excavator", "five-point-line", "clamp"])
 def test_what_an_ordinary_run_says_of_its_digits_holds_in_double_doubles(name):
     results = solved(name)
-    found = accuracy(results)
+    found = assess_accuracy(results)
     assert not found.chosen.size, "no position needs to be judged"
     assert beyond(results) is None
 
@@ -318,7 +318,7 @@ def test_a_position_near_a_dead_one_blurs_no_extreme_and_a_largest_angle_at_an_e
     text = BARRED.replace("angle: rad", "angle: deg").replace("at: 1,", "at: 1 rad,")
     places = f"output: 3\npositions: {{at: [0.2 rad, 0.5 rad, {mp.nstr(end - mp.mpf(left), 25)} rad]}}\n"
     results = solve(build_problem(read_text(text + places, "barred.yaml")), "kinematics")
-    quality, pressure = accuracy(results).with_bounds(tables_of(results, ("quality", "pressure")))
+    quality, pressure = assess_accuracy(results).with_bounds(tables_of(results, ("quality", "pressure")))
     units = results.problem.units
     told = dict(zip(quality.columns[0].values, shown(quality.columns[1], units, range(quality.rows)), strict=True))
     stretched = mp.degrees(mp.pi - mp.acos((1 + mp.mpf("0.36") - mp.mpf("2.25")) / mp.mpf("1.2")))  # crank and coupler
@@ -331,7 +331,7 @@ def test_a_position_near_a_dead_one_blurs_no_extreme_and_a_largest_angle_at_an_e
 
 def test_a_pressure_angle_that_is_the_same_everywhere_has_no_place_of_its_largest():
     results = moved("gear-doubling")
-    (pressure,) = accuracy(results).with_bounds(tables_of(results, ("pressure",)))
+    (pressure,) = assess_accuracy(results).with_bounds(tables_of(results, ("pressure",)))
     place = next(column for column in pressure.columns if column.header == "driver there at")
     assert "-" in shown(place, results.problem.units, range(pressure.rows))
 
@@ -384,12 +384,12 @@ def test_sensitivity_is_that_of_a_larger_change_of_the_data():
     problem = load(str(ROOT / "problems" / "crank-rocker.yaml"))
     places = replace(problem.request, places=tuple(0.3 + 0.7 * k for k in range(8)))
     problem = replace(problem, request=places, extended=None)
-    found = accuracy(solve(problem), full=True)
-    base, total = cells_with_digits(found.there), {}
+    found = assess_accuracy(solve(problem), full=True)
+    base, total = numbers_at_positions(found.there), {}
     for length in list_lengths(problem.linkage):
         by = 1e-3 * abs(length.value)
         moved = [
-            cells_with_digits(solve(replace(problem, linkage=change_length(problem.linkage, length, sign * by))))
+            numbers_at_positions(solve(replace(problem, linkage=change_length(problem.linkage, length, sign * by))))
             for sign in (1, -1)
         ]
         for key in base:
@@ -461,11 +461,11 @@ def test_rows_of_the_lever_are_those_in_doubles_and_a_couple_that_is_zero_keeps_
 def test_of_a_long_cycle_some_positions_are_judged_and_the_bounds_between_them_hold():
     problem = load(str(SHAPER))
     results = solve(replace(problem, request=replace(problem.request, count=2900)), "kinematics")
-    found = accuracy(results, full=True)
+    found = assess_accuracy(results, full=True)
     assert len(found.chosen) < 800
     (table,) = (t for t in computed_tables(results) if t.name == "slides")
     told = found.table(table)
-    wide = cells_with_digits(
+    wide = numbers_at_positions(
         results_with_linkage(results, exact_linkage(results), to_double_double(results.motion.q), results.start)
     )
     for header in ("s", "v relative", "a relative"):
@@ -487,7 +487,7 @@ def test_a_moment_by_the_swing_of_its_rocker_is_judged():
     assert constant in text
     results = solve(build_problem(read_text(text.replace(constant, f"moment: {table}"), "x.yaml")))
     name = next(one for one in computed_tables(results) if one.name == "balance")
-    moment = next(column for column in accuracy(results).table(name).columns if column.header == "M_b")
+    moment = next(column for column in assess_accuracy(results).table(name).columns if column.header == "M_b")
     assert 0 < np.max(moment.bound) < 1e-10 * np.max(np.abs(moment.array))
     assert beyond(results) is None
 

@@ -7,7 +7,7 @@ import pytest
 
 from tmm_cli import solve
 from tmm_cli.problem import ProblemError, build_problem, read_text
-from tmm_cli.reports import collect_warnings, doubts
+from tmm_cli.reports import collect_warnings, find_slips
 
 MACHINE = """tmm: 1
 points: {O: [0, 0]}
@@ -93,7 +93,7 @@ def test_rest_in_a_table_of_speeds_needs_no_unit_and_other_bare_rows_are_told_by
     )
     at = "positions: {at: [0, 90, 180]}\n"
     named, bare = (
-        list(doubts(build_problem(read_text(MACHINE + table.format(speed) + at, "x.yaml"))))
+        list(find_slips(build_problem(read_text(MACHINE + table.format(speed) + at, "x.yaml"))))
         for speed in ("90 rpm", "90")
     )
     assert not any("no unit" in text for text in named)

@@ -10,7 +10,15 @@ from pathlib import Path
 import pytest
 from test_commands import ROOT, after_the_echo, tmm
 
-from tmm_cli.reports import Staged, folder_name, folder_of, held, listed, result_files as files, write_whole
+from tmm_cli.reports import (
+    StagedFolder,
+    choose_folder,
+    folder_name,
+    listed_files,
+    recorded_part,
+    result_files as files,
+    write_atomically,
+)
 
 SHAPER = ROOT / "problems" / "shaper.yaml"
 SINE = ROOT / "problems" / "sine.yaml"
@@ -21,7 +29,7 @@ def content(folder):
 
 
 def written(folder, texts):
-    with Staged(folder) as staged:
+    with StagedFolder(folder) as staged:
         for name, text in texts.items():
             staged.write(name, (text,))
     return staged
@@ -58,12 +66,12 @@ def test_a_part_of_a_run_goes_beside_a_whole_one(options, part, tmp_path):
 
 
 def test_where_there_is_no_other_result_a_part_has_the_usual_folder(tmp_path):
-    assert folder_of(tmp_path, "sine", "p2") == (tmp_path / "sine", None)
+    assert choose_folder(tmp_path, "sine", "p2") == (tmp_path / "sine", None)
     run_of(tmp_path / "sine", "cycle.csv", part="p2")
-    assert held(tmp_path / "sine") == "p2"
-    assert folder_of(tmp_path, "sine", "p2") == (tmp_path / "sine", None)
-    assert folder_of(tmp_path, "sine", "p3") == (tmp_path / "sine-p3", tmp_path / "sine")
-    assert folder_of(tmp_path, "sine", "") == (tmp_path / "sine", None)
+    assert recorded_part(tmp_path / "sine") == "p2"
+    assert choose_folder(tmp_path, "sine", "p2") == (tmp_path / "sine", None)
+    assert choose_folder(tmp_path, "sine", "p3") == (tmp_path / "sine-p3", tmp_path / "sine")
+    assert choose_folder(tmp_path, "sine", "") == (tmp_path / "sine", None)
 
 
 def test_a_part_never_takes_the_place_of_a_problem_that_is_named_like_it(tmp_path):
@@ -170,7 +178,7 @@ def test_what_a_killed_run_left_is_removed_by_the_next(tmp_path):
     run_of(folder, "a.csv")
     assert os.listdir(tmp_path) == ["out"]
     (tmp_path / f".one.json.new-{number}").write_bytes(b"half")
-    write_whole(tmp_path / "one.json", b"{}")
+    write_atomically(tmp_path / "one.json", b"{}")
     assert sorted(os.listdir(tmp_path)) == ["one.json", "out"]
 
 
@@ -179,7 +187,7 @@ def test_a_device_is_not_replaced_by_a_file(tmp_path):
     os.mkfifo(tmp_path / "device")
     (tmp_path / "one.json").symlink_to("device")
     with pytest.raises(FileExistsError, match="this is no file but a device"):
-        write_whole(tmp_path / "one.json", b"{}")
+        write_atomically(tmp_path / "one.json", b"{}")
     assert (tmp_path / "device").is_fifo()
 
 
@@ -194,7 +202,7 @@ def test_a_run_killed_between_the_two_renames_loses_nothing(tmp_path):
     folder, number = tmp_path / "out", gone()
     run_of(tmp_path / f".out.old-{number}", "a.csv", "old.csv")
     (tmp_path / f".out.old-{number}" / "notes.txt").write_text("mine", encoding="utf-8")
-    with pytest.raises(ZeroDivisionError), Staged(folder):
+    with pytest.raises(ZeroDivisionError), StagedFolder(folder):
         1 / 0  # noqa: B018
     assert sorted(os.listdir(folder)) == ["a.csv", "notes.txt", "old.csv", "result.json"]
 
@@ -214,8 +222,8 @@ def test_a_run_that_is_killed_while_it_writes_leaves_the_old_results_and_the_nex
     before = content(tmp_path / "sine")
     code = (
         "import os, sys\n"
-        "from tmm_cli.reports.result_files import Staged\n"
-        "with Staged(sys.argv[1]) as staged:\n"
+        "from tmm_cli.reports.result_files import StagedFolder\n"
+        "with StagedFolder(sys.argv[1]) as staged:\n"
         "    staged.write('cycle.csv', ('half',))\n"
         "    print('now', flush=True)\n"
         "    sys.stdin.read()\n"
@@ -254,9 +262,9 @@ def test_a_folder_has_a_name_that_every_system_takes(name, safe):
 
 def test_only_names_of_files_are_taken_from_a_record(tmp_path):
     (tmp_path / "result.json").write_text('{"files": ["a.csv", "../b.csv", "notes.txt", 3]}', encoding="utf-8")
-    assert listed(tmp_path) == {"a.csv"}
+    assert listed_files(tmp_path) == {"a.csv"}
     (tmp_path / "result.json").write_text('{"files": [' + "[" * 90_000, encoding="utf-8")
-    assert listed(tmp_path) == set()
+    assert listed_files(tmp_path) == set()
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from transforms import turned
 
 from tmm_cli.mechanics.analysis import Inputs, solve
 from tmm_cli.mechanics.linkage import Friction, Request
-from tmm_cli.reports import accuracy, computed_tables
+from tmm_cli.reports import assess_accuracy, computed_tables
 
 G = 9.81
 SLIDER = {
@@ -210,7 +210,7 @@ def moment_by_friction_circles(degrees):
 @pytest.mark.parametrize(("number", "degrees"), [(0, -120), (1, -60), (2, -20)])
 def test_a_press_needs_the_moment_of_its_friction_circles_and_digits_bound_it(number, degrees):
     results = solved_text(CRANK_PRESS)
-    table = accuracy(results).table(next(one for one in computed_tables(results) if one.name == "balance"))
+    table = assess_accuracy(results).table(next(one for one in computed_tables(results) if one.name == "balance"))
     balance = next(column for column in table.columns if column.header == "M_b")
     exact = moment_by_friction_circles(degrees)
     value = results.reactions.balance.moment[number]

@@ -37,7 +37,7 @@ from tmm_cli.grading import (
 )
 from tmm_cli.grading.exports import xlsx
 from tmm_cli.problem import read_text
-from tmm_cli.reports import show
+from tmm_cli.reports import print_on_terminal
 
 ASKED = """
 grading:
@@ -355,7 +355,7 @@ def test_statistics_are_of_those_who_handed_in(own):
     assert found["group"].notes == ("students: 3", "without an answer, and not counted: 1")
     console = Console(file=io.StringIO(), width=100)
     for table in found.values():
-        show(table, own.units, console)
+        print_on_terminal(table, own.units, console)
     assert "omega" not in console.file.getvalue() and "row 9: no number" in console.file.getvalue()
 
 

@@ -14,7 +14,7 @@ from models import PROBLEMS, solved_text
 from test_commands import tmm
 
 from tmm_cli.problem import ProblemError, build_problem, read_text
-from tmm_cli.reports import properties_shown, tables, to_json
+from tmm_cli.reports import shown_properties, tables, to_json
 
 SLOTS = (PROBLEMS / "slotted/intermittent.yaml").read_text(encoding="utf-8")
 RATCHET = (PROBLEMS / "gear-lever/ratchet-feed.yaml").read_text(encoding="utf-8")
@@ -170,8 +170,8 @@ def test_times_are_told_at_constant_speed_alone():
 
 def test_properties_read_the_wheels():
     for name in ("slotted/intermittent", "gear-lever/ratchet-feed"):
-        assert all(one.met for one in properties_shown(moved(name)))
-    steps = [math.degrees(one.value) for one in properties_shown(moved("gear-lever/ratchet-feed"))[:3]]
+        assert all(one.met for one in shown_properties(moved(name)))
+    steps = [math.degrees(one.value) for one in shown_properties(moved("gear-lever/ratchet-feed"))[:3]]
     assert steps == pytest.approx([102.681135, 77.318865, 180], abs=1e-6)
 
 

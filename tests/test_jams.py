@@ -20,7 +20,7 @@ from tmm_cli.mechanics.forces import FrictionSolution, LockedRange, find_locked_
 from tmm_cli.mechanics.groups import CamLaw, CamLawPiece
 from tmm_cli.mechanics.numerics import solve as solve_linear, to_double_double
 from tmm_cli.note import Paragraph, Subject, losses
-from tmm_cli.reports import collect_warnings as words, doubts, to_json
+from tmm_cli.reports import collect_warnings as words, find_slips, to_json
 
 # ---------------------------------------------------------------- wheels
 
@@ -438,4 +438,4 @@ def test_without_masses_and_loads_all_forces_are_zero_and_finite(name):
 def test_no_problem_of_the_bank_has_a_load_or_a_spring_or_a_friction_to_be_warned_of(name):
     told = ("in the direction of motion", "does no work in", "the ends of spring", "locks itself")
     assert not [w for w in words(solved(name)) if any(phrase in w for phrase in told)]
-    assert not [w for w in doubts(problem(name).whole) if "move as one slider" in w]
+    assert not [w for w in find_slips(problem(name).whole) if "move as one slider" in w]

@@ -12,7 +12,7 @@ from tmm_cli.mechanics.analysis import motion_at_positions
 from tmm_cli.mechanics.dynamics import reduce_mechanism
 from tmm_cli.mechanics.numerics import InterpolationTable
 from tmm_cli.problem import ProblemError, build_any_problem, read_text
-from tmm_cli.reports import collect_warnings, doubts, input_data_tables
+from tmm_cli.reports import collect_warnings, find_slips, input_data_tables
 
 MACHINE = """tmm: 1
 units: {length: mm, angle: deg}
@@ -209,7 +209,7 @@ def test_a_curve_that_swings_beyond_its_rows_is_told_of():
     )
     assert any(
         text.startswith("load f: between rows 3 and 4 of its table the smooth curve goes beyond all rows by ")
-        for text in doubts(results.problem)
+        for text in find_slips(results.problem)
     )
 
 

@@ -14,12 +14,12 @@ from test_commands import tmm
 
 from tmm_cli import load, solve
 from tmm_cli.problem import build_problem, read_text
-from tmm_cli.reports import properties_shown
+from tmm_cli.reports import shown_properties
 
 
 def shown(name):
     """What a file shows, in its order."""
-    return [one.value for one in properties_shown(solved(name))]
+    return [one.value for one in shown_properties(solved(name))]
 
 
 def meet(a, b, r1, r2, near):

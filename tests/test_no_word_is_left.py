@@ -18,9 +18,9 @@ from tmm_cli.language import CATALOGUES, spoken
 from tmm_cli.note import html, note
 from tmm_cli.reports import (
     collect_warnings,
-    doubts,
     explain_tables,
-    in_words,
+    find_slips,
+    narrate_structure,
     spreadsheet_cells,
     summarise_file,
     tables,
@@ -78,9 +78,9 @@ def tabled(results, problem):
 def said(results, problem):
     return (
         *summarise_file(results.problem),
-        *doubts(results.problem),
+        *find_slips(results.problem),
         *collect_warnings(results),
-        *in_words(results),
+        *narrate_structure(results),
         *position_remarks(results),
     )
 

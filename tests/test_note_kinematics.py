@@ -56,13 +56,17 @@ def test_two_lines_stand_under_what_is_known_whole_and_one_under_a_known_directi
     ("name", "systems"), [("shaper", 0), ("excavator", 0), ("press-class-iii", 2), ("loader", 2), ("class-iv", 2)]
 )
 def test_a_group_that_no_polygon_solves_is_said_to_be_one(name, systems):
-    assert sum(text.startswith("These equations contain more unknown magnitudes") for text in sentences(name)) == systems
+    assert (
+        sum(text.startswith("These equations contain more unknown magnitudes") for text in sentences(name)) == systems
+    )
 
 
 def test_each_position_in_detail_has_its_numbers_and_the_method_is_told_once():
     headings = [block.text for block in chapter("five-point-line") if isinstance(block, Heading)]
     assert [text for text in headings if text.startswith("Vel")] == [f"Velocities, position {k}" for k in range(5)]
-    assert sum(text.startswith("Velocities are found from velocity plans") for text in sentences("five-point-line")) == 1
+    assert (
+        sum(text.startswith("Velocities are found from velocity plans") for text in sentences("five-point-line")) == 1
+    )
     assert len(vectors("five-point-line")) == 4  # v and a of C, from B and from D
     assert [one.name.name for one in found("five-point-line")].count("ω₃") == 5
 

@@ -20,7 +20,7 @@ from pydantic import BaseModel
 
 from tmm_cli import load, solve
 from tmm_cli.problem import File, SpatialFile, read_text
-from tmm_cli.reports import properties_shown
+from tmm_cli.reports import shown_properties
 
 mp.mp.dps = 40
 STEP = mpf(10) ** -12  # of differences: what they miss is below 1e-20
@@ -639,7 +639,7 @@ def test_a_number_that_a_file_shows_is_that_of_its_dimensions(name):
     path = PROBLEMS / f"{name}.yaml"
     blocks = yaml.safe_load(path.read_text(encoding="utf-8"))["shows"]
     numbers = [key for key, block in blocks.items() if re.fullmatch(NUMBER, str(block["expected"]))]
-    shown = {one.name: one for one in properties_shown(solve(load(path)))}
+    shown = {one.name: one for one in shown_properties(solve(load(path)))}
     right = [float(number) for number in NUMBERS[name]()]
     assert [shown[key].expected for key in numbers] == pytest.approx(right, rel=1e-11)
     assert [shown[key].value for key in numbers] == pytest.approx(right, rel=1e-10)

@@ -13,7 +13,7 @@ from test_commands import tmm
 
 from tmm_cli import load, solve
 from tmm_cli.problem import ProblemError
-from tmm_cli.reports import properties_shown, to_json
+from tmm_cli.reports import shown_properties, to_json
 
 SLIDER = (PROBLEMS / "crank-slider-offset.yaml").read_text(encoding="utf-8")
 
@@ -27,7 +27,7 @@ def file_with(tmp_path, block, text=SLIDER):
 
 def value(tmp_path, block, name="crank-slider-offset", stage="forces"):
     text = (PROBLEMS / f"{name}.yaml").read_text(encoding="utf-8")
-    (one,) = properties_shown(solve(load(str(file_with(tmp_path, block, text))), stage))
+    (one,) = shown_properties(solve(load(str(file_with(tmp_path, block, text))), stage))
     return one.value
 
 
@@ -45,7 +45,7 @@ def test_in_a_position_and_over_the_way(tmp_path):
 
 @pytest.mark.parametrize("name", ["gear-straight-line", "hanger", "settings/guide-setting", "tilter"])
 def test_a_length_or_an_angle_that_is_rounding_is_told_as_none(name):
-    values = {one.name: (one.value, one.expected) for one in properties_shown(solve(load(f"{PROBLEMS}/{name}.yaml")))}
+    values = {one.name: (one.value, one.expected) for one in shown_properties(solve(load(f"{PROBLEMS}/{name}.yaml")))}
     nothing = [value for value, expected in values.values() if expected == 0]
     assert nothing and not any(nothing)
     assert all(value == 0 or abs(value) > 1e-9 for value, __ in values.values())
@@ -54,7 +54,7 @@ def test_a_length_or_an_angle_that_is_rounding_is_told_as_none(name):
 def test_the_output_that_is_found_has_a_stroke_too(tmp_path):
     text = SLIDER.replace("output: 3\n", "")
     assert "output:" not in text
-    (one,) = properties_shown(solve(load(str(file_with(tmp_path, "{of: H}", text)))))
+    (one,) = shown_properties(solve(load(str(file_with(tmp_path, "{of: H}", text)))))
     assert one.value == value(tmp_path, "{of: H}")
 
 
@@ -153,6 +153,6 @@ def test_a_chain_without_dimensions_shows_its_counts(tmp_path):
 )
 def test_slips_are_refused_at_their_place(tmp_path, block, message):
     with pytest.raises(ProblemError) as refused:
-        properties_shown(solve(load(str(file_with(tmp_path, block)))))
+        shown_properties(solve(load(str(file_with(tmp_path, block)))))
     assert message in str(refused.value)
     assert np.isfinite(refused.value.mark.line if refused.value.mark else 0)

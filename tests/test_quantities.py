@@ -22,7 +22,7 @@ from tmm_cli.mechanics.quantities import (
     quantity_columns,
 )
 from tmm_cli.problem import build_problem, read_text
-from tmm_cli.reports import accuracy, schema, tables, terminal_cells, to_json
+from tmm_cli.reports import assess_accuracy, schema, tables, terminal_cells, to_json
 
 THINGS = {  # where the things of a kind stand in result.json, and what may be left out there
     "kinematics.points": (POINT, set()),
@@ -103,7 +103,7 @@ def test_a_force_that_is_zero_but_for_rounding_has_neither_direction_nor_arm():
         assert reactions[pair]["angle"] == [None] * 12
     assert reactions["x"]["arm"] == [None] * 12
     np.testing.assert_allclose(reactions["K"]["angle"][1:3], np.angle(results.reactions.of("K").force[1:3]), rtol=0)
-    (told,) = accuracy(results).with_bounds([table])
+    (told,) = assess_accuracy(results).with_bounds([table])
     angles = next(column for column in told.columns if column.header == "angle")
     shown = dict(
         zip(told.columns[2].values, terminal_cells(angles, results.problem.units, range(told.rows)), strict=True)

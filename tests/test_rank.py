@@ -21,7 +21,7 @@ from tmm_cli.mechanics.linkage import FRAME, Hinge, Link
 from tmm_cli.mechanics.numerics import CROSSING_AGREES
 from tmm_cli.mechanics.structure import PairRedundancy, analyse_structure, classify_linkage, list_ties
 from tmm_cli.problem import ProblemError
-from tmm_cli.reports import left_out
+from tmm_cli.reports import reduction_sentences
 
 WITH_A_DYAD = Path("tests/data/redundant-first.yaml").read_text(encoding="utf-8")
 
@@ -83,7 +83,7 @@ def test_the_second_coupler_of_a_parallelogram_is_passive_and_named():
     assert (passive.pair, passive.links) == ("E", ("3", "4"))
     assert passive.among == ("0", "1", "2", "3", "4")
     assert structure.formula == "I(0,1) -> II(2,3)"
-    assert [*left_out(structure)] == ["link 4 is redundant, adds q = 1"]
+    assert [*reduction_sentences(structure)] == ["link 4 is redundant, adds q = 1"]
 
 
 def test_the_parallelogram_with_two_couplers_moves_as_one():
@@ -303,7 +303,7 @@ output: 3
 )
 def test_rigid_links_count_as_one_and_redundant_links_and_pairs_are_left_out_of_the_formula(text, formula, sentences):
     structure = solved_text(text, stage="structure").structure
-    assert (structure.formula, [*left_out(structure)]) == (formula, sentences)
+    assert (structure.formula, [*reduction_sentences(structure)]) == (formula, sentences)
     assert [group.mobility for group in structure.groups] == [0] * len(structure.groups)
     n, lower, higher = structure.count
     assert 3 * n - 2 * lower - higher == 1
@@ -359,7 +359,7 @@ def test_a_plate_bolted_to_any_link_of_a_random_linkage_changes_no_group(seed):
 )
 def test_all_redundant_linkages_of_the_bank_are_of_class_ii(name, formula, sentences):
     structure = solve(problem(name), "structure").structure
-    assert (structure.formula, structure.roman, [*left_out(structure)]) == (formula, "II", sentences)
+    assert (structure.formula, structure.roman, [*reduction_sentences(structure)]) == (formula, "II", sentences)
     if name == "four-bars/transfer":
         assert classify_linkage(structure) == ("closed", "simple"), "not complex, of several types"
 

@@ -31,7 +31,17 @@ from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.quantities import LENGTH, NUMBER
 from tmm_cli.mechanics.structure import analyse_structure
 from tmm_cli.problem import UnitSystem, build_any_problem, build_chain, read_file, read_text
-from tmm_cli.reports import Column, Staged, Table, csv_text, describe_stages, heavy, json_bytes, json_text, listed
+from tmm_cli.reports import (
+    Column,
+    StagedFolder,
+    Table,
+    csv_text,
+    describe_stages,
+    json_bytes,
+    json_text,
+    links_with_inertia,
+    listed_files,
+)
 from tmm_cli.synthesis import count, structure_of
 
 NAMES = [name for name in NAMES if name != "crank-rocker-optimal"]  # a four-bar, sought for seconds
@@ -181,7 +191,7 @@ def test_places_alone_have_no_velocities_and_asking_for_them_is_an_error():
 
 def test_massless_links_carry_no_inertia():
     results = solve(load(str(ROOT / "problems" / "cylinder.yaml")))
-    light = [name for name in results.linkage.moving if name not in heavy(results.linkage)]
+    light = [name for name in results.linkage.moving if name not in links_with_inertia(results.linkage)]
     assert not [load for load in results.loads if load.link in light and load.kind in ("weight", "inertia")]
 
 
@@ -312,12 +322,12 @@ def test_a_record_is_written_as_json_writes_it():
 
 
 def test_nothing_is_renamed_before_all_is_written(tmp_path):
-    with pytest.raises(ZeroDivisionError), Staged(tmp_path / "new") as staged:
+    with pytest.raises(ZeroDivisionError), StagedFolder(tmp_path / "new") as staged:
         staged.write("a.csv", ["a"])
         staged.write("b.csv", (str(1 / k) for k in (1, 0)))
     assert list(tmp_path.iterdir()) == []
     (tmp_path / "a.csv").write_text("old", encoding="utf-8")
-    with Staged(tmp_path) as staged:
+    with StagedFolder(tmp_path) as staged:
         staged.write("a.csv", ["ne", b"w"])
         assert (tmp_path / "a.csv").read_text(encoding="utf-8") == "old"
     assert [(path.name, path.read_text(encoding="utf-8")) for path in tmp_path.iterdir()] == [("a.csv", "new")]
@@ -326,9 +336,9 @@ def test_nothing_is_renamed_before_all_is_written(tmp_path):
 def test_the_files_of_an_earlier_run_are_read_from_the_end_of_its_record(tmp_path):
     record = {"kinematics": {"x": list(range(50_000))}, "files": ["a.csv", "b.png", "../c.csv"]}
     (tmp_path / "result.json").write_bytes(json_bytes(record))
-    assert listed(tmp_path) == {"a.csv", "b.png"}
+    assert listed_files(tmp_path) == {"a.csv", "b.png"}
     (tmp_path / "result.json").write_text("{}", encoding="utf-8")
-    assert listed(tmp_path) == set()
+    assert listed_files(tmp_path) == set()
 
 
 def test_a_run_of_3_000_positions_needs_less_than_90_MB(tmp_path):

@@ -23,7 +23,7 @@ from tmm_cli.drawing.sheets import GROUP_EXAMPLES
 from tmm_cli.mechanics.linkage import Driver, Hinge, Link, Linkage, Sketch
 from tmm_cli.mechanics.structure import ROMAN, analyse_structure, group_class
 from tmm_cli.problem import UnitSystem, build_problem, read_text
-from tmm_cli.reports import schemes_table, show
+from tmm_cli.reports import print_on_terminal, schemes_table
 from tmm_cli.synthesis import (
     MOST_SCHEMES,
     KinematicChain,
@@ -286,7 +286,7 @@ def test_a_file_that_was_changed_is_not_written_over(tmp_path):
 def test_a_narrow_terminal_breaks_the_table_of_schemes_and_cuts_nothing():
     console = Console(width=60, record=True, file=io.StringIO(), highlight=False)
     found = schemes(5, 1, ("RRR",))
-    show(schemes_table(found, 5, 1, None), UnitSystem(), console)
+    print_on_terminal(schemes_table(found, 5, 1, None), UnitSystem(), console)
     text = console.export_text()
     assert all(len(line) <= 60 for line in text.splitlines())
     assert all(f"{i}-{j}" in text for scheme in found for i, j, _ in scheme.joints)

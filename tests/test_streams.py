@@ -14,7 +14,7 @@ from tmm_cli.batch import in_processes
 from tmm_cli.cli import report_fault
 from tmm_cli.mechanics.quantities import NUMBER, product_text
 from tmm_cli.problem import UnitSystem, build_any_problem
-from tmm_cli.reports import Column, Table, csv_text, table_of_words
+from tmm_cli.reports import Column, Table, csv_text, text_table
 
 SINE = ROOT / "problems" / "sine.yaml"
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "NO_COLOR": "1"}
@@ -151,7 +151,7 @@ def test_expected_values_nested_without_end_are_none(tmp_path):
     ],
 )
 def test_no_cell_breaks_or_runs_in_any_locale(word, cell):
-    table = table_of_words("t", "", ("header",), [(word,)])
+    table = text_table("t", "", ("header",), [(word,)])
     assert "".join(csv_text(table, UnitSystem())) == f"header\n{cell}\n"
 
 

@@ -29,10 +29,10 @@ from tmm_cli.mechanics.structure import (
 from tmm_cli.problem import build_problem, read_text
 from tmm_cli.reports import (
     collect_warnings,
-    counted_by_classes,
-    counted_generally,
-    counted_with_replacements,
-    motion_in_words,
+    describe_link_motion,
+    generalised_mobility,
+    mobility_by_classes,
+    mobility_with_replacements,
 )
 
 SIX = "I(0,1) -> II(2,3) -> II(4,5)"
@@ -284,9 +284,9 @@ def test_a_planar_pair_has_its_freedoms_class_and_code():
 
 def test_formulas_of_mobility_have_their_numbers():
     """A cam with a rocker, a rod and a slider: n = 4, five lower pairs and a higher one; replaced, n = 5 and p1 = 7."""
-    assert counted_by_classes((4, 5, 1)) == "3*4 - 2*5 - 1 = 1"
-    assert counted_generally((4, 5, 1)) == "3*4 - 2*5 - 1*1 = 1"
-    assert counted_with_replacements((4, 5, 1)) == "3*5 - 2*7 = 1"
+    assert mobility_by_classes((4, 5, 1)) == "3*4 - 2*5 - 1 = 1"
+    assert generalised_mobility((4, 5, 1)) == "3*4 - 2*5 - 1*1 = 1"
+    assert mobility_with_replacements((4, 5, 1)) == "3*5 - 2*7 = 1"
 
 
 @pytest.mark.parametrize(
@@ -337,7 +337,7 @@ def test_a_contour_closed_by_a_redundant_link_is_dependent(name, dependent):
 
 def test_motion_of_a_link_names_its_axis_or_its_guide():
     results = moved("sine")
-    words = [motion_in_words(results, link) for link in results.linkage.moving]
+    words = [describe_link_motion(results, link) for link in results.linkage.moving]
     assert words == ["turns about O", "translation", "slides along guide x"]
 
 
@@ -382,7 +382,7 @@ sketch: {{at: 90, B: {c}}}
 positions: {{at: [60, 90, 120]}}
 """
     results = solve(build_problem(read_text(text, "x")), "structure")
-    assert motion_in_words(results, "2") == motion
+    assert describe_link_motion(results, "2") == motion
 
 
 def test_the_result_names_the_motion_that_the_table_names():

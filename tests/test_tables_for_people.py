@@ -12,7 +12,7 @@ from tmm_cli import load, solve
 from tmm_cli.language import spoken
 from tmm_cli.mechanics.quantities import FORCE, LENGTH
 from tmm_cli.problem import UnitSystem
-from tmm_cli.reports import Column, Table, local_csv, workbook, write_results
+from tmm_cli.reports import Column, Table, local_csv, write_results, write_workbook
 
 UNITS = UnitSystem()
 HOSTILE = ("=1+1", "+1", "@SUM(A1)", "-2+3", "\t=1", "http://example.org", "1e400", "{=A1}")
@@ -34,7 +34,7 @@ def lines(table):
 
 def test_numbers_are_numbers_with_the_figures_of_a_terminal():
     table = Table("t", "T", (Column("x", np.array([0.1234567891, 1e-20, np.nan]), LENGTH),))
-    (rows,) = sheets(workbook([table], UNITS)).values()
+    (rows,) = sheets(write_workbook([table], UNITS)).values()
     assert rows[:4] == [["T"], ["x, mm"], [123.457], [0.0]]
     assert lines(table) == ['"x, mm"', "123,457", "0", ""]
 
@@ -53,7 +53,7 @@ def test_units_are_printed_in_the_language():
 @pytest.mark.parametrize("text", HOSTILE)
 def test_texts_of_files_are_texts(text):
     table = Table("t", text, (Column(text, [text]),), notes=(text,))
-    data = workbook([table], UNITS)
+    data = write_workbook([table], UNITS)
     with zipfile.ZipFile(io.BytesIO(data)) as parts:
         (sheet,) = (parts.read(name).decode() for name in parts.namelist() if name.startswith("xl/worksheets/sheet"))
     assert "<f>" not in sheet and "hyperlink" not in sheet
@@ -88,5 +88,5 @@ def test_sheets_are_named_by_whole_words():
         "Loads: weights and forces of inertia",
         "Balance of powers and of works over the whole cycle",
     )
-    data = workbook([Table(str(k), title, (Column("x", [1.0]),)) for k, title in enumerate(titles)], UNITS)
+    data = write_workbook([Table(str(k), title, (Column("x", [1.0]),)) for k, title in enumerate(titles)], UNITS)
     assert list(sheets(data)) == ["Asked for", "Loads", "Balance of powers"]

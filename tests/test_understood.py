@@ -11,13 +11,13 @@ from test_commands import tmm
 
 from tmm_cli import load, solve
 from tmm_cli.problem import build_problem, read_text
-from tmm_cli.reports import doubts, summarise_file
+from tmm_cli.reports import find_slips, summarise_file
 
 SHAPER = Path(__file__).parent.parent / "problems" / "shaper.yaml"
 TEXT = SHAPER.read_text(encoding="utf-8")
 
 
-def told(*changes, say=doubts):
+def told(*changes, say=find_slips):
     """Sentences about the shaper with some of its text changed."""
     text = TEXT
     for old, new in changes:
@@ -205,7 +205,7 @@ def test_units_are_said_before_a_search_begins():
 def test_a_bare_speed_of_a_cylinder_is_warned_of_beside_millimetres():
     text = (SHAPER.parent / "cylinder.yaml").read_text(encoding="utf-8")
     text = text.replace("speed: v1", "speed: 40")
-    assert list(doubts(build_problem(read_text(text, "cylinder.yaml")))) == [
+    assert list(find_slips(build_problem(read_text(text, "cylinder.yaml")))) == [
         "the driver's speed has no unit and is taken as 40 m/s, though lengths are in mm: "
         "write `40 m/s`, or `40 mm/s` if that is meant"
     ]
@@ -232,7 +232,7 @@ dynamics:
 def of_law(mean="82 rpm", delta="1/25", synchronous="1500 rpm", rated="1430 rpm", ratio="17.4", file=TEXT):
     """Sentences about the shaper with a motor."""
     law = DYNAMICS.format(mean=mean, delta=delta, synchronous=synchronous, rated=rated, ratio=ratio)
-    return list(doubts(build_problem(read_text(file + law, "shaper.yaml"))))
+    return list(find_slips(build_problem(read_text(file + law, "shaper.yaml"))))
 
 
 def test_masses_loads_and_pressures_are_said_before_the_tables():
@@ -273,19 +273,19 @@ def test_bare_speeds_of_the_law_of_motion_are_warned_of(changes, key):
 
 def test_a_bare_speed_of_a_linear_motor_and_of_a_run_is_warned_of():
     run = TEXT + "dynamics: {motor: {kind: linear, stall: 900, free: 20}, run: {from: 0, to: 90, speed: 5}}\n"
-    (free, start) = doubts(build_problem(read_text(run, "shaper.yaml")))
+    (free, start) = find_slips(build_problem(read_text(run, "shaper.yaml")))
     assert free.startswith("dynamics.motor.free has no unit and is taken as 20 rad/s = 191 rpm")
     assert start.startswith("dynamics.run.speed has no unit and is taken as 5 rad/s = 47.75 rpm")
 
 
 def test_bare_speeds_of_cylinders_and_of_their_runs_are_warned_of():
     boom = (SHAPER.parent / "boom-lift.yaml").read_text(encoding="utf-8").replace("to: 980,", "to: 980, speed: 40,")
-    assert list(doubts(build_problem(read_text(boom, "boom.yaml")))) == [
+    assert list(find_slips(build_problem(read_text(boom, "boom.yaml")))) == [
         "dynamics.run.speed has no unit and is taken as 40 m/s, though lengths are in mm: write `40 m/s`, or `40 mm/s` "
         "if that is meant"
     ]
     digger = (SHAPER.parent / "excavator.yaml").read_text(encoding="utf-8").replace("speed: v2", "speed: 0.03")
-    (doubt,) = doubts(build_problem(read_text(digger, "excavator.yaml")))
+    (doubt,) = find_slips(build_problem(read_text(digger, "excavator.yaml")))
     assert doubt == (
         "driver[1].speed has no unit and is taken as 0.03 m/s, though lengths are in mm: write `0.03 m/s`, or `0.03 "
         "mm/s` if that is meant"
@@ -330,7 +330,7 @@ def test_pressures_in_bare_pascals_are_warned_of():
     ]
     assert told((load, gas.replace("8e5", "8e5 Pa").replace("4e5", "4 bar"))) == []
     text = (SHAPER.parent / "boom-lift.yaml").read_text(encoding="utf-8").replace("4.6 MPa", "4.6e5")
-    (doubt,) = doubts(build_problem(read_text(text, "boom.yaml")))
+    (doubt,) = find_slips(build_problem(read_text(text, "boom.yaml")))
     assert doubt.startswith("dynamics.run.drive comes to 460000 MPa, more than 1000 MPa")
 
 
@@ -383,7 +383,7 @@ def test_places_farther_than_the_mechanism_is_long_are_warned_of(old, new, key, 
 
 def test_no_file_of_the_bank_has_a_slip():
     for name in EVERY:
-        assert list(doubts(problem(name).whole)) == [], name
+        assert list(find_slips(problem(name).whole)) == [], name
 
 
 TWICE = """tmm: 1
@@ -410,12 +410,12 @@ def test_a_slider_that_is_described_by_two_links_is_warned_of():
         TWICE.replace("{on: y}", "{on: y, turned: 20}"),
         TWICE.replace("y: {through: [0, 0]}", "y: {through: [0, 0], angle: 180}"),
     ):
-        assert list(doubts(build_problem(read_text(text, "x.yaml")))) == [ONE_SLIDER]
+        assert list(find_slips(build_problem(read_text(text, "x.yaml")))) == [ONE_SLIDER]
     apart = TWICE.replace("4: {points: [B]", "4: {points: [C]").replace("[A, B], length: 150", "{A: 0, B: 0, C: 0}")
     apart = apart.replace("{A: 0, B: 0, C: 0}", "{A: [0, 0], B: [150, 0], C: [75, 40]}")
-    assert not list(doubts(build_problem(read_text(apart, "x.yaml"))))
+    assert not list(find_slips(build_problem(read_text(apart, "x.yaml"))))
 
 
 def test_stones_of_one_hinge_in_slots_that_cross_are_no_slider_described_twice():
     text = TWICE.replace("y: {through: [0, 0]}", "y: {through: [100, 0], angle: 90}")
-    assert not list(doubts(build_problem(read_text(text, "x.yaml"))))
+    assert not list(find_slips(build_problem(read_text(text, "x.yaml"))))

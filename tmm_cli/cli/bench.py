@@ -32,7 +32,7 @@ from tmm_cli.cli.app import add_commands
 from tmm_cli.cli.common import Json, console, emit_json
 from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, say
 from tmm_cli.problem import UnitSystem
-from tmm_cli.reports import csv_text, json_bytes, show, write_whole
+from tmm_cli.reports import csv_text, json_bytes, print_on_terminal, write_atomically
 
 MEASUREMENTS = {
     "accuracy": "Time of a position against its error, of many methods.",
@@ -90,7 +90,7 @@ def show_and_write(name: str, measured: M, charts: Callable[[M], Charts], out: P
         emit_json(measured.to_dict())
     else:
         for table in measured.tables:
-            show(table, UnitSystem(), console())
+            print_on_terminal(table, UnitSystem(), console())
     if out is not None:
         try:
             say(f"written: {_write(name, measured, charts(measured), out)}")
@@ -117,7 +117,7 @@ def _write(name: str, measured: Measured, charts: Charts, folder: Path) -> str:
         contents[f"{name}.csv"] = "".join(csv_text(measured.tables[0], UnitSystem())).encode()
     contents |= {file: png_bytes(figure) for file, figure in charts.items()}
     for file, content in contents.items():
-        write_whole(folder / file, content)
+        write_atomically(folder / file, content)
     return ", ".join(str(folder / file) for file in contents)
 
 

@@ -18,15 +18,15 @@ from tmm_cli.grading import grades
 from tmm_cli.language import _
 from tmm_cli.problem import ProblemError, UnitSystem
 from tmm_cli.reports import (
-    Difference,
-    brief,
+    ResultDifference,
+    brief_value,
     difference_table,
-    differences,
+    find_differences,
+    golden_record,
     json_bytes,
-    recorded,
-    show,
+    print_on_terminal,
     to_json,
-    write_whole,
+    write_atomically,
 )
 
 TOLERANCE = 1e-9
@@ -37,7 +37,7 @@ class CheckOutcome(NamedTuple):
 
     name: str
     wrong: str = ""
-    different: Sequence[Difference] = ()
+    different: Sequence[ResultDifference] = ()
     code: int = OK
 
 
@@ -64,21 +64,21 @@ def _check_expected(
     expected = _read_expected(expected_file)
     known = isinstance(expected, dict)
     if update:
-        if not known or expected["result"] != recorded(found):
+        if not known or expected["result"] != golden_record(found):
             golden = {
                 "golden_run": f"computed by tmm {__version__} itself, to 12 digits; no reference from elsewhere",
                 "tolerance": expected["tolerance"] if known else TOLERANCE,
-                "result": recorded(found),
+                "result": golden_record(found),
             }
             try:
-                write_whole(expected_file, json_bytes(golden))
+                write_atomically(expected_file, json_bytes(golden))
             except OSError as error:
                 wrong = f"{error.filename}: {error.strerror}"
                 return CheckOutcome(name, wrong=wrong, code=BAD_INPUT)
         return CheckOutcome(name)
     if not known:
         return CheckOutcome(name, wrong=f"{expected_file}: {expected}", code=CHECK_FAILED)
-    different = differences(expected["result"], found, float(expected["tolerance"]))
+    different = find_differences(expected["result"], found, float(expected["tolerance"]))
     return CheckOutcome(name, different=different, code=CHECK_FAILED if different else OK)
 
 
@@ -101,7 +101,7 @@ def show_outcomes(outcomes: Sequence[CheckOutcome]) -> None:
     """Show differences as a table, and errors of whole problems."""
     table = difference_table({outcome.name: outcome.different for outcome in outcomes})
     if table.rows:
-        show(table, UnitSystem(), console(), more=_("... and {rows} rows more"))
+        print_on_terminal(table, UnitSystem(), console(), more=_("... and {rows} rows more"))
     for outcome in outcomes:
         if outcome.wrong:
             say(_("error: {name}: {wrong}").format(name=printable(outcome.name), wrong=outcome.wrong))
@@ -121,9 +121,10 @@ def write_junit(path: Path, outcomes: Sequence[CheckOutcome]) -> None:
         elif different:
             failure = ElementTree.SubElement(case, "failure", message=f"{len(different)} quantities differ")
             failure.text = "\n".join(
-                f"{d.quantity}: expected {brief(d.expected)}, found {brief(d.found)}" for d in different[:50]
+                f"{d.quantity}: expected {brief_value(d.expected)}, found {brief_value(d.found)}"
+                for d in different[:50]
             )
-    write_whole(path, ElementTree.tostring(suite, encoding="utf-8", xml_declaration=True))
+    write_atomically(path, ElementTree.tostring(suite, encoding="utf-8", xml_declaration=True))
 
 
 # `tmm check`.

@@ -18,7 +18,7 @@ from rich.segment import Segment
 from tmm_cli.cli.talk import BAD_INPUT, OK, printable, report_fault, say
 from tmm_cli.language import _, language, spoken
 from tmm_cli.problem import ProblemError, escape_controls
-from tmm_cli.reports import Kind, folder_name, refuse_place
+from tmm_cli.reports import SpreadsheetKind, folder_name, refuse_unwritable
 
 Files = Annotated[list[str], typer.Argument(metavar="FILE...", help="Problem files (YAML).", show_default=False)]
 Json = Annotated[bool, typer.Option("--json", help="Print result.json instead of tables.")]
@@ -53,7 +53,7 @@ Scheduler = Annotated[
     str | None, typer.Option(metavar="ADDRESS", help="Scheduler of a Dask cluster that does it.", show_default=False)
 ]
 Tables = Annotated[
-    Kind | None,
+    SpreadsheetKind | None,
     typer.Option("--tables", help="Tables for a spreadsheet too: rounded, in your language.", show_default=False),
 ]
 
@@ -107,7 +107,7 @@ def for_each_file(
     if out is not None:
         _refuse_same_folder(files)
         with reporting_errors():
-            refuse_place(out, folder=True)
+            refuse_unwritable(out, folder=True)
     for file in with_progress(files):
         if headed and len(files) > 1 and not as_json:
             console().print(f"== {printable(file)} ==", style="bold")

@@ -10,7 +10,7 @@ from tmm_cli.cli.common import Files, Settings, console, for_each_file
 from tmm_cli.cli.opening import open_problem
 from tmm_cli.cli.talk import OK
 from tmm_cli.language import typeset
-from tmm_cli.reports import explain_tables as tables, in_words, show
+from tmm_cli.reports import explain_tables as tables, narrate_structure, print_on_terminal
 from tmm_cli.synthesis import solve
 
 Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Say too at how many places each stage computes.")]
@@ -26,10 +26,12 @@ def explain(files: Files, settings: Settings = None, verbose: Verbose = False) -
         results = solve(open_problem(file, settings), "structure")
         screen = console()
         screen.print(f"{results.problem.name}: {results.problem.title}")
-        for sentence in map(typeset, in_words(results)):
+        for sentence in map(typeset, narrate_structure(results)):
             screen.print(sentence)
         for table in tables(results, verbose):
-            show(table, results.problem.units, screen, most=None)  # there is no other place that has them all
+            print_on_terminal(
+                table, results.problem.units, screen, most=None
+            )  # there is no other place that has them all
         return OK
 
     for_each_file(files, work)

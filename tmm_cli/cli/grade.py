@@ -31,7 +31,7 @@ from tmm_cli.grading import (
 )
 from tmm_cli.language import _
 from tmm_cli.problem import ProblemError, parse_names
-from tmm_cli.reports import refuse_place, show
+from tmm_cli.reports import print_on_terminal, refuse_unwritable
 
 CACHE_FOLDER = ".graded"  # in the output folder: marks of earlier runs
 
@@ -77,7 +77,7 @@ def grade(
         if variants is None or submissions is None:
             say(_("error: --variants and --submissions are wanted, or --template"))
             raise typer.Exit(BAD_INPUT)
-        refuse_place(out, folder=True)
+        refuse_unwritable(out, folder=True)
         raise typer.Exit(_grade_group(task, variants, submissions, out, reveal, formats, jobs, scheduler))
 
 
@@ -119,7 +119,7 @@ def _grade_group(
         return CHECK_FAILED
     written(out, Gradebook(task.revealing() if reveal else task, marks, users=table.rows), names, jobs)
     for found in statistics_tables(task, marks):
-        show(found, task.units, console())
+        print_on_terminal(found, task.units, console())
     return _print_summary(handed, marks, out)
 
 

@@ -14,7 +14,7 @@ from tmm_cli.cli.talk import OK, printable, say, warn
 from tmm_cli.drawing.run import position_remarks
 from tmm_cli.language import _
 from tmm_cli.note import FORMATS, formats_of, note as note_of
-from tmm_cli.reports import collect_warnings, folder_name, write_whole
+from tmm_cli.reports import collect_warnings, folder_name, write_atomically
 
 
 def note(
@@ -39,7 +39,7 @@ def note(
         written = note_of(results)
         for name in wanted:
             target = out / folder_name(results.problem.name) / f"note.{name}"
-            write_whole(target, FORMATS[name](written))
+            write_atomically(target, FORMATS[name](written))
             say(_("written: {folder}").format(folder=printable(target)))
         return OK
 

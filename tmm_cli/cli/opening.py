@@ -19,7 +19,7 @@ from tmm_cli.problem import (
     read_text,
     refuse_options,
 )
-from tmm_cli.reports import bare_units, doubts, summarise_file
+from tmm_cli.reports import describe_units, find_slips, summarise_file
 
 
 def read_tree(file: str, settings: Sequence[str] | None = None) -> Tree:
@@ -95,9 +95,9 @@ def count_detailed_positions(problem: Problem) -> int:
 def print_file_summary(problem: Problem | TaskProblem, *, drafted: bool = False) -> None:
     """Print how the file was understood, and probable slips. drafted: without what a synthesis would find."""
     if drafted and isinstance(problem, TaskProblem):
-        say(f"{problem.name}: {bare_units(problem.units)}")
+        say(f"{problem.name}: {describe_units(problem.units)}")
         return
     for sentence in summarise_file(problem):
         say(f"{problem.name}: {sentence}")
-    for doubt in doubts(problem.whole):
+    for doubt in find_slips(problem.whole):
         warn(f"{problem.name}: {doubt}")

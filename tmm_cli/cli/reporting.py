@@ -15,20 +15,20 @@ from tmm_cli.mechanics.structure import ChainResults
 from tmm_cli.problem import build_any_problem, build_chain, is_chain
 from tmm_cli.reports import (
     AccuracyReport,
-    Kind,
-    Staged,
+    SpreadsheetKind,
+    StagedFolder,
     Table,
     WrittenFolder,
-    accuracy,
-    beside,
+    assess_accuracy,
     collect_warnings,
     folder_name,
     json_text,
-    listed,
-    properties_shown,
+    listed_files,
+    print_on_terminal as print_table,
     sections,
-    show as print_table,
+    shown_properties,
     walk,
+    with_bound_columns,
     write_results,
 )
 from tmm_cli.synthesis import count, measure_problem, redrive, solve, structure_of
@@ -80,7 +80,7 @@ def accuracy_of(results: Results | ChainResults, digits: bool, shown: Collection
     """
     if isinstance(results, ChainResults) or results.motion is None:
         return None
-    return accuracy(results, digits, shown)
+    return assess_accuracy(results, digits, shown)
 
 
 def report(
@@ -89,7 +89,7 @@ def report(
     as_json: bool,
     out: Path | None,
     digits: bool = False,
-    people: Kind | None = None,
+    people: SpreadsheetKind | None = None,
 ) -> int:
     """Show results as tables or JSON, write files if requested, print warnings; returns the exit code.
 
@@ -120,7 +120,7 @@ def find_exit_code(results: Results | ChainResults) -> int:
 
 def properties_met(results: Results | ChainResults) -> bool:
     """Return True if the shown properties have their expected values."""
-    return all(one.met for one in properties_shown(results))
+    return all(one.met for one in shown_properties(results))
 
 
 def emit_results(results: Results | ChainResults, digits: AccuracyReport | None = None) -> None:
@@ -139,8 +139,8 @@ def write_pictures(results: Results, out: Path | None, pictures: Mapping[str, by
         print_written(write_results(results, out, pictures.items(), part=part))
     elif pictures:
         usual, own = (Path("outputs") / folder_name(f"{results.problem.name}{end}") for end in ("", "-drawings"))
-        taken = not listed(usual).isdisjoint(pictures)
-        with Staged(own if taken else usual) as staged:
+        taken = not listed_files(usual).isdisjoint(pictures)
+        with StagedFolder(own if taken else usual) as staged:
             for name, content in pictures.items():
                 staged.write(name, (content,))
         print_written(WrittenFolder(own if taken else usual, staged.removed, usual if taken else None))
@@ -148,7 +148,7 @@ def write_pictures(results: Results, out: Path | None, pictures: Mapping[str, by
 
 def write_sheets(results: Results, out: Path, pictures: Iterable[tuple[str, bytes]]) -> None:
     """Write sheets beside the results of the problem, replacing sheets of the same formats from an earlier run."""
-    with Staged(out / folder_name(results.problem.name)) as staged:
+    with StagedFolder(out / folder_name(results.problem.name)) as staged:
         for name, content in pictures:
             staged.write(name, (content,))
     formats = {Path(name).suffix for name in staged.names}
@@ -180,7 +180,7 @@ def show_tables(results: Results | ChainResults, names: Iterable[str], found: Ac
     shown = walk(results, () if isinstance(results, ChainResults) else set(names))
     if found is not None:
         shown = found.with_bounds(shown)
-        shown = map(beside, shown) if found.full else shown
+        shown = map(with_bound_columns, shown) if found.full else shown
     for table in shown:
         print_table(table, results.problem.units, screen, detailed_rows(results, table))
 

@@ -15,15 +15,15 @@ from tmm_cli.language import _
 from tmm_cli.problem import ProblemError, UnitSystem, build_problem, read_text, unknown_name_error
 from tmm_cli.reports import (
     MORE_ROWS_AS_JSON,
-    Staged,
+    StagedFolder,
     WrittenSchemes,
     chains_json,
     chains_table,
     collect_warnings,
+    print_on_terminal,
     schemes_json,
     schemes_table,
-    show,
-    write_whole,
+    write_atomically,
 )
 from tmm_cli.synthesis import (
     GROUP_CLASSES,
@@ -121,7 +121,7 @@ def write_scheme_files(found: Sequence[Scheme], folder: Path, each: Iterable[Sch
                 allowed=_("another folder"),
             )
     for path, text in texts.items():
-        write_whole(path, text.encode())
+        write_atomically(path, text.encode())
     return written
 
 
@@ -205,7 +205,7 @@ def schemes(
     written = None
     with reporting_errors(as_json, str(out or "")):
         if table and (links, chains) == (None, None):
-            with Staged(out or Path("outputs") / "assur-groups") as staged:
+            with StagedFolder(out or Path("outputs") / "assur-groups") as staged:
                 for name, picture in draw_pictures("group-table"):
                     staged.write(name, (picture,))
             say(_("written: {folder}").format(folder=printable(staged.folder)))
@@ -217,7 +217,7 @@ def schemes(
                 emit_json(schemes_json(found, links, mobility, written, types))
             else:
                 rows = schemes_table(found, links, mobility, written, types)
-                show(rows, UnitSystem(), console(), more=MORE_ROWS_AS_JSON)
+                print_on_terminal(rows, UnitSystem(), console(), more=MORE_ROWS_AS_JSON)
         elif chains is not None and links is None:
             if out is not None:
                 raise ProblemError(_("kinematic chains have no files"), path=("--out",), allowed="--links N, --json")
@@ -225,7 +225,9 @@ def schemes(
             if as_json:
                 emit_json(chains_json(all_chains, chains, mobility))
             else:
-                show(chains_table(all_chains, chains, mobility), UnitSystem(), console(), more=MORE_ROWS_AS_JSON)
+                print_on_terminal(
+                    chains_table(all_chains, chains, mobility), UnitSystem(), console(), more=MORE_ROWS_AS_JSON
+                )
         else:
             wanted = _("--links N for schemes, --chains N for kinematic chains, or --table for the table of groups")
             raise ProblemError(_("what is wanted?"), allowed=wanted)

@@ -17,15 +17,15 @@ from tmm_cli.language import _, words_of_files
 from tmm_cli.problem import Problem
 from tmm_cli.reports import (
     RECORD,
-    Staged,
+    StagedFolder,
     csv_text,
+    find_unused_parameters,
     folder_name,
     json_text,
-    plain,
-    refuse_place,
-    show as show_table,
-    tables_of_many,
-    without_effect,
+    json_value,
+    print_on_terminal as show_table,
+    refuse_unwritable,
+    warn_of_load_tables,
 )
 from tmm_cli.sweep import (
     SweepResults,
@@ -70,7 +70,7 @@ def sweep(
     """
     with reporting_errors(as_json):
         if out is not None:
-            refuse_place(out, folder=True)
+            refuse_unwritable(out, folder=True)
         tree = read_tree(file, settings)
         task = Task(tree)
         print_file_summary(task.problem)
@@ -83,16 +83,16 @@ def sweep(
         peaks = any(not one.whole for one in mechanisms.shown)
         refuse_points(problem, points, peaks=peaks, taped=taped, cores=None if scheduler else cores)
         _announce(points, taped)
-        for doubt in without_effect(tree, mechanisms.names):
+        for doubt in find_unused_parameters(tree, mechanisms.names):
             say(_("warning: {warning}").format(warning=f"{problem.name}: {doubt}"))
         way = on_cluster(scheduler) if scheduler else in_processes(cores)
         with progress_bars() as shown:
             work = shown.add_task(_("solved"), total=points)
             found = run_sweep(mechanisms, way, lambda count: shown.advance(work, count))
-        for slip in tables_of_many(problem.linkage, problem.units, found.reach):
+        for slip in warn_of_load_tables(problem.linkage, problem.units, found.reach):
             warn(f"{problem.name}: {slip}")
         if as_json:
-            emit_json(plain(dict(sections(found, problem))))
+            emit_json(json_value(dict(sections(found, problem))))
         else:
             show_table(points_table(found, words=True), problem.units, console())
             if found.marks:
@@ -111,7 +111,7 @@ def _announce(points: int, taped: bool) -> None:
 def _write(found: SweepResults, problem: Problem, out: Path) -> None:
     """Write all files at once, or none. Raises OSError."""
     folder = out / folder_name(f"{problem.name}-sweep")
-    with Staged(folder) as staged:
+    with StagedFolder(folder) as staged:
         with words_of_files():
             staged.write("sweep.csv", csv_text(points_table(found), problem.units))
             staged.write("borders.csv", csv_text(borders_table(found), problem.units))

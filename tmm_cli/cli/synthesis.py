@@ -12,17 +12,17 @@ from tmm_cli.language import _, words_of_files
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.problem import ProblemError, Synthesised, UnitSystem, ValueReader
 from tmm_cli.reports import (
-    Staged,
-    bare_speeds,
-    bare_units,
+    StagedFolder,
     csv_text,
+    describe_units,
+    find_bare_speeds,
     folder_name,
-    held,
     json_bytes,
-    missed,
-    show,
+    print_on_terminal,
+    recorded_part,
     synthesis_json,
     tables_of_synthesis,
+    unmet_demand_sentences,
 )
 from tmm_cli.synthesis import TaskFile, build_synthesised, measure_problem, solve, solve_alone
 
@@ -52,12 +52,12 @@ def _solve_and_report(file: str, as_json: bool, out: Path | None, settings: Sequ
         screen = console()
         for table in tables_of_synthesis(found, measured, units):
             if not table.long:
-                show(table, units, screen, most=None)
+                print_on_terminal(table, units, screen, most=None)
         if measured is None:
             say(_("the file has no linkage: nothing was measured"))
     if out is not None:
-        folder = out / folder_name(name if held(out / folder_name(name)) is None else f"{name}-synthesis")
-        with Staged(folder) as staged:
+        folder = out / folder_name(name if recorded_part(out / folder_name(name)) is None else f"{name}-synthesis")
+        with StagedFolder(folder) as staged:
             with words_of_files():
                 for table in tables_of_synthesis(found, measured, units, 15):
                     staged.write(f"{table.name}.csv", csv_text(table, units))
@@ -65,7 +65,7 @@ def _solve_and_report(file: str, as_json: bool, out: Path | None, settings: Sequ
                 staged.write(drawing, (picture,))
             staged.write("synthesis.json", (json_bytes(whole),))
         say(_("written: {folder}").format(folder=printable(folder)))
-    for fault in missed(measured or (), units):
+    for fault in unmet_demand_sentences(measured or (), units):
         warn(fault)
     return OK if all(m.met for m in measured or ()) else CHECK_FAILED
 
@@ -81,8 +81,8 @@ def _solve_task(file: str, settings: Sequence[str] | None) -> tuple[str, str, Sy
         raise ProblemError(_("this file has no synthesis"), allowed="synthesis: {task: ...}", file=file)
     if "links" not in tree.data:
         found = solve_alone(tree)
-        say(f"{found[0]}: {bare_units(found[3])}")
-        for doubt in bare_speeds(tree.data, ValueReader(TaskFile(tree).independent, found[3])):
+        say(f"{found[0]}: {describe_units(found[3])}")
+        for doubt in find_bare_speeds(tree.data, ValueReader(TaskFile(tree).independent, found[3])):
             warn(f"{found[0]}: {doubt}")
         return (*found, None)
     problem = build_synthesised(tree)

@@ -28,7 +28,7 @@ from tmm_cli.grading import (
 )
 from tmm_cli.language import _
 from tmm_cli.problem import ProblemError
-from tmm_cli.reports import Staged, refuse_place, show, table_of_words
+from tmm_cli.reports import StagedFolder, print_on_terminal, refuse_unwritable, text_table
 
 TABLE = "variants.csv"
 
@@ -56,7 +56,7 @@ def variants(
 ) -> None:
     """Draw variants of a task for a group: a table, a sheet and a problem file for each student, the answer key."""
     with reporting_errors():
-        refuse_place(out, folder=True)
+        refuse_unwritable(out, folder=True)
         task = read_task(with_vary(read_in_file_language(file), vary or ()))
         variety = Variety(task)
         if students is None:
@@ -88,13 +88,13 @@ def _print_drawn(variety: Variety, table: VariantTable) -> None:
     told = _("{count} variants of {free}, drawn from {tried} candidates")
     say(told.format(count=len(table.rows), free=", ".join(table.names), tried=variety.tried))
     if rows:
-        thrown = table_of_words("thrown", _("Thrown away"), (_("because"), _("candidates")), rows)
-        show(thrown, variety.task.units, console())
+        thrown = text_table("thrown", _("Thrown away"), (_("because"), _("candidates")), rows)
+        print_on_terminal(thrown, variety.task.units, console())
 
 
 def _write(task: Task, text: str, table: VariantTable, out: Path) -> None:
     """Write all files at once, or none. Raises ProblemError, OSError."""
-    with Staged(out) as folder:
+    with StagedFolder(out) as folder:
         rows = rows_of_table(table)
         folder.write(TABLE, [csv_of(rows)])
         book = xlsx_of({"variants": rows})

@@ -16,7 +16,7 @@ from tmm_cli.cli.opening import open_problem, variant_settings
 from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, printable, say, warn
 from tmm_cli.language import _
 from tmm_cli.problem import ProblemError
-from tmm_cli.reports import collect_warnings, folder_name, refuse_place, write_whole
+from tmm_cli.reports import collect_warnings, folder_name, refuse_unwritable, write_atomically
 
 
 def animate(
@@ -34,11 +34,11 @@ def animate(
     """Write a page on which the mechanism turns, with its plans of motion and diagrams; it needs no network."""
     with reporting_errors():
         if out is not None:
-            refuse_place(out, folder=False)
+            refuse_unwritable(out, folder=False)
         problem = open_problem(file, variant_settings(file, variants, variant, settings))
         results = solve(problem)
         target = out or Path("outputs") / f"{folder_name(results.problem.name)}.html"
-        write_whole(target, animation_page(results).encode())
+        write_atomically(target, animation_page(results).encode())
         for warning in collect_warnings(results):
             warn(warning)
         say(_("written: {folder}").format(folder=printable(target)))
@@ -55,7 +55,7 @@ def gallery(
     A file that cannot be computed is said and left out: exit code 1.
     """
     with reporting_errors():
-        refuse_place(out / "index.html", folder=False)
+        refuse_unwritable(out / "index.html", folder=False)
     made = list(run_on_all_cores([partial(_try_card, str(file)) for file in problems_in(paths)]))
     cards = [one for one in made if isinstance(one, Card)]
     for one in made:
@@ -65,7 +65,7 @@ def gallery(
         raise typer.Exit(BAD_INPUT)
     with reporting_errors():
         target = out / "index.html"
-        write_whole(target, gallery_page(cards).encode())
+        write_atomically(target, gallery_page(cards).encode())
         say(_("written: {folder}").format(folder=printable(target)))
     if len(cards) < len(made):
         say(_("left out: {count}").format(count=len(made) - len(cards)))

@@ -31,7 +31,7 @@ from tmm_cli.mechanics.forces import table_lengths
 from tmm_cli.mechanics.groups import LinkStates, link_states
 from tmm_cli.mechanics.kinematics import Strokes, driven_links, driving_pair_names, pressure_angle
 from tmm_cli.mechanics.numerics import END_OF_SLOT, SAME_ASSEMBLY, Real, Vector
-from tmm_cli.reports import tables_of_many
+from tmm_cli.reports import warn_of_load_tables
 from tmm_cli.synthesis import solve
 
 SCAN = 48  # places in a turn of the driver: extremes between them are found by parabolas
@@ -96,7 +96,7 @@ def tables_apart(task: Task, table: VariantTable) -> Iterator[str]:
             for load, last, stroke in table_lengths(family.linkage, family.strokes):
                 rows = np.broadcast_arrays(np.ravel(last), np.ravel(stroke), np.zeros(len(family)))
                 reach.setdefault(load.name, []).extend(zip(rows[0].tolist(), rows[1].tolist(), strict=True))
-    yield from tables_of_many(linkage, task.units, reach)
+    yield from warn_of_load_tables(linkage, task.units, reach)
 
 
 def faults_of(task: Task) -> Faults:

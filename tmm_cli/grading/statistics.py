@@ -14,7 +14,7 @@ from tmm_cli.grading.untrusted_tables import sentence, shown
 from tmm_cli.language import _
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import NUMBER
-from tmm_cli.reports import Column, Table, table_of_words
+from tmm_cli.reports import Column, Table, text_table
 
 STEP = 10  # per cent: a bar of the histogram
 
@@ -103,10 +103,10 @@ def statistics_tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Tab
         yield Table("mistakes", _("Commonest mistakes"), (Column(_("mistake"), list(names)), *counts))
     copied = [(shown(student.student), shown(student.copied)) for student in marks if student.copied]
     if copied:
-        yield table_of_words("copies", _("Answers that fit another variant"), (_("student"), _("variant of")), copied)
+        yield text_table("copies", _("Answers that fit another variant"), (_("student"), _("variant of")), copied)
     unread = [(shown(student.student), sentence(problem)) for student in marks for problem in student.problems]
     if unread:
-        yield table_of_words("problems", _("Could not be read"), (_("student"), _("why")), unread)
+        yield text_table("problems", _("Could not be read"), (_("student"), _("why")), unread)
 
 
 def _difficulties(found: Sequence[Difficulty]) -> Table:

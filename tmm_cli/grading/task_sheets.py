@@ -20,7 +20,7 @@ from tmm_cli.language import N_, _, spelt, translated
 from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.quantities import DIMENSIONS, LENGTH, NUMBER, Dimension
 from tmm_cli.problem import ProblemError, read_text
-from tmm_cli.reports import Table, folder_name, input_data_tables, table_of_words
+from tmm_cli.reports import Table, folder_name, input_data_tables, text_table
 from tmm_cli.synthesis import structure_of
 
 FOR_TEACHERS = ("variants", "grading")
@@ -148,7 +148,7 @@ def _dimensions(task: Task, values: Mapping[str, str], measures: Mapping[str, Di
         measure = measures[name]
         unit = spelt(unit) or (task.units.spelt(measure) if measure else "")
         rows.append((name, number, unit))
-    return table_of_words("dimensions", _("Dimensions"), (_("name"), _("value"), _("unit")), rows)
+    return text_table("dimensions", _("Dimensions"), (_("name"), _("value"), _("unit")), rows)
 
 
 def _told(table: Table) -> Table:
@@ -157,9 +157,7 @@ def _told(table: Table) -> Table:
         return table
     rows = zip(*(column.values for column in table.columns), strict=True)
     kept = [row for row in rows if row[0] in (_("driver"), _("gravity"), _("positions"))]
-    return table_of_words(
-        table.name, _("Driver, positions"), [translated(column.header) for column in table.columns], kept
-    )
+    return text_table(table.name, _("Driver, positions"), [translated(column.header) for column in table.columns], kept)
 
 
 def _measures(task: Task) -> dict[str, Dimension | None]:
@@ -201,7 +199,7 @@ def _asked(task: Task) -> Iterator[Table]:
                 "3.6 at 34 deg; (1.2; -3.4)."
             )
         )
-    yield table_of_words("asked", _("What is asked"), headers, rows, notes)
+    yield text_table("asked", _("What is asked"), headers, rows, notes)
 
 
 def meaning(name: str) -> str:

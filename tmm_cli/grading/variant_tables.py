@@ -13,7 +13,7 @@ from tmm_cli.grading.record import VariantTable
 from tmm_cli.grading.untrusted_tables import rows_of
 from tmm_cli.language import _
 from tmm_cli.problem import ProblemError, parse_unit, prefix_errors, quote, unknown_name_error
-from tmm_cli.reports import csv_cell, empty_workbook
+from tmm_cli.reports import csv_cell, open_workbook
 
 LARGEST, MOST_ROWS = 20_000_000, 200_000  # bytes, rows: of all students of a course
 WHO = ("student", "name", "студент", "фио", "имя", "student name", "ime", "ime i prezime", "prezime i ime")
@@ -66,7 +66,7 @@ def xlsx_of(sheets: dict[str, Sequence[Sequence[str]]]) -> bytes | None:
     """Sheets of texts and numbers; no cell is a formula or a link. None where nothing is installed that writes them."""
     stream = io.BytesIO()
     try:
-        found = empty_workbook("variants.xlsx", stream, {"in_memory": True})
+        found = open_workbook("variants.xlsx", stream, {"in_memory": True})
     except ProblemError:
         return None
     with found as book:

@@ -12,7 +12,7 @@ from tmm_cli.mechanics.numerics import NO_VECTOR
 from tmm_cli.note.blocks import Block, Heading, said
 from tmm_cli.note.expression import Found, Leaf
 from tmm_cli.note.subject import Subject, rows_of
-from tmm_cli.reports import name, walk
+from tmm_cli.reports import centre_name, walk
 
 ALL, LINKS = Symbol("N"), Symbol("k")
 
@@ -92,5 +92,5 @@ def _of_position(subject: Subject, k: int, found: Mapping[LinkPair, InstantCentr
 def _distance(one: InstantCentre, other: InstantCentre) -> Leaf:
     """Between two centres, m."""
     assert one.place is not None and other.place is not None
-    letters = "".join("P" + subscript(name(centre.links)[1:]) for centre in (one, other))
+    letters = "".join("P" + subscript(centre_name(centre.links)[1:]) for centre in (one, other))
     return Leaf(Symbol(letters), abs(other.place - one.place))

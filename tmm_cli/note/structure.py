@@ -29,17 +29,17 @@ from tmm_cli.note.subject import NONE, Subject, unbroken
 from tmm_cli.reports import (
     PAIRS,
     ROLES,
-    contours_in_words,
-    counted_by_classes,
-    counted_generally,
-    counted_with_replacements,
-    kind_in_words,
-    left_out,
+    describe_classification,
+    describe_contours,
+    describe_link_motion,
+    describe_primary_mechanisms,
+    describe_schemes,
+    generalised_mobility,
     link_name,
+    mobility_by_classes,
+    mobility_with_replacements,
     mobility_with_rollers,
-    motion_in_words,
-    primary_mechanisms_in_words,
-    schemes_in_words,
+    reduction_sentences,
 )
 
 W, N, LOWER, HIGHER = Symbol("W"), Symbol("n"), Symbol("p", "1"), Symbol("p", "2")
@@ -67,7 +67,10 @@ def _links(subject: Subject) -> Rows:
     linkage, roles = subject.results.linkage, subject.results.roles
     rows = tuple(
         cells(
-            name, _(ROLES[roles[name]]), motion_in_words(subject.results, name), ", ".join(linkage.links[name].points)
+            name,
+            _(ROLES[roles[name]]),
+            describe_link_motion(subject.results, name),
+            ", ".join(linkage.links[name].points),
         )
         for name in subject.results.structure.links
     )
@@ -114,12 +117,12 @@ def _mobility(structure: Structure) -> Iterable[Block]:
     )
     yield Found(W, chebyshev(n, lower, higher), structure.mobility, whole=True)
     classes = _("In terms of the classes of pairs, W = 3n - 2 p5 - p4 = {count}.")
-    yield paragraph(typeset(classes.format(count=counted_by_classes((n, lower, higher)))))
+    yield paragraph(typeset(classes.format(count=mobility_by_classes((n, lower, higher)))))
     general = _("The generalised formula W = Hn - sum((H - i) p_i) with H = 3 gives {count}.")
-    yield paragraph(typeset(general.format(count=counted_generally((n, lower, higher)))))
+    yield paragraph(typeset(general.format(count=generalised_mobility((n, lower, higher)))))
     if higher:
         text = _("With each higher pair replaced by a link with two revolute pairs: W = {count}.")
-        yield paragraph(typeset(text.format(count=counted_with_replacements((n, lower, higher)))))
+        yield paragraph(typeset(text.format(count=mobility_with_replacements((n, lower, higher)))))
     if any(pair.mesh is not None and pair.mesh.roller for pair in structure.pairs):
         text = _("If rollers are counted as links, W = {count}.").format(count=mobility_with_rollers(structure))
         yield paragraph(typeset(text))
@@ -138,7 +141,7 @@ def _mobility(structure: Structure) -> Iterable[Block]:
     if structure.reduction:
         yield said(
             _("For the structural formula: {what}. The remaining links and pairs give:"),
-            what="; ".join(left_out(structure)),
+            what="; ".join(reduction_sentences(structure)),
         )
         yield Found(W, chebyshev(*structure.count), len(structure.drivers), whole=True)
 
@@ -166,16 +169,16 @@ def _groups(subject: Subject) -> Iterable[Block]:
     yield paragraph(_("The structural formula of the mechanism is:"))
     yield Equation(Words(structure.formula.replace("->", "→")))
     if len(structure.drivers) > 1:
-        yield paragraph(_("Primary mechanisms: {names}.").format(names=primary_mechanisms_in_words(structure)))
-    yield paragraph(_("Type of chain and of structure: {words}.").format(words=kind_in_words(structure)))
+        yield paragraph(_("Primary mechanisms: {names}.").format(names=describe_primary_mechanisms(structure)))
+    yield paragraph(_("Type of chain and of structure: {words}.").format(words=describe_classification(structure)))
     yield paragraph(
-        typeset(_("Number of independent loops K = p - n: {count}.").format(count=contours_in_words(structure)))
+        typeset(_("Number of independent loops K = p - n: {count}.").format(count=describe_contours(structure)))
     )
     text = _(
         "The class of a mechanism is the highest class of its groups {source}; this mechanism is of class {number}."
     )
     yield said(text, source=Link("frolov"), number=structure.roman)
-    schemes = schemes_in_words(structure)
+    schemes = describe_schemes(structure)
     if schemes:
         yield paragraph(_("Basic mechanisms it contains: {schemes}.").format(schemes=schemes))
     yield from _apart(subject)

@@ -40,7 +40,7 @@ from tmm_cli.mechanics.quantities import Dimension
 from tmm_cli.note.blocks import Block, Figure, Line, Ref, Rows, cells, said
 from tmm_cli.note.expression import FIGURES, fixed, plain, rounded
 from tmm_cli.problem import UnitSystem, typeset_unit
-from tmm_cli.reports import Column, Table, figures, terminal_cells as cells_of
+from tmm_cli.reports import Column, Table, printed_figures, terminal_cells as cells_of
 
 EDGE = 0.4  # mm
 WIDTH, HEIGHT = 175.0, 225.0  # mm: of the text on a page of A4, and of a drawing with its caption
@@ -291,7 +291,7 @@ def _texts(column: Column, units: UnitSystem, zeros: bool) -> list[str]:
     if column.dimension is None:
         return cells_of(column, units, range(len(column.values)))
     write = fixed if zeros else plain
-    told = zip(column.numbers(units).tolist(), figures(column, units).tolist(), strict=True)
+    told = zip(column.numbers(units).tolist(), printed_figures(column, units).tolist(), strict=True)
     return [write(rounded(value, count), count) if count > 0 else "0" if count == 0 else NONE for value, count in told]
 
 

@@ -13,7 +13,14 @@ from tmm_cli.mechanics.linkage import FRAME, Link, Load
 from tmm_cli.mechanics.quantities import ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT
 from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, cells, listed, paragraph, said, several, tabled
 from tmm_cli.note.subject import NONE, Subject, rows_of, unbroken, with_degrees
-from tmm_cli.reports import ROLES, called, heavy, input_data_tables, link_name, motion
+from tmm_cli.reports import (
+    ROLES,
+    describe_driver_motion,
+    input_data_tables,
+    link_name,
+    links_with_inertia,
+    translate_label,
+)
 
 # tables of `tmm explain` that the note has in words of its own; the others it has as they are
 IN_WORDS = ("synthesis", "points", "slides", "facts", "speeds", "masses", "loads")
@@ -39,7 +46,9 @@ def write_task(subject: Subject) -> Iterable[Block]:
         sentence = _("The coordinates of the fixed points and guides are given in table {table}.")
     yield from tabled(sentence, _fixed(subject))
     for driver in linkage.drivers:
-        yield paragraph(_("Link {link} is an input link: {motion}.").format(link=driver.link, motion=motion(driver)))
+        yield paragraph(
+            _("Link {link} is an input link: {motion}.").format(link=driver.link, motion=describe_driver_motion(driver))
+        )
     if any(np.any(linkage.links[name].mass != 0) for name in linkage.moving):
         yield from tabled(
             _(
@@ -92,7 +101,7 @@ def _gravity(subject: Subject) -> Iterable[Block]:
 def _sizes(subject: Subject) -> Rows:
     linkage, roles = subject.results.linkage, subject.results.roles
     rows = tuple(
-        cells(name, called(link.label) or _(ROLES[roles[name]]), _lengths(subject, link) or NONE)
+        cells(name, translate_label(link.label) or _(ROLES[roles[name]]), _lengths(subject, link) or NONE)
         for name, link in linkage.links.items()
         if name != FRAME
     )
@@ -141,7 +150,7 @@ def _place(subject: Subject, place: complex) -> tuple[str, str]:
 def _masses(subject: Subject) -> Rows:
     linkage, unit = subject.results.linkage, subject.unit
     rows = []
-    for name in heavy(linkage):
+    for name in links_with_inertia(linkage):
         link = linkage.links[name]
         mass, inertia = (float(np.ravel(value)[0]) for value in (link.mass, link.inertia))
         own = (subject.number(mass, MASS), subject.number(inertia, INERTIA))

@@ -1,56 +1,60 @@
 """Records to rows, and rows to the terminal, CSV and JSON."""
 
 from .compare import (
-    Difference as Difference,
-    brief as brief,
+    ResultDifference as ResultDifference,
+    brief_value as brief_value,
     difference_table as difference_table,
-    differences as differences,
-    recorded as recorded,
+    find_differences as find_differences,
+    golden_record as golden_record,
 )
 from .cycle_tables import (
+    centre_name as centre_name,
     has_flywheel as has_flywheel,
-    name as name,
     output_motion as output_motion,
-    signs as signs,
-    states as states,
+    position_states as position_states,
+    sign_convention as sign_convention,
 )
 from .digits import (
     AccuracyReport as AccuracyReport,
-    accuracy as accuracy,
-    beside as beside,
-    cells_with_digits as cells_with_digits,
+    assess_accuracy as assess_accuracy,
     computed_tables as computed_tables,
-    keys_of as keys_of,
+    numbers_at_positions as numbers_at_positions,
+    row_keys as row_keys,
+    with_bound_columns as with_bound_columns,
 )
-from .explain import describe_stages as describe_stages, explain_tables as explain_tables, in_words as in_words
+from .explain import (
+    describe_stages as describe_stages,
+    explain_tables as explain_tables,
+    narrate_structure as narrate_structure,
+)
 from .exports import EXPORTS as EXPORTS
 from .file_summary import (
-    bare_speeds as bare_speeds,
-    bare_units as bare_units,
-    between_rows as between_rows,
-    doubts as doubts,
-    motion as motion,
+    describe_driver_motion as describe_driver_motion,
+    describe_interpolation as describe_interpolation,
+    describe_units as describe_units,
+    find_bare_speeds as find_bare_speeds,
+    find_slips as find_slips,
+    find_unused_parameters as find_unused_parameters,
     summarise_file as summarise_file,
-    without_effect as without_effect,
 )
-from .force_tables import energy_tables as energy_tables, locked_ranges as locked_ranges
-from .force_warnings import tables_of_many as tables_of_many
-from .input_load_tables import heavy as heavy
+from .force_tables import describe_locked_ranges as describe_locked_ranges, energy_tables as energy_tables
+from .force_warnings import warn_of_load_tables as warn_of_load_tables
+from .input_load_tables import links_with_inertia as links_with_inertia
 from .input_tables import input_data_tables as input_data_tables
-from .properties import MET as MET, properties_shown as properties_shown
-from .quality_tables import place as place
+from .properties import PROPERTY_TOLERANCE as PROPERTY_TOLERANCE, shown_properties as shown_properties
+from .quality_tables import describe_position as describe_position
 from .register import tables as tables, tables_of as tables_of, walk as walk
 from .result_files import (
     RECORD as RECORD,
-    Staged as Staged,
+    StagedFolder as StagedFolder,
     WrittenFolder as WrittenFolder,
+    choose_folder as choose_folder,
     folder_name as folder_name,
-    folder_of as folder_of,
-    held as held,
-    listed as listed,
-    refuse_place as refuse_place,
+    listed_files as listed_files,
+    recorded_part as recorded_part,
+    refuse_unwritable as refuse_unwritable,
+    write_atomically as write_atomically,
     write_results as write_results,
-    write_whole as write_whole,
 )
 from .result_json import schema as schema, sections as sections, to_json as to_json
 from .space_tables import (
@@ -61,34 +65,34 @@ from .space_tables import (
     schemes_table as schemes_table,
 )
 from .spreadsheets import (
-    WRITTEN as WRITTEN,
-    Kind as Kind,
-    empty_workbook as empty_workbook,
+    CREATED as CREATED,
+    SpreadsheetKind as SpreadsheetKind,
     local_csv as local_csv,
+    open_workbook as open_workbook,
     spreadsheet_cells as spreadsheet_cells,
-    workbook as workbook,
+    write_workbook as write_workbook,
 )
 from .structure_tables import (
     PAIRS as PAIRS,
     ROLES as ROLES,
-    called as called,
-    contours_in_words as contours_in_words,
-    counted_by_classes as counted_by_classes,
-    counted_generally as counted_generally,
-    counted_mobility as counted_mobility,
-    counted_with_replacements as counted_with_replacements,
-    indeterminate as indeterminate,
-    kind_in_words as kind_in_words,
-    left_out as left_out,
+    describe_classification as describe_classification,
+    describe_contours as describe_contours,
+    describe_link_motion as describe_link_motion,
+    describe_primary_mechanisms as describe_primary_mechanisms,
+    describe_schemes as describe_schemes,
+    generalised_mobility as generalised_mobility,
+    indeterminate_reactions as indeterminate_reactions,
+    mobility_by_classes as mobility_by_classes,
+    mobility_equation as mobility_equation,
+    mobility_with_replacements as mobility_with_replacements,
     mobility_with_rollers as mobility_with_rollers,
-    motion_in_words as motion_in_words,
-    primary_mechanisms_in_words as primary_mechanisms_in_words,
-    schemes_in_words as schemes_in_words,
+    reduction_sentences as reduction_sentences,
+    translate_label as translate_label,
 )
 from .synthesis_tables import (
-    missed as missed,
     synthesis_json as synthesis_json,
     tables_of_synthesis as tables_of_synthesis,
+    unmet_demand_sentences as unmet_demand_sentences,
 )
 from .table import (
     Column as Column,
@@ -97,9 +101,9 @@ from .table import (
     csv_text as csv_text,
     json_bytes as json_bytes,
     json_text as json_text,
+    json_value as json_value,
     link_name as link_name,
-    plain as plain,
-    table_of_words as table_of_words,
+    text_table as text_table,
     true_digits as true_digits,
     with_unit as with_unit,
 )
@@ -107,8 +111,8 @@ from .terminal import (
     MORE_ROWS as MORE_ROWS,
     MORE_ROWS_AS_JSON as MORE_ROWS_AS_JSON,
     MOST_ROWS as MOST_ROWS,
-    figures as figures,
-    show as show,
+    print_on_terminal as print_on_terminal,
+    printed_figures as printed_figures,
     terminal_cells as terminal_cells,
 )
 from .warnings import collect_warnings as collect_warnings

@@ -9,21 +9,26 @@ from dataclasses import dataclass
 from typing import Any
 
 from tmm_cli.language import _
-from tmm_cli.reports.table import Table, table_of_words
+from tmm_cli.reports.table import Table, text_table
 
 Path = tuple[str, ...]
 
 IGNORED = {"files", "part", "tmm", "problem", "warnings", "checks", "digits"}  # checks and warnings rest on the others
 DERIVED = {"arm"}  # follows from others (as the angle of a reaction does), and means nothing where those vanish
-HALF_KNOWN = {"other_at"}  # where an extreme lies: its value grows by the square of the distance from there
-SHARES = {"balance", "difference", "margin", "margins"}  # relative already: compared as they are
-NOTHING = 1e-4  # SI: where all values are smaller, with a tolerance of 1e-9 rounding of sums that vanish passes
-FLOOR = 1e-4  # of the largest value of the same name anywhere: with a tolerance of 1e-9 rounding at 1e-13 of it passes
-SOURCES = {"slope": "inertia", "rate": "kinetic"}  # what is a difference of values of another name rounds as these do
+EXTREME_LOCATIONS = {"other_at"}  # where an extreme lies: its value grows by the square of the distance from there
+RELATIVE = {"balance", "difference", "margin", "margins"}  # relative already: compared as they are
+SMALLEST_SCALE = 1e-4  # SI: where all values are smaller, with a tolerance of 1e-9 rounding of sums that vanish passes
+SMALLEST_SHARE = (
+    1e-4  # of the largest value of the same name anywhere: with a tolerance of 1e-9 rounding at 1e-13 of it passes
+)
+DIFFERENCE_OF = {
+    "slope": "inertia",
+    "rate": "kinetic",
+}  # what is a difference of values of another name rounds as these do
 
 
 @dataclass(frozen=True)
-class Difference:
+class ResultDifference:
     """A quantity that is not as expected. size: relative to its largest value in the cycle; None: not a number."""
 
     quantity: str
@@ -33,53 +38,53 @@ class Difference:
     size: float | None
 
 
-def recorded(result: dict[str, Any]) -> dict[str, Any]:
+def golden_record(result: dict[str, Any]) -> dict[str, Any]:
     """What of result.json is kept as a golden run: what is compared, to 12 digits."""
     kept = {key: part for key, part in result.items() if key not in IGNORED}
     whole: dict[str, Any] = json.loads(json.dumps(kept), parse_float=lambda text: float(f"{float(text):.12g}"))
     return whole
 
 
-def differences(expected: dict[str, Any], found: dict[str, Any], tolerance: float) -> list[Difference]:
+def find_differences(expected: dict[str, Any], found: dict[str, Any], tolerance: float) -> list[ResultDifference]:
     """The worst deviation of every quantity that is beyond the tolerance, in the order of the file."""
-    want, have = dict(_series(expected)), dict(_series(found))
-    scales = _scales(want)
-    out = [Difference(_text(p), None, "there", "missing", None) for p in want if p not in have]
-    out += [Difference(_text(p), None, "nothing", "there", None) for p in have if p not in want]
+    want, have = dict(_series_by_path(expected)), dict(_series_by_path(found))
+    scales = _series_scales(want)
+    out = [ResultDifference(_path_text(p), None, "there", "missing", None) for p in want if p not in have]
+    out += [ResultDifference(_path_text(p), None, "nothing", "there", None) for p in have if p not in want]
     for path, values in want.items():
         follows = path[-1] in DERIVED or (path[-1] == "angle" and "reactions" in path)
         if path in have and not follows:
-            worst = _worst(path, values, have[path], scales[path])
+            worst = _largest_difference(path, values, have[path], scales[path])
             if worst is not None and (worst.size is None or worst.size > tolerance):
                 out.append(worst)
     return out
 
 
-def _scales(series: dict[Path, list[Any]]) -> dict[Path, float]:
+def _series_scales(series: dict[Path, list[Any]]) -> dict[Path, float]:
     """What deviations of each series are relative to: its largest value, that of a vector for both components."""
-    peaks = {path: max((abs(v) for v in values if _number(v)), default=0.0) for path, values in series.items()}
+    peaks = {path: max((abs(v) for v in values if _is_number(v)), default=0.0) for path, values in series.items()}
     for path, values in series.items():
         across = (*path[:-1], "y")
         if path[-1] == "x" and across in series:
-            parts = (part for part in zip(values, series[across], strict=False) if all(map(_number, part)))
+            parts = (part for part in zip(values, series[across], strict=False) if all(map(_is_number, part)))
             peaks[path] = peaks[across] = max((math.hypot(*part) for part in parts), default=0.0)
     largest: dict[str, float] = {}
     for path, peak in peaks.items():
-        largest[_kind(path)] = max(largest.get(_kind(path), 0.0), peak)
+        largest[_quantity_name(path)] = max(largest.get(_quantity_name(path), 0.0), peak)
     scales = {}
     for path, peak in peaks.items():
-        source = largest.get(SOURCES.get(_kind(path), ""), 0.0)
-        scales[path] = max(peak, FLOOR * max(largest[_kind(path)], source), NOTHING)
+        source = largest.get(DIFFERENCE_OF.get(_quantity_name(path), ""), 0.0)
+        scales[path] = max(peak, SMALLEST_SHARE * max(largest[_quantity_name(path)], source), SMALLEST_SCALE)
         if path[-1] == "angle":
             scales[path] = math.pi
-        elif set(path) & SHARES:
+        elif set(path) & RELATIVE:
             scales[path] = max(1.0, peak)  # of a synthesis a margin may be one in newtons
-        elif path[-1] == "at" or path[-1] in HALF_KNOWN:  # a place of the driver, which may be the zero
+        elif path[-1] == "at" or path[-1] in EXTREME_LOCATIONS:  # a place of the driver, which may be the zero
             scales[path] = max(scales[path], largest.get("driver", 0.0))
     return scales
 
 
-def difference_table(different: Mapping[str, Sequence[Difference]]) -> Table:
+def difference_table(different: Mapping[str, Sequence[ResultDifference]]) -> Table:
     """Differences by problem."""
     headers = (_("problem"), _("quantity"), _("position"), _("expected"), _("found"), _("relative"))
     rows = [
@@ -87,63 +92,63 @@ def difference_table(different: Mapping[str, Sequence[Difference]]) -> Table:
             name,
             d.quantity,
             "" if d.position is None else str(d.position),
-            brief(d.expected),
-            brief(d.found),
+            brief_value(d.expected),
+            brief_value(d.found),
             "" if d.size is None else f"{d.size:.2g}",
         )
         for name, here in different.items()
         for d in here
     ]
-    return table_of_words("check", _("What differs from the expected values"), headers, rows)
+    return text_table("check", _("What differs from the expected values"), headers, rows)
 
 
-def brief(value: Any) -> str:
+def brief_value(value: Any) -> str:
     """A value in a cell."""
     return f"{value:.15g}" if isinstance(value, float) else str(value)[:60]
 
 
-def _worst(path: Path, expected: list[Any], found: list[Any], scale: float) -> Difference | None:
+def _largest_difference(path: Path, expected: list[Any], found: list[Any], scale: float) -> ResultDifference | None:
     if len(expected) != len(found):
-        return Difference(_text(path), None, f"{len(expected)} values", f"{len(found)} values", None)
-    worst: Difference | None = None
+        return ResultDifference(_path_text(path), None, f"{len(expected)} values", f"{len(found)} values", None)
+    worst: ResultDifference | None = None
     for k, (a, b) in enumerate(zip(expected, found, strict=True)):
         position = k if len(expected) > 1 else None
-        if not (_number(a) and _number(b)):
+        if not (_is_number(a) and _is_number(b)):
             if a != b:
-                return Difference(_text(path), position, a, b, None)
+                return ResultDifference(_path_text(path), position, a, b, None)
             continue
         gap = abs(a - b)
         if path[-1] == "angle":  # a turn more or less is the same place
             gap = abs(math.remainder(gap, 2 * math.pi))
         size = gap / scale if scale else (0.0 if gap == 0 else math.inf)
-        if path[-1] in HALF_KNOWN:
+        if path[-1] in EXTREME_LOCATIONS:
             size = size * size
         if worst is None or size > (worst.size or 0.0):
-            worst = Difference(_text(path), position, a, b, size)
+            worst = ResultDifference(_path_text(path), position, a, b, size)
     return worst
 
 
-def _series(value: Any, path: Path = ()) -> Iterator[tuple[Path, list[Any]]]:
+def _series_by_path(value: Any, path: Path = ()) -> Iterator[tuple[Path, list[Any]]]:
     """Every leaf or list of leaves with its path; list items that have a name are known by it."""
     if isinstance(value, dict):
         for key, part in value.items():
             if path or key not in IGNORED:
-                yield from _series(part, (*path, key))
+                yield from _series_by_path(part, (*path, key))
     elif isinstance(value, list) and any(isinstance(part, dict | list) for part in value):
         for k, part in enumerate(value):
             name = str(part.get("name", k)) if isinstance(part, dict) else str(k)
-            yield from _series(part, (*path, f"{k}:{name}"))
+            yield from _series_by_path(part, (*path, f"{k}:{name}"))
     else:
         yield path, value if isinstance(value, list) else [value]
 
 
-def _number(value: Any) -> bool:
+def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _kind(path: Path) -> str:
+def _quantity_name(path: Path) -> str:
     return path[-2] if path[-1] in ("x", "y") and len(path) > 1 else path[-1]
 
 
-def _text(path: Path) -> str:
+def _path_text(path: Path) -> str:
     return ".".join(path)

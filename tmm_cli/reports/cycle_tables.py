@@ -30,7 +30,7 @@ from tmm_cli.mechanics.quantities import (
 )
 from tmm_cli.reports.table import Column, Table
 
-OF_OUTPUT = {
+OUTPUT_HEADERS = {
     "run": N_("s of {link}"),
     "v": N_("v of {link}"),
     "a": N_("a of {link}"),
@@ -40,7 +40,7 @@ OF_OUTPUT = {
 }
 
 
-def signs(linkage: Linkage) -> str:
+def sign_convention(linkage: Linkage) -> str:
     """What is positive, in a sentence for below a table."""
     if linkage.driver.kind == "slide":
         return _(
@@ -59,11 +59,11 @@ def driver_columns(results: Results) -> list[Column]:
     name = _("phi") if results.linkage.driver.kind == "turn" else _("driver")
     return [
         Column(N_("position"), [str(n) for n in results.numbers]),
-        _place(results, results.linkage.driver, name, results.motion.q),
+        _driver_column(results, results.linkage.driver, name, results.motion.q),
     ]
 
 
-def _place(results: Results, driver: Driver, name: str, q: Real) -> Column:
+def _driver_column(results: Results, driver: Driver, name: str, q: Real) -> Column:
     """A driver's places, within a turn where it turns round and round, or within the turns of a cycle of loads."""
     full = driver.kind == "turn" and results.driver_range is not None and results.driver_range.full
     return Column(name, np.mod(q, 2 * results.linkage.turns * pi(q)) if full else q, coordinate_dimension(driver.kind))
@@ -76,15 +76,15 @@ def cycle_tables(results: Results) -> Iterable[Table]:
     columns = driver_columns(results)
     for driver in results.linkage.others:
         name = _("phi of {link}") if driver.kind == "turn" else _("driver {link}")
-        columns.append(_place(results, driver, name.format(link=driver.link), motion.drives[driver.link].value))
+        columns.append(_driver_column(results, driver, name.format(link=driver.link), motion.drives[driver.link].value))
     for link in results.mechanism.outputs:
         if results.linkage.output_carrier(link) not in motion.poses:  # with --of only some links move
             continue
         columns += [Column(name, values, dimension) for name, values, dimension in output_motion(results, motion, link)]
-    columns += _balance(results)
+    columns += _balance_columns(results)
     if not bool(np.all(motion.moving & ~results.locked)):
-        columns.append(Column(N_("state"), states(results)))
-    yield Table("cycle", _("Cycle"), tuple(columns), notes=(signs(results.linkage), *_beside_flywheel(results)))
+        columns.append(Column(N_("state"), position_states(results)))
+    yield Table("cycle", _("Cycle"), tuple(columns), notes=(sign_convention(results.linkage), *_flywheel_note(results)))
 
 
 def output_motion(results: Results, motion: Motion, link: str) -> Iterable[tuple[str, Real, Dimension]]:
@@ -92,13 +92,13 @@ def output_motion(results: Results, motion: Motion, link: str) -> Iterable[tuple
     run, first, second = output_run(motion, link)
     v = first * motion.rate
     a = second * motion.rate**2 + first * motion.acceleration
-    words = OF_OUTPUT if link in results.linkage.links else OF_OUTPUT | {"run": "{link}"}
+    words = OUTPUT_HEADERS if link in results.linkage.links else OUTPUT_HEADERS | {"run": "{link}"}
     quantities = LINK if results.linkage.output_swings(link) else SLIDE
     for quantity, values in zip(quantities, (run, v, a), strict=False):
         yield Phrase(words[quantity.name], link=link), values, quantity.dimension
 
 
-def _balance(results: Results) -> Iterable[Column]:
+def _balance_columns(results: Results) -> Iterable[Column]:
     """What balances the driver, by both ways; with several drivers each, then the sum that both ways give."""
     reactions, lever, motion = results.reactions, results.lever, results.motion
     if reactions is None or lever is None or motion is None:
@@ -134,7 +134,7 @@ def has_flywheel(results: Results) -> bool:
     return results.steady is not None and bool(results.steady.steady.law.flywheel)
 
 
-def _beside_flywheel(results: Results) -> Iterable[str]:
+def _flywheel_note(results: Results) -> Iterable[str]:
     """Where a law of motion is computed, what balances the driver is not what drives the machine."""
     if results.reactions is None or not has_flywheel(results):
         return
@@ -144,7 +144,7 @@ def _beside_flywheel(results: Results) -> Iterable[str]:
         yield _("The flywheel is not a link: F_b moves the links alone, and what drives is F_d = F_b + m_f a.")
 
 
-def states(results: Results) -> list[str]:
+def position_states(results: Results) -> list[str]:
     """What is wrong with each position, or nothing."""
     motion = results.motion
     assert motion is not None
@@ -174,7 +174,7 @@ def long_table(
     things: their columns (quantities.columns), which have the same headers.
     """
     count, number = len(results.numbers), len(things)
-    head = [Column(c.header, _repeated(c.values, number), c.dimension) for c in driver_columns(results)]
+    head = [Column(c.header, _repeat_values(c.values, number), c.dimension) for c in driver_columns(results)]
     columns = [*head, *(Column(header, list(texts) * count) for header, texts in words.items())]
     for same in zip(*things, strict=True):
         parts = [np.nan if values is None else values for __, values, __ in same]
@@ -184,7 +184,7 @@ def long_table(
     return Table(name, title, tuple(columns), long=True, notes=(note,) if note else ())
 
 
-def _repeated(values: Any, number: int) -> Any:
+def _repeat_values(values: Any, number: int) -> Any:
     """Each value so often in a row; words and whole numbers stay such."""
     return [v for v in values for _ in range(number)] if isinstance(values, list) else np.repeat(values, number)
 
@@ -205,9 +205,11 @@ def kinematics_tables(results: Results) -> Iterable[Table]:
         yield long_table(results, "points", _("Points and centres of mass"), {N_("point"): list(points)}, values)
     links = chosen_links(linkage, of)
     if links:
-        values = [quantity_columns(LINK, _half_turned(motion.link(name))) for name in links]
-        table = long_table(results, "link-motion", _("Motion of links"), {N_("link"): links}, values, signs(linkage))
-        yield _with_turns(table) if any(mesh.kind != "cam" for mesh in linkage.meshes) else table
+        values = [quantity_columns(LINK, _angle_within_half_turn(motion.link(name))) for name in links]
+        table = long_table(
+            results, "link-motion", _("Motion of links"), {N_("link"): links}, values, sign_convention(linkage)
+        )
+        yield _with_rpm(table) if any(mesh.kind != "cam" for mesh in linkage.meshes) else table
     slides = () if of else linkage.slides
     if slides:
         values = [quantity_columns(SLIDE, motion.slide(slide)) for slide in slides]
@@ -215,14 +217,14 @@ def kinematics_tables(results: Results) -> Iterable[Table]:
         yield long_table(results, "slides", title, {N_("pair"): [slide.name for slide in slides]}, values)
 
 
-def _with_turns(table: Table) -> Table:
+def _with_rpm(table: Table) -> Table:
     """With angular speeds in turns a minute beside them, as speeds of wheels are given."""
     k = next(k for k, column in enumerate(table.columns) if column.header == "omega")
     turns = replace(table.columns[k], header=_("n"), unit="rpm")
     return replace(table, columns=(*table.columns[: k + 1], turns, *table.columns[k + 1 :]))
 
 
-def _half_turned(turning: LinkMotion) -> LinkMotion:
+def _angle_within_half_turn(turning: LinkMotion) -> LinkMotion:
     """With the angle in -180 to 180 deg, the driver's too."""
     half = pi(turning.angle)
     turns = np.ceil((turning.angle - half) / (2 * half))
@@ -232,7 +234,7 @@ def _half_turned(turning: LinkMotion) -> LinkMotion:
 # Extreme places of points, links and stones; largest and smallest forces.
 
 
-SEAM = 1e-6  # rad: just before the end of a turn is its beginning
+SEAM_OF_TURN = 1e-6  # rad: just before the end of a turn is its beginning
 
 
 def extremes_tables(results: Results) -> Iterable[Table]:
@@ -259,7 +261,7 @@ def extremes_tables(results: Results) -> Iterable[Table]:
 
     def places(values: Sequence[float]) -> list[float]:
         turn = 2 * np.pi * max(results.turns, 1)
-        return [abs(float(np.mod(q + SEAM, turn)) - SEAM) if full else q for q in values]
+        return [abs(float(np.mod(q + SEAM_OF_TURN, turn)) - SEAM_OF_TURN) if full else q for q in values]
 
     low, high = [one.low for one in found], [one.high for one in found]
     columns = (
@@ -278,10 +280,10 @@ def extremes_tables(results: Results) -> Iterable[Table]:
 # Instantaneous centres in the positions in detail, and the mechanical advantage over the cycle.
 
 
-DEAD = 1e-9  # of the largest ratio of speeds: where an output is so slow it stands
+NO_SPEED = 1e-9  # of the largest ratio of speeds: where an output is so slow it stands
 
 
-def name(links: tuple[str, str]) -> str:
+def centre_name(links: tuple[str, str]) -> str:
     """P13 of links 1 and 3."""
     return "P" + ("" if all(len(link) == 1 for link in links) else ",").join(links)
 
@@ -293,36 +295,36 @@ def centres_tables(results: Results) -> Iterable[Table]:
     away = [None if c.direction is None else float(np.angle(c.direction) % np.pi) for __, c in found]
     columns = (
         Column(N_("position"), [str(results.numbers[k]) for k, __ in found]),
-        Column(N_("centre"), [name(centre.links) for __, centre in found]),
+        Column(N_("centre"), [centre_name(centre.links) for __, centre in found]),
         Column(N_("x"), [None if p is None else p.real for p in places], LENGTH),
         Column(N_("y"), [None if p is None else p.imag for p in places], LENGTH),
         Column(N_("at infinity, at an angle of"), away, ANGLE),
-        Column(N_("found by"), [_way(centre) for __, centre in found]),
+        Column(N_("found by"), [_centre_method(centre) for __, centre in found]),
     )
     note = _("P13 is the point in which links 1 and 3 move alike; 0 is the frame.")
     yield Table("centres", _("Instantaneous centres"), columns, notes=(note,))
-    yield from _advantage(results)
+    yield from _advantage_table(results)
 
 
-def _way(centre: InstantCentre) -> str:
+def _centre_method(centre: InstantCentre) -> str:
     if centre.pair:
         return _("pair {pair}").format(pair=centre.pair)
     if centre.place is None and centre.direction is None:
         return _("the links do not move beside one another")
     if not centre.lines:
         return _("velocities")
-    lines = [" ".join(map(name, line)) for line in centre.lines]
+    lines = [" ".join(map(centre_name, line)) for line in centre.lines]
     return lines[0] if len(lines) == 1 else _("{one} and {other}").format(one=lines[0], other=lines[1])
 
 
-def _advantage(results: Results) -> Iterable[Table]:
+def _advantage_table(results: Results) -> Iterable[Table]:
     """Moment or force of each output over the driver's, without weights, inertia and friction."""
     motion, linkage = results.motion, results.linkage
     assert motion is not None
     columns = []
     for link in results.mechanism.outputs if not linkage.others else ():
         slope = np.abs(output_run(motion, link)[1])
-        bounded = slope > DEAD * np.max(slope, where=np.isfinite(slope), initial=0.0)
+        bounded = slope > NO_SPEED * np.max(slope, where=np.isfinite(slope), initial=0.0)
         gained = np.where(bounded, 1 / np.where(bounded, slope, 1.0), np.nan)
         columns.append(Column(Phrase(N_("of {link}, SI"), link=link), gained, NUMBER))
     if columns:

@@ -30,18 +30,19 @@ from tmm_cli.mechanics.numerics import ROUNDOFF, Real, Record, map_record
 from tmm_cli.mechanics.plans import sheet_scale
 from tmm_cli.mechanics.quantities import ANGLE, FORCE, INERTIA, LENGTH, MOMENT, NUMBER, SPEED, Dimension
 from tmm_cli.reports.register import REPORTS, tables_of
-from tmm_cli.reports.result_json import LARGE, numbers
+from tmm_cli.reports.result_json import LARGE_SECTIONS, computed_sections
 from tmm_cli.reports.table import Column, Table
 
-MOVING = ("motion", "reactions", "lever", "energy")  # parts of Results that are computed at positions
-APART = ("synthesis", "checks", "drawn")  # a search has its own digits, checks count by their words, drawings by 0.5 mm
-COMPUTED = tuple(r.name for r in REPORTS if r.requires in MOVING and r.name not in APART)
-SEARCHED = {"quality", "pressure"}  # reports of what was searched for alone
+POSITION_STAGES = ("motion", "reactions", "lever", "energy")  # parts of Results that are computed at positions
+# a search has digits of its own, checks are counted by their texts, drawings are exact to 0.5 mm
+NOT_ASSESSED = ("synthesis", "checks", "drawn")
+ASSESSED = tuple(r.name for r in REPORTS if r.requires in POSITION_STAGES and r.name not in NOT_ASSESSED)
+SEARCHED_REPORTS = {"quality", "pressure"}  # reports of what was searched for alone
 Cells = Mapping[Hashable, Real]
 
 
-def all_numbers(
-    results: Results, reports: Collection[str] = COMPUTED, parts: Collection[str] | None = LARGE
+def collect_numbers(
+    results: Results, reports: Collection[str] = ASSESSED, parts: Collection[str] | None = LARGE_SECTIONS
 ) -> tuple[Cells, Cells]:
     """Those that have one value a position, and the others, which were searched for. Keys of angles begin with True.
 
@@ -51,13 +52,13 @@ def all_numbers(
     at_positions: dict[Hashable, Real] = {}
     searched: dict[Hashable, Real] = {}
     for table in computed_tables(results, reports):
-        keys = keys_of(table, count)
+        keys = row_keys(table, count)
         for k, column in enumerate(table.columns):
             if column.dimension is not None and keys is None:
                 searched[False, table.name, k] = column.array
             elif column.dimension is not None and keys is not None:
                 at_positions.update(zip(keys[k], column.array.reshape(count, -1).T, strict=True))
-    for path, value in () if parts is None else _leaves(dict(numbers(results, parts)), ()):
+    for path, value in () if parts is None else _leaves(dict(computed_sections(results, parts)), ()):
         if isinstance(value, float):
             searched[(False, *path)] = np.array([value])
         elif getattr(value, "shape", None) == (count,) and value.dtype.kind == "f":
@@ -66,24 +67,24 @@ def all_numbers(
     return at_positions, searched
 
 
-def cells_with_digits(results: Results, shown: Collection[str] = ()) -> Cells:
+def numbers_at_positions(results: Results, shown: Collection[str] = ()) -> Cells:
     """The numbers at positions; shown: in reports with these tables alone."""
     reports = {r.name for r in REPORTS if not shown or set(r.tables) & set(shown)}
-    return all_numbers(results, reports & set(COMPUTED) - SEARCHED, None if shown else LARGE)[0]
+    return collect_numbers(results, reports & set(ASSESSED) - SEARCHED_REPORTS, None if shown else LARGE_SECTIONS)[0]
 
 
-def reader(results: Results, whole: bool = True) -> Callable[[Results], Cells]:
+def search_reader(results: Results, whole: bool = True) -> Callable[[Results], Cells]:
     """What reads the numbers of searches out of results like these; whole: those of result.json too."""
     energy = () if results.friction is None else ("energy",)
-    return lambda other: all_numbers(other, ("quality", "pressure", *energy), energy if whole else None)[1]
+    return lambda other: collect_numbers(other, ("quality", "pressure", *energy), energy if whole else None)[1]
 
 
-def computed_tables(results: Results, reports: Collection[str] = COMPUTED) -> Iterator[Table]:
+def computed_tables(results: Results, reports: Collection[str] = ASSESSED) -> Iterator[Table]:
     """Tables with computed numbers, of these reports; of chosen points and links there is their motion alone."""
     return tables_of(results, set(reports) & {"kinematics"} if results.of else reports)
 
 
-def keys_of(table: Table, count: int) -> list[list[Hashable]] | None:
+def row_keys(table: Table, count: int) -> list[list[Hashable]] | None:
     """For each column the keys of its rows at one position; None when the rows are no positions."""
     if not count or not table.columns or table.columns[0].header != "position" or table.rows % count:
         return None
@@ -94,7 +95,7 @@ def keys_of(table: Table, count: int) -> list[list[Hashable]] | None:
 def _leaves(value: Any, path: tuple[str, ...]) -> list[tuple[tuple[str, ...], Any]]:
     """Numbers and arrays of nested content with their paths; items of lists are known by their number."""
     found: list[tuple[tuple[str, ...], Any]] = []
-    for name, part in _parts(value):
+    for name, part in _named_parts(value):
         if isinstance(part, dict | list):
             found += _leaves(part, (*path, name))
         else:
@@ -102,26 +103,26 @@ def _leaves(value: Any, path: tuple[str, ...]) -> list[tuple[tuple[str, ...], An
     return found
 
 
-def _parts(value: Any) -> Iterable[tuple[str, Any]]:
+def _named_parts(value: Any) -> Iterable[tuple[str, Any]]:
     return value.items() if isinstance(value, dict) else ((str(k), part) for k, part in enumerate(value))
 
 
-def parallel(value: Any, values: Mapping[Any, Real], path: tuple[str, ...] = ()) -> Any:
+def bounds_in_shape(value: Any, values: Mapping[Any, Real], path: tuple[str, ...] = ()) -> Any:
     """The digits of nested content in its shape; what has none is left out, but for items of lists."""
     if isinstance(value, dict):
-        inner = {name: parallel(part, values, (*path, name)) for name, part in value.items()}
+        inner = {name: bounds_in_shape(part, values, (*path, name)) for name, part in value.items()}
         return {name: part for name, part in inner.items() if part is not None} or None
     if isinstance(value, list):
-        items = [parallel(part, values, (*path, name)) for name, part in _parts(value)]
+        items = [bounds_in_shape(part, values, (*path, name)) for name, part in _named_parts(value)]
         return None if all(item is None for item in items) else [{} if item is None else item for item in items]
     found = values.get(path)
     if found is None:
         return None
-    short = _short(found)
+    short = _round_up(found)
     return short[0] if isinstance(value, float | np.floating) else short
 
 
-def _short(values: Real) -> list[float]:
+def _round_up(values: Real) -> list[float]:
     """Two figures are enough for a bound; the last one is rounded up."""
     with np.errstate(all="ignore"):
         unit = 10.0 ** (np.floor(np.log10(values)) - 1)
@@ -141,7 +142,7 @@ RATIOS = {  # columns that are something over a force: the less of it there is t
 }
 
 
-def by_margins(
+def bounds_by_margins(
     results: Results, relative: Real, sizes: Mapping[Dimension, float], table: Table, column: Column
 ) -> Real:
     """Bounds of a column whose rows are positions: shares (margins.relative) of the largest of its kind."""
@@ -151,7 +152,7 @@ def by_margins(
     size = sizes.get(column.dimension, own)
     if column.dimension == NUMBER and table.name in ("energy", "cycle"):
         power = sizes.get(FORCE, 0.0) * sizes[SPEED]
-        size = _percent(results, table.name, power, sizes) if column.header.endswith("%") else max(power, own)
+        size = _percent_scale(results, table.name, power, sizes) if column.header.endswith("%") else max(power, own)
         if column.header in SLOPES and results.energy is not None:  # which has nothing of speeds in it
             size = 2 * sizes[NUMBER] * sizes[INERTIA]
     bound = np.repeat(relative, table.rows // len(relative)) * size
@@ -166,7 +167,7 @@ def by_margins(
     return np.asarray(np.minimum(bound, HUGE))
 
 
-def _percent(results: Results, table: str, power: float, sizes: Mapping[Dimension, float]) -> float:
+def _percent_scale(results: Results, table: str, power: float, sizes: Mapping[Dimension, float]) -> float:
     """What all forces come to, as a share of what it is compared with."""
     assert results.reactions is not None
     if table == "energy" and results.energy is not None:
@@ -185,16 +186,16 @@ def _percent(results: Results, table: str, power: float, sizes: Mapping[Dimensio
 # quantity can be forgotten, and none needs a formula of its own.
 
 
-DENSE = 361  # places of a trajectory
-WHOLE = (
+TRAJECTORY_POSITIONS = 361  # places of a trajectory
+UNSELECTED_FIELDS = (
     *FIELDS_WITHOUT_POSITIONS - {"where"},
     "mechanism",
     "problem",
     "inputs",
     "structure",
 )  # fields that hold no array over positions
-LONG = 720  # positions: of a longer cycle only so many are judged, and all that are near dead ones
-PARTS = {"bound": N_("± rounding"), "lengths": N_("± lengths"), "paper": N_("± paper")}
+MOST_JUDGED = 720  # positions: of a longer cycle only so many are judged, and all that are near dead ones
+BOUND_HEADERS = {"bound": N_("± rounding"), "lengths": N_("± lengths"), "paper": N_("± paper")}
 
 
 @dataclass(frozen=True)
@@ -219,15 +220,15 @@ class AccuracyReport:
         """Tables with the bounds that were found, one after the other; with all digits last the table of the worst."""
         worst: list[tuple[str | float, ...]] = []
         for table in map(self.table, tables):
-            rows = list(_worst(table)) if self.full else []
+            rows = list(_worst_columns(table)) if self.full else []
             worst += [(table.name, *row) for row in rows]
-            yield replace(table, notes=(*table.notes, _note(rows))) if rows else table
+            yield replace(table, notes=(*table.notes, _accuracy_note(rows))) if rows else table
         if self.full:
             yield self.summary(worst)
 
     def table(self, table: Table) -> Table:
         """The same table, its numbers with their bounds and sensitivities."""
-        keys = keys_of(table, len(self.relative))
+        keys = row_keys(table, len(self.relative))
         columns = [
             replace(column, **self._parts(table, k, None if keys is None else keys[k]))
             for k, column in enumerate(table.columns)
@@ -241,13 +242,13 @@ class AccuracyReport:
             return {}
         if keys is not None and self.chosen.size and keys[0] not in self.digits.bound:  # a law of motion, as it is
             return {}
-        wanted = tuple(PARTS) if self.full else ("bound",)
+        wanted = tuple(BOUND_HEADERS) if self.full else ("bound",)
         if keys is None:
             return {part: getattr(self.found(), part)[single] for part in wanted}
         near = np.searchsorted(self.chosen, np.arange(len(self.relative))).clip(max=len(self.chosen) - 1)
         found = {part: self._judged(part, keys)[near] for part in wanted if self.chosen.size}
         if self.chosen.size < len(near):
-            rough = by_margins(self.results, self.relative, self.sizes, table, column).reshape(len(near), -1)
+            rough = bounds_by_margins(self.results, self.relative, self.sizes, table, column).reshape(len(near), -1)
             rough[self.chosen] = found["bound"][self.chosen] if self.chosen.size else rough[self.chosen]
             found["bound"] = rough
         return {part: values.ravel() for part, values in found.items()}
@@ -270,30 +271,30 @@ class AccuracyReport:
         for k, header in enumerate(figures, len(words)):
             columns.append(Column(header, [float(f"{row[k]:.2g}") for row in rows], NUMBER, digits=2))
         title = _("Digits to be trusted: the worst of each column, relative to its largest value")
-        return Table("digits", title, tuple(columns), notes=(_scale(self.digits.mu),))
+        return Table("digits", title, tuple(columns), notes=(_sensitivity_note(self.digits.mu),))
 
     def json(self) -> dict[str, Any] | None:
         """The section `digits` of result.json: bounds and sensitivities in the places of their values; if wanted."""
         if not self.full:
             return None
-        content = dict(numbers(self.there))
+        content = dict(computed_sections(self.there))
         named: dict[str, Any] = {"scale": self.digits.mu, "number": list(self.there.numbers)}
-        for part in PARTS:
+        for part in BOUND_HEADERS:
             values = {**getattr(self.digits, part), **getattr(self.found(), part)}
-            named[part] = parallel(content, {key[1:]: v for key, v in values.items()}) or {}
+            named[part] = bounds_in_shape(content, {key[1:]: v for key, v in values.items()}) or {}
         return named
 
 
-def taken(record: Record, chosen: Real, count: int) -> Record:
+def select_positions(record: Record, chosen: Real, count: int) -> Record:
     """A record of arrays over so many positions with the chosen ones only; all that are in a finer one are chosen."""
 
     def of_chosen(path: str, leaf: Any) -> Any:
         return leaf[..., chosen] if isinstance(leaf, np.ndarray) and leaf.shape[-1:] == (count,) else leaf
 
-    return map_record(of_chosen, record, skip=WHOLE)
+    return map_record(of_chosen, record, skip=UNSELECTED_FIELDS)
 
 
-def accuracy(results: Results, full: bool = False, shown: Collection[str] = ()) -> AccuracyReport:
+def assess_accuracy(results: Results, full: bool = False, shown: Collection[str] = ()) -> AccuracyReport:
     """How far all numbers of results that have a motion are to be trusted; full: each of them judged.
 
     shown: tables that alone are shown; nothing is judged then that is in result.json only.
@@ -301,30 +302,30 @@ def accuracy(results: Results, full: bool = False, shown: Collection[str] = ()) 
     motion, count = results.motion, len(results.numbers)
     assert motion is not None
     with np.errstate(all="ignore"):
-        mu = _mu(results) if full else float("nan")
+        mu = _sheet_scale(results) if full else float("nan")
         wide = PreciseLinkage(results) if full else choose_precision(results)
-        found = cache(lambda: judge_searched(results, reader(results, full and not shown), wide, mu))
+        found = cache(lambda: judge_searched(results, search_reader(results, full and not shown), wide, mu))
         start = start_uncertainty(results, wide)
         share = relative_bound(results, start)
         asked = share > SIX_FIGURES
         if full:
-            asked[:: -(-count // LONG)] = True
+            asked[:: -(-count // MOST_JUDGED)] = True
             asked[-1:] = True
         if np.any(asked):
             asked |= is_near_dead(motion) if motion.where is None else motion.where | is_near_dead(motion)
         chosen, there, digits = np.flatnonzero(asked), results, Digits(mu=mu)
         if 0 < len(chosen) < count:
-            there = replace(taken(results, chosen, count), numbers=tuple(results.numbers[k] for k in chosen))
+            there = replace(select_positions(results, chosen, count), numbers=tuple(results.numbers[k] for k in chosen))
         if len(chosen):
             away = start + 3 * ROUNDOFF * np.abs(motion.q[chosen])
-            digits = judge_values(there, partial(cells_with_digits, shown=shown), mu=mu, blur=away)
+            digits = judge_values(there, partial(numbers_at_positions, shown=shown), mu=mu, blur=away)
     for key, bound in digits.bound.items():
         if is_angle(key):  # no direction is farther from another one than half a turn: that far tells nothing
             digits.bound[key] = np.where(bound >= np.pi, np.inf, bound)
     return AccuracyReport(results, share, largest_values(results), found, chosen, there, digits, full)
 
 
-def _worst(table: Table) -> Iterator[tuple[str, float, float, float, float]]:
+def _worst_columns(table: Table) -> Iterator[tuple[str, float, float, float, float]]:
     """Of each column with digits: header, largest bound relative to its largest value, true digits, changes in %.
 
     Of a table in which every row has a unit of its own, the same of each row, beside the largest value of that unit.
@@ -333,25 +334,25 @@ def _worst(table: Table) -> Iterator[tuple[str, float, float, float, float]]:
     for column in table.columns:
         if column.bound is None:
             continue
-        parts = np.stack([column.array, *(getattr(column, part) for part in PARTS)])
+        parts = np.stack([column.array, *(getattr(column, part) for part in BOUND_HEADERS)])
         rows = [(slice(None), slice(None), column.header)]
         if units is not None:
             rows = [(slice(k, k + 1), units == unit, table.columns[0].values[k]) for k, unit in enumerate(units)]
         for own, alike, name in rows:
-            (size,), (bound, share, paper) = _most(parts[:1, alike]), _most(parts[1:, own])
+            (size,), (bound, share, paper) = _largest_by_row(parts[:1, alike]), _largest_by_row(parts[1:, own])
             if size > 0 and bound < size:  # else it is nothing but rounding
                 true = np.floor(-np.log10(2 * max(bound / size, ROUNDOFF)))
                 yield translated(name), bound / size, true, 100 * share / size, 100 * paper / size
 
 
-def _most(values: Real) -> Real:
+def _largest_by_row(values: Real) -> Real:
     """The largest number of each row; nan where there is none."""
     values = np.abs(values)
     sound = np.isfinite(values)
     return np.where(sound.any(axis=1), np.max(values, axis=1, where=sound, initial=0.0), np.nan)
 
 
-def _note(rows: Sequence[tuple[str, float, float, float, float]]) -> str:
+def _accuracy_note(rows: Sequence[tuple[str, float, float, float, float]]) -> str:
     """What to know of the worst columns of a table."""
     bound, share, paper = (max(rows, key=lambda row: 0.0 if np.isnan(row[k]) else row[k]) for k in (1, 3, 4))
     if not share[3] > 0:
@@ -368,7 +369,7 @@ def _note(rows: Sequence[tuple[str, float, float, float, float]]) -> str:
     )
 
 
-def _scale(mu: float) -> str:
+def _sensitivity_note(mu: float) -> str:
     return _(
         "± lengths: when every length is 0.1 % off; ± paper: when every coordinate is {mm} mm "
         "off on paper at {mu} m a mm, where the mechanism fits on A4. Worst cases, to first "
@@ -376,9 +377,9 @@ def _scale(mu: float) -> str:
     ).format(mm=PAPER_CHANGE, mu=numeral(mu, ".10g"))
 
 
-def _mu(results: Results) -> float:
+def _sheet_scale(results: Results) -> float:
     """Scale (m a mm) at which the mechanism fits on a sheet with all its trajectories."""
-    motion, linkage = motion_at_positions(results, results.closely(DENSE), 0), results.linkage
+    motion, linkage = motion_at_positions(results, results.closely(TRAJECTORY_POSITIONS), 0), results.linkage
     places = [complex(linkage.local(FRAME, h.point)) for h in linkage.hinges if FRAME in h.links]
     for name in linkage.moving:
         for point in linkage.links[name].points:
@@ -389,12 +390,12 @@ def _mu(results: Results) -> float:
     return sheet_scale(places)[1]
 
 
-def beside(table: Table) -> Table:
+def with_bound_columns(table: Table) -> Table:
     """The table with bound and sensitivities of every number beside it."""
     columns: list[Column] = []
     for k, column in enumerate(table.columns):
         columns.append(column)
         if column.bound is not None and (k > 1 or table.columns[0].header != "position"):
-            for part, header in PARTS.items():
+            for part, header in BOUND_HEADERS.items():
                 columns.append(Column(header, getattr(column, part), column.dimension, digits=2, unit=column.unit))
     return replace(table, columns=tuple(columns))

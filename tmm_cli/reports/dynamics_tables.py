@@ -28,14 +28,14 @@ from tmm_cli.mechanics.quantities import (
     coordinate_dimension,
 )
 from tmm_cli.reports.cycle_tables import driver_columns
-from tmm_cli.reports.quality_tables import Row, of_rows
+from tmm_cli.reports.quality_tables import ValueRow, value_columns
 from tmm_cli.reports.table import Column, Table
 
 if TYPE_CHECKING:
     from tmm_cli.mechanics.dynamics import SingleRun
 
 
-STEPS = 25  # of a single run, that are shown
+RUN_STEPS = 25  # of a single run, that are shown
 
 
 def dynamics_tables(results: Results) -> Iterable[Table]:
@@ -43,15 +43,17 @@ def dynamics_tables(results: Results) -> Iterable[Table]:
     running = results.running
     assert running is not None
     if not isinstance(running, SteadyRunning):
-        yield from _single(results, running)
+        yield from _run_tables(results, running)
         return
     steady = running.steady
-    yield Table("dynamics", _("Steady running"), of_rows([*_driving(steady), *_flywheel(steady)], results))
+    yield Table(
+        "dynamics", _("Steady running"), value_columns([*_steady_rows(steady), *_flywheel_rows(steady)], results)
+    )
     if results.motion is not None:
-        yield _law(results)
+        yield _law_table(results)
 
 
-def _driving(steady: SteadySolution) -> Iterable[Row]:
+def _steady_rows(steady: SteadySolution) -> Iterable[ValueRow]:
     low, high = steady.speeds
     yield _("work of the loads in a cycle, J"), steady.machine.work_of_cycle, NUMBER
     if steady.moment < 0 and steady.task.motor is None:
@@ -67,7 +69,7 @@ def _driving(steady: SteadySolution) -> Iterable[Row]:
     yield _("fluctuation delta"), steady.delta, NUMBER
 
 
-def _flywheel(steady: SteadySolution) -> Iterable[Row]:
+def _flywheel_rows(steady: SteadySolution) -> Iterable[ValueRow]:
     if steady.law.flywheel == 0:
         return
     yield _("flywheel, reduced to the driver"), steady.law.flywheel, INERTIA
@@ -86,7 +88,7 @@ def _flywheel(steady: SteadySolution) -> Iterable[Row]:
     yield _("its mass"), steady.mass, MASS
 
 
-def _law(results: Results) -> Table:
+def _law_table(results: Results) -> Table:
     motion, running = results.motion, results.running
     assert motion is not None and isinstance(running, SteadyRunning)
     driving, work = running.sense * running.driving(motion.q), running.work(motion.q)
@@ -107,13 +109,13 @@ def _law(results: Results) -> Table:
     )
 
 
-def _single(results: Results, single: SingleRun) -> Iterable[Table]:
+def _run_tables(results: Results, single: SingleRun) -> Iterable[Table]:
     """A single run: its sums, and as many of its steps as one reads."""
     run, turns = single.run, results.linkage.driver.kind == "turn"
     time = _("the time of {time} s is over before its way is gone").format(time=numeral(run.time[-1], ".6g"))
     endings = {"way": _("the way is gone"), "standstill": _("the machine stands"), "time": time}
     place, speed = (ANGLE, ANGULAR_SPEED) if turns else (LENGTH, SPEED)
-    rows: list[Row] = [
+    rows: list[ValueRow] = [
         (_("begins at"), single.first, place),
         (_("ends at"), single.first + single.sense * run.way[-1], place),
         (_("lasts, s"), run.time[-1], NUMBER),
@@ -128,8 +130,8 @@ def _single(results: Results, single: SingleRun) -> Iterable[Table]:
         share=numeral(run.balance, ".1g")
     )
     note = _("the run ends: {why}").format(why=endings[run.ending])
-    yield Table("dynamics", _("Single run"), of_rows(rows, results), notes=(note, balance))
-    at = single.evenly(STEPS)
+    yield Table("dynamics", _("Single run"), value_columns(rows, results), notes=(note, balance))
+    at = single.evenly(RUN_STEPS)
     rate = single.speed(at)
     acceleration = ANGULAR_ACCELERATION if turns else ACCELERATION
     yield Table(
@@ -152,13 +154,16 @@ def balancing_tables(results: Results) -> Iterable[Table]:
     """What was found, then what shakes at every position."""
     found = results.balancing
     assert found is not None
-    rows, notes = [*_counterweights(found), *_largest(found), *_rotor(results, found)], [*_notes(found)]
-    yield Table("balancing", _("Balancing"), of_rows(rows, results), notes=tuple(notes))
+    rows, notes = (
+        [*_counterweight_rows(found), *_shaking_rows(found), *_rotor_rows(results, found)],
+        [*_balancing_notes(found)],
+    )
+    yield Table("balancing", _("Balancing"), value_columns(rows, results), notes=tuple(notes))
     if found.cycle.shakes:
-        yield _positions(results, found)
+        yield _shaking_table(results, found)
 
 
-def _counterweights(found: BalancingResults) -> Iterable[Row]:
+def _counterweight_rows(found: BalancingResults) -> Iterable[ValueRow]:
     for weight in found.cycle.counterweights:
         link = weight.place.link
         yield _("counterweight on link {link}: mass times radius, kg*m").format(link=link), weight.size, NUMBER
@@ -167,7 +172,7 @@ def _counterweights(found: BalancingResults) -> Iterable[Row]:
             yield _("its mass at the radius of the file"), weight.mass, MASS
 
 
-def _largest(found: BalancingResults) -> Iterable[Row]:
+def _shaking_rows(found: BalancingResults) -> Iterable[ValueRow]:
     if not found.cycle.shakes:
         return
     before, after = found.cycle.before, found.cycle.after
@@ -180,7 +185,7 @@ def _largest(found: BalancingResults) -> Iterable[Row]:
         yield _("largest shaking moment, balanced"), np.nanmax(np.abs(after.moment)), MOMENT
 
 
-def _rotor(results: Results, found: BalancingResults) -> Iterable[Row]:
+def _rotor_rows(results: Results, found: BalancingResults) -> Iterable[ValueRow]:
     rotor = found.task.rotor
     if rotor is None:
         return
@@ -196,7 +201,7 @@ def _rotor(results: Results, found: BalancingResults) -> Iterable[Row]:
             yield _("its mass at the radius of the file"), abs(size) / plane.radius, MASS
 
 
-def _notes(found: BalancingResults) -> Iterable[str]:
+def _balancing_notes(found: BalancingResults) -> Iterable[str]:
     if found.cycle.shakes:
         yield _("Shaking: forces of inertia of all links on the frame, over the cycle at constant speed of the driver.")
     if found.cycle.alike:
@@ -205,7 +210,7 @@ def _notes(found: BalancingResults) -> Iterable[str]:
         yield _("Where no radius is told, the counterweight's own moment of inertia is left out of the shaking moment.")
 
 
-def _positions(results: Results, found: BalancingResults) -> Table:
+def _shaking_table(results: Results, found: BalancingResults) -> Table:
     columns = driver_columns(results)
     told = [(found.before, "F x", "F y", "F", "M")]
     if found.cycle.counterweights:
@@ -229,14 +234,16 @@ def intermittent_tables(results: Results) -> Iterable[Table]:
     wheels = results.wheels
     assert wheels is not None
     place = coordinate_dimension(results.linkage.driver.kind)
-    yield _strokes(wheels, place, back=not results.turns)
-    rows = [row for wheel in wheels for row in _cycle(wheel, place)]
-    notes = [note for wheel in wheels for note in _notes_of_wheels(wheel)]
-    yield Table("intermittent-cycle", _("Intermittent motion over a cycle"), of_rows(rows, results), notes=tuple(notes))
-    yield _course(wheels, place)
+    yield _wheel_period_table(wheels, place, back=not results.turns)
+    rows = [row for wheel in wheels for row in _wheel_cycle_rows(wheel, place)]
+    notes = [note for wheel in wheels for note in _wheel_notes(wheel)]
+    yield Table(
+        "intermittent-cycle", _("Intermittent motion over a cycle"), value_columns(rows, results), notes=tuple(notes)
+    )
+    yield _wheel_motion_table(wheels, place)
 
 
-def _strokes(wheels: Iterable[IntermittentMotion], place: Dimension, *, back: bool) -> Table:
+def _wheel_period_table(wheels: Iterable[IntermittentMotion], place: Dimension, *, back: bool) -> Table:
     """A row a part of the cycle; back: the driver goes there and back."""
     rows = [(wheel, part, wheel.jumps[k]) for wheel in wheels for k, part in enumerate(wheel.parts)]
     parts = [part for __, part, ___ in rows]
@@ -245,7 +252,7 @@ def _strokes(wheels: Iterable[IntermittentMotion], place: Dimension, *, back: bo
         Column(N_("state"), [_("driven") if part.ride.driven else _("stands") for part in parts]),
     ]
     if any(len(wheel.task.settings) > 1 for wheel in wheels):
-        columns.append(Column(N_("setting"), [_setting(wheel, part) for wheel, part, __ in rows]))
+        columns.append(Column(N_("setting"), [_setting_text(wheel, part) for wheel, part, __ in rows]))
     columns += [
         Column(N_("driver from"), [part.ride.start for part in parts], place),
         Column(N_("driver to"), [part.ride.end for part in parts], place),
@@ -262,14 +269,14 @@ def _strokes(wheels: Iterable[IntermittentMotion], place: Dimension, *, back: bo
     return Table("intermittent", _("Intermittent motion"), tuple(columns), notes=(note,))
 
 
-def _setting(wheel: IntermittentMotion, part: WheelMotion) -> str:
+def _setting_text(wheel: IntermittentMotion, part: WheelMotion) -> str:
     """The parameters of the file are told by their number alone."""
     values = wheel.task.settings[part.setting].values
     told = ", ".join(f"{name} = {value}" for name, value in values.items())
     return f"{part.setting + 1}: {told}" if told else str(part.setting + 1)
 
 
-def _cycle(wheel: IntermittentMotion, place: Dimension) -> Iterable[Row]:
+def _wheel_cycle_rows(wheel: IntermittentMotion, place: Dimension) -> Iterable[ValueRow]:
     name = wheel.task.name
     yield _("wheel {name} turns in a cycle by").format(name=name), wheel.turn, ANGLE
     if wheel.cycles is not None:
@@ -284,7 +291,7 @@ def _cycle(wheel: IntermittentMotion, place: Dimension) -> Iterable[Row]:
     yield _("largest jump of omega where it is taken up and let go"), wheel.shock, ANGULAR_SPEED
 
 
-def _notes_of_wheels(wheel: IntermittentMotion) -> Iterable[str]:
+def _wheel_notes(wheel: IntermittentMotion) -> Iterable[str]:
     name = wheel.task.name
     if wheel.shock == 0:
         yield _("Wheel {name} is taken up and let go without shock: its angular speed does not jump.").format(name=name)
@@ -295,7 +302,7 @@ def _notes_of_wheels(wheel: IntermittentMotion) -> Iterable[str]:
         yield text.format(name=name, most=MOST_CYCLES)
 
 
-def _course(wheels: Iterable[IntermittentMotion], place: Dimension) -> Table:
+def _wheel_motion_table(wheels: Iterable[IntermittentMotion], place: Dimension) -> Table:
     every = [(wheel.task.name, part) for wheel in wheels for part in wheel.parts]
     columns = [Column(N_("wheel"), [name for name, part in every for __ in part.ways])]
     told = (

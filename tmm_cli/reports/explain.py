@@ -15,62 +15,62 @@ from tmm_cli.mechanics.kinematics import SCAN
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.structure import POSITIONS_PER_TURN, Group, Pair, Structure
 from tmm_cli.problem import Problem
-from tmm_cli.reports.file_summary import motion
-from tmm_cli.reports.input_load_tables import heavy
+from tmm_cli.reports.file_summary import describe_driver_motion
+from tmm_cli.reports.input_load_tables import links_with_inertia
 from tmm_cli.reports.input_tables import input_data_tables
 from tmm_cli.reports.structure_tables import (
     ROLES,
-    contours_in_words,
-    counted_by_classes,
-    counted_generally,
-    counted_mobility,
-    counted_with_replacements,
-    kind_in_words,
-    left_out,
+    describe_classification,
+    describe_contours,
+    describe_link_motion,
+    describe_primary_mechanisms,
+    describe_schemes,
+    generalised_mobility,
+    mobility_by_classes,
+    mobility_equation,
+    mobility_with_replacements,
     mobility_with_rollers,
-    motion_in_words,
-    primary_mechanisms_in_words,
-    schemes_in_words,
+    reduction_sentences,
 )
-from tmm_cli.reports.table import Table, link_name, table_of_words
+from tmm_cli.reports.table import Table, link_name, text_table
 
 
-def in_words(results: Results) -> Iterable[str]:
+def narrate_structure(results: Results) -> Iterable[str]:
     """Whole sentences, in the order of a note."""
     structure = results.structure
-    yield _mobility(structure)
+    yield _mobility_sentence(structure)
     count = (len(structure.links), len(structure.pairs) - structure.higher, structure.higher)
-    yield _("In terms of the classes of pairs, W = 3n - 2 p5 - p4 = {count}.").format(count=counted_by_classes(count))
+    yield _("In terms of the classes of pairs, W = 3n - 2 p5 - p4 = {count}.").format(count=mobility_by_classes(count))
     yield _("The generalised formula W = Hn - sum((H - i) p_i) with H = 3 gives {count}.").format(
-        count=counted_generally(count)
+        count=generalised_mobility(count)
     )
     if structure.higher:
         text = _("With each higher pair replaced by a link with two revolute pairs: W = {count}.")
-        yield text.format(count=counted_with_replacements(count))
+        yield text.format(count=mobility_with_replacements(count))
     if any(pair.mesh is not None and pair.mesh.roller for pair in structure.pairs):
         yield _("If rollers are counted as links, W = {count}.").format(count=mobility_with_rollers(structure))
     if structure.passive:
         yield _("The rank of its equations shows passive constraints: {count}; the true mobility is W = {w}.").format(
             count=structure.redundant, w=structure.mobility + structure.redundant
         )
-    yield _("Pairs, with their classes and codes: {pairs}.").format(pairs=", ".join(map(_pair, structure.pairs)))
+    yield _("Pairs, with their classes and codes: {pairs}.").format(pairs=", ".join(map(_pair_text, structure.pairs)))
     for driver in results.linkage.drivers:
         yield _("Link {link} ({role}) is a driving link: {motion}.").format(
-            link=driver.link, role=_(ROLES[results.roles[driver.link]]), motion=motion(driver)
+            link=driver.link, role=_(ROLES[results.roles[driver.link]]), motion=describe_driver_motion(driver)
         )
     yield _("The formula of structure is {formula}; the mechanism is of class {number}.").format(
         formula=structure.formula, number=structure.roman
     )
     if len(structure.drivers) > 1:
-        yield _("Primary mechanisms: {names}.").format(names=primary_mechanisms_in_words(structure))
-    yield _("Type of chain and of structure: {words}.").format(words=kind_in_words(structure))
-    yield _("Number of independent loops K = p - n: {count}.").format(count=contours_in_words(structure))
-    schemes = schemes_in_words(structure)
+        yield _("Primary mechanisms: {names}.").format(names=describe_primary_mechanisms(structure))
+    yield _("Type of chain and of structure: {words}.").format(words=describe_classification(structure))
+    yield _("Number of independent loops K = p - n: {count}.").format(count=describe_contours(structure))
+    schemes = describe_schemes(structure)
     if schemes:
         yield _("Basic mechanisms it contains: {schemes}.").format(schemes=schemes)
-    motions = (f"{link}: {motion_in_words(results, link)}" for link in structure.links)
+    motions = (f"{link}: {describe_link_motion(results, link)}" for link in structure.links)
     yield _("Motion of the links: {motions}.").format(motions="; ".join(motions))
-    for sentence in left_out(structure):
+    for sentence in reduction_sentences(structure):
         yield _("For the formula: {what}.").format(what=sentence)
     for group in structure.groups:
         text = _("The group {group} is of class {number}, order {order}, type {type}; its outer pairs are {outer}.")
@@ -80,19 +80,19 @@ def in_words(results: Results) -> Iterable[str]:
             number=group.roman,
             order=group.order,
             type=kind,
-            outer=_outer(group),
+            outer=_external_pairs(group),
         )
         yield _("For the group {group}, 3n - 2 p1 - p2 = {count}.").format(
-            group=group.title, count=counted_mobility(group.count)
+            group=group.title, count=mobility_equation(group.count)
         )
     if structure.groups:
         yield _(
             "Positions, velocities and accelerations are found group by group in this order, reactions in the opposite "
             "one; {balance}, and Zhukovsky's lever checks it."
-        ).format(balance=_balance(results.linkage))
+        ).format(balance=_balance_text(results.linkage))
 
 
-def _mobility(structure: Structure) -> str:
+def _mobility_sentence(structure: Structure) -> str:
     n, higher, w = len(structure.links), structure.higher, structure.mobility
     lower = len(structure.pairs) - higher
     turning = sum(pair.kind == "R" for pair in structure.pairs)
@@ -109,20 +109,20 @@ def _mobility(structure: Structure) -> str:
     return text.format(n=n, lower=lower, turning=turning, sliding=lower - turning, higher=higher, w=w)
 
 
-def _pair(pair: Pair) -> str:
+def _pair_text(pair: Pair) -> str:
     """O 0-1 (5, 1в): a pair, its links, its class and its code; a higher pair has no code."""
     words = ", ".join(filter(None, (str(pair.pair_class), pair.code)))
     return f"{pair.name} {printed(pair.i)}-{printed(pair.j)} ({words})"
 
 
-def _outer(group: Group) -> str:
+def _external_pairs(group: Group) -> str:
     """The pairs that join a group to what is known, and that link."""
     known = [(pair.name, pair.i if pair.j in group.links else pair.j) for pair in group.outer]
     frame, moving = _("{pair} (frame)"), _("{pair} (link {link})")
     return ", ".join((frame if link == FRAME else moving).format(pair=pair, link=link) for pair, link in known)
 
 
-def _balance(linkage: Linkage) -> str:
+def _balance_text(linkage: Linkage) -> str:
     driver = linkage.driver
     if linkage.others:
         return _("moments and forces on the driving links balance it")
@@ -138,18 +138,18 @@ def _balance(linkage: Linkage) -> str:
 def explain_tables(results: Results, verbose: bool = False) -> Iterable[Table]:
     """Tables of words: the file in full, then the way of the calculation; verbose: places that each stage computes."""
     yield from input_data_tables(results.problem)
-    yield steps(results)
+    yield step_table(results)
     if verbose:
-        yield stages_table(results)
-    yield from skipped(results.problem)
+        yield stage_table(results)
+    yield from skipped_tables(results.problem)
 
 
-PANELS = 12 * 16  # places on a turn that a law of motion is computed at, at least
+LAW_POSITIONS = 12 * 16  # places on a turn that a law of motion is computed at, at least
 
-Row = tuple[str, str, str, str, str]
+StageRow = tuple[str, str, str, str, str]
 
 
-def steps(results: Results) -> Table:
+def step_table(results: Results) -> Table:
     """The drivers and the groups, with the assembly that each of them has."""
     linkage = results.linkage
     drivers = " + ".join(map(results.structure.driver_title, linkage.drivers))
@@ -158,14 +158,16 @@ def steps(results: Results) -> Table:
     solved = {link: kernel for kernel in results.kernels for link in kernel.group.links}
     for number, group in enumerate(results.structure.solved, 2):
         kernel = solved.get(group.links[0])
-        how = "" if kernel is None else _how(kernel)
-        rows.append((str(number), f"{group.title} {group.type}".strip(), _neighbours(group), _assembly(kernel), how))
+        how = "" if kernel is None else _method_text(kernel)
+        rows.append(
+            (str(number), f"{group.title} {group.type}".strip(), _known_links(group), _assembly_text(kernel), how)
+        )
     note = _(
         "Each group: places, velocities, accelerations in closed form (places by iteration where "
         "the assembly is followed); then reactions, last group first; then the Zhukovsky lever "
         "from velocities alone."
     )
-    return table_of_words(
+    return text_table(
         "way",
         _("What is computed, in this order; forces in the opposite one"),
         (_("step"), _("group"), _("hangs on"), _("assembly"), _("solved")),
@@ -174,7 +176,7 @@ def steps(results: Results) -> Table:
     )
 
 
-def _neighbours(group: Group) -> str:
+def _known_links(group: Group) -> str:
     told = []
     for pair in group.outer:
         known = pair.i if pair.j in group.links else pair.j
@@ -182,7 +184,7 @@ def _neighbours(group: Group) -> str:
     return "; ".join(told)
 
 
-def _assembly(kernel: GroupSolver | None) -> str:
+def _assembly_text(kernel: GroupSolver | None) -> str:
     """Which of its assemblies a group has."""
     if kernel is None:
         return _("not decided: see tmm kinematics")
@@ -193,22 +195,20 @@ def _assembly(kernel: GroupSolver | None) -> str:
     return _("sign {sign} of two, from the sketch").format(sign=f"{kernel.sign:+d}")
 
 
-def _how(kernel: GroupSolver) -> str:
+def _method_text(kernel: GroupSolver) -> str:
     """How a group is solved."""
     if isinstance(kernel, ClosedFormSolver):
         return _("in closed form") if kernel.winding is None else _("in closed form, turns followed")
     return _("by Newton") if kernel.followed is None else _("by Newton, followed")
 
 
-def stages_table(results: Results) -> Table:
+def stage_table(results: Results) -> Table:
     """A row a stage."""
     headers = (_("stage"), _("groups"), _("places"), _("of the motion"), _("note"))
-    return table_of_words(
-        "stages", _("What each stage computes, when it is asked for"), headers, describe_stages(results)
-    )
+    return text_table("stages", _("What each stage computes, when it is asked for"), headers, describe_stages(results))
 
 
-def describe_stages(results: Results) -> Iterable[Row]:
+def describe_stages(results: Results) -> Iterable[StageRow]:
     """Stage, groups, how many places, what of the motion, and notes; nothing but counting where nothing assembles."""
     driver_range, linkage, request = results.driver_range, results.linkage, results.problem.request
     yield _("structure"), "-", "-", "-", _("by counting; a crank and a rocker are told apart by the range")
@@ -216,7 +216,7 @@ def describe_stages(results: Results) -> Iterable[Row]:
         return
     kernels, scan = results.kernels, SCAN * driver_range.turns + 1
     asked = str(len(request.places) or request.count)
-    every = _titles(kernels, kernels)
+    every = _group_titles(kernels, kernels)
     places, velocities, accelerations = _("places"), _("and velocities"), _("and accelerations")
 
     yield _("range of the driver"), every, str(scan), places, _("at once, then at what ends it")
@@ -229,7 +229,7 @@ def describe_stages(results: Results) -> Iterable[Row]:
         note = _("position 0 hangs on it") if request.start == "working stroke" and not request.places else ""
         yield (
             what,
-            _titles(solvers_towards(kernels, [linkage.output_carrier(link)]), kernels),
+            _group_titles(solvers_towards(kernels, [linkage.output_carrier(link)]), kernels),
             str(scan + 1),
             velocities,
             note,
@@ -238,13 +238,13 @@ def describe_stages(results: Results) -> Iterable[Row]:
     yield _("pressure angles"), every, str(scan), places, _("from statics")
     if results.inputs.dynamics is not None:
         note = _("and more, until sums along the way are exact; then kinematics and forces with it")
-        yield _("law of motion"), every, str(PANELS * driver_range.turns), accelerations, note
+        yield _("law of motion"), every, str(LAW_POSITIONS * driver_range.turns), accelerations, note
     if results.inputs.balancing is not None:
         note = _("what shakes the frame, at constant speed of the driver")
         yield _("balancing"), every, str(CYCLE_SAMPLES * driver_range.turns), accelerations, note
     note = _("--position: these only; --of: groups on the way only")
     yield _("kinematics"), every, asked, accelerations, note
-    yield _("forces"), every, asked, _("reactions"), f"{_inertia(linkage)}; {_acting(linkage)}"
+    yield _("forces"), every, asked, _("reactions"), f"{_inertia_text(linkage)}; {_load_text(linkage)}"
     yield _("lever"), "-", asked, velocities, _("of the same loads; solves nothing anew")
     if linkage.friction:
         yield _("losses by friction"), every, str(CYCLE_SAMPLES + 1), accelerations, _("over the whole cycle")
@@ -254,30 +254,30 @@ def describe_stages(results: Results) -> Iterable[Row]:
     yield _("diagrams"), every, str(diagrams), accelerations, drawn
 
 
-def _inertia(linkage: Linkage) -> str:
-    links = ", ".join(heavy(linkage))
+def _inertia_text(linkage: Linkage) -> str:
+    links = ", ".join(links_with_inertia(linkage))
     return _("inertia of {links}").format(links=links) if links else _("no inertia")
 
 
-def _acting(linkage: Linkage) -> str:
+def _load_text(linkage: Linkage) -> str:
     loads = ", ".join(linkage.acting)
     return _("loads {loads}").format(loads=loads) if loads else _("no loads")
 
 
-def _titles(groups: Sequence[GroupSolver], every: Sequence[GroupSolver]) -> str:
+def _group_titles(groups: Sequence[GroupSolver], every: Sequence[GroupSolver]) -> str:
     if len(groups) == len(every) > 1:
         return _("all {count}").format(count=len(every))
     return " ".join(kernel.group.title for kernel in groups) or "-"
 
 
-def skipped(problem: Problem) -> Iterable[Table]:
+def skipped_tables(problem: Problem) -> Iterable[Table]:
     """What is not computed and why; no table where nothing is skipped."""
-    rows = list(_skipped(problem))
+    rows = list(_skipped_rows(problem))
     if rows:
-        yield table_of_words("skipped", _("What is skipped"), (_("what"), _("why")), rows)
+        yield text_table("skipped", _("What is skipped"), (_("what"), _("why")), rows)
 
 
-def _skipped(problem: Problem) -> Iterable[tuple[str, str]]:
+def _skipped_rows(problem: Problem) -> Iterable[tuple[str, str]]:
     linkage = problem.linkage
     light = [n for n in linkage.moving if not np.any(linkage.links[n].mass != 0)]
     if light:

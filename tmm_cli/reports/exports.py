@@ -15,10 +15,10 @@ from tmm_cli.mechanics.linkage import FRAME, Linkage, Slide
 from tmm_cli.problem import ProblemError
 
 
-def pylinkage(results: Results) -> tuple[str, list[str]]:
+def export_pylinkage(results: Results) -> tuple[str, list[str]]:
     """The text, and what it does not hold. Raises ProblemError where pylinkage has no such mechanism."""
     linkage = results.linkage
-    _refuse(linkage)
+    _refuse_unsupported(linkage)
     motion = results_at(results, np.array([linkage.sketch.at])).motion
     assert motion is not None
 
@@ -53,7 +53,7 @@ def _coordinates(z: complex) -> list[float]:
     return [1000 * part + 0.0 for part in (float(z.real), float(z.imag))]
 
 
-def _refuse(linkage: Linkage) -> None:
+def _refuse_unsupported(linkage: Linkage) -> None:
     reason = None
     if linkage.driver.kind != "turn" or linkage.driver.base != FRAME or linkage.others:
         reason = _("pylinkage drives one crank on the frame")
@@ -81,4 +81,6 @@ def _joint(point: str, place: list[float], fixed: bool, slide: Slide | None) -> 
 # Files that other programs read: a format is a function in a file here and an entry below.
 
 
-EXPORTS: Final[dict[str, Callable[[Results], tuple[str, list[str]]]]] = {"pylinkage": pylinkage}  # text, what is left
+EXPORTS: Final[dict[str, Callable[[Results], tuple[str, list[str]]]]] = {
+    "pylinkage": export_pylinkage
+}  # text, what is left

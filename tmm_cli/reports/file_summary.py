@@ -30,13 +30,13 @@ from tmm_cli.reports.table import with_unit
 
 SMALL, LARGE = 0.005, 50.0  # m: links of mechanisms are rarely outside
 FAST_TURN, FAST_SLIDE = 1e5, 1e3  # rad/s, m/s: the quickest spindles turn half as fast
-SWINGS = 0.02  # of the range of a table: a smooth curve that goes beyond it by more is hardly meant
+OVERSHOOT = 0.02  # of the range of a table: a smooth curve that goes beyond it by more is hardly meant
 BULKY = 0.2  # of the largest link: a body of this radius of gyration is no point
 SLENDER = 1 / 50  # of a link: a uniform rod has a radius of gyration of 0.29
 HEAVY_CRANK = 10  # largest links: cheeks and a flywheel make the radius of gyration of a crank larger than the crank
 FAR = 2  # largest links: a mechanism is hardly longer
-STRONG = 1e9  # Pa: no hydraulic or gas drive has such a pressure
-UNIFORM = 1e-3  # fluctuation of speed: the most uniform generators have 1/300
+HIGH_PRESSURE = 1e9  # Pa: no hydraulic or gas drive has such a pressure
+LEAST_FLUCTUATION = 1e-3  # fluctuation of speed: the most uniform generators have 1/300
 SAME_SPEED = 0.01  # relative: two speeds of one shaft that differ by less differ by rounding on paper
 ANGULAR_SPEEDS: tuple[Path, ...] = (  # that a file may give beside those of drivers and of a run
     ("dynamics", "mean speed"),
@@ -50,25 +50,25 @@ ANGULAR_SPEEDS: tuple[Path, ...] = (  # that a file may give beside those of dri
 
 def summarise_file(task: Problem | TaskProblem) -> Iterable[str]:
     """Units, driver, gravity, sizes: a sentence each. What a task has to find first is found after the first one."""
-    yield bare_units(task.units)
+    yield describe_units(task.units)
     problem = task.whole
     if problem.source is not None and problem.source.given:
         yield _("in place of the file's: {settings}").format(settings=", ".join(problem.source.given.values()))
     linkage = problem.linkage
     for driver in linkage.drivers:
-        yield _("driver: link {link}, {motion}").format(link=driver.link, motion=motion(driver))
-    sizes = "; ".join(_ranges(problem))
+        yield _("driver: link {link}, {motion}").format(link=driver.link, motion=describe_driver_motion(driver))
+    sizes = "; ".join(_size_ranges(problem))
     yield (
-        _("sizes: {sizes}; {gravity}").format(sizes=sizes, gravity=gravity(linkage.gravity))
+        _("sizes: {sizes}; {gravity}").format(sizes=sizes, gravity=describe_gravity(linkage.gravity))
         if sizes
-        else gravity(linkage.gravity)
+        else describe_gravity(linkage.gravity)
     )
 
 
-def _ranges(problem: Problem) -> Iterator[str]:
+def _size_ranges(problem: Problem) -> Iterator[str]:
     """From the least to the largest length, mass, force, moment and pressure, with the names of what has them."""
     linkage = problem.linkage
-    spans = sorted((span, points) for span, points in _spans(problem).values())
+    spans = sorted((span, points) for span, points in _link_spans(problem).values())
     if spans:
         (small, short), (large, long) = spans[0], spans[-1]
         yield _("from {small} ({short}) to {large} ({long})").format(
@@ -87,10 +87,10 @@ def _ranges(problem: Problem) -> Iterator[str]:
     for dimension, title, values in every:
         present = sorted((float(to_float(value)), name) for value, name in values if value)
         if present:
-            yield f"{title} {_range(problem, present, dimension)}"
+            yield f"{title} {_range_text(problem, present, dimension)}"
 
 
-def _range(problem: Problem, values: Sequence[tuple[float, str]], dimension: Dimension) -> str:
+def _range_text(problem: Problem, values: Sequence[tuple[float, str]], dimension: Dimension) -> str:
     """The first and the last of the values, which are sorted, with their names; all in one if there is one alone."""
     sizes = dict.fromkeys((values[0], values[-1]))
     ends = [f"{with_unit(problem.units, size, dimension)} ({name})" for size, name in sizes]
@@ -114,7 +114,7 @@ def _pressures(problem: Problem) -> Iterator[tuple[Path, float]]:
         yield path, max(abs(float(to_float(problem.values.number(row, PRESSURE, path)))) for row in rows)
 
 
-def bare_units(units: UnitSystem) -> str:
+def describe_units(units: UnitSystem) -> str:
     """What numbers without a unit mean."""
     names = [units.spelt(dimension) for dimension in (LENGTH, ANGLE, MASS, FORCE, MOMENT, INERTIA)]
     return _("bare numbers: {units}; a bare speed: {angular} or {linear}").format(
@@ -122,11 +122,11 @@ def bare_units(units: UnitSystem) -> str:
     )
 
 
-def motion(driver: Driver) -> str:
+def describe_driver_motion(driver: Driver) -> str:
     """`70 rad/s = 668 rpm, counterclockwise`."""
     if driver.kind == "slide":
         text = _("{speed} m/s, along its guide") if driver.sense > 0 else _("{speed} m/s, against its guide")
-        return text.format(speed=_short(driver.rate))
+        return text.format(speed=_short_number(driver.rate))
     if driver.law is not None:
         text = _("{low} to {high} rad/s = {least} to {most} rpm by the rows of a table, counterclockwise; {between}")
         if driver.sense < 0:
@@ -134,19 +134,19 @@ def motion(driver: Driver) -> str:
         speeds = np.sqrt([float(to_float(square)) for square in driver.law.squares.values])
         low, high = float(speeds.min()), float(speeds.max())
         return text.format(
-            low=_short(low),
-            high=_short(high),
-            least=_short(low * 30 / math.pi),
-            most=_short(high * 30 / math.pi),
-            between=between_rows(driver.law),
+            low=_short_number(low),
+            high=_short_number(high),
+            least=_short_number(low * 30 / math.pi),
+            most=_short_number(high * 30 / math.pi),
+            between=describe_interpolation(driver.law),
         )
     text = _("{speed} rad/s = {turns} rpm, counterclockwise")
     if driver.sense < 0:
         text = _("{speed} rad/s = {turns} rpm, clockwise")
-    return text.format(speed=_short(driver.rate), turns=_short(driver.rate * 30 / math.pi))
+    return text.format(speed=_short_number(driver.rate), turns=_short_number(driver.rate * 30 / math.pi))
 
 
-def between_rows(law: SpeedTable) -> str:
+def describe_interpolation(law: SpeedTable) -> str:
     """What is between rows of a table of speeds, and where accelerations are from."""
     if law.squares.between == "linear":
         text = _("constant acceleration from row to row")
@@ -161,7 +161,7 @@ def between_rows(law: SpeedTable) -> str:
     return text
 
 
-def gravity(pull: complex) -> str:
+def describe_gravity(pull: complex) -> str:
     """Its size and direction."""
     if not pull:
         return _("no gravity")
@@ -170,40 +170,40 @@ def gravity(pull: complex) -> str:
     return _("gravity [{x}, {y}] m/s^2").format(x=numeral(pull.real, ".6g"), y=numeral(pull.imag, ".6g"))
 
 
-def doubts(problem: Problem) -> Iterable[str]:
+def find_slips(problem: Problem) -> Iterable[str]:
     """What is allowed and computed, and yet is probably not what was meant."""
     data: Mapping[str, Any] = {} if problem.source is None else problem.source.data
     if problem.source is not None:
-        yield from without_effect(problem.source, [path[1] for path in problem.source.given])
-    yield from _bare_speed(problem, data)
+        yield from find_unused_parameters(problem.source, [path[1] for path in problem.source.given])
+    yield from _bare_driver_speed(problem, data)
     if problem.values is not None:
-        yield from bare_speeds(data, problem.values, problem.linkage.drivers)
-        yield from _speeds_apart(problem, data)
-        yield from _fluctuation(data, problem.values)
+        yield from find_bare_speeds(data, problem.values, problem.linkage.drivers)
+        yield from _conflicting_speeds(problem, data)
+        yield from _small_fluctuation(data, problem.values)
     for driver in problem.linkage.drivers:
         if driver.rate > (FAST_TURN if driver.kind == "turn" else FAST_SLIDE):
             yield _("the driver's speed, {motion}, is more than machines have: is the unit right?").format(
-                motion=motion(driver)
+                motion=describe_driver_motion(driver)
             )
-    yield from _sizes(problem)
-    yield from _masses(problem, data)
-    yield from _far_places(problem)
+    yield from _unusual_sizes(problem)
+    yield from _unusual_masses(problem, data)
+    yield from _distant_points(problem)
     yield from _high_pressures(problem)
-    yield from _sliders_twice(problem)
-    yield from _smooth_tables(problem)
+    yield from _coincident_sliders(problem)
+    yield from _overshooting_tables(problem)
     yield from _several_strokes(problem)
     positions = data.get("positions", {})
     if "at" in positions and "count" in positions:
         yield _("positions: `count` is not used beside `at`, which gives the places one by one: remove one of them")
 
 
-def without_effect(tree: Tree, names: Iterable[Any]) -> Iterable[str]:
+def find_unused_parameters(tree: Tree, names: Iterable[Any]) -> Iterable[str]:
     """That parameters which are given other values beside the file change nothing."""
     for name in unused_parameters(tree, names):
         yield _("parameter {name} is used nowhere in the file, and its value changes nothing").format(name=name)
 
 
-def _bare_speed(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
+def _bare_driver_speed(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
     """A speed without a unit is in rad/s or m/s also where the file counts in degrees or millimetres."""
     driver, units = problem.linkage.driver, problem.units
     named = {key.replace("_", " ") for key in data.get("units", {})}
@@ -214,7 +214,7 @@ def _bare_speed(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
         yield _(
             "the driver's speed has no unit and is taken as {motion}, though angles are in {angle}: "
             "write `{speed} rad/s`, or `{speed} rpm` if turns a minute are meant"
-        ).format(motion=motion(driver), angle=units.spelt(ANGLE), speed=numeral(fastest, ".6g"))
+        ).format(motion=describe_driver_motion(driver), angle=units.spelt(ANGLE), speed=numeral(fastest, ".6g"))
     if driver.kind == "slide" and units.factor(LENGTH) != 1 and "speed" not in named:
         yield _(
             "the driver's speed has no unit and is taken as {speed} m/s, though lengths are in {length}: "
@@ -222,7 +222,7 @@ def _bare_speed(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
         ).format(length=units.spelt(LENGTH), speed=numeral(driver.rate, ".6g"))
 
 
-def bare_speeds(data: Mapping[str, Any], values: ValueReader, drivers: Sequence[Driver] = ()) -> Iterator[str]:
+def find_bare_speeds(data: Mapping[str, Any], values: ValueReader, drivers: Sequence[Driver] = ()) -> Iterator[str]:
     """Speeds without a unit beside that of the first driver, in a file that counts in degrees or millimetres.
 
     Args:
@@ -258,14 +258,14 @@ def bare_speeds(data: Mapping[str, Any], values: ValueReader, drivers: Sequence[
             )
         yield text.format(
             key=format_path(path),
-            speed=_short(speed),
-            turns=_short(speed * 30 / math.pi),
+            speed=_short_number(speed),
+            turns=_short_number(speed * 30 / math.pi),
             unit=units.spelt(base),
             written=numeral(speed, ".6g"),
         )
 
 
-def _speeds_apart(problem: Problem, data: Mapping[str, Any]) -> Iterator[str]:
+def _conflicting_speeds(problem: Problem, data: Mapping[str, Any]) -> Iterator[str]:
     """A mean speed of the law of motion beside another speed of the driver."""
     task, speed = problem.dynamics, float(to_float(problem.linkage.driver.rate))
     mean = getattr(task, "mean", None)
@@ -277,20 +277,20 @@ def _speeds_apart(problem: Problem, data: Mapping[str, Any]) -> Iterator[str]:
             "dynamics.mean speed is {mean} rad/s = {mean_rpm} rpm, but the driver's speed is {speed} rad/s = "
             "{speed_rpm} rpm: the law of motion takes the mean speed; write one of them, or both the same"
         ).format(
-            mean=_short(mean),
-            mean_rpm=_short(mean * 30 / math.pi),
-            speed=_short(speed),
-            speed_rpm=_short(speed * 30 / math.pi),
+            mean=_short_number(mean),
+            mean_rpm=_short_number(mean * 30 / math.pi),
+            speed=_short_number(speed),
+            speed_rpm=_short_number(speed * 30 / math.pi),
         )
 
 
-def _fluctuation(data: Mapping[str, Any], values: ValueReader) -> Iterator[str]:
+def _small_fluctuation(data: Mapping[str, Any], values: ValueReader) -> Iterator[str]:
     """A coefficient of fluctuation that is written in per cent twice over."""
     written = (data.get("dynamics") or {}).get("delta")
     if written is None:
         return
     delta = float(to_float(values.number(written, NUMBER, ("dynamics", "delta"))))
-    if delta < UNIFORM:
+    if delta < LEAST_FLUCTUATION:
         yield _(
             "dynamics.delta is {written} = 1/{parts}: machines have 1/5 to 1/300; write `{hundredfold}`, or "
             "`{per_cent} %`, if that is meant"
@@ -302,10 +302,10 @@ def _fluctuation(data: Mapping[str, Any], values: ValueReader) -> Iterator[str]:
         )
 
 
-def _far_places(problem: Problem) -> Iterator[str]:
+def _distant_points(problem: Problem) -> Iterator[str]:
     """Centres of mass, points of load and ends of springs farther from their link than the mechanism is long."""
     linkage = problem.linkage
-    size, longest = max(_spans(problem).values(), default=(math.inf, ""))
+    size, longest = max(_link_spans(problem).values(), default=(math.inf, ""))
     places: list[tuple[str, str, complex]] = [
         (f"masses.{name}", name, link.centre) for name, link in linkage.links.items() if link.mass
     ]
@@ -335,7 +335,7 @@ def _far_places(problem: Problem) -> Iterator[str]:
 def _high_pressures(problem: Problem) -> Iterator[str]:
     """Pressures in bare pascals, which are taken as megapascals."""
     for path, pressure in _pressures(problem):
-        if pressure > STRONG:
+        if pressure > HIGH_PRESSURE:
             yield _(
                 "{key} comes to {pressure}, more than 1000 MPa: is the unit right? write `{number} Pa` if pascals are "
                 "meant"
@@ -346,8 +346,8 @@ def _high_pressures(problem: Problem) -> Iterator[str]:
             )
 
 
-def _sizes(problem: Problem) -> Iterable[str]:
-    for link, (span, points) in _spans(problem).items():
+def _unusual_sizes(problem: Problem) -> Iterable[str]:
+    for link, (span, points) in _link_spans(problem).items():
         size = with_unit(problem.units, span, LENGTH)
         if span > LARGE:
             yield _("{points} is {size}, more than 50 m: is the unit right?").format(points=points, size=size)
@@ -355,9 +355,9 @@ def _sizes(problem: Problem) -> Iterable[str]:
             yield _("{points} is {size}, less than 5 mm: is the unit right?").format(points=points, size=size)
 
 
-def _masses(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
+def _unusual_masses(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
     """Inertias that do not fit their links, and bodies that are put in one point."""
-    linkage, spans = problem.linkage, _spans(problem)
+    linkage, spans = problem.linkage, _link_spans(problem)
     largest = max((span for span, points in spans.values()), default=math.inf)
     wheels = {link for mesh in linkage.meshes for link in (mesh.i, mesh.j)}
     cranks = {driver.link for driver in linkage.cranks if driver.kind == "turn"}
@@ -394,7 +394,7 @@ def _masses(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
             ).format(link=name, point=next(iter(link.points)), radius=told)
 
 
-def _sliders_twice(problem: Problem) -> Iterator[str]:
+def _coincident_sliders(problem: Problem) -> Iterator[str]:
     """Two links that share a point and slide along one direction on the same link move as one body."""
     linkage = problem.linkage
     for a, b in combinations(linkage.slides, 2):
@@ -415,11 +415,11 @@ def _sliders_twice(problem: Problem) -> Iterator[str]:
                 )
 
 
-def _smooth_tables(problem: Problem) -> Iterable[str]:
+def _overshooting_tables(problem: Problem) -> Iterable[str]:
     """A spline may swing far beyond its rows."""
     for load in problem.linkage.loads:
         row, share = load.table.overshoot if load.table is not None else (0, 0.0)
-        if share > SWINGS:
+        if share > OVERSHOOT:
             yield _(
                 "load {load}: between rows {row} and {next} of its table the smooth curve goes beyond all rows by "
                 "{share} % of their range: write `between: linear`, or give more rows there"
@@ -436,25 +436,25 @@ def _several_strokes(problem: Problem) -> Iterable[str]:
             ).format(load=load.name, turns=turns)
 
 
-def _spans(problem: Problem) -> dict[str, tuple[float, str]]:
+def _link_spans(problem: Problem) -> dict[str, tuple[float, str]]:
     """Of each link with several places a large distance of two points (of three points the largest), and which two."""
     found = {}
     for name, link in problem.linkage.links.items():
         points = list(link.points)
         if len(points) < 2:
             continue
-        a = _farthest(link, points[0])
-        b = _farthest(link, a)
+        a = _farthest_point(link, points[0])
+        b = _farthest_point(link, a)
         span = float(abs(link.points[a] - link.points[b]))
         if span > 0:
             found[name] = (span, "".join(sorted((a, b), key=points.index)))
     return found
 
 
-def _farthest(link: Link, point: str) -> str:
+def _farthest_point(link: Link, point: str) -> str:
     return max(link.points, key=lambda other: float(abs(link.points[other] - link.points[point])))
 
 
-def _short(number: float) -> str:
+def _short_number(number: float) -> str:
     """Four figures, and all those before the point of a number that people would write so."""
     return f"{number:.0f}" if 1000 <= number < 1e6 else numeral(number, ".4g")

@@ -30,12 +30,12 @@ from tmm_cli.mechanics.quantities import (
     coordinate_dimension,
     quantity_columns,
 )
-from tmm_cli.reports.cycle_tables import driver_columns, long_table, signs
-from tmm_cli.reports.structure_tables import indeterminate
+from tmm_cli.reports.cycle_tables import driver_columns, long_table, sign_convention
+from tmm_cli.reports.structure_tables import indeterminate_reactions
 from tmm_cli.reports.table import Column, Table
 
 
-def label(by: str, on: str) -> str:
+def reaction_name(by: str, on: str) -> str:
     """R_12 acts from link 1 on link 2."""
     by, on = printed(by), printed(on)
     return f"R_{by}{on}" if len(by) == len(on) == 1 else f"R_{by},{on}"
@@ -47,10 +47,10 @@ def forces_tables(results: Results) -> Iterable[Table]:
     assert reactions is not None
     words = {
         N_("pair"): [r.pair.name for r in reactions.all],
-        N_("name"): [label(r.by, r.on) for r in reactions.all],
+        N_("name"): [reaction_name(r.by, r.on) for r in reactions.all],
     }
     note = _("R_ik acts from link i on link k; `acts at`: along the guide from its running point.")
-    note = " ".join([note, *indeterminate(results.structure)])
+    note = " ".join([note, *indeterminate_reactions(results.structure)])
     values = [quantity_columns(REACTION, reaction) for reaction in reactions.directed]
     yield long_table(results, "reactions", _("Reactions"), words, values, note)
     pins = reactions.pins(results.linkage)
@@ -73,11 +73,11 @@ def forces_tables(results: Results) -> Iterable[Table]:
             G=symbol("G"), U=symbol("U"), M=symbol("M")
         )
         yield long_table(results, "loads", title, words, [quantity_columns(LOAD, load) for load in loads])
-    yield from _transmitted(results)
-    yield _balances(results)
+    yield from _transmission_table(results)
+    yield _balance_table(results)
 
 
-def _transmitted(results: Results) -> Iterable[Table]:
+def _transmission_table(results: Results) -> Iterable[Table]:
     """Of every link that is driven in one pair: its pressure angle, the driving force and what of it is useful."""
     assert results.motion is not None and results.reactions is not None
     found = find_transmitted_forces(results.motion, results.reactions)
@@ -95,7 +95,7 @@ def _transmitted(results: Results) -> Iterable[Table]:
         yield long_table(results, "transmission", _("Force transmission"), words, things, note)
 
 
-def _balances(results: Results) -> Table:
+def _balance_table(results: Results) -> Table:
     """Every driver's moment or force, and what the frame does to the links that are driven from it."""
     reactions = results.reactions
     assert reactions is not None
@@ -110,10 +110,10 @@ def _balances(results: Results) -> Table:
             name = _("F_b of {link}").format(link=link) if several else _("F_b")
             found.append(Column(name, balance.force, FORCE))
         for frame in (f for f in reactions.frames if f.on == link):
-            name = label(frame.by, frame.on)
+            name = reaction_name(frame.by, frame.on)
             found.append(Column(Phrase("{name} x", name=name), frame.force.real, FORCE))
             found.append(Column(Phrase("{name} y", name=name), frame.force.imag, FORCE))
-    return Table("balance", _("Driving link"), tuple(found), notes=(signs(results.linkage),))
+    return Table("balance", _("Driving link"), tuple(found), notes=(sign_convention(results.linkage),))
 
 
 # The Zhukovsky lever: every force and couple with its arm and moment, a row for each at every position.
@@ -136,11 +136,11 @@ def lever_tables(results: Results) -> Iterable[Table]:
         "Arms are those of the lever drawn for a crank that turns counterclockwise with 1 rad/s, 1 m for 1 m/s; "
         "moments are positive that drive it so."
     )
-    items = [_columns(item, slider) for item in lever.items]
+    items = [_lever_columns(item, slider) for item in lever.items]
     yield long_table(results, "lever", _("Zhukovsky lever"), words, items, note)
 
 
-def _columns(item: LeverItem, slider: bool) -> list[NamedValues]:
+def _lever_columns(item: LeverItem, slider: bool) -> list[NamedValues]:
     force, couple = (item, None) if item.end is not None else (None, item)
     return [
         *quantity_columns(LEVER_FORCE, force, slider),
@@ -200,17 +200,17 @@ def energy_tables(results: Results) -> Iterable[Table]:
     )
     yield Table("energy", _("Power balance and the mechanism reduced to its driver"), tuple(table), notes=(note,))
     if results.friction is not None:
-        yield _friction(results)
+        yield _friction_table(results)
 
 
-def _friction(results: Results) -> Table:
+def _friction_table(results: Results) -> Table:
     rubbed, lost = results.friction, results.losses
     assert rubbed is not None
     given = results.linkage.friction
     notes = [_("no efficiency over the cycle: the driver is locked somewhere, or does no work")]
     if lost is not None and lost.efficiency is not None:
         notes = [_("efficiency over the cycle: {share} %").format(share=numeral(100 * lost.efficiency, ".4g"))]
-    notes += [_("locks itself {range}").format(range=text) for text in locked_ranges(results)]
+    notes += [_("locks itself {range}").format(range=text) for text in describe_locked_ranges(results)]
     return Table(
         "friction",
         _("Friction"),
@@ -224,7 +224,7 @@ def _friction(results: Results) -> Table:
     )
 
 
-def locked_ranges(results: Results) -> list[str]:
+def describe_locked_ranges(results: Results) -> list[str]:
     """Ranges of the driver in which friction locks the mechanism, with the positions in them and the pair."""
     units, measure = results.problem.units, coordinate_dimension(results.linkage.driver.kind)
     cycle, found = 2 * np.pi * results.turns, []

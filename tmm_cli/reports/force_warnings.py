@@ -23,21 +23,21 @@ from tmm_cli.mechanics.linkage import Linkage, Load, LoadTable
 from tmm_cli.mechanics.numerics import NO_WORK, SAME_DRIVER_POSITION, SAME_RATIO, Real, dot
 from tmm_cli.mechanics.quantities import ANGLE, FORCE, MOMENT
 from tmm_cli.problem import UnitSystem
-from tmm_cli.reports.force_tables import locked_ranges
+from tmm_cli.reports.force_tables import describe_locked_ranges
 from tmm_cli.reports.input_load_tables import argument_dimension
-from tmm_cli.reports.motion_warnings import driver_place
-from tmm_cli.reports.synthesis_tables import missed
+from tmm_cli.reports.motion_warnings import format_driver_coordinate
+from tmm_cli.reports.synthesis_tables import unmet_demand_sentences
 from tmm_cli.reports.table import with_unit
 from tmm_cli.synthesis import measure_problem
 
-CLOSELY = 720  # places a turn at which a torsion spring's angle, or the length of a spring, is followed
-ENDS_MEET = 1e-3  # of the largest length of a spring: its ends, followed by chords, meet
+SPRING_POSITIONS = 720  # places a turn at which a torsion spring's angle, or the length of a spring, is followed
+COINCIDENT_ENDS = 1e-3  # of the largest length of a spring: its ends, followed by chords, meet
 WORK_POSITIONS = 120  # positions a turn at which the power of a load is compared with zero
 
 
 def locked_positions(results: Results) -> Iterable[str]:
     """Where friction locks the mechanism, also between the positions, by the pair that rubs most."""
-    ranges = locked_ranges(results)
+    ranges = describe_locked_ranges(results)
     if ranges:
         yield _(
             "the mechanism locks itself by friction {ranges}; no forces are given there. Write smaller coefficients in "
@@ -45,13 +45,13 @@ def locked_positions(results: Results) -> Iterable[str]:
         ).format(ranges="; ".join(ranges))
 
 
-def wound_springs(results: Results) -> Iterable[str]:
+def twisted_springs(results: Results) -> Iterable[str]:
     """Torsion springs that come to half a turn from their free angle."""
     springs = [s for s in results.linkage.springs if s.turns]
     if not springs or results.reactions is None:
         return
     turns = results.driver_range.turns if results.driver_range else 1
-    motion = motion_at_positions(results, results.closely(CLOSELY * turns + 1), 0)
+    motion = motion_at_positions(results, results.closely(SPRING_POSITIONS * turns + 1), 0)
     for spring in springs:
         with np.errstate(invalid="ignore"):
             jumps = np.flatnonzero(np.abs(np.diff(twist_angle(spring, motion))) > np.pi)
@@ -59,16 +59,16 @@ def wound_springs(results: Results) -> Iterable[str]:
             yield _(
                 "torsion spring {spring} is turned by more than half a turn from its free angle at "
                 "{place}: its moment jumps there, as angles are counted within half a turn"
-            ).format(spring=spring.name, place=_in_cycle(results, float(motion.q[jumps[0]])))
+            ).format(spring=spring.name, place=_coordinate_in_cycle(results, float(motion.q[jumps[0]])))
 
 
-def springs_of_no_length(results: Results) -> Iterable[str]:
+def springs_of_zero_length(results: Results) -> Iterable[str]:
     """Linear springs whose ends meet within the cycle: the direction of their force reverses there."""
     springs = [s for s in results.linkage.springs if not s.turns and s.preload != s.rate * s.free]
     if not springs or results.reactions is None:
         return
     turns = results.driver_range.turns if results.driver_range else 1
-    motion = motion_at_positions(results, results.closely(CLOSELY * turns + 1))
+    motion = motion_at_positions(results, results.closely(SPRING_POSITIONS * turns + 1))
     for spring in springs:
         apart = motion.point(spring.j, spring.at_j).x - motion.point(spring.i, spring.at_i).x
         step = np.diff(apart)
@@ -78,18 +78,20 @@ def springs_of_no_length(results: Results) -> Iterable[str]:
         if not np.any(np.isfinite(nearest)):
             continue
         k = int(np.nanargmin(nearest))
-        if nearest[k] <= ENDS_MEET * np.nanmax(np.abs(apart)):
+        if nearest[k] <= COINCIDENT_ENDS * np.nanmax(np.abs(apart)):
             q = float(motion.q[k] + share[k] * (motion.q[k + 1] - motion.q[k]))
             yield _(
                 "the ends of spring {spring} meet at {place}: its force reverses its direction there. Write other "
                 "points in between, or a torsion spring"
-            ).format(spring=spring.name, place=_in_cycle(results, q))
+            ).format(spring=spring.name, place=_coordinate_in_cycle(results, q))
 
 
-def _in_cycle(results: Results, q: float) -> str:
+def _coordinate_in_cycle(results: Results, q: float) -> str:
     """A driver coordinate; an angle of a driver that turns fully is counted within its cycle."""
     cycle = 2 * np.pi * results.turns
-    return driver_place(results, float(np.mod(q + SAME_DRIVER_POSITION, cycle) - SAME_DRIVER_POSITION) if cycle else q)
+    return format_driver_coordinate(
+        results, float(np.mod(q + SAME_DRIVER_POSITION, cycle) - SAME_DRIVER_POSITION) if cycle else q
+    )
 
 
 def driving_loads(results: Results) -> Iterable[str]:
@@ -102,15 +104,15 @@ def driving_loads(results: Results) -> Iterable[str]:
     acting = list(problem_loads(motion, results.strokes))
     for load in loads:
         its = [applied for applied in acting if applied.name in (load.name, f"{load.name}'")]
-        power, largest = _power(motion, its)
+        power, largest = _load_power(motion, its)
         works = np.abs(power) > NO_WORK * largest
         if np.any(works) and np.all(power[works] > 0):
-            yield _driving(results, load)
+            yield _driving_load_text(results, load)
         elif not np.any(works) and np.any(largest > 0):
-            yield _idle(results, load, motion, its[0])
+            yield _idle_load_text(results, load, motion, its[0])
 
 
-def _power(motion: Motion, acting: Iterable[AppliedLoad]) -> tuple[Real, Real]:
+def _load_power(motion: Motion, acting: Iterable[AppliedLoad]) -> tuple[Real, Real]:
     """Power of a load and of its opposite, and the largest that they could have at this speed; zero at rest (W)."""
     crank = motion.linkage.driver.kind == "turn"
     reach = max((kernel.size for kernel in motion.kernels), default=1.0) if crank else 1.0
@@ -122,7 +124,7 @@ def _power(motion: Motion, acting: Iterable[AppliedLoad]) -> tuple[Real, Real]:
     return power, np.where(motion.moving, largest, 0.0)
 
 
-def _driving(results: Results, load: Load) -> str:
+def _driving_load_text(results: Results, load: Load) -> str:
     strokes = results.strokes
     if strokes is None or not strokes.working:
         return _(
@@ -145,7 +147,7 @@ def _driving(results: Results, load: Load) -> str:
     return _("{text}. In an engine, where the gas drives the piston: {window}").format(text=text, window=window)
 
 
-def _idle(results: Results, load: Load, motion: Motion, applied: AppliedLoad) -> str:
+def _idle_load_text(results: Results, load: Load, motion: Motion, applied: AppliedLoad) -> str:
     """What to write instead is seen at the position in which the point of the load is fastest."""
     velocity = np.where(motion.moving, motion.point(load.link, load.at).v, 0j)
     acting = motion.moving & (np.abs(applied.force) > 0)
@@ -173,7 +175,7 @@ def _idle(results: Results, load: Load, motion: Motion, applied: AppliedLoad) ->
 def short_tables(results: Results) -> Iterable[str]:
     """Tables of loads that end before the motion does."""
     for load in results.linkage.loads if results.loads else ():
-        if load.table is not None and _short(results, load, load.table):
+        if load.table is not None and _ends_early(results, load, load.table):
             sentence = _(
                 "the table of load {load} does not reach as far as the {against} goes: its end value is held"
             ).format(load=load.name, against=_(load.table.against))
@@ -197,7 +199,7 @@ def long_tables(results: Results) -> Iterable[str]:
             ).format(load=load.name, last=with_unit(units, last, measure), stroke=with_unit(units, stroke, measure))
 
 
-def tables_of_many(
+def warn_of_load_tables(
     linkage: Linkage, units: UnitSystem, reach: Mapping[str, Sequence[tuple[float, float]]]
 ) -> Iterable[str]:
     """Tables of loads that do not end with the stroke, among many mechanisms of one kind.
@@ -229,7 +231,7 @@ def tables_of_many(
 def open_tables(results: Results) -> Iterable[str]:
     """In steady running: tables of loads that end otherwise than they begin."""
     for load in results.linkage.loads if results.steady is not None else ():
-        if load.table is not None and _jumps_at_the_end(results, load.table):
+        if load.table is not None and _jumps_at_cycle_end(results, load.table):
             first, last = (
                 with_unit(results.problem.units, value, FORCE if load.force else MOMENT)
                 for value in (load.table.values[0], load.table.values[-1])
@@ -240,7 +242,7 @@ def open_tables(results: Results) -> Iterable[str]:
             ).format(load=load.name, first=first, last=last)
 
 
-def without_strokes(results: Results) -> Iterable[str]:
+def loads_without_strokes(results: Results) -> Iterable[str]:
     """Loads of a working stroke that there is not."""
     for load in results.linkage.loads:
         if load.working_stroke_only and always_acts(load, results.strokes):
@@ -250,7 +252,7 @@ def without_strokes(results: Results) -> Iterable[str]:
             ).format(load=load.name)
 
 
-def _short(results: Results, load: Load, table: LoadTable) -> bool:
+def _ends_early(results: Results, load: Load, table: LoadTable) -> bool:
     """Whether a load acts beyond the first or last argument of its table."""
     motion = results.motion
     assert motion is not None
@@ -263,7 +265,7 @@ def _short(results: Results, load: Load, table: LoadTable) -> bool:
     return bool(np.any((argument < first - slack) | (argument > last + slack)))
 
 
-def _jumps_at_the_end(results: Results, table: LoadTable) -> bool:
+def _jumps_at_cycle_end(results: Results, table: LoadTable) -> bool:
     """Whether a table against the crank, between whose rows one goes evenly, ends otherwise than it begins."""
     rows, cycle = table.arguments, 2 * np.pi * results.linkage.turns
     whole = abs(float(rows[-1]) - float(rows[0]) - cycle) < SAME_DRIVER_POSITION
@@ -274,10 +276,10 @@ def _jumps_at_the_end(results: Results, table: LoadTable) -> bool:
 
 def unmet_demands(results: Results) -> Iterable[str]:
     """What a synthesis was asked and did not do."""
-    return missed(measure_problem(results), results.problem.units)
+    return unmet_demand_sentences(measure_problem(results), results.problem.units)
 
 
-def lever_apart(results: Results) -> Iterable[str]:
+def lever_disagreement(results: Results) -> Iterable[str]:
     """A lever that does not agree with the force plan."""
     motion = results.motion
     if results.lever is None or results.lever_holds or motion is None:

@@ -31,10 +31,10 @@ from tmm_cli.mechanics.quantities import (
     coordinate_dimension,
 )
 from tmm_cli.problem import Problem
-from tmm_cli.reports.file_summary import between_rows
-from tmm_cli.reports.input_load_tables import FILE_WORDS, loads, masses
-from tmm_cli.reports.synthesis_tables import parameters
-from tmm_cli.reports.table import Table, link_name, show, show_vector, table_of_words
+from tmm_cli.reports.file_summary import describe_interpolation
+from tmm_cli.reports.input_load_tables import FILE_WORDS, load_tables, mass_table
+from tmm_cli.reports.synthesis_tables import parameter_table
+from tmm_cli.reports.table import Table, format_value, format_vector, link_name, text_table
 
 if TYPE_CHECKING:
     from tmm_cli.mechanics.analysis import WheelTask
@@ -43,30 +43,30 @@ if TYPE_CHECKING:
 def input_data_tables(problem: Problem) -> Iterable[Table]:
     """The file in full."""
     if problem.synthesis is not None and problem.synthesis.names:
-        yield parameters(problem.synthesis, problem.units)
-    yield _points(problem)
+        yield parameter_table(problem.synthesis, problem.units)
+    yield _point_table(problem)
     if problem.linkage.slides:
-        yield _slides(problem)
-    yield table_of_words("facts", _("Driver, positions, limits"), (_("what"), _("value")), _facts(problem))
+        yield _prismatic_pair_table(problem)
+    yield text_table("facts", _("Driver, positions, limits"), (_("what"), _("value")), _fact_rows(problem))
     if problem.linkage.driver.law is not None:
-        yield speeds(problem, problem.linkage.driver.law)
-    yield from parts(problem)
+        yield speed_table(problem, problem.linkage.driver.law)
+    yield from component_tables(problem)
     if any(np.any(link.mass != 0) for link in problem.linkage.links.values()):
-        yield masses(problem)
+        yield mass_table(problem)
     if problem.linkage.loads:
-        yield from loads(problem)
+        yield from load_tables(problem)
     if problem.dynamics is not None:
-        yield from law_of_motion(problem, problem.dynamics)
+        yield from law_of_motion_tables(problem, problem.dynamics)
 
 
-def _points(problem: Problem) -> Table:
+def _point_table(problem: Problem) -> Table:
     rows = [
-        (link_name(name), point, show_vector(problem, local))
+        (link_name(name), point, format_vector(problem, local))
         for name, link in problem.linkage.links.items()
         for point, local in link.points.items()
     ]
     note = _("Lengths in {unit}. A point on two links is a hinge; on three and more, a compound hinge.")
-    return table_of_words(
+    return text_table(
         "points",
         _("Points, each in the axes of its link"),
         (_("link"), _("point"), _("place")),
@@ -75,8 +75,8 @@ def _points(problem: Problem) -> Table:
     )
 
 
-def _slides(problem: Problem) -> Table:
-    return table_of_words(
+def _prismatic_pair_table(problem: Problem) -> Table:
+    return text_table(
         "slides",
         _("Sliding pairs"),
         (_("pair"), _("link"), _("point"), _("slides on"), _("guide through"), _("guide's angle"), _("turned by")),
@@ -86,16 +86,16 @@ def _slides(problem: Problem) -> Table:
                 s.runner,
                 s.point,
                 link_name(s.carrier),
-                show_vector(problem, s.through),
-                show(problem, s.direction, ANGLE),
-                show(problem, s.turned, ANGLE),
+                format_vector(problem, s.through),
+                format_value(problem, s.direction, ANGLE),
+                format_value(problem, s.turned, ANGLE),
             )
             for s in problem.linkage.slides
         ],
     )
 
 
-def _facts(problem: Problem) -> Iterable[tuple[str, str]]:
+def _fact_rows(problem: Problem) -> Iterable[tuple[str, str]]:
     linkage, units = problem.linkage, problem.units
     driver, measure = linkage.driver, coordinate_dimension(linkage.driver.kind)
     dimensions = (LENGTH, ANGLE, MASS, FORCE, MOMENT, INERTIA)
@@ -107,23 +107,23 @@ def _facts(problem: Problem) -> Iterable[tuple[str, str]]:
         text = _("link {link}, {speed} counterclockwise")
     else:
         text = _("link {link}, {speed} clockwise")
-    yield _("driver"), text.format(link=driver.link, speed=speed(driver))
+    yield _("driver"), text.format(link=driver.link, speed=driver_speed(driver))
     yield _("gravity"), f"[{linkage.gravity.real:.6g}, {linkage.gravity.imag:.6g}] {spelt('m/s^2')}"
     if linkage.turns > 1:
         yield _("loads come again after"), _("{turns} turns of the crank").format(turns=linkage.turns)
     for wheel in problem.wheels:
-        yield _("wheel {name}").format(name=wheel.name), _wheel(wheel)
-    yield _("positions"), _positions(problem, measure)
+        yield _("wheel {name}").format(name=wheel.name), _wheel_text(wheel)
+    yield _("positions"), _positions_text(problem, measure)
     sketch = linkage.sketch
-    places = [show(problem, sketch.at, measure)]
-    places += [f"{name} {show_vector(problem, place)}" for name, place in sketch.points.items()]
-    places += [f"{name} {show(problem, angle, ANGLE)}" for name, angle in sketch.angles.items()]
+    places = [format_value(problem, sketch.at, measure)]
+    places += [f"{name} {format_vector(problem, place)}" for name, place in sketch.points.items()]
+    places += [f"{name} {format_value(problem, angle, ANGLE)}" for name, angle in sketch.angles.items()]
     yield _("sketch, driver at"), ", ".join(places)
-    yield from ((_("law of motion") if not row else "", told) for row, told in enumerate(_law(problem)))
+    yield from ((_("law of motion") if not row else "", told) for row, told in enumerate(_law_of_motion_lines(problem)))
     yield _("limit of the lever check"), f"{numeral(100 * problem.lever_limit, '.6g')} %"
 
 
-def _wheel(wheel: WheelTask) -> str:
+def _wheel_text(wheel: WheelTask) -> str:
     """What takes it along, and when."""
     words = {
         "forward": _("moves with link {link} while that turns counterclockwise, and stands else"),
@@ -139,7 +139,7 @@ def _wheel(wheel: WheelTask) -> str:
     return "; ".join(told)
 
 
-def _law(problem: Problem) -> Iterable[str]:
+def _law_of_motion_lines(problem: Problem) -> Iterable[str]:
     """What is computed of it."""
     task = problem.dynamics
     if task is None:
@@ -152,35 +152,39 @@ def _law(problem: Problem) -> Iterable[str]:
     if task.motor is not None:
         yield _("driven by the characteristic of its motor")
     else:
-        speed = show(problem, task.mean, ANGULAR_SPEED)
+        speed = format_value(problem, task.mean, ANGULAR_SPEED)
         yield _("driven by a constant moment that leaves no work over the cycle, mean speed {speed}").format(
             speed=speed
         )
     if task.flywheel:
-        given = show(problem, task.flywheel, INERTIA)
+        given = format_value(problem, task.flywheel, INERTIA)
         yield _("with a flywheel of {inertia}, reduced to the driver").format(inertia=given)
     if task.delta is not None:
         yield _("a flywheel is found that keeps delta = {delta}").format(delta=numeral(task.delta, ".4g"))
     yield _("forces with the speeds and accelerations of this law")
 
 
-def _positions(problem: Problem, measure: Dimension) -> str:
+def _positions_text(problem: Problem, measure: Dimension) -> str:
     request, driver = problem.request, problem.linkage.driver
     if request.places:
-        return ", ".join(show(problem, q, measure) for q in request.places[:12])
+        return ", ".join(format_value(problem, q, measure) for q in request.places[:12])
     if driver.stroke is not None:
-        a, b = (show(problem, q, measure) for q in driver.stroke)
+        a, b = (format_value(problem, q, measure) for q in driver.stroke)
         return _("{count} from {a} to {b}").format(count=request.count, a=a, b=b)
     if driver.kind == "slide":
         return _("{count} from one end of its way to the other").format(count=request.count)
-    start = _(FILE_WORDS[request.start]) if isinstance(request.start, str) else show(problem, request.start, measure)
+    start = (
+        _(FILE_WORDS[request.start])
+        if isinstance(request.start, str)
+        else format_value(problem, request.start, measure)
+    )
     return _("{count} from {start}").format(count=request.count, start=start)
 
 
 # Drivers, wheels, cams, springs and friction of a file, as tables of words.
 
 
-def speed(driver: Driver) -> str:
+def driver_speed(driver: Driver) -> str:
     """A driver's speed, and its acceleration where it has one."""
     if driver.law is not None:
         return _("by a table against the crank angle")
@@ -191,7 +195,7 @@ def speed(driver: Driver) -> str:
     return told
 
 
-def speeds(problem: Problem, law: SpeedTable) -> Table:
+def speed_table(problem: Problem, law: SpeedTable) -> Table:
     """The rows of a table of speeds, with the accelerations that follow from them, or are given."""
     squares = law.squares
     places = np.array([float(to_float(row)) for row in squares.arguments])
@@ -199,25 +203,29 @@ def speeds(problem: Problem, law: SpeedTable) -> Table:
     gains = after if law.accelerations is None else law.accelerations(places)
     speeds = np.sqrt(squares(places))
     rows = [
-        (show(problem, at, ANGLE), show(problem, speed, ANGULAR_SPEED), show(problem, gain, ANGULAR_ACCELERATION))
+        (
+            format_value(problem, at, ANGLE),
+            format_value(problem, speed, ANGULAR_SPEED),
+            format_value(problem, gain, ANGULAR_ACCELERATION),
+        )
         for at, speed, gain in zip(places, speeds, gains, strict=True)
     ]
     head = (_("crank angle"), _("speed"), _("acceleration"))
-    note = _("Between rows: {between}.").format(between=between_rows(law))
-    return table_of_words("speeds", _("Speed of the driver, in its sense"), head, rows, (note,))
+    note = _("Between rows: {between}.").format(between=describe_interpolation(law))
+    return text_table("speeds", _("Speed of the driver, in its sense"), head, rows, (note,))
 
 
-def parts(problem: Problem) -> Iterable[Table]:
+def component_tables(problem: Problem) -> Iterable[Table]:
     """A table for each block that the file has of these."""
     linkage = problem.linkage
     if linkage.others or linkage.driver.base != FRAME:
-        yield table_of_words(
+        yield text_table(
             "drivers",
             _("Drivers; they pass through the places of the sketch together"),
             (_("link"), _("driven from"), _("in pair"), _("it"), _("speed"), _("sense"), _("in the sketch at")),
-            [_driver(problem, driver) for driver in linkage.drivers],
+            [_driver_row(problem, driver) for driver in linkage.drivers],
         )
-    wheels = [_mesh(problem, mesh) for mesh in linkage.meshes if mesh.kind != "cam"]
+    wheels = [_gear_row(problem, mesh) for mesh in linkage.meshes if mesh.kind != "cam"]
     if wheels:
         note, title = _("Angles are those of the wheels from the link that holds them."), _("Toothed wheels")
         if any(mesh.kind == "rack" for mesh in linkage.meshes):
@@ -226,20 +234,20 @@ def parts(problem: Problem) -> Iterable[Table]:
                 "Angles are those of the wheels from the link that holds them; a rack's run is in {unit} "
                 "for an angle in rad."
             )
-        yield table_of_words(
+        yield text_table(
             "meshes",
             title,
             (_("pair"), _("kind"), _("links"), _("held by"), _("law"), _("pitch radii"), _("pressure angle")),
             wheels,
             (note.format(unit=problem.units.spelt(LENGTH)),),
         )
-    cams = [row for mesh in linkage.meshes if mesh.kind == "cam" for row in _cam(problem, mesh)]
+    cams = [row for mesh in linkage.meshes if mesh.kind == "cam" for row in _cam_rows(problem, mesh)]
     if cams:
         note = _(
             "Of a sliding follower the force is taken as that of a flat face: along the guide, ds/da "
             "from the cam's axis. A swinging one is loaded by a couple."
         )
-        yield table_of_words(
+        yield text_table(
             "cams",
             _("Cams, by the law of the follower"),
             (
@@ -257,15 +265,15 @@ def parts(problem: Problem) -> Iterable[Table]:
             (note,),
         )
     if linkage.springs:
-        yield table_of_words(
+        yield text_table(
             "springs",
             _("Springs"),
             (_("name"), _("between"), _("ends"), _("stiffness"), _("free at"), _("preload"), _("damping")),
-            [_spring(problem, spring) for spring in linkage.springs],
+            [_spring_row(problem, spring) for spring in linkage.springs],
         )
     if linkage.friction:
         slides = {slide.name for slide in linkage.slides}
-        yield table_of_words(
+        yield text_table(
             "friction",
             _("Friction"),
             (_("pair"), _("coefficient"), _("journal's radius")),
@@ -273,14 +281,14 @@ def parts(problem: Problem) -> Iterable[Table]:
                 (
                     f.pair,
                     numeral(f.coefficient, ".6g"),
-                    _("a guide") if f.pair in slides else show(problem, f.radius, LENGTH),
+                    _("a guide") if f.pair in slides else format_value(problem, f.radius, LENGTH),
                 )
                 for f in linkage.friction
             ],
         )
 
 
-def _driver(problem: Problem, driver: Driver) -> tuple[str, ...]:
+def _driver_row(problem: Problem, driver: Driver) -> tuple[str, ...]:
     senses = {"turn": (_("clockwise"), _("counterclockwise")), "slide": (_("in"), _("out"))}
     at = problem.linkage.sketch.at if driver is problem.linkage.driver else driver.at
     return (
@@ -288,27 +296,30 @@ def _driver(problem: Problem, driver: Driver) -> tuple[str, ...]:
         link_name(driver.base),
         driver.joint,
         _("turns") if driver.kind == "turn" else _("slides"),
-        speed(driver),
+        driver_speed(driver),
         senses[driver.kind][driver.sense > 0],
-        show(problem, at, coordinate_dimension(driver.kind)),
+        format_value(problem, at, coordinate_dimension(driver.kind)),
     )
 
 
-def _mesh(problem: Problem, mesh: Mesh) -> tuple[str, ...]:
+def _gear_row(problem: Problem, mesh: Mesh) -> tuple[str, ...]:
     """A row of two wheels, or of a wheel and a rack, with the equation of their motion."""
     linkage = problem.linkage
     if mesh.kind == "rack":
         kind = _("wheel and rack")
         step = problem.units.from_si(mesh.ratio, LENGTH)
-        law, offset = f"s_{mesh.j} = {numeral(step, '.6g')} phi_{mesh.i}", show(problem, mesh.offset, LENGTH)
-        radii = show(problem, abs(mesh.ratio), LENGTH)
+        law, offset = f"s_{mesh.j} = {numeral(step, '.6g')} phi_{mesh.i}", format_value(problem, mesh.offset, LENGTH)
+        radii = format_value(problem, abs(mesh.ratio), LENGTH)
     else:
         kind = _("inner mesh") if mesh.ratio > 0 else _("outer mesh")
-        law, offset = f"phi_{mesh.j} = {numeral(mesh.ratio, '.6g')} phi_{mesh.i}", show(problem, mesh.offset, ANGLE)
+        law, offset = (
+            f"phi_{mesh.j} = {numeral(mesh.ratio, '.6g')} phi_{mesh.i}",
+            format_value(problem, mesh.offset, ANGLE),
+        )
         points = [linkage.shared(mesh.carrier, link) for link in (mesh.i, mesh.j)]
         a, b = (complex(np.ravel(linkage.local(mesh.carrier, p))[0]) for p in points if p is not None)
         pitch = (a - mesh.ratio * b) / (1 - mesh.ratio)
-        radii = ", ".join(show(problem, abs(pitch - axis), LENGTH) for axis in (a, b))
+        radii = ", ".join(format_value(problem, abs(pitch - axis), LENGTH) for axis in (a, b))
     if mesh.offset:
         law += f" + {offset}"
     return (
@@ -318,11 +329,11 @@ def _mesh(problem: Problem, mesh: Mesh) -> tuple[str, ...]:
         link_name(mesh.carrier),
         law,
         radii,
-        show(problem, mesh.pressure, ANGLE),
+        format_value(problem, mesh.pressure, ANGLE),
     )
 
 
-def _cam(problem: Problem, mesh: Mesh) -> Iterable[tuple[str, ...]]:
+def _cam_rows(problem: Problem, mesh: Mesh) -> Iterable[tuple[str, ...]]:
     """The pieces of a cam's law, a row each."""
     assert mesh.law is not None
     measure = LENGTH if mesh.slide else ANGLE
@@ -334,24 +345,26 @@ def _cam(problem: Problem, mesh: Mesh) -> Iterable[tuple[str, ...]]:
         yield (
             *name,
             str(number + 1),
-            show(problem, at, ANGLE),
-            show(problem, end, ANGLE),
-            show(problem, piece.rise, measure),
+            format_value(problem, at, ANGLE),
+            format_value(problem, end, ANGLE),
+            format_value(problem, piece.rise, measure),
             law,
-            show(problem, run, measure),
+            format_value(problem, run, measure),
         )
         at = end
 
 
-def _spring(problem: Problem, spring: Spring) -> tuple[str, ...]:
+def _spring_row(problem: Problem, spring: Spring) -> tuple[str, ...]:
     between = f"{link_name(spring.i)}, {link_name(spring.j)}"
     if spring.turns:
         ends, measures = "", (TORSION, ANGLE, MOMENT, TORSION_DAMPING)
     else:
-        ends = f"{show_vector(problem, spring.at_i)}, {show_vector(problem, spring.at_j)}"
+        ends = f"{format_vector(problem, spring.at_i)}, {format_vector(problem, spring.at_j)}"
         measures = (STIFFNESS, LENGTH, FORCE, DAMPING)
     values = (spring.rate, spring.free, spring.preload, spring.damping)
-    rate, free, preload, damping = (show(problem, v, measure) for v, measure in zip(values, measures, strict=True))
+    rate, free, preload, damping = (
+        format_value(problem, v, measure) for v, measure in zip(values, measures, strict=True)
+    )
     if not spring.rate:
         rate, free = _("constant force"), ""
     return spring.name, between, ends, rate, free, preload if spring.preload else "", damping if spring.damping else ""
@@ -363,29 +376,29 @@ def _spring(problem: Problem, spring: Spring) -> tuple[str, ...]:
 Fact = tuple[str, str]
 
 
-def law_of_motion(problem: Problem, task: SteadyTask | RunTask) -> Iterable[Table]:
+def law_of_motion_tables(problem: Problem, task: SteadyTask | RunTask) -> Iterable[Table]:
     """Motor and flywheel, and the rows of what drives."""
-    rows = [*(_steady(problem, task) if task.cyclic else _run(problem, task))]
+    rows = [*(_steady_rows(problem, task) if task.cyclic else _run_rows(problem, task))]
     title, note = _("Data of the law of motion"), _("Moments, inertia and speeds are reduced to the driver.")
-    yield table_of_words("machine", title, (_("what"), _("value")), rows, (note,))
-    drive = None if task.cyclic else _profile(task)
+    yield text_table("machine", title, (_("what"), _("value")), rows, (note,))
+    drive = None if task.cyclic else _drive_profile(task)
     if drive is not None and len(drive.arguments) > 1:
-        yield _rows(problem, drive)
+        yield _drive_table(problem, drive)
 
 
-def _steady(problem: Problem, task: SteadyTask) -> Iterable[Fact]:
+def _steady_rows(problem: Problem, task: SteadyTask) -> Iterable[Fact]:
     if task.motor is None:
-        yield _("mean speed"), show(problem, task.mean, ANGULAR_SPEED)
+        yield _("mean speed"), format_value(problem, task.mean, ANGULAR_SPEED)
     else:
-        yield from _motor(problem, task.motor, turns=True)
+        yield from _motor_rows(problem, task.motor, turns=True)
     if task.delta is not None:
         yield _("fluctuation delta that is wanted"), numeral(task.delta, ".4g")
     if task.flywheel:
-        yield _("given flywheel"), show(problem, task.flywheel, INERTIA)
+        yield _("given flywheel"), format_value(problem, task.flywheel, INERTIA)
     if task.ratio != 1:
         yield _("speed of the flywheel's shaft over that of the driver"), numeral(task.ratio, ".6g")
     size = task.size
-    told = {"density": show(problem, size.density, DENSITY), "width": numeral(size.width, ".4g")}
+    told = {"density": format_value(problem, size.density, DENSITY), "width": numeral(size.width, ".4g")}
     text = _("disk, {density}, width {width} of its diameter")
     if size.shape == "rim":
         text = _("rim, {density}, width {width} and height {height} of its mean diameter")
@@ -393,46 +406,46 @@ def _steady(problem: Problem, task: SteadyTask) -> Iterable[Fact]:
         yield _("form of the flywheel"), text.format(**told, height=numeral(size.height, ".4g"))
 
 
-def _run(problem: Problem, task: RunTask) -> Iterable[Fact]:
+def _run_rows(problem: Problem, task: RunTask) -> Iterable[Fact]:
     turns = problem.linkage.driver.kind == "turn"
-    yield _("speed at the beginning"), show(problem, task.speed, ANGULAR_SPEED if turns else SPEED)
+    yield _("speed at the beginning"), format_value(problem, task.speed, ANGULAR_SPEED if turns else SPEED)
     if task.motor is not None:
-        yield from _motor(problem, task.motor, turns=turns)
-    drive = _profile(task)
+        yield from _motor_rows(problem, task.motor, turns=turns)
+    drive = _drive_profile(task)
     if drive is not None and len(drive.arguments) == 1:
-        yield _("what drives"), show(problem, drive.values[0], MOMENT if turns else FORCE)
+        yield _("what drives"), format_value(problem, drive.values[0], MOMENT if turns else FORCE)
     if task.brake:
-        yield _("brake"), show(problem, task.brake, MOMENT if turns else FORCE)
+        yield _("brake"), format_value(problem, task.brake, MOMENT if turns else FORCE)
     if task.flywheel:
-        yield _("given flywheel"), show(problem, task.flywheel, INERTIA if turns else MASS)
+        yield _("given flywheel"), format_value(problem, task.flywheel, INERTIA if turns else MASS)
 
 
-def _profile(task: RunTask) -> DriveProfile | None:
+def _drive_profile(task: RunTask) -> DriveProfile | None:
     return task.drive if isinstance(task.drive, DriveProfile) else None
 
 
-def _motor(problem: Problem, motor: MotorCharacteristic, *, turns: bool) -> Iterable[Fact]:
+def _motor_rows(problem: Problem, motor: MotorCharacteristic, *, turns: bool) -> Iterable[Fact]:
     """By its own numbers, as the note's formulas have them."""
     speed, size = (ANGULAR_SPEED, MOMENT) if turns else (SPEED, FORCE)
     match motor:
         case KlossMotor():
             yield _("motor"), _("asynchronous, by the formula of Kloss")
-            yield _("its synchronous speed"), show(problem, motor.synchronous, speed)
-            yield _("its largest moment"), show(problem, motor.breakdown, size)
+            yield _("its synchronous speed"), format_value(problem, motor.synchronous, speed)
+            yield _("its largest moment"), format_value(problem, motor.breakdown, size)
             yield _("its slip at the largest moment"), numeral(motor.slip, ".4g")
         case LinearMotor():
             yield _("motor"), _("with a linear characteristic")
-            yield _("its moment at rest"), show(problem, motor.stall, size)
-            yield _("its speed without load"), show(problem, motor.free, speed)
+            yield _("its moment at rest"), format_value(problem, motor.stall, size)
+            yield _("its speed without load"), format_value(problem, motor.free, speed)
 
 
-def _rows(problem: Problem, drive: DriveProfile) -> Table:
+def _drive_table(problem: Problem, drive: DriveProfile) -> Table:
     """Moments, or forces, that a run is driven with."""
     turns = problem.linkage.driver.kind == "turn"
     place, size = (ANGLE, MOMENT) if turns else (LENGTH, FORCE)
     head, measure = (_("time, s"), NUMBER) if drive.against == "time" else (_("way of the driver"), place)
     rows = [
-        (show(problem, at, measure), show(problem, value, size))
+        (format_value(problem, at, measure), format_value(problem, value, size))
         for at, value in zip(drive.arguments, drive.values, strict=True)
     ]
-    return table_of_words("drive", _("What drives the run"), (head, _("size")), rows)
+    return text_table("drive", _("What drives the run"), (head, _("size")), rows)

@@ -53,7 +53,7 @@ def optional(shape: JsonType) -> JsonType:
 
 
 @dataclass(frozen=True)
-class Field:
+class JsonField:
     """A key of a record. there: whether a record has it, if not always, or what it then has that is not None."""
 
     key: str
@@ -77,36 +77,38 @@ class Field:
         return self.shape.content(self.reader(found))
 
 
-def contents(fields: Iterable[Field], found: Any) -> Iterator[tuple[str, Any]]:
+def record_items(fields: Iterable[JsonField], found: Any) -> Iterator[tuple[str, Any]]:
     """What was found, field by field; fields that it has not are left out."""
     return ((field.key, field.content(found)) for field in fields if field.is_there(found))
 
 
-def properties(fields: Iterable[Field]) -> dict[str, Any]:
+def field_schemas(fields: Iterable[JsonField]) -> dict[str, Any]:
     """The schemas of fields by their keys."""
     return {field.key: field.schema for field in fields}
 
 
-def inside(attribute: str, fields: Iterable[Field]) -> tuple[Field, ...]:
+def attribute_fields(attribute: str, fields: Iterable[JsonField]) -> tuple[JsonField, ...]:
     """The fields of what is an attribute of a record, as fields of that record."""
     part = attrgetter(attribute)
     return tuple(replace(f, shape=JsonType(f.shape.schema, f.content, f.shape.note), read=part) for f in fields)
 
 
-def record(text: str, *fields: Field) -> JsonType:
+def json_record(text: str, *fields: JsonField) -> JsonType:
     """An object with these keys. text: what it is, where it stands in a list or a map."""
-    schema = {"description": text, "type": "object", "properties": properties(fields)}
-    return JsonType(schema, lambda found: dict(contents(fields, found)))
+    schema = {"description": text, "type": "object", "properties": field_schemas(fields)}
+    return JsonType(schema, lambda found: dict(record_items(fields, found)))
 
 
 NAMES = list_of(TEXT)
-_AXES = record("a vector", Field("x", SERIES, "x component", "real"), Field("y", SERIES, "y component", "imag"))
+_AXES = json_record(
+    "a vector", JsonField("x", SERIES, "x component", "real"), JsonField("y", SERIES, "y component", "imag")
+)
 VECTOR = replace(_AXES, schema={**_AXES.schema, "required": ["x", "y"]})
 
 
-def fields_of(quantities: Iterable[Quantity]) -> Iterator[Field]:
+def quantity_fields(quantities: Iterable[Quantity]) -> Iterator[JsonField]:
     """The fields of quantities."""
     for quantity in quantities:
         shape = VECTOR if quantity.vector else SERIES
         text = f"{quantity.text}, {quantity.unit}" if quantity.unit else quantity.text
-        yield Field(quantity.name, shape, text, quantity.value, quantity.there)
+        yield JsonField(quantity.name, shape, text, quantity.value, quantity.there)

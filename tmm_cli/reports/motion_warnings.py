@@ -20,22 +20,25 @@ if TYPE_CHECKING:
 
 
 MOST_POSITIONS = 100  # that cannot be reached, each with its own words
-FEW = 12  # positions that are named in one sentence
-DRIVE_REACHES = 1e-6  # of a run: a table of its drive that begins or ends nearer to an end of the run reaches it
-SKETCH = 0.15  # a sketched point farther off than this share of the linkage's size is worth a word
+NAMED_POSITIONS = 12  # positions that are named in one sentence
+SAME_END = 1e-6  # of a run: a table of its drive that begins or ends nearer to an end of the run reaches it
+SKETCH_DEVIATION = 0.15  # a sketched point farther off than this share of the linkage's size is worth a word
 
 
-def driver_place(results: Results, q: float) -> str:
+def format_driver_coordinate(results: Results, q: float) -> str:
     """A place of the driver."""
     units, measure = results.problem.units, coordinate_dimension(results.linkage.driver.kind)
     return f"{numeral(round(units.from_si(q, measure), 5) + 0.0, '.8g')} {units.spelt(measure)}"
 
 
-def limited(results: Results) -> Iterable[str]:
+def limited_driver(results: Results) -> Iterable[str]:
     """Where the driver does not go all the way round, what stops it, and what that does to the positions."""
     driver_range, driver, request = results.driver_range, results.linkage.driver, results.problem.request
     assert driver_range is not None
-    start, end = driver_place(results, driver_range.start), driver_place(results, driver_range.end)
+    start, end = (
+        format_driver_coordinate(results, driver_range.start),
+        format_driver_coordinate(results, driver_range.end),
+    )
     groups = ", ".join(dict.fromkeys(limit.group for limit in driver_range.limits if limit.group))
     said = []
     if groups and driver.kind == "turn":
@@ -55,7 +58,7 @@ def limited(results: Results) -> Iterable[str]:
         else:
             yield _(
                 "{what}; results are given for that range; positions.from ({start}) is for a driver that turns fully"
-            ).format(what=what, start=driver_place(results, request.start))
+            ).format(what=what, start=format_driver_coordinate(results, request.start))
 
 
 def far_from_sketch(results: Results) -> Iterable[str]:
@@ -63,11 +66,11 @@ def far_from_sketch(results: Results) -> Iterable[str]:
     linkage = results.linkage
     there = compute_motion(linkage, results.kernels, np.array([linkage.sketch.at]), DriverMotion(0.0, 1.0, 0.0, 1), 0)
     for point, off in sketch_deviations(linkage, there.poses).items():
-        if off > SKETCH:
+        if off > SKETCH_DEVIATION:
             yield _(
                 "in the sketch {point} is {share} % of the mechanism's size from its place with the "
                 "driver at {place}: is sketch.at right?"
-            ).format(point=point, share=f"{100 * off:.0f}", place=driver_place(results, linkage.sketch.at))
+            ).format(point=point, share=f"{100 * off:.0f}", place=format_driver_coordinate(results, linkage.sketch.at))
 
 
 def dead_positions(results: Results) -> Iterable[str]:
@@ -92,7 +95,9 @@ def dead_positions(results: Results) -> Iterable[str]:
                 "keep to the side of the sketch"
             )
         )
-        yield text.format(place=driver_place(results, dead.place), group=dead.group, margin=numeral(dead.margin, ".2g"))
+        yield text.format(
+            place=format_driver_coordinate(results, dead.place), group=dead.group, margin=numeral(dead.margin, ".2g")
+        )
 
 
 def unreached_positions(results: Results) -> Iterable[str]:
@@ -101,7 +106,7 @@ def unreached_positions(results: Results) -> Iterable[str]:
     assert motion is not None
     unreached = np.flatnonzero(~motion.placed | np.any([*motion.dead.values(), ~motion.placed], axis=0))
     for k in unreached[:MOST_POSITIONS]:
-        number, place = results.numbers[k], driver_place(results, float(motion.q[k]))
+        number, place = results.numbers[k], format_driver_coordinate(results, float(motion.q[k]))
         for at, (group, lost) in zip(motion.placements, motion.missing.items(), strict=True):
             if lost[k]:
                 gap = with_unit(units, float(at.residual[k]), LENGTH)
@@ -130,7 +135,7 @@ def stopped_driver(results: Results) -> Iterable[str]:
     assert motion is not None
     stopped = np.flatnonzero(~np.isfinite(motion.rate))
     if stopped.size:
-        said = [str(results.numbers[k]) for k in stopped[:FEW]] + ["..."] * (stopped.size > FEW)
+        said = [str(results.numbers[k]) for k in stopped[:NAMED_POSITIONS]] + ["..."] * (stopped.size > NAMED_POSITIONS)
         text = _(
             "driver {link} slows down and stops on its way: no velocities and forces in positions {numbers}, which "
             "it does not come to"
@@ -149,7 +154,7 @@ def opposite_run(results: Results) -> Iterable[str]:
     if single is None or single.sense == driver.sense:
         return
     ends = (single.first, single.first + single.sense * single.machine.length)
-    first, last = (driver_place(results, end) for end in ends)
+    first, last = (format_driver_coordinate(results, end) for end in ends)
     if driver.kind == "turn":
         yield _(
             "the run goes from {first} to {last}, {sense}: write turns: {turns} for driver {link}, or exchange "
@@ -183,11 +188,11 @@ def short_drive(results: Results) -> Iterable[str]:
     def argument(value: float) -> str:
         return f"{numeral(value, '.6g')} s" if by_time else with_unit(results.problem.units, value, measure)
 
-    if first > DRIVE_REACHES * reached and drive.values[0] != 0:
+    if first > SAME_END * reached and drive.values[0] != 0:
         yield _("the table of the drive begins at {first}: its first value is held before; write a row at 0").format(
             first=argument(first)
         )
-    if reached - last > DRIVE_REACHES * reached and drive.values[-1] != 0:
+    if reached - last > SAME_END * reached and drive.values[-1] != 0:
         yield _(
             "the table of the drive ends at {last}: its last value is held to {reached}, the end of the run; write a "
             "row there"
@@ -207,7 +212,7 @@ def near_dead(results: Results) -> Iterable[str]:
             ).format(number=results.numbers[k], group=kernel.group.title, margin=numeral(float(margin[k]), ".2g"))
 
 
-def endless(results: Results) -> Iterable[str]:
+def unrepeated_cycle(results: Results) -> Iterable[str]:
     """A cycle of which no end was found."""
     if results.driver_range is not None and not results.driver_range.repeats:
         yield _("no number of turns was found after which all repeats: of the cycle, one turn is shown")
@@ -238,7 +243,12 @@ def left_slots(results: Results) -> Iterable[str]:
                 way = _("everywhere")
             elif start == end:
                 way = _("at {start}")
-            ways.append(way.format(start=driver_place(results, first), end=driver_place(results, first + end - start)))
+            ways.append(
+                way.format(
+                    start=format_driver_coordinate(results, first),
+                    end=format_driver_coordinate(results, first + end - start),
+                )
+            )
         if ways:
             yield _(
                 "link {runner} leaves its slot {slot} of link {carrier}, which is {length} long: it is up to {far} "
@@ -254,7 +264,7 @@ def left_slots(results: Results) -> Iterable[str]:
             )
 
 
-def pressure_angles(results: Results) -> Iterable[str]:
+def excessive_pressure_angles(results: Results) -> Iterable[str]:
     """Pressure angles beyond what the file allows, or what is usual where a synthesis chose them freely."""
     units, limits_set = results.problem.units, results.problem.limits_set
     chosen = results.driver_range is not None and results.driver_range.full and _chosen_freely(results)
@@ -286,7 +296,7 @@ def _chosen_freely(results: Results) -> bool:
     return not any(d.of == "pressure" for d in asked)
 
 
-def impacts(results: Results) -> Iterable[str]:
+def cam_impacts(results: Results) -> Iterable[str]:
     """Cams whose law has jumps of the follower's speed."""
     units = results.problem.units
     for mesh in results.linkage.meshes:

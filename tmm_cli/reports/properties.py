@@ -40,14 +40,14 @@ from tmm_cli.problem import (
     unknown_position_error,
 )
 
-STEPS = 720  # in a turn, or over the driver's way
-PARTS = 60  # of the way between two positions, through which an angle is followed
+RANGE_STEPS = 720  # in a turn, or over the driver's way
+ANGLE_STEPS = 60  # of the way between two positions, through which an angle is followed
 ROUNDING = 1e-13  # of a radian, or of the longest link: a smaller angle or length is rounding, and is told as none
-MET = 1e-9  # of the value, or of one in SI: rounding of what is found by search
+PROPERTY_TOLERANCE = 1e-9  # of the value, or of one in SI: rounding of what is found by search
 
 
 @dataclass(frozen=True)
-class Property:
+class ShownProperty:
     """A number (SI; nan where there is none) by the words of the file, and what is expected of it, if that is told."""
 
     name: str
@@ -57,19 +57,21 @@ class Property:
 
     @property
     def met(self) -> bool:
-        return self.expected is None or math.isclose(self.value, self.expected, rel_tol=MET, abs_tol=MET)
+        return self.expected is None or math.isclose(
+            self.value, self.expected, rel_tol=PROPERTY_TOLERANCE, abs_tol=PROPERTY_TOLERANCE
+        )
 
 
-def properties_shown(results: Results | ChainResults) -> tuple[Property, ...]:
+def shown_properties(results: Results | ChainResults) -> tuple[ShownProperty, ...]:
     """What the file shows, as far as its stages have run. Raises ProblemError."""
     problem = results.problem
     if isinstance(results, ChainResults):
-        return tuple(_of_chain(name, task, results) for name, task in problem.shows.items())
-    return _of_linkage(results)
+        return tuple(_chain_property(name, task, results) for name, task in problem.shows.items())
+    return _linkage_properties(results)
 
 
 @lru_cache(maxsize=1)
-def _of_linkage(results: Results) -> tuple[Property, ...]:
+def _linkage_properties(results: Results) -> tuple[ShownProperty, ...]:
     problem = results.problem
     if problem is None or results.of:
         return ()
@@ -77,14 +79,14 @@ def _of_linkage(results: Results) -> tuple[Property, ...]:
     for name, task in problem.shows.items():
         try:
             with prefix_errors("shows", name):
-                one = _property(name, task, results)
+                one = _linkage_property(name, task, results)
         except ProblemError as error:
             raise error.located(problem.file, problem.source) from None
         found += [one] if one is not None else []
     return tuple(found)
 
 
-def _of_chain(name: str, task: ShownKeys, results: ChainResults) -> Property:
+def _chain_property(name: str, task: ShownKeys, results: ChainResults) -> ShownProperty:
     found, path = results.chain, ("shows", name)
     known = {"W": found.mobility, "Wm": found.local_mobility, "q": found.redundant, "m": found.manoeuvrability}
     value = known.get(task.of)
@@ -94,10 +96,10 @@ def _of_chain(name: str, task: ShownKeys, results: ChainResults) -> Property:
         message = _("a chain without dimensions shows whole numbers")
         error = ProblemError(message, path=(*path, key), found=quote(raw), allowed=allowed)
         raise error.located(results.problem.name, results.problem.source)
-    return Property(name, float(value), NUMBER, None if task.expected is None else float(task.expected))
+    return ShownProperty(name, float(value), NUMBER, None if task.expected is None else float(task.expected))
 
 
-def _property(name: str, task: ShownKeys, results: Results) -> Property | None:
+def _linkage_property(name: str, task: ShownKeys, results: Results) -> ShownProperty | None:
     """None where a stage that it needs has not run."""
     problem: Problem = results.problem
     values = problem.values
@@ -105,7 +107,7 @@ def _property(name: str, task: ShownKeys, results: Results) -> Property | None:
     if task.set:
         results = _with_settings(task, results)
     if task.without is not None:
-        results = _broken(task.without, results)
+        results = _without_hinge(task.without, results)
     linkage = results.linkage
     known = {
         **list_quantities(linkage, results.structure),
@@ -117,18 +119,18 @@ def _property(name: str, task: ShownKeys, results: Results) -> Property | None:
     quantity = known[task.of]
     if task.without is not None and quantity.stage != "structure":
         raise ProblemError(_("without a hinge only the structure is known"), path=("of",), found=quote(task.of))
-    if not _ran(quantity, results):
+    if not _has_run(quantity, results):
         return None
     by = known.get(task.per) if isinstance(task.per, str) else None
     ratio = by is not None and task.over in ("largest", "least")
     if by is not None:
         if by.dimension != quantity.dimension or (ratio and by.dimension == ANGLE):
             raise ProblemError(_("a quantity of the same kind is wanted"), path=("per",), found=quote(task.per))
-        if not _ran(by, results):
+        if not _has_run(by, results):
             return None
-    value = _one(quantity, task, results, by if ratio else None)
+    value = _property_value(quantity, task, results, by if ratio else None)
     dimension = quantity.dimension
-    if not ratio and abs(value) <= ROUNDING * _scale(dimension, results):
+    if not ratio and abs(value) <= ROUNDING * _rounding_scale(dimension, results):
         value = 0.0
     if task.within is not None:
         dimension = coordinate_dimension(results.linkage.driver.kind)
@@ -136,22 +138,22 @@ def _property(name: str, task: ShownKeys, results: Results) -> Property | None:
         if by is None:
             value /= values.positive(task.per, dimension, ("per",))
         elif not ratio:
-            by_value = _one(by, task, results)
+            by_value = _property_value(by, task, results)
             value = value / by_value if by_value else np.nan
         dimension = NUMBER
-    compared = task.expected is not None and (quantity.stage == "structure" or not _of_own_numbers(task, problem))
+    compared = task.expected is not None and (quantity.stage == "structure" or not _holds_for_file_only(task, problem))
     expected = values.number(task.expected, dimension, ("expected",)) if compared else None
-    return Property(name, value, dimension, expected)
+    return ShownProperty(name, value, dimension, expected)
 
 
-def _scale(dimension: Dimension, results: Results) -> float:
+def _rounding_scale(dimension: Dimension, results: Results) -> float:
     """What an angle or a length is small against, SI; of other kinds nothing is called small."""
     if dimension == LENGTH:
         return max(float(link_extent(results.linkage, link)) for link in results.linkage.links)
     return 1.0 if dimension == ANGLE else 0.0
 
 
-def _of_own_numbers(task: ShownKeys, problem: Problem) -> bool:
+def _holds_for_file_only(task: ShownKeys, problem: Problem) -> bool:
     """Whether parameters are set on the command line and the expected number holds only for those of the file."""
     source = problem.source
     if source is None or not source.given:
@@ -160,7 +162,7 @@ def _of_own_numbers(task: ShownKeys, problem: Problem) -> bool:
     return names.isdisjoint(source.data.get("parameters", {}))
 
 
-def _ran(quantity: NamedQuantity, results: Results) -> bool:
+def _has_run(quantity: NamedQuantity, results: Results) -> bool:
     if quantity.stage == "structure":
         return True
     forces = quantity.order >= STAGES.index("forces")
@@ -188,7 +190,7 @@ def _with_settings(task: ShownKeys, results: Results) -> Results:
         ) from None
 
 
-def _broken(hinge: str, results: Results) -> Results:
+def _without_hinge(hinge: str, results: Results) -> Results:
     """The structure without a hinge."""
     linkage = results.linkage
     results.problem.values.known_name(hinge, [h.point for h in linkage.hinges], ("without",), "hinge")
@@ -198,7 +200,9 @@ def _broken(hinge: str, results: Results) -> Results:
     )
 
 
-def _one(quantity: NamedQuantity, task: ShownKeys, results: Results, per: NamedQuantity | None = None) -> float:
+def _property_value(
+    quantity: NamedQuantity, task: ShownKeys, results: Results, per: NamedQuantity | None = None
+) -> float:
     """The number that a task asks of a quantity, or of its ratio to another one at every place."""
     ways = [key for key in ("at", "between", "over") if getattr(task, key) is not None]
     if quantity.whole:
@@ -209,50 +213,50 @@ def _one(quantity: NamedQuantity, task: ShownKeys, results: Results, per: NamedQ
     if len(ways) != 1 or (task.within is not None and ways != ["at"]):
         wanted = _("in one position, between two, or over the way of the driver")
         raise ProblemError(wanted, path=("of",), found=quote(task.of), allowed="at, between, over, at + within")
-    read = partial(_read, quantity, results) if per is None else partial(_ratio, quantity, per, results)
+    read = partial(_read_quantity, quantity, results) if per is None else partial(_read_ratio, quantity, per, results)
     if task.over is not None:
-        return _over(read, task.over, results, quantity.dimension == ANGLE)
+        return _extreme_over_range(read, task.over, results, quantity.dimension == ANGLE)
     numbers = (
         [(task.at, ("at",))]
         if task.at is not None
         else [(number, ("between", k)) for k, number in enumerate(task.between or [])]
     )
-    places = [_place(number, path, results) for number, path in numbers]
+    places = [_driver_coordinate(number, path, results) for number, path in numbers]
     if task.within is not None:
         most = results.problem.values.positive(task.within, quantity.dimension, ("within",))
-        return _zone(read, places[0], most, results)
+        return _range_within(read, places[0], most, results)
     if len(places) == 1:
         return float(read(np.array(places))[0])
-    way = np.linspace(places[0], places[1], PARTS + 1)
+    way = np.linspace(places[0], places[1], ANGLE_STEPS + 1)
     values = read(way)
     values = np.unwrap(values) if quantity.dimension == ANGLE else values
     return float(values[-1] - values[0])
 
 
-def _read(quantity: NamedQuantity, results: Results, q: Real) -> Real:
+def _read_quantity(quantity: NamedQuantity, results: Results, q: Real) -> Real:
     """The values at places of the driver; sizes of vectors."""
     there = results_at(results, q)
     found = np.asarray(quantity.read(there))
     return np.broadcast_to(np.abs(found) if quantity.vector else found, np.shape(q))
 
 
-def _ratio(quantity: NamedQuantity, per: NamedQuantity, results: Results, q: Real) -> Real:
+def _read_ratio(quantity: NamedQuantity, per: NamedQuantity, results: Results, q: Real) -> Real:
     """The ratio of two quantities at places of the driver; nan where the second one is zero."""
-    value, divisor = _read(quantity, results, q), _read(per, results, q)
+    value, divisor = _read_quantity(quantity, results, q), _read_quantity(per, results, q)
     found: Real = np.divide(value, divisor, out=np.full(np.shape(q), np.nan), where=divisor != 0)
     return found
 
 
-def _place(number: int, path: Path, results: Results) -> float:
+def _driver_coordinate(number: int, path: Path, results: Results) -> float:
     asked = results.asked
     if number >= len(asked):
         raise unknown_position_error(number, len(asked), *path)
     return float(asked[number])
 
 
-def _over(read: Callable[[Real], Real], over: str, results: Results, turns: bool) -> float:
+def _extreme_over_range(read: Callable[[Real], Real], over: str, results: Results, turns: bool) -> float:
     """The largest, the least, or their difference over the way of the driver, found between its places."""
-    q = results.closely(STEPS * max(results.turns, 1) + 1)
+    q = results.closely(RANGE_STEPS * max(results.turns, 1) + 1)
     values = read(q)[None, :]
     values = np.unwrap(values) if turns else values
 
@@ -267,7 +271,7 @@ def _over(read: Callable[[Real], Real], over: str, results: Results, turns: bool
     return extreme(1.0 if over == "largest" else -1.0)
 
 
-def _zone(read: Callable[[Real], Real], place: float, most: float, results: Results) -> float:
+def _range_within(read: Callable[[Real], Real], place: float, most: float, results: Results) -> float:
     """How far the driver goes about a place while a quantity differs from its value there by no more than so much."""
     middle = read(np.array([place]))[0]
     way = abs(results.closely(2)[1] - results.closely(2)[0])
@@ -280,7 +284,7 @@ def _zone(read: Callable[[Real], Real], place: float, most: float, results: Resu
 
     for sign in (-1.0, 1.0):
         far = way if results.turns else abs((low if sign < 0 else high) - place)
-        q = place + sign * np.linspace(0, far, STEPS * max(results.turns, 1) + 1)
+        q = place + sign * np.linspace(0, far, RANGE_STEPS * max(results.turns, 1) + 1)
         gone = np.flatnonzero(beyond(q) > 0)
         if not gone.size:
             ends.append(float(q[-1]))

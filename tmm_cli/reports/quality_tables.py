@@ -17,12 +17,12 @@ from tmm_cli.mechanics.numerics import CAME_BACK, NO_PRESSURE, SAME_DRIVER_POSIT
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER, Dimension, coordinate_dimension
 from tmm_cli.mechanics.structure import ChainResults
 from tmm_cli.problem import Problem
-from tmm_cli.reports.properties import properties_shown
-from tmm_cli.reports.table import Column, Table, table_of_words, with_unit
+from tmm_cli.reports.properties import shown_properties
+from tmm_cli.reports.table import Column, Table, text_table, with_unit
 
-ASIDE = 0.4  # steps of the scan: so far beside change points and dead positions, which lie at whole angles
+SCAN_OFFSET = 0.4  # steps of the scan: so far beside change points and dead positions, which lie at whole angles
 
-Row = tuple[str, Any, Dimension]
+ValueRow = tuple[str, Any, Dimension]
 
 
 def quality_tables(results: Results) -> Iterable[Table]:
@@ -30,28 +30,32 @@ def quality_tables(results: Results) -> Iterable[Table]:
     driver_range = results.driver_range
     assert driver_range is not None
     place = coordinate_dimension(results.linkage.driver.kind)
-    rows: list[Row] = []
+    rows: list[ValueRow] = []
     if driver_range.turns > 1:
         rows.append((_("turns of the driver in a cycle"), driver_range.turns, NUMBER))
     if not driver_range.full:
         rows += [(_("driver can go from"), driver_range.start, place), (_("driver can go to"), driver_range.end, place)]
     for strokes in (results.strokes, *results.further):
         if strokes is not None and strokes.strokes:
-            rows += _strokes(results, strokes, place)
+            rows += _stroke_rows(results, strokes, place)
         elif strokes is not None and driver_range.full and results.linkage.output_swings(strokes.link):
             rows.append(
-                (_("link {link} turns in a cycle by").format(link=strokes.link), _turned(results, strokes), ANGLE)
+                (
+                    _("link {link} turns in a cycle by").format(link=strokes.link),
+                    _rotation_angle(results, strokes),
+                    ANGLE,
+                )
             )
     for travel in results.travels:
-        rows += _travel(results.linkage, travel, place)
+        rows += _travel_rows(results.linkage, travel, place)
     if results.losses is not None and results.losses.efficiency is not None:
         rows.append((_("efficiency over the cycle"), results.losses.efficiency, NUMBER))
     rows += [(_("dead position of {group}").format(group=dead.group), dead.place, place) for dead in results.dead]
     if rows:
-        yield Table("quality", _("Quality"), of_rows(rows, results))
+        yield Table("quality", _("Quality"), value_columns(rows, results))
 
 
-def _strokes(results: Results, strokes: Strokes, place: Dimension) -> Iterable[Row]:
+def _stroke_rows(results: Results, strokes: Strokes, place: Dimension) -> Iterable[ValueRow]:
     """Strokes of an output that goes there and back as the driver turns."""
     linkage = results.linkage
     link, run = strokes.link, coordinate_dimension(strokes.kind)
@@ -71,9 +75,9 @@ def _strokes(results: Results, strokes: Strokes, place: Dimension) -> Iterable[R
         yield _("stroke angle theta = 180 deg (k - 1)/(k + 1)"), np.pi * (strokes.k - 1) / (strokes.k + 1), ANGLE
     every: list[tuple[int, Stroke]] = [(0, stroke) for stroke in strokes.strokes]
     if results.counts_strokes:
-        every = list(enumerate(_in_order(results, strokes), 1))
+        every = list(enumerate(_strokes_in_order(results, strokes), 1))
     for number, stroke in every:
-        starts, lasts, dwell = _of_stroke(stroke, number)
+        starts, lasts, dwell = _stroke_names(stroke, number)
         yield starts, stroke.start, place
         then = _("link {link} is then at") if point is None else _("{link} is then at")
         yield then.format(link=link), stroke.low, run
@@ -82,7 +86,7 @@ def _strokes(results: Results, strokes: Strokes, place: Dimension) -> Iterable[R
             yield dwell, stroke.rest, place
 
 
-def _in_order(results: Results, strokes: Strokes) -> list[Stroke]:
+def _strokes_in_order(results: Results, strokes: Strokes) -> list[Stroke]:
     """From position 0 on; the first of them begins before it where it is within a stroke."""
 
     def gone(stroke: Stroke) -> float:
@@ -93,7 +97,7 @@ def _in_order(results: Results, strokes: Strokes) -> list[Stroke]:
     return found if gone(found[0]) <= SEAM_OF_EXTREMES else [found[-1], *found[:-1]]
 
 
-def _of_stroke(stroke: Stroke, number: int) -> tuple[str, str, str]:
+def _stroke_names(stroke: Stroke, number: int) -> tuple[str, str, str]:
     """What its start, its length and the dwell after it are called; number: 0 of one that is not counted."""
     if number:
         names = _("stroke {number} starts at"), _("stroke {number} lasts"), _("dwell after stroke {number}")
@@ -104,12 +108,12 @@ def _of_stroke(stroke: Stroke, number: int) -> tuple[str, str, str]:
     return _("idle stroke starts at"), _("idle stroke lasts"), _("dwell after the idle stroke")
 
 
-def _turned(results: Results, strokes: Strokes) -> float:
+def _rotation_angle(results: Results, strokes: Strokes) -> float:
     """By how much (rad) an output turns that does not come back."""
     curve = OutputCurve(results.linkage, results.kernels, strokes.link)
     q = results.closely(SCAN * round(strokes.cycle / (2 * np.pi)) + 1)
     if results.turns:  # not from a change point on: where two hinges coincide, a link has no angle
-        q = q + ASIDE * (q[1] - q[0])
+        q = q + SCAN_OFFSET * (q[1] - q[0])
     angle = curve.place(q)
     angle = np.unwrap(angle[np.isfinite(angle)])
     turned = abs(float(angle[-1] - angle[0]))
@@ -117,7 +121,7 @@ def _turned(results: Results, strokes: Strokes) -> float:
     return whole if abs(turned - whole) < CAME_BACK else turned
 
 
-def _travel(linkage: Linkage, travel: OutputTravel, place: Dimension) -> Iterable[Row]:
+def _travel_rows(linkage: Linkage, travel: OutputTravel, place: Dimension) -> Iterable[ValueRow]:
     """How far an output goes over the positions asked."""
     link, run = travel.link, coordinate_dimension(travel.kind)
     point, guide = linkage.output_point(link), linkage.output_guide(link)
@@ -135,7 +139,7 @@ def _travel(linkage: Linkage, travel: OutputTravel, place: Dimension) -> Iterabl
         yield _("with the driver at"), at, place
 
 
-def of_rows(rows: Sequence[Row], results: Results) -> tuple[Column, ...]:
+def value_columns(rows: Sequence[ValueRow], results: Results) -> tuple[Column, ...]:
     """Rows of different dimensions: the unit stands in a column of its own."""
     units = results.problem.units
     return (
@@ -190,7 +194,7 @@ def pressure_tables(results: Results) -> Iterable[Table]:
 
 def properties_tables(results: Results | ChainResults) -> Iterable[Table]:
     """A row a property; values keep their own dimension."""
-    rows, units = properties_shown(results), results.problem.units
+    rows, units = shown_properties(results), results.problem.units
     if not rows:
         return
     columns = [
@@ -210,15 +214,15 @@ def properties_tables(results: Results | ChainResults) -> Iterable[Table]:
 def checks_tables(results: Results) -> Iterable[Table]:
     """A row a check."""
     rows = [
-        (*_said(check, results), _place(check, results), _("ok") if check.holds else _("warn"))
+        (*_check_texts(check, results), _check_coordinate(check, results), _("ok") if check.holds else _("warn"))
         for check in run_checks(results)
     ]
     if rows:
         headers = (_("check"), _("of"), _("found"), _("limit"), _("driver at"), _("verdict"))
-        yield table_of_words("checks", _("Checks"), headers, rows)
+        yield text_table("checks", _("Checks"), headers, rows)
 
 
-def _place(check: Check, results: Results) -> str:
+def _check_coordinate(check: Check, results: Results) -> str:
     if check.at is None:
         return ""
     at = check.at if abs(check.at) > SAME_DRIVER_POSITION else 0.0
@@ -228,7 +232,7 @@ def _place(check: Check, results: Results) -> str:
     return none if place == again else place
 
 
-def _said(check: Check, results: Results) -> tuple[str, str, str, str]:
+def _check_texts(check: Check, results: Results) -> tuple[str, str, str, str]:
     """What is checked, of what, the number, and its limit."""
     units = results.problem.units
     match check.kind:
@@ -270,10 +274,10 @@ def _said(check: Check, results: Results) -> tuple[str, str, str, str]:
 def assemblies_tables(results: Results) -> Iterable[Table]:
     """In solving order of the groups, at each place that was asked for."""
     for stem, here, group in name_assembly_files(results.assemblies or ()):
-        yield _table(stem, here, group, results)
+        yield _assembly_table(stem, here, group, results)
 
 
-def place(problem: Problem, q: float, number: int | None) -> str:
+def describe_position(problem: Problem, q: float, number: int | None) -> str:
     """Which position it is and where the driver stands (rad or m), which at the sketch has no number."""
     crank = problem.linkage.driver.kind == "turn"
     measure = coordinate_dimension(problem.linkage.driver.kind)
@@ -286,7 +290,7 @@ def place(problem: Problem, q: float, number: int | None) -> str:
     return text.format(number=number, place=at)
 
 
-def notes(group: GroupAssemblies) -> Iterable[str]:
+def assembly_notes(group: GroupAssemblies) -> Iterable[str]:
     """How sure it is that there are no others, and what is odd about these."""
     number = len(group.assemblies)
     if group.moves:
@@ -307,7 +311,7 @@ def notes(group: GroupAssemblies) -> Iterable[str]:
         yield _("Where the margin is 0 the group is dead: two assemblies meet in one.")
 
 
-def _table(stem: str, here: Assemblies, group: GroupAssemblies, results: Results) -> Table:
+def _assembly_table(stem: str, here: Assemblies, group: GroupAssemblies, results: Results) -> Table:
     every = group.assemblies
     names = list(every[0].points) if every else []
     columns = [
@@ -321,6 +325,6 @@ def _table(stem: str, here: Assemblies, group: GroupAssemblies, results: Results
         columns.append(Column(Phrase("{point} x", point=name), [a.points[name].real for a in every], LENGTH))
         columns.append(Column(Phrase("{point} y", point=name), [a.points[name].imag for a in every], LENGTH))
     title = _("Real assemblies of {group}, {place}: {count}").format(
-        group=group.group.title, count=len(every), place=place(results.problem, here.q, here.number)
+        group=group.group.title, count=len(every), place=describe_position(results.problem, here.q, here.number)
     )
-    return Table(stem, title, tuple(columns), notes=tuple(notes(group)))
+    return Table(stem, title, tuple(columns), notes=tuple(assembly_notes(group)))

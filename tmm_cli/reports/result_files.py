@@ -21,37 +21,37 @@ from tmm_cli.mechanics.structure import ChainResults
 from tmm_cli.reports.digits import AccuracyReport
 from tmm_cli.reports.register import walk
 from tmm_cli.reports.result_json import sections
-from tmm_cli.reports.spreadsheets import Kind, files
+from tmm_cli.reports.spreadsheets import SpreadsheetKind, spreadsheet_files
 from tmm_cli.reports.table import Table, csv_text, json_text
 
-LISTED = 100_000  # bytes: the list of files at the end of result.json is shorter, and the rest may be very long
-LONGEST = 150  # bytes of a folder's name
+RECORD_TAIL = 100_000  # bytes: the list of files at the end of result.json is shorter, and the rest may be very long
+LONGEST_FOLDER_NAME = 150  # bytes of a folder's name
 RECORD = "result.json"
 RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)  # devices of Windows, in every folder
-QUERY = 0x1000  # of OpenProcess: no more is asked than whether a process is there
+QUERY_PROCESS = 0x1000  # of OpenProcess: no more is asked than whether a process is there
 
 
 def folder_name(name: str) -> str:
     """A problem's folder: its name with nothing in it that could lead elsewhere, and that every system takes."""
-    safe = re.sub(r"[^\w.-]+", "_", name).encode()[:LONGEST].decode(errors="ignore").strip(".") or "problem"
+    safe = re.sub(r"[^\w.-]+", "_", name).encode()[:LONGEST_FOLDER_NAME].decode(errors="ignore").strip(".") or "problem"
     return f"_{safe}" if RESERVED.fullmatch(safe) else safe
 
 
-def folder_of(out: Path, name: str, part: str) -> tuple[Path, Path | None]:
+def choose_folder(out: Path, name: str, part: str) -> tuple[Path, Path | None]:
     """The folder in `out` for results, and the one that keeps other results for that.
 
     A problem has one folder. part: what a run has made that has not made all; it does not take the place of other
     results than its own, and goes into a folder beside theirs.
     """
     usual, own = (out / folder_name(text) for text in (name, f"{name}-{part}"))
-    if not part or held(usual) in (None, part):
+    if not part or recorded_part(usual) in (None, part):
         return usual, None
-    if held(own) not in (None, part):
+    if recorded_part(own) not in (None, part):
         raise FileExistsError(errno.EEXIST, _("other results are there"), str(own))
     return own, usual
 
 
-def refuse_place(path: Path, *, folder: bool) -> None:
+def refuse_unwritable(path: Path, *, folder: bool) -> None:
     """Refuse a folder, or a file, that cannot be written, before there is any work for it. Raises OSError."""
     path = Path(os.path.realpath(path))
     if path.exists() and path.is_dir() != folder:
@@ -65,7 +65,7 @@ def refuse_place(path: Path, *, folder: bool) -> None:
         raise OSError(number, os.strerror(number), str(above))
 
 
-def write_whole(path: Path, content: bytes) -> None:
+def write_atomically(path: Path, content: bytes) -> None:
     """Write beside and rename, so that a killed run leaves the old file or the new one."""
     path = Path(os.path.realpath(path))
     if path.is_dir():
@@ -73,9 +73,9 @@ def write_whole(path: Path, content: bytes) -> None:
     if path.exists() and not path.is_file():  # a device of the system would be gone after the renaming
         raise FileExistsError(errno.EEXIST, _("this is no file but a device"), str(path))
     path.parent.mkdir(parents=True, exist_ok=True)
-    for left in _left(path, "new"):
+    for left in _abandoned_paths(path, "new"):
         left.unlink(missing_ok=True)
-    new = _beside(path, "new")
+    new = _temporary_path(path, "new")
     try:
         new.write_bytes(content)
         os.replace(new, path)
@@ -84,7 +84,7 @@ def write_whole(path: Path, content: bytes) -> None:
         raise
 
 
-class Staged:
+class StagedFolder:
     """A folder written whole beside the one of that name, and put in its place at the end; not at all on an error.
 
     A new result.json takes away the files that the old one lists. All other files of the old folder stay.
@@ -92,18 +92,18 @@ class Staged:
 
     def __init__(self, folder: Path) -> None:
         self.folder = Path(os.path.realpath(folder))
-        self.new, self.old = _beside(self.folder, "new"), _beside(self.folder, "old")
+        self.new, self.old = _temporary_path(self.folder, "new"), _temporary_path(self.folder, "old")
         self.names: set[str] = set()
         self.removed: list[str] = []
 
-    def __enter__(self) -> Staged:
+    def __enter__(self) -> StagedFolder:
         if self.folder.exists() and not self.folder.is_dir():
             raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), str(self.folder))
         self.made = not self.folder.parent.exists()
         self.folder.parent.mkdir(parents=True, exist_ok=True)
-        for left in _left(self.folder, "old"):
-            _carry_over(left, self.folder)
-        for left in _left(self.folder, "new"):
+        for left in _abandoned_paths(self.folder, "old"):
+            _move_remaining(left, self.folder)
+        for left in _abandoned_paths(self.folder, "new"):
             shutil.rmtree(left, ignore_errors=True)
         self.new.mkdir()
         return self
@@ -134,7 +134,9 @@ class Staged:
             os.rename(self.new, self.folder)
             return
         if RECORD in self.names:
-            self.removed = sorted(name for name in listed(self.folder) - self.names if (self.folder / name).exists())
+            self.removed = sorted(
+                name for name in listed_files(self.folder) - self.names if (self.folder / name).exists()
+            )
         try:
             os.rename(self.folder, self.old)
             os.rename(self.new, self.folder)
@@ -142,10 +144,10 @@ class Staged:
             if not self.folder.exists():
                 os.rename(self.old, self.folder)
             raise
-        _carry_over(self.old, self.folder)
+        _move_remaining(self.old, self.folder)
 
 
-def _carry_over(old: Path, folder: Path) -> None:
+def _move_remaining(old: Path, folder: Path) -> None:
     """Move what stays of an old folder into the new one, and remove the rest; the record last, as it says which.
 
     Nothing is lost by a run that is killed meanwhile: the next one goes on with that.
@@ -153,7 +155,7 @@ def _carry_over(old: Path, folder: Path) -> None:
     if not folder.exists():
         os.rename(old, folder)
         return
-    gone = listed(old) | {RECORD} if (folder / RECORD).exists() else set()
+    gone = listed_files(old) | {RECORD} if (folder / RECORD).exists() else set()
     for entry in sorted(old.iterdir(), key=lambda entry: entry.name == RECORD):
         if entry.name in gone or (folder / entry.name).exists():
             entry.unlink()
@@ -162,25 +164,25 @@ def _carry_over(old: Path, folder: Path) -> None:
     old.rmdir()
 
 
-def _beside(path: Path, kind: str) -> Path:
+def _temporary_path(path: Path, kind: str) -> Path:
     """Where this process keeps a new, or an old, form of a file or folder for a moment."""
     return path.with_name(f".{path.name}.{kind}-{os.getpid()}")
 
 
-def _left(path: Path, kind: str) -> Iterator[Path]:
+def _abandoned_paths(path: Path, kind: str) -> Iterator[Path]:
     """The same of processes that are no more."""
     for other in list(path.parent.iterdir()):
         found = re.fullmatch(rf"\.{re.escape(path.name)}\.{kind}-(\d{{1,9}})", other.name)
-        if found is not None and not _runs(int(found[1])):
+        if found is not None and not _is_running(int(found[1])):
             yield other
 
 
-def _runs(process: int) -> bool:
+def _is_running(process: int) -> bool:
     """Whether another process of this number is running."""
     if process == os.getpid():
         return False
     if sys.platform == "win32":  # where os.kill would end it
-        return bool(ctypes.windll.kernel32.OpenProcess(QUERY, False, process))
+        return bool(ctypes.windll.kernel32.OpenProcess(QUERY_PROCESS, False, process))
     try:
         os.kill(process, 0)
     except ProcessLookupError:
@@ -190,7 +192,7 @@ def _runs(process: int) -> bool:
     return True
 
 
-def listed(folder: Path) -> set[str]:
+def listed_files(folder: Path) -> set[str]:
     """The files that an earlier run wrote into the folder, as the end of its result.json lists them; never a path."""
     try:
         end = _end_of_record(folder)
@@ -200,7 +202,7 @@ def listed(folder: Path) -> set[str]:
     return {n for n in names if isinstance(n, str) and re.fullmatch(r"\w[\w(),-]*\.(csv|png|svg|xlsx)", n)}
 
 
-def held(folder: Path) -> str | None:
+def recorded_part(folder: Path) -> str | None:
     """Which part of a run has made the results in the folder; none: there are no results, empty: a whole one."""
     try:
         found = re.search(r'"part": "([^"]*)",\s*"files": \[[^\[]*\Z', _end_of_record(folder))
@@ -211,17 +213,17 @@ def held(folder: Path) -> str | None:
 
 def _end_of_record(folder: Path) -> str:
     with (folder / RECORD).open("rb") as stream:
-        stream.seek(-min(LISTED, stream.seek(0, os.SEEK_END)), os.SEEK_END)
+        stream.seek(-min(RECORD_TAIL, stream.seek(0, os.SEEK_END)), os.SEEK_END)
         return stream.read().decode(errors="replace")
 
 
 # A problem's output folder: result.json, a CSV file a table, and what others add to it (drawings).
 
 
-NAMED = 6  # positions that stand in the name of a folder; of more of them the first and the last
+NAMED_POSITIONS = 6  # positions that stand in the name of a folder; of more of them the first and the last
 
 
-def part_of(results: Results | ChainResults, drawn: bool) -> str:
+def part_name(results: Results | ChainResults, drawn: bool) -> str:
     """What of a run is there, as its folder is named; nothing where all is."""
     if isinstance(results, ChainResults):
         return ""
@@ -232,7 +234,7 @@ def part_of(results: Results | ChainResults, drawn: bool) -> str:
         words = [*(words or ["kinematics"]), *results.of]
     numbers = results.numbers
     if numbers != tuple(range(len(results.asked))):
-        few = len(numbers) <= NAMED
+        few = len(numbers) <= NAMED_POSITIONS
         words.append("p" + ("-".join(map(str, numbers)) if few else f"{numbers[0]}-to-{numbers[-1]}"))
     return "-".join(words if drawn or results.reactions is None else [*words, "no-drawings"])
 
@@ -250,7 +252,7 @@ def write_results(
     out: Path,
     drawings: Iterable[tuple[str, bytes]] | None = None,
     digits: AccuracyReport | None = None,
-    people: Kind | None = None,
+    people: SpreadsheetKind | None = None,
     part: str = "",
 ) -> WrittenFolder:
     """Write everything to out/<problem>/, a part of a run beside a whole one; files of an earlier run go.
@@ -259,17 +261,17 @@ def write_results(
     an interruption before the end leaves the old one as it was. people: tables for their spreadsheets too. part: what
     the drawings are, where they are others than those of a whole run.
     """
-    part = "-".join(word for word in (part_of(results, drawings is not None), part) if word)
-    folder, kept = folder_of(out, results.problem.name, part)
+    part = "-".join(word for word in (part_name(results, drawings is not None), part) if word)
+    folder, kept = choose_folder(out, results.problem.name, part)
 
     def tables() -> Iterable[Table]:
         return walk(results) if digits is None else digits.with_bounds(walk(results))
 
-    with Staged(folder) as staged:
+    with StagedFolder(folder) as staged:
         with words_of_files():
             for table in tables():
                 staged.write(f"{table.name}.csv", csv_text(table, results.problem.units))
-        for name, content in files(people, tables(), results.problem.units) if people else ():
+        for name, content in spreadsheet_files(people, tables(), results.problem.units) if people else ():
             staged.write(name, content)
         for name, picture in drawings or ():
             staged.write(name, (picture,))

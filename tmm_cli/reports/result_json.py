@@ -23,40 +23,40 @@ from tmm_cli.mechanics.structure import (
     six_bar_schemes,
 )
 from tmm_cli.problem import UnitSystem
-from tmm_cli.reports.file_summary import doubts
+from tmm_cli.reports.file_summary import find_slips
 from tmm_cli.reports.json_fields import (
     FLAG,
     INTEGER,
     NAMES,
     NUMBER,
     TEXT,
-    Field,
+    JsonField,
     JsonType,
-    contents,
-    inside,
+    attribute_fields,
+    field_schemas,
+    json_record,
     list_of,
     map_of,
     optional,
-    properties,
-    record,
+    record_items,
 )
-from tmm_cli.reports.json_motion import MOTION_PARTS, WHEEL
-from tmm_cli.reports.properties import properties_shown
+from tmm_cli.reports.json_motion import INTERMITTENT_WHEEL, MOTION_SECTIONS
+from tmm_cli.reports.properties import shown_properties
 from tmm_cli.reports.structure_tables import motion_of_link
 from tmm_cli.reports.synthesis_tables import synthesis_json as synthesis_json
-from tmm_cli.reports.table import plain
+from tmm_cli.reports.table import json_value
 from tmm_cli.reports.warnings import collect_warnings
 from tmm_cli.synthesis import measure_problem
 
-PROBLEM = record(
+PROBLEM = json_record(
     "what was computed",
-    Field("name", TEXT, "of the file"),
-    Field("title", TEXT, "title"),
-    Field("description", TEXT, "description"),
+    JsonField("name", TEXT, "of the file"),
+    JsonField("title", TEXT, "title"),
+    JsonField("description", TEXT, "description"),
 )
 
 
-class LinkInRole(NamedTuple):
+class LinkRole(NamedTuple):
     """A moving link and what it is in the mechanism."""
 
     link: Link
@@ -64,116 +64,116 @@ class LinkInRole(NamedTuple):
     motion: str
 
 
-LINK = record(
+LINK = json_record(
     "a link",
-    Field("name", TEXT, "its key in the file", "link.name"),
-    Field("role", TEXT, "crank, rocker, coupler, ..."),
-    Field("label", TEXT, "the file's own name", "link.label"),
-    Field("points", NAMES, "its points", "link.points"),
-    Field("motion", TEXT, "rotation, translation or plane motion"),
+    JsonField("name", TEXT, "its key in the file", "link.name"),
+    JsonField("role", TEXT, "crank, rocker, coupler, ..."),
+    JsonField("label", TEXT, "the file's own name", "link.label"),
+    JsonField("points", NAMES, "its points", "link.points"),
+    JsonField("motion", TEXT, "rotation, translation or plane motion"),
 )
-ENDS = Field("links", NAMES, "first and second link", lambda pair: (pair.i, pair.j))
-PAIR = record(
+PAIR_LINKS = JsonField("links", NAMES, "first and second link", lambda pair: (pair.i, pair.j))
+PAIR = json_record(
     "a pair",
-    Field("name", TEXT, "point or guide; a compound hinge's further pairs have primes"),
-    Field("kind", TEXT, "R turning, P sliding, G wheels, K rack, C cam"),
-    ENDS,
-    Field("point", TEXT, "hinge or running point"),
-    Field("freedoms", NUMBER, "relative freedoms in the plane"),
-    Field("class", NUMBER, "5 of a lower pair, 4 of a higher one", "pair_class"),
-    Field("code", TEXT, "1в revolute, 1п prismatic; empty for a higher pair"),
+    JsonField("name", TEXT, "point or guide; a compound hinge's further pairs have primes"),
+    JsonField("kind", TEXT, "R turning, P sliding, G wheels, K rack, C cam"),
+    PAIR_LINKS,
+    JsonField("point", TEXT, "hinge or running point"),
+    JsonField("freedoms", NUMBER, "relative freedoms in the plane"),
+    JsonField("class", NUMBER, "5 of a lower pair, 4 of a higher one", "pair_class"),
+    JsonField("code", TEXT, "1в revolute, 1п prismatic; empty for a higher pair"),
 )
-PASSIVE = record(
+PASSIVE = json_record(
     "conditions that only repeat others",
-    Field("pair", TEXT, "pair"),
-    Field("constraints", NUMBER, "how many"),
-    Field("links", NAMES, "its links, the passive one last"),
-    Field("among", NAMES, "links that hold each other"),
+    JsonField("pair", TEXT, "pair"),
+    JsonField("constraints", NUMBER, "how many"),
+    JsonField("links", NAMES, "its links, the passive one last"),
+    JsonField("among", NAMES, "links that hold each other"),
 )
-GROUP = record(
+GROUP = json_record(
     "an Assur group",
-    Field("links", NAMES, "links"),
-    Field("class", TEXT, "roman", lambda group: group.roman),
-    Field("order", NUMBER, "number of outer pairs"),
-    Field("type", TEXT, "RRR, RRP, RPR, PRP, RPP"),
-    Field("name", TEXT, "II(2,3)", "title"),
-    Field("type_number", NUMBER, "1 to 5 for a class II group of two links", there="type_number"),
-    Field("letters", TEXT, "its type as ВВВ, ВВП, ВПВ, ПВП, ВПП", there="type_number"),
-    Field("inner", NAMES, "internal pairs", lambda group: [pair.name for pair in group.inner]),
-    Field("outer", NAMES, "external pairs", lambda group: [pair.name for pair in group.outer]),
+    JsonField("links", NAMES, "links"),
+    JsonField("class", TEXT, "roman", lambda group: group.roman),
+    JsonField("order", NUMBER, "number of outer pairs"),
+    JsonField("type", TEXT, "RRR, RRP, RPR, PRP, RPP"),
+    JsonField("name", TEXT, "II(2,3)", "title"),
+    JsonField("type_number", NUMBER, "1 to 5 for a class II group of two links", there="type_number"),
+    JsonField("letters", TEXT, "its type as ВВВ, ВВП, ВПВ, ПВП, ВПП", there="type_number"),
+    JsonField("inner", NAMES, "internal pairs", lambda group: [pair.name for pair in group.inner]),
+    JsonField("outer", NAMES, "external pairs", lambda group: [pair.name for pair in group.outer]),
 )
-RIGID = record(
+RIGID_LINKS = json_record(
     "links that are rigid to one another",
-    Field("links", NAMES, "links; 0 is the frame"),
-    Field("redundant", NUMBER, "redundant constraints q among them", "constraints"),
+    JsonField("links", NAMES, "links; 0 is the frame"),
+    JsonField("redundant", NUMBER, "redundant constraints q among them", "constraints"),
 )
-REDUNDANT_LINK = record(
+REDUNDANT_LINK = json_record(
     "a redundant link, or several that are rigid to one another",
-    Field("links", NAMES, "links"),
-    Field("redundant", NUMBER, "redundant constraints q that it adds", "constraints"),
+    JsonField("links", NAMES, "links"),
+    JsonField("redundant", NUMBER, "redundant constraints q that it adds", "constraints"),
 )
-REDUNDANT_PAIR = record(
+REDUNDANT_PAIR = json_record(
     "a pair with redundant constraints",
-    Field("pair", TEXT, "pair"),
-    Field("redundant", NUMBER, "redundant constraints q that it adds", "constraints"),
-    Field("left", NUMBER, "its constraints that are left"),
+    JsonField("pair", TEXT, "pair"),
+    JsonField("redundant", NUMBER, "redundant constraints q that it adds", "constraints"),
+    JsonField("left", NUMBER, "its constraints that are left"),
 )
-REDUCTION = record(
+REDUCTION = json_record(
     "what is redundant or rigid",
-    Field("rigid", list_of(RIGID), "sets of links that count as one"),
-    Field("links", list_of(REDUNDANT_LINK), "redundant links"),
-    Field("pairs", list_of(REDUNDANT_PAIR), "redundant pairs"),
+    JsonField("rigid", list_of(RIGID_LINKS), "sets of links that count as one"),
+    JsonField("links", list_of(REDUNDANT_LINK), "redundant links"),
+    JsonField("pairs", list_of(REDUNDANT_PAIR), "redundant pairs"),
 )
 
 
-STRUCTURE = record(
+STRUCTURE = json_record(
     "links, pairs and Assur groups",
-    Field("mobility", NUMBER, "Chebyshev, W = 3n - 2 p1 - p2", "structure.mobility"),
-    Field(
+    JsonField("mobility", NUMBER, "Chebyshev, W = 3n - 2 p1 - p2", "structure.mobility"),
+    JsonField(
         "links",
         list_of(LINK),
         "moving links",
-        lambda r: [LinkInRole(r.linkage.links[n], r.roles[n], motion_of_link(r, n)) for n in r.structure.links],
+        lambda r: [LinkRole(r.linkage.links[n], r.roles[n], motion_of_link(r, n)) for n in r.structure.links],
     ),
-    Field("pairs", list_of(PAIR), "pairs", "structure.pairs"),
-    Field(
+    JsonField("pairs", list_of(PAIR), "pairs", "structure.pairs"),
+    JsonField(
         "true_mobility",
         NUMBER,
         "by rank, where dimensions leave more than the count",
         lambda results: results.structure.mobility + results.structure.redundant,
     ),
-    Field("passive", list_of(PASSIVE), "passive constraints", "structure.passive"),
-    Field("n", NUMBER, "moving links", lambda results: len(results.structure.links)),
-    Field("p1", NUMBER, "lower pairs", lambda results: len(results.structure.pairs) - results.structure.higher),
-    Field("p2", NUMBER, "higher pairs", "structure.higher"),
-    Field("contours", NUMBER, "independent contours K = p - n", "structure.contours"),
-    Field(
+    JsonField("passive", list_of(PASSIVE), "passive constraints", "structure.passive"),
+    JsonField("n", NUMBER, "moving links", lambda results: len(results.structure.links)),
+    JsonField("p1", NUMBER, "lower pairs", lambda results: len(results.structure.pairs) - results.structure.higher),
+    JsonField("p2", NUMBER, "higher pairs", "structure.higher"),
+    JsonField("contours", NUMBER, "independent contours K = p - n", "structure.contours"),
+    JsonField(
         "classification",
         NAMES,
         "closed or open; elementary, simple, complex; of one type or several",
         lambda results: classify_linkage(results.structure),
     ),
-    Field(
+    JsonField(
         "dependent_contours",
         NUMBER,
         "contours closed by redundant links or pairs",
         lambda r: sum(is_dependent(c, r.structure) for c in find_contours(r.structure.pairs, r.structure.links)),
         lambda r: bool(r.structure.reduction),
     ),
-    Field(
+    JsonField(
         "six_bar",
         NAMES,
         "Watt I, II or Stephenson I, II, III; several where a compound hinge can be drawn in several ways",
         lambda r: six_bar_schemes(r.structure),
         lambda r: bool(six_bar_schemes(r.structure)),
     ),
-    Field(
+    JsonField(
         "basic_schemes", map_of(TEXT), "of the contours of four links, by contour", lambda r: basic_schemes(r.structure)
     ),
-    Field("formula", TEXT, "formula of structure", "structure.formula"),
-    Field("class", TEXT, "class of the mechanism", lambda results: results.structure.roman),
-    Field("groups", list_of(GROUP), "in solving order, of what is not redundant", "structure.groups"),
-    Field(
+    JsonField("formula", TEXT, "formula of structure", "structure.formula"),
+    JsonField("class", TEXT, "class of the mechanism", lambda results: results.structure.roman),
+    JsonField("groups", list_of(GROUP), "in solving order, of what is not redundant", "structure.groups"),
+    JsonField(
         "reduction",
         REDUCTION,
         "what the groups and the formula leave out",
@@ -182,50 +182,50 @@ STRUCTURE = record(
     ),
 )
 
-CONTOUR = record(
+CONTOUR = json_record(
     "a contour",
-    Field("links", NAMES, "from the one nearest the frame round"),
-    Field("pairs", NAMES, "between them"),
+    JsonField("links", NAMES, "from the one nearest the frame round"),
+    JsonField("pairs", NAMES, "between them"),
 )
 
 
 CHAIN = (
-    Field("mobility", NUMBER, "Somov-Malyshev, W = 6n - 5 p1 - 4 p2 - 3 p3 - 2 p4 - p5"),
-    Field("n", NUMBER, "moving links", lambda chain: len(chain.links)),
-    Field("p1", NUMBER, "pairs with 1 freedom", lambda chain: chain.p(1)),
-    *(Field(f"p{k}", NUMBER, f"pairs with {k} freedoms", methodcaller("p", k)) for k in range(2, 6)),
-    Field("K", NUMBER, "independent contours", lambda chain: len(chain.pairs) - len(chain.links)),
+    JsonField("mobility", NUMBER, "Somov-Malyshev, W = 6n - 5 p1 - 4 p2 - 3 p3 - 2 p4 - p5"),
+    JsonField("n", NUMBER, "moving links", lambda chain: len(chain.links)),
+    JsonField("p1", NUMBER, "pairs with 1 freedom", lambda chain: chain.p(1)),
+    *(JsonField(f"p{k}", NUMBER, f"pairs with {k} freedoms", methodcaller("p", k)) for k in range(2, 6)),
+    JsonField("K", NUMBER, "independent contours", lambda chain: len(chain.pairs) - len(chain.links)),
 )
-REPLACEMENT = record(
+REPLACEMENT = json_record(
     "a pair",
-    Field("pair", TEXT, "name", "pair.name"),
-    *inside("pair", (ENDS,)),
-    Field("was", TEXT, "kind"),
-    Field("kind", TEXT, "kind it is to have"),
-    Field("freedoms", NUMBER, "of that kind"),
+    JsonField("pair", TEXT, "name", "pair.name"),
+    *attribute_fields("pair", (PAIR_LINKS,)),
+    JsonField("was", TEXT, "kind"),
+    JsonField("kind", TEXT, "kind it is to have"),
+    JsonField("freedoms", NUMBER, "of that kind"),
 )
-PROPOSED = record(
+PROPOSED = json_record(
     "the same count with them",
-    *inside("proposed", CHAIN),
-    Field("local", NUMBER, "Wm", "rank.local"),
-    Field("redundant", NUMBER, "q", "redundant_then"),
+    *attribute_fields("proposed", CHAIN),
+    JsonField("local", NUMBER, "Wm", "rank.local"),
+    JsonField("redundant", NUMBER, "q", "redundant_then"),
 )
-SPACE = record(
+SPACE = json_record(
     "the planar linkage counted in space",
-    *inside("chain", CHAIN),
-    Field("wanted", NUMBER, "mobility Wo"),
-    Field("local", NUMBER, "local mobility Wm"),
-    Field("redundant", NUMBER, "redundant constraints q = Wo + Wm - W"),
-    Field(
+    *attribute_fields("chain", CHAIN),
+    JsonField("wanted", NUMBER, "mobility Wo"),
+    JsonField("local", NUMBER, "local mobility Wm"),
+    JsonField("redundant", NUMBER, "redundant constraints q = Wo + Wm - W"),
+    JsonField(
         "contours",
         list_of(CONTOUR),
         "independent contours",
         lambda space: find_contours(space.chain.pairs, space.chain.links),
     ),
-    Field(
+    JsonField(
         "replacements", optional(list_of(REPLACEMENT)), "pairs to give more freedoms, so that q = 0; null: none found"
     ),
-    Field(
+    JsonField(
         "proposed",
         optional(PROPOSED),
         "the same count with them",
@@ -233,218 +233,222 @@ SPACE = record(
     ),
 )
 
-CHAIN_PAIR = record(
+CHAIN_PAIR = json_record(
     "a pair",
-    Field("name", TEXT, "name"),
-    ENDS,
-    Field("kind", optional(TEXT), "null when only freedoms are given", lambda pair: pair.kind or None),
-    Field("freedoms", NUMBER, "1 to 5"),
-    Field("class", NUMBER, "number of its constraints", "pair_class"),
+    JsonField("name", TEXT, "name"),
+    PAIR_LINKS,
+    JsonField("kind", optional(TEXT), "null when only freedoms are given", lambda pair: pair.kind or None),
+    JsonField("freedoms", NUMBER, "1 to 5"),
+    JsonField("class", NUMBER, "number of its constraints", "pair_class"),
 )
-LOCAL_FREEDOM = record(
+LOCAL_FREEDOM = json_record(
     "one of them",
-    Field("links", NAMES, "that move alone"),
-    Field("freedoms", NUMBER, "how many"),
-    Field("pairs", NAMES, "that hold them", lambda local: [pair.name for pair in local.ends]),
+    JsonField("links", NAMES, "that move alone"),
+    JsonField("freedoms", NUMBER, "how many"),
+    JsonField("pairs", NAMES, "that hold them", lambda local: [pair.name for pair in local.ends]),
 )
-SPATIAL = record(
+SPATIAL = json_record(
     "a chain given by pairs alone",
-    *inside("chain", CHAIN),
-    Field("form", TEXT, "open, closed, or mixed: with open branches"),
-    Field("contours", list_of(CONTOUR), "independent contours"),
-    Field("branches", NAMES, "links in no contour"),
-    Field("pairs", list_of(CHAIN_PAIR), "pairs", "chain.pairs"),
-    Field("local_freedoms", list_of(LOCAL_FREEDOM), "found from the kinds of pairs", "local"),
-    Field("local", NUMBER, "local mobility Wm, as given or as found", "local_mobility"),
-    Field("wanted", NUMBER, "mobility Wo, as given"),
-    Field("redundant", NUMBER, "q = Wo + Wm - W"),
-    Field("output", optional(TEXT), "link held"),
-    Field("manoeuvrability", NUMBER, "mobility with the output held"),
+    *attribute_fields("chain", CHAIN),
+    JsonField("form", TEXT, "open, closed, or mixed: with open branches"),
+    JsonField("contours", list_of(CONTOUR), "independent contours"),
+    JsonField("branches", NAMES, "links in no contour"),
+    JsonField("pairs", list_of(CHAIN_PAIR), "pairs", "chain.pairs"),
+    JsonField("local_freedoms", list_of(LOCAL_FREEDOM), "found from the kinds of pairs", "local"),
+    JsonField("local", NUMBER, "local mobility Wm, as given or as found", "local_mobility"),
+    JsonField("wanted", NUMBER, "mobility Wo, as given"),
+    JsonField("redundant", NUMBER, "q = Wo + Wm - W"),
+    JsonField("output", optional(TEXT), "link held"),
+    JsonField("manoeuvrability", NUMBER, "mobility with the output held"),
 )
 
-PLACE = record("m", Field("x", NUMBER, "x", "real"), Field("y", NUMBER, "y", "imag"))
-ASSEMBLY = record(
+PLACE = json_record("m", JsonField("x", NUMBER, "x", "real"), JsonField("y", NUMBER, "y", "imag"))
+ASSEMBLY = json_record(
     "an assembly",
-    Field("angles", map_of(NUMBER), "of the group's links, rad"),
-    Field("points", map_of(PLACE), "of the group's links, m"),
-    Field("margin", NUMBER, "distance from a dead position: 0 there"),
-    Field("sketch", FLAG, "that of the sketch", "of_sketch"),
+    JsonField("angles", map_of(NUMBER), "of the group's links, rad"),
+    JsonField("points", map_of(PLACE), "of the group's links, m"),
+    JsonField("margin", NUMBER, "distance from a dead position: 0 there"),
+    JsonField("sketch", FLAG, "that of the sketch", "of_sketch"),
 )
-GROUP_ASSEMBLIES = record(
+GROUP_ASSEMBLIES = json_record(
     "a group",
-    Field("group", TEXT, "II(2,3)", "group.title"),
-    Field("method", TEXT, "closed form, polynomial, angles, many starts"),
-    Field("complete", FLAG, "whether it is proved that there are no others"),
-    Field("most", NUMBER, "so many are possible, if known"),
-    Field("moves", FLAG, "moves by itself here: assemblies without end"),
-    Field("assemblies", list_of(ASSEMBLY), "real ones"),
+    JsonField("group", TEXT, "II(2,3)", "group.title"),
+    JsonField("method", TEXT, "closed form, polynomial, angles, many starts"),
+    JsonField("complete", FLAG, "whether it is proved that there are no others"),
+    JsonField("most", NUMBER, "so many are possible, if known"),
+    JsonField("moves", FLAG, "moves by itself here: assemblies without end"),
+    JsonField("assemblies", list_of(ASSEMBLY), "real ones"),
 )
-ASSEMBLIES = record(
+ASSEMBLIES = json_record(
     "a place",
-    Field("position", optional(INTEGER), "its number; null: the place of the sketch", "number"),
-    Field("driver", NUMBER, "rad or m", "q"),
-    Field(
+    JsonField("position", optional(INTEGER), "its number; null: the place of the sketch", "number"),
+    JsonField("driver", NUMBER, "rad or m", "q"),
+    JsonField(
         "undecided",
         optional(TEXT),
         "group that the sketch does not decide",
         lambda here: here.undecided and here.undecided.title,
     ),
-    Field("lost", NAMES, "groups whose neighbours cannot be placed", lambda here: [g.title for g in here.lost]),
-    Field("groups", list_of(GROUP_ASSEMBLIES), "in solving order, links before placed as in the sketch"),
+    JsonField("lost", NAMES, "groups whose neighbours cannot be placed", lambda here: [g.title for g in here.lost]),
+    JsonField("groups", list_of(GROUP_ASSEMBLIES), "in solving order, links before placed as in the sketch"),
 )
 
 
-FORMAT = 1
+FORMAT_VERSION = 1
 SI = UnitSystem({"length": "m", "angle": "rad"})
 
 
-def _synthesis(results: Results) -> dict[str, Any]:
+def _synthesis_section(results: Results) -> dict[str, Any]:
     assert results.problem.synthesis is not None
     return synthesis_json(results.problem.synthesis, measure_problem(results), long=False)
 
 
-FIRST = (
-    Field("structure", STRUCTURE, "links, pairs and Assur groups", lambda r: r),
-    Field("space", SPACE, "the planar linkage counted in space", lambda r: count_in_space(r.linkage, r.structure)),
-    Field(
+SECTIONS_BEFORE_MOTION = (
+    JsonField("structure", STRUCTURE, "links, pairs and Assur groups", lambda r: r),
+    JsonField("space", SPACE, "the planar linkage counted in space", lambda r: count_in_space(r.linkage, r.structure)),
+    JsonField(
         "synthesis",
         JsonType({"type": "object"}),
         "what the file's synthesis asked, found and measured",
-        _synthesis,
+        _synthesis_section,
         lambda r: r.problem.synthesis is not None and r.motion is not None,
     ),
 )
-PROPERTY = record(
+PROPERTY = json_record(
     "a property that the file shows",
-    Field("property", TEXT, "in its words", "name"),
-    Field("value", NUMBER, "SI"),
-    Field("unit", TEXT, "of the value; empty for a number", lambda one: SI.symbol(one.dimension)),
-    Field("expected", optional(NUMBER), "what the file expects; null where it expects nothing"),
+    JsonField("property", TEXT, "in its words", "name"),
+    JsonField("value", NUMBER, "SI"),
+    JsonField("unit", TEXT, "of the value; empty for a number", lambda one: SI.symbol(one.dimension)),
+    JsonField("expected", optional(NUMBER), "what the file expects; null where it expects nothing"),
 )
-CHECK = record(
+CHECK = json_record(
     "a number against its limit",
-    Field("check", TEXT, "slot, pressure, load, near dead, lever", "kind"),
-    Field("of", TEXT, "pair, link, load or group; empty: the whole mechanism"),
-    Field("detail", TEXT, "end of the slot, group of the link, stroke in which the load drives"),
-    Field("at", NUMBER, "place of the driver, rad or m; null where there is none"),
-    Field(
+    JsonField("check", TEXT, "slot, pressure, load, near dead, lever", "kind"),
+    JsonField("of", TEXT, "pair, link, load or group; empty: the whole mechanism"),
+    JsonField("detail", TEXT, "end of the slot, group of the link, stroke in which the load drives"),
+    JsonField("at", NUMBER, "place of the driver, rad or m; null where there is none"),
+    JsonField(
         "value",
         NUMBER,
         "m beyond the end of the slot, rad of pressure angle, J with which the load drives, margin "
         "of the group, difference of the lever",
     ),
-    Field("limit", NUMBER, "the most, of margins the least"),
-    Field("holds", FLAG, "within its limit"),
+    JsonField("limit", NUMBER, "the most, of margins the least"),
+    JsonField("holds", FLAG, "within its limit"),
 )
-CENTRE = record(
+CENTRE = json_record(
     "of two links",
-    Field("links", NAMES, "the two"),
-    Field("x", optional(NUMBER), "m; null at infinity", lambda c: None if c.place is None else c.place.real),
-    Field("y", optional(NUMBER), "m", lambda c: None if c.place is None else c.place.imag),
-    Field(
+    JsonField("links", NAMES, "the two"),
+    JsonField("x", optional(NUMBER), "m; null at infinity", lambda c: None if c.place is None else c.place.real),
+    JsonField("y", optional(NUMBER), "m", lambda c: None if c.place is None else c.place.imag),
+    JsonField(
         "direction",
         optional(NUMBER),
         "in which it is at infinity, rad; null elsewhere",
         lambda c: None if c.direction is None else cmath.phase(c.direction),
     ),
-    Field("pair", TEXT, "that shows it; empty where there is none"),
+    JsonField("pair", TEXT, "that shows it; empty where there is none"),
 )
-EXTREME = record(
+EXTREME = json_record(
     "a quantity",
-    Field("kind", TEXT, "x, y of a point; angle of a link; s of a slide; R, M in a pair; R pin; M_b, F_b of a driver"),
-    Field("name", TEXT, "of what"),
-    Field("low", NUMBER, "least value, SI"),
-    Field("low_at", NUMBER, "driver's place there, rad or m"),
-    Field("high", NUMBER, "largest value, SI"),
-    Field("high_at", NUMBER, "driver's place there"),
+    JsonField(
+        "kind", TEXT, "x, y of a point; angle of a link; s of a slide; R, M in a pair; R pin; M_b, F_b of a driver"
+    ),
+    JsonField("name", TEXT, "of what"),
+    JsonField("low", NUMBER, "least value, SI"),
+    JsonField("low_at", NUMBER, "driver's place there, rad or m"),
+    JsonField("high", NUMBER, "largest value, SI"),
+    JsonField("high_at", NUMBER, "driver's place there"),
 )
-LAST = (
-    Field(
+SECTIONS_AFTER_MOTION = (
+    JsonField(
         "intermittent",
-        list_of(WHEEL),
+        list_of(INTERMITTENT_WHEEL),
         "wheels that a link takes along on some strokes, over a cycle",
         "wheels",
         "wheels",
     ),
-    Field(
+    JsonField(
         "centres",
         map_of(list_of(CENTRE)),
         "asked for: instantaneous centres, by the numbers of positions",
         lambda r: {str(r.numbers[k]): here for k, here in r.centres.items()},
         "centres",
     ),
-    Field("extremes", list_of(EXTREME), "with --extremes: over the whole cycle", there="extremes"),
-    Field(
+    JsonField("extremes", list_of(EXTREME), "with --extremes: over the whole cycle", there="extremes"),
+    JsonField(
         "assemblies",
         list_of(ASSEMBLIES),
         "with --assemblies: real assemblies of the groups, by places of the driver",
         there="assemblies",
     ),
-    Field("properties", list_of(PROPERTY), "what the file shows", properties_shown, lambda r: r.problem.shows),
-    Field("checks", list_of(CHECK), "what is worth a second look", run_checks, "lever"),
-    Field("warnings", NAMES, "sentences", lambda r: [*doubts(r.problem), *collect_warnings(r)]),
+    JsonField("properties", list_of(PROPERTY), "what the file shows", shown_properties, lambda r: r.problem.shows),
+    JsonField("checks", list_of(CHECK), "what is worth a second look", run_checks, "lever"),
+    JsonField("warnings", NAMES, "sentences", lambda r: [*find_slips(r.problem), *collect_warnings(r)]),
 )
-LARGE = ("positions", "kinematics", "forces", "lever", "energy")
+LARGE_SECTIONS = ("positions", "kinematics", "forces", "lever", "energy")
 
 
 def to_json(results: Results | ChainResults) -> dict[str, Any]:
     """The whole content of result.json as plain data."""
     with words_of_files():
-        return {key: plain(part) for key, part in sections(results)}
+        return {key: json_value(part) for key, part in sections(results)}
 
 
 def sections(results: Results | ChainResults, digits: dict[str, Any] | None = None) -> Iterator[tuple[str, Any]]:
     """The parts of result.json one after the other, with arrays as they are. digits: the section of that name."""
-    yield "tmm", FORMAT
+    yield "tmm", FORMAT_VERSION
     yield "problem", PROBLEM.content(results.problem)
     if isinstance(results, ChainResults):
         yield "chain", SPATIAL.content(results.chain)
         if results.problem.shows:
-            yield "properties", list_of(PROPERTY).content(properties_shown(results))
+            yield "properties", list_of(PROPERTY).content(shown_properties(results))
         yield "warnings", []
         return
-    yield from contents(FIRST, results)
-    yield from numbers(results)
+    yield from record_items(SECTIONS_BEFORE_MOTION, results)
+    yield from computed_sections(results)
     if digits is not None:
         yield "digits", digits
-    yield from contents(LAST, results)
+    yield from record_items(SECTIONS_AFTER_MOTION, results)
 
 
-def numbers(results: Results, parts: Collection[str] = LARGE) -> Iterator[tuple[str, Any]]:
+def computed_sections(results: Results, parts: Collection[str] = LARGE_SECTIONS) -> Iterator[tuple[str, Any]]:
     """What was computed, part by part, as arrays; of the large parts those named alone."""
-    return contents([part for part in MOTION_PARTS if part.key in parts or part.key not in LARGE], results)
+    return record_items(
+        [part for part in MOTION_SECTIONS if part.key in parts or part.key not in LARGE_SECTIONS], results
+    )
 
 
 def schema() -> dict[str, Any]:
     """A JSON Schema (draft 2020-12). SI and radians throughout; forces of pairs act on link `on`."""
-    computed = {"type": "object", "properties": properties(MOTION_PARTS)}
-    digits = record(
+    computed = {"type": "object", "properties": field_schemas(MOTION_SECTIONS)}
+    digits = json_record(
         "",
-        Field("number", list_of(INTEGER), "positions that were judged: arrays below have one entry for each"),
-        Field("scale", NUMBER, "of a drawing on A4, m a mm: that of `paper`"),
-        Field(
+        JsonField("number", list_of(INTEGER), "positions that were judged: arrays below have one entry for each"),
+        JsonField("scale", NUMBER, "of a drawing on A4, m a mm: that of `paper`"),
+        JsonField(
             "bound",
             JsonType(computed),
             "how far each number may be from the truth by rounding; null: it is not known at all",
         ),
-        Field(
+        JsonField(
             "lengths", JsonType(computed), "its change when every length changes by 0.1 %, worst case to first order"
         ),
-        Field("paper", JsonType(computed), "its change when every coordinate is 0.5 mm off on paper, likewise"),
+        JsonField("paper", JsonType(computed), "its change when every coordinate is 0.5 mm off on paper, likewise"),
     )
     parts = (
-        Field("problem", PROBLEM, "what was computed"),
-        *FIRST,
-        Field("chain", SPATIAL, "a chain given by pairs alone"),
-        *MOTION_PARTS,
-        Field(
+        JsonField("problem", PROBLEM, "what was computed"),
+        *SECTIONS_BEFORE_MOTION,
+        JsonField("chain", SPATIAL, "a chain given by pairs alone"),
+        *MOTION_SECTIONS,
+        JsonField(
             "digits",
             digits,
             "how far the numbers of this file, which are float64 in full, are to be trusted: in their places and units",
         ),
-        *LAST,
-        Field("part", TEXT, "what of a run is here, where not all is: -p 2 gives p2, --no-drawings no-drawings"),
-        Field("files", NAMES, "written beside this file"),
+        *SECTIONS_AFTER_MOTION,
+        JsonField("part", TEXT, "what of a run is here, where not all is: -p 2 gives p2, --no-drawings no-drawings"),
+        JsonField("files", NAMES, "written beside this file"),
     )
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -453,5 +457,8 @@ def schema() -> dict[str, Any]:
         "Per unit of the driver's motion: rad for a crank, m for a driven slider.",
         "type": "object",
         "required": ["tmm", "problem", "warnings"],
-        "properties": {"tmm": {"description": "version of this format", "const": FORMAT}, **properties(parts)},
+        "properties": {
+            "tmm": {"description": "version of this format", "const": FORMAT_VERSION},
+            **field_schemas(parts),
+        },
     }

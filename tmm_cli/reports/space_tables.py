@@ -23,8 +23,8 @@ from tmm_cli.mechanics.structure import (
     find_contours,
     is_dependent,
 )
-from tmm_cli.reports.structure_tables import left_out
-from tmm_cli.reports.table import Column, Table, table_of_words
+from tmm_cli.reports.structure_tables import reduction_sentences
+from tmm_cli.reports.table import Column, Table, text_table
 from tmm_cli.synthesis import GROUP_TYPES, KinematicChain, Scheme
 
 
@@ -37,18 +37,18 @@ def space_tables(results: Results) -> Iterable[Table]:
         (_("W by Somov-Malyshev"), found.chain.count),
         (
             _("redundant constraints q = Wo + Wm - W"),
-            redundancy(found.wanted, found.local, found.chain.mobility, found.redundant),
+            redundancy_equation(found.wanted, found.local, found.chain.mobility, found.redundant),
         ),
     ]
     if found.replacements:
-        q = redundancy(found.wanted, found.rank.local, found.proposed.mobility, found.redundant_then)
+        q = redundancy_equation(found.wanted, found.rank.local, found.proposed.mobility, found.redundant_then)
         facts += [(_("W by Somov-Malyshev, with the pairs below"), found.proposed.count)]
         facts += [(_("redundant constraints q = Wo + Wm - W, with the pairs below"), q)]
     note = _(
         "No replacement of turning pairs by cylindrical or spherical ones and of sliding pairs "
         "by cylindrical or planar ones was found that leaves q = 0."
     )
-    yield table_of_words(
+    yield text_table(
         "space",
         _("The same pairs in space: redundant constraints"),
         (_("what"), _("value")),
@@ -63,8 +63,8 @@ def space_tables(results: Results) -> Iterable[Table]:
         title, notes = _("Pairs that leave no redundant constraints"), [note]
         if found.redundant_then:
             title = _("Pairs that leave no redundant constraints out of the plane")
-            notes.append(_("In the plane: {redundant}.").format(redundant="; ".join(left_out(structure))))
-        yield table_of_words(
+            notes.append(_("In the plane: {redundant}.").format(redundant="; ".join(reduction_sentences(structure))))
+        yield text_table(
             "replacements",
             title,
             (_("pair"), _("links"), _("is"), _("becomes"), _("freedoms")),
@@ -80,14 +80,14 @@ def contour_table(found: Sequence[Contour], structure: Structure | None = None) 
     """Contours by links and pairs; of a planar linkage with redundant links or pairs, which of them are dependent."""
     headers, rows = [_("contour"), _("pairs")], [[contour.title, ", ".join(contour.pairs)] for contour in found]
     if structure is None or not any(is_dependent(contour, structure) for contour in found):
-        return table_of_words("contours", _("Independent contours"), headers, rows)
+        return text_table("contours", _("Independent contours"), headers, rows)
     kinds = [_("dependent") if is_dependent(contour, structure) else _("independent") for contour in found]
     rows = [[*row, kind] for row, kind in zip(rows, kinds, strict=True)]
     note = _("A dependent contour repeats another one: the links or pairs that close it are redundant.")
-    return table_of_words("contours", _("Contours"), [*headers, _("kind")], rows, (note,))
+    return text_table("contours", _("Contours"), [*headers, _("kind")], rows, (note,))
 
 
-def redundancy(wanted: int, local: int, mobility: int, redundant: int) -> str:
+def redundancy_equation(wanted: int, local: int, mobility: int, redundant: int) -> str:
     """Redundant constraints as they are counted."""
     w = f"({mobility})" if mobility < 0 else str(mobility)
     return f"{wanted} + {local} - {w} = {redundant}"
@@ -99,8 +99,8 @@ def redundancy(wanted: int, local: int, mobility: int, redundant: int) -> str:
 def chain_tables(results: ChainResults) -> Iterable[Table]:
     """Up to four small tables."""
     found = results.chain
-    yield table_of_words("structure", _("Structure"), (_("what"), _("value")), _facts(found), _notes(found))
-    yield table_of_words(
+    yield text_table("structure", _("Structure"), (_("what"), _("value")), _chain_rows(found), _chain_notes(found))
+    yield text_table(
         "pairs",
         _("Kinematic pairs"),
         (_("pair"), _("links"), _("kind"), _("freedoms"), _("class")),
@@ -109,37 +109,40 @@ def chain_tables(results: ChainResults) -> Iterable[Table]:
     if found.contours:
         yield contour_table(found.contours)
     if found.local:
-        yield table_of_words(
+        yield text_table(
             "local",
             _("Local freedoms"),
             (_("links"), _("freedoms"), _("between pairs"), _("what it does")),
-            [(", ".join(x.links), str(x.freedoms), ", ".join(p.name for p in x.ends), _how(x)) for x in found.local],
+            [
+                (", ".join(x.links), str(x.freedoms), ", ".join(p.name for p in x.ends), _local_freedom_text(x))
+                for x in found.local
+            ],
         )
 
 
-def _facts(found: ChainCount) -> Iterable[tuple[str, str]]:
+def _chain_rows(found: ChainCount) -> Iterable[tuple[str, str]]:
     chain = found.chain
     yield _("moving links n"), str(len(chain.links))
     yield _("pairs with 1 to 5 freedoms"), ", ".join(f"p{i} = {chain.p(i)}" for i in range(1, 6))
     yield _("W by Somov-Malyshev"), chain.count
     yield _("independent contours K = p - n"), str(len(chain.pairs) - len(chain.links))
-    yield _("chain"), _form(found)
+    yield _("chain"), _chain_form(found)
     yield _("local freedoms Wm"), str(found.local_mobility)
     yield _("without them, W - Wm"), str(found.effective)
     if found.wanted is not None and found.redundant is not None:
-        q = redundancy(found.wanted, found.local_mobility, found.mobility, found.redundant)
+        q = redundancy_equation(found.wanted, found.local_mobility, found.mobility, found.redundant)
         yield _("redundant constraints q = Wo + Wm - W"), q
     if found.output is not None:
         yield _("manoeuvrability m: W with link {link} held").format(link=found.output), chain.held(found.output).count
 
 
-def _form(found: ChainCount) -> str:
+def _chain_form(found: ChainCount) -> str:
     if found.form == "mixed":
         return _("closed, with open branches (links {links})").format(links=", ".join(found.branches))
     return _("open") if found.form == "open" else _("closed: every link lies in a contour")
 
 
-def _notes(found: ChainCount) -> Iterable[str]:
+def _chain_notes(found: ChainCount) -> Iterable[str]:
     seen = sum(x.freedoms for x in found.local)
     if found.given_local is not None and found.given_local < seen:
         yield _("{given} local freedoms are given, the pairs show {found}.").format(given=found.given_local, found=seen)
@@ -163,7 +166,7 @@ def _notes(found: ChainCount) -> Iterable[str]:
         )
 
 
-def _how(part: LocalFreedom) -> str:
+def _local_freedom_text(part: LocalFreedom) -> str:
     kinds = part.kinds
     if kinds & CONTACT_PAIRS and kinds & {*AXLE_FREEDOMS}:
         return _("rotates about its own axis as a roller")
@@ -196,8 +199,8 @@ def schemes_table(
         Column(N_("formula of structure"), [s.formula for s in found]),
         Column(N_("groups"), [", ".join(s.types) for s in found]),
         Column(N_("links/pairs"), [f"{s.links}/{len(s.joints)}" for s in found]),
-        Column(N_("turning pairs"), [_pairs(s, "R") for s in found]),
-        Column(N_("sliding pairs"), [_pairs(s, "P") for s in found]),
+        Column(N_("turning pairs"), [_scheme_pairs(s, "R") for s in found]),
+        Column(N_("sliding pairs"), [_scheme_pairs(s, "P") for s in found]),
     ]
     if written is not None:
         none = _("none: no pose was found that assembles")
@@ -217,7 +220,7 @@ def not_enumerated(types: Iterable[str]) -> Iterable[str]:
         )
 
 
-def _pairs(scheme: Scheme, kind: str) -> str:
+def _scheme_pairs(scheme: Scheme, kind: str) -> str:
     return " ".join(f"{i}-{j}" for i, j, this in scheme.joints if this == kind)
 
 

@@ -16,11 +16,11 @@ from typing import Any, Final, Literal
 from tmm_cli.language import _, half_up, typeset
 from tmm_cli.problem import ProblemError, UnitSystem, typeset_unit
 from tmm_cli.reports.table import Column, Table, csv_cell
-from tmm_cli.reports.terminal import figures
+from tmm_cli.reports.terminal import printed_figures
 
-INSTALL: Final = "pip install 'tmm-cli[excel]'"
-WRITTEN: Final = datetime(2000, 1, 1)  # the same tables give the same bytes
-PLAIN: Final = {
+INSTALL_COMMAND: Final = "pip install 'tmm-cli[excel]'"
+CREATED: Final = datetime(2000, 1, 1)  # the same tables give the same bytes
+WORKBOOK_OPTIONS: Final = {
     "constant_memory": True,
     "strings_to_formulas": False,
     "strings_to_urls": False,
@@ -28,7 +28,9 @@ PLAIN: Final = {
 }
 
 
-def empty_workbook(file: str, stream: BytesIO, options: Mapping[str, bool] = PLAIN, allowed: str = INSTALL) -> Any:
+def open_workbook(
+    file: str, stream: BytesIO, options: Mapping[str, bool] = WORKBOOK_OPTIONS, allowed: str = INSTALL_COMMAND
+) -> Any:
     """One of xlsxwriter that is to be written into a stream; file: what a refusal calls it. Raises ProblemError."""
     try:
         from xlsxwriter import Workbook
@@ -39,21 +41,23 @@ def empty_workbook(file: str, stream: BytesIO, options: Mapping[str, bool] = PLA
     return Workbook(stream, dict(options))
 
 
-Kind = Literal["xlsx", "csv-local"]
+SpreadsheetKind = Literal["xlsx", "csv-local"]
 Cell = str | float | None
 Files = Iterator[tuple[str, Iterable[str | bytes]]]
 
-NUMBER = re.compile(r"-?(0|[1-9]\d{0,14})([.,]\d+)?(e[+-]?\d{1,2})?")  # in a column of words: a position, a value
+NUMBER_IN_TEXT = re.compile(
+    r"-?(0|[1-9]\d{0,14})([.,]\d+)?(e[+-]?\d{1,2})?"
+)  # in a column of words: a position, a value
 MOST_ROWS = 1_000_000  # of a sheet; the format has 48 576 more
 WIDTHS = 8.0, 60.0  # of columns, letters: at least, at most
 HEAD_HEIGHT = 32  # points: two lines
 LONGEST_NAME, FORBIDDEN = 31, re.compile(r"[\[\]:*?/\\']")  # of sheets
 
 
-def files(kind: Kind, tables: Iterable[Table], units: UnitSystem) -> Files:
+def spreadsheet_files(kind: SpreadsheetKind, tables: Iterable[Table], units: UnitSystem) -> Files:
     """By their names, piece by piece. Raises ProblemError."""
     if kind == "xlsx":
-        yield "tables.xlsx", (workbook(tables, units),)
+        yield "tables.xlsx", (write_workbook(tables, units),)
         return
     for table in tables:
         yield f"{table.name}-local.csv", local_csv(table, units)
@@ -62,18 +66,18 @@ def files(kind: Kind, tables: Iterable[Table], units: UnitSystem) -> Files:
 def spreadsheet_cells(column: Column, units: UnitSystem) -> list[Cell]:
     """Numbers with the figures that a terminal prints, words; None where there is nothing."""
     if column.dimension is None:
-        return [_of_word(str(value)) for value in column.values]
+        return [_word_cell(str(value)) for value in column.values]
     values = column.numbers(units).tolist()
-    return [_rounded(value, n) for value, n in zip(values, figures(column, units).tolist(), strict=True)]
+    return [_number_cell(value, n) for value, n in zip(values, printed_figures(column, units).tolist(), strict=True)]
 
 
-def _of_word(text: str) -> Cell:
+def _word_cell(text: str) -> Cell:
     if not text:
         return None
-    return float(text.replace(",", ".")) if NUMBER.fullmatch(text) else typeset(text)
+    return float(text.replace(",", ".")) if NUMBER_IN_TEXT.fullmatch(text) else typeset(text)
 
 
-def _rounded(value: float, count: int) -> float | None:
+def _number_cell(value: float, count: int) -> float | None:
     if count < 0:
         return None
     return float(f"{half_up(value):.{count}g}") + 0.0 if count else 0.0
@@ -83,20 +87,20 @@ def local_csv(table: Table, units: UnitSystem) -> Iterator[str]:
     """A table as text; the mark at its beginning says to spreadsheets that it is UTF-8."""
     yield "\ufeff" + ";".join(csv_cell(typeset(typeset_unit(column.heading(units)))) for column in table.columns) + "\n"
     for row in zip(*(spreadsheet_cells(column, units) for column in table.columns), strict=True):
-        yield ";".join(map(_text, row)) + "\n"
+        yield ";".join(map(_cell_text, row)) + "\n"
 
 
-def _text(cell: Cell) -> str:
+def _cell_text(cell: Cell) -> str:
     if isinstance(cell, float):
         return f"{cell:.15g}".replace(".", ",")
     return "" if cell is None else csv_cell(cell)
 
 
-def workbook(tables: Iterable[Table], units: UnitSystem) -> bytes:
+def write_workbook(tables: Iterable[Table], units: UnitSystem) -> bytes:
     """Sheets with headings that stay in sight. Texts are written as texts: nothing in it is a formula or a link."""
     stream = io.BytesIO()
-    with empty_workbook("tables.xlsx", stream) as book:
-        book.set_properties({"created": WRITTEN})
+    with open_workbook("tables.xlsx", stream) as book:
+        book.set_properties({"created": CREATED})
         formats = {
             "title": book.add_format({"bold": True, "font_size": 12}),
             "words": book.add_format({"align": "left", "indent": 1}),
@@ -108,16 +112,16 @@ def workbook(tables: Iterable[Table], units: UnitSystem) -> bytes:
         }
         taken: set[str] = set()
         for table in tables:
-            _sheet(book.add_worksheet(_name(table.title, taken)), table, units, formats)
+            _write_sheet(book.add_worksheet(_sheet_name(table.title, taken)), table, units, formats)
     return stream.getvalue()
 
 
-def _sheet(sheet: Any, table: Table, units: UnitSystem, formats: Mapping[str, Any]) -> None:
+def _write_sheet(sheet: Any, table: Table, units: UnitSystem, formats: Mapping[str, Any]) -> None:
     """Title, headings, rows, notes."""
     heads = [typeset(typeset_unit(column.heading(units))) for column in table.columns]
     columns = [spreadsheet_cells(column, units)[:MOST_ROWS] for column in table.columns]
     for k, (head, column) in enumerate(zip(heads, columns, strict=True)):
-        sheet.set_column(k, k, _width(head, column))
+        sheet.set_column(k, k, _column_width(head, column))
     sheet.freeze_panes(2, 1)
     sheet.set_landscape()
     sheet.set_paper(9)  # A4
@@ -138,15 +142,15 @@ def _sheet(sheet: Any, table: Table, units: UnitSystem, formats: Mapping[str, An
         sheet.write_string(n, 0, typeset(note), formats["note"])
 
 
-def _width(head: str, column: Sequence[Cell]) -> float:
+def _column_width(head: str, column: Sequence[Cell]) -> float:
     """Room for the longest word of the heading, which may be broken, and for every cell."""
-    longest = max((len(_text(cell)) for cell in column), default=0)
+    longest = max((len(_cell_text(cell)) for cell in column), default=0)
     word = max(map(len, head.split()), default=0)
     least, most = WIDTHS
     return min(max(least, longest + 3, word + 3, len(head) / 1.6), most)
 
 
-def _name(title: str, taken: set[str]) -> str:
+def _sheet_name(title: str, taken: set[str]) -> str:
     """A name that a sheet may have, and no other one has."""
     name = " ".join(FORBIDDEN.sub(" ", title.partition(":")[0]).split())
     if len(name) > LONGEST_NAME:

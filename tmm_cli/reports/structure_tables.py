@@ -20,9 +20,9 @@ from tmm_cli.mechanics.structure import (
     link_motion,
     six_bar_schemes,
 )
-from tmm_cli.reports.table import Table, table_of_words
+from tmm_cli.reports.table import Table, text_table
 
-PLACES, SAME_DIRECTION = 9, 1e-6  # of the driver at which a direction is looked at; rad
+DIRECTION_POSITIONS, SAME_DIRECTION = 9, 1e-6  # of the driver at which a direction is looked at; rad
 ROLES = {
     "crank": N_("crank"),
     "rocker": N_("rocker"),
@@ -41,7 +41,7 @@ ROLES = {
     "cylinder": N_("cylinder"),
     "piston": N_("piston"),
 }
-COMMON = {
+COMMON_LABELS = {
     *ROLES.values(),
     N_("connecting rod"),
     N_("crankshaft"),
@@ -57,12 +57,12 @@ PAIRS = {
     "K": N_("wheel and rack (K)"),
     "C": N_("cam and follower (C)"),
 }
-HIGHER = {
+HIGHER_PAIRS = {
     "G": N_("{count} of toothed wheels"),
     "K": N_("{count} of wheel and rack"),
     "C": N_("{count} of cam and follower"),
 }
-CLASSES = {
+CLASSIFICATIONS = {
     "open": N_("open"),
     "closed": N_("closed"),
     "elementary": N_("elementary: the driver alone"),
@@ -93,20 +93,26 @@ SCHEMES = {
 def structure_tables(results: Results) -> Iterable[Table]:
     """Four small tables."""
     structure, linkage = results.structure, results.linkage
-    yield table_of_words("structure", _("Structure"), (_("what"), _("value")), _facts(structure))
+    yield text_table("structure", _("Structure"), (_("what"), _("value")), _structure_rows(structure))
     links, roles = [linkage.links[name] for name in structure.links], results.roles
     note = _("A crank is told from a rocker by moving the linkage.")
-    yield table_of_words(
+    yield text_table(
         "links",
         _("Links"),
         (_("link"), _("is a"), _("called"), _("points"), _("motion")),
         [
-            (x.name, _(ROLES[roles[x.name]]), called(x.label), ", ".join(x.points), motion_in_words(results, x.name))
+            (
+                x.name,
+                _(ROLES[roles[x.name]]),
+                translate_label(x.label),
+                ", ".join(x.points),
+                describe_link_motion(results, x.name),
+            )
             for x in links
         ],
         (note,) if results.motion is None and results.mechanism.turned else (),
     )
-    yield table_of_words(
+    yield text_table(
         "pairs",
         _("Kinematic pairs"),
         (_("pair"), _("links"), _("kind"), _("where"), _("freedoms"), _("class"), _("code")),
@@ -123,7 +129,7 @@ def structure_tables(results: Results) -> Iterable[Table]:
             for p in structure.pairs
         ],
     )
-    yield table_of_words(
+    yield text_table(
         "groups",
         _("Assur groups, in solving order"),
         (
@@ -145,7 +151,7 @@ def structure_tables(results: Results) -> Iterable[Table]:
                 g.type,
                 ", ".join(p.name for p in g.inner),
                 ", ".join(f"{p.name} ({printed(p.i)}-{printed(p.j)})" for p in g.outer),
-                counted_mobility(g.count),
+                mobility_equation(g.count),
                 str(g.type_number or ""),
                 g.letters,
             )
@@ -158,12 +164,12 @@ def mobility_with_rollers(structure: Structure) -> str:
     """3*5 - 2*6 - 1 = 2: rollers counted as links, each hinged to its follower, and the local freedoms they add."""
     rollers = [pair.mesh.roller for pair in structure.pairs if pair.mesh is not None and pair.mesh.roller]
     n, higher = len(structure.links) + len(rollers), structure.higher
-    mobility = counted_mobility((n, len(structure.pairs) - higher + len(rollers), higher))
+    mobility = mobility_equation((n, len(structure.pairs) - higher + len(rollers), higher))
     text = _("{mobility}, of which Wm = {local} is local: the turning of rollers ({rollers}) moves nothing else")
     return text.format(mobility=mobility, local=len(rollers), rollers=", ".join(rollers))
 
 
-def left_out(structure: Structure) -> Iterable[str]:
+def reduction_sentences(structure: Structure) -> Iterable[str]:
     """What the structural report leaves out or counts as one, with the redundant constraints q that it adds."""
     for rigid in structure.reduction.rigid:
         links = ", ".join(link for link in rigid.links if link != FRAME)
@@ -188,7 +194,7 @@ def left_out(structure: Structure) -> Iterable[str]:
         yield text.format(pair=pair.pair, q=pair.constraints)
 
 
-def indeterminate(structure: Structure) -> Iterable[str]:
+def indeterminate_reactions(structure: Structure) -> Iterable[str]:
     """What redundant constraints do to reactions: nothing to the balancing load."""
     among = dict.fromkeys(link for passive in structure.passive for link in passive.among)
     if among:
@@ -198,29 +204,29 @@ def indeterminate(structure: Structure) -> Iterable[str]:
         ).format(links=", ".join(among))
 
 
-def counted_mobility(count: tuple[int, int, int]) -> str:
+def mobility_equation(count: tuple[int, int, int]) -> str:
     """3*3 - 2*4 = 1: Chebyshev's formula with its numbers."""
     n, lower, higher = count
     held = f" - {higher}" if higher else ""
     return f"3*{n} - 2*{lower}{held} = {3 * n - 2 * lower - higher}"
 
 
-def counted_by_classes(count: tuple[int, int, int]) -> str:
+def mobility_by_classes(count: tuple[int, int, int]) -> str:
     """3*3 - 2*4 - 0 = 1: 3n - 2 p5 - p4 with its numbers, from n, lower and higher pairs."""
     n, lower, higher = count
     return f"3*{n} - 2*{lower} - {higher} = {3 * n - 2 * lower - higher}"
 
 
-def counted_generally(count: tuple[int, int, int]) -> str:
+def generalised_mobility(count: tuple[int, int, int]) -> str:
     """3*3 - 2*4 - 1*0 = 1: the generalised formula with H = 3 motions of a free link, so H - 1 = 2 and H - 2 = 1."""
     n, lower, higher = count
     return f"3*{n} - 2*{lower} - 1*{higher} = {3 * n - 2 * lower - higher}"
 
 
-def counted_with_replacements(count: tuple[int, int, int]) -> str:
+def mobility_with_replacements(count: tuple[int, int, int]) -> str:
     """3*5 - 2*7 = 1: the mobility after each higher pair is replaced by a link with two revolute pairs."""
     n, lower, higher = count
-    return counted_mobility((n + higher, lower + 2 * higher, 0))
+    return mobility_equation((n + higher, lower + 2 * higher, 0))
 
 
 def motion_of_link(results: Results, name: str) -> str:
@@ -234,7 +240,7 @@ def motion_of_link(results: Results, name: str) -> str:
     return motion
 
 
-def motion_in_words(results: Results, name: str) -> str:
+def describe_link_motion(results: Results, name: str) -> str:
     """The motion of a link relative to the frame, with its centre or its guide."""
     linkage = results.linkage
     motion = motion_of_link(results, name)
@@ -251,12 +257,12 @@ def _keeps_direction(results: Results, name: str) -> bool:
     reach = results.driver_range
     if reach is None:
         return False
-    motion = motion_at_positions(results, np.linspace(reach.start, reach.end, PLACES), 0)
+    motion = motion_at_positions(results, np.linspace(reach.start, reach.end, DIRECTION_POSITIONS), 0)
     turned = np.angle(motion.poses[name].z / motion.poses[name].z[motion.placed][:1])[motion.placed]
     return bool(turned.size) and bool(np.all(np.abs(turned) < SAME_DIRECTION))
 
 
-def schemes_in_words(structure: Structure) -> str:
+def describe_schemes(structure: Structure) -> str:
     """The basic schemes of the contours of four links, and of the whole if it is a six-bar; empty without a name."""
     names = [f"{_(SCHEMES[scheme])} {title}" for title, scheme in basic_schemes(structure).items()]
     six_bar = six_bar_schemes(structure)
@@ -265,12 +271,12 @@ def schemes_in_words(structure: Structure) -> str:
     return ", ".join(names)
 
 
-def kind_in_words(structure: Structure) -> str:
+def describe_classification(structure: Structure) -> str:
     """Return the kind of the chain and of the structure: closed, complex: the driver and several groups."""
-    return ", ".join(_(CLASSES[word]) for word in classify_linkage(structure))
+    return ", ".join(_(CLASSIFICATIONS[word]) for word in classify_linkage(structure))
 
 
-def contours_in_words(structure: Structure) -> str:
+def describe_contours(structure: Structure) -> str:
     """Return K = p - n and how many of these contours only repeat another one."""
     dependent = sum(is_dependent(contour, structure) for contour in find_contours(structure.pairs, structure.links))
     if not dependent:
@@ -278,18 +284,18 @@ def contours_in_words(structure: Structure) -> str:
     return _("{count}, of which dependent: {dependent}").format(count=structure.contours, dependent=dependent)
 
 
-def primary_mechanisms_in_words(structure: Structure) -> str:
+def describe_primary_mechanisms(structure: Structure) -> str:
     """Return the primary mechanisms, and their freedoms together: each driver has one."""
     names = ", ".join(map(structure.driver_title, structure.drivers))
     return _("{names}; together W = {w}").format(names=names, w=len(structure.drivers))
 
 
-def called(label: str) -> str:
+def translate_label(label: str) -> str:
     """The file's own name of a link; a usual one in the reader's language."""
-    return _(label) if label in COMMON else label
+    return _(label) if label in COMMON_LABELS else label
 
 
-def _facts(structure: Structure) -> Iterable[tuple[str, str]]:
+def _structure_rows(structure: Structure) -> Iterable[tuple[str, str]]:
     n, higher, w = len(structure.links), structure.higher, structure.mobility
     lower = len(structure.pairs) - higher
     turning = sum(p.kind == "R" for p in structure.pairs)
@@ -300,34 +306,34 @@ def _facts(structure: Structure) -> Iterable[tuple[str, str]]:
     )
     if higher:
         kinds: Counter[str] = Counter(pair.kind for pair in structure.pairs)
-        told = ", ".join(_(text).format(count=kinds[kind]) for kind, text in HIGHER.items() if kinds[kind])
+        told = ", ".join(_(text).format(count=kinds[kind]) for kind, text in HIGHER_PAIRS.items() if kinds[kind])
         yield _("higher pairs p2"), f"{higher} ({told})"
         yield _("mobility W = 3n - 2 p1 - p2"), f"3*{n} - 2*{lower} - {higher} = {w}"
     else:
         yield _("mobility W = 3n - 2 p1"), f"3*{n} - 2*{lower} = {w}"
     count = (n, lower, higher)
-    yield _("by classes, W = 3n - 2 p5 - p4"), counted_by_classes(count)
-    yield _("generalised formula W = Hn - sum((H - i) p_i), H = 3"), counted_generally(count)
+    yield _("by classes, W = 3n - 2 p5 - p4"), mobility_by_classes(count)
+    yield _("generalised formula W = Hn - sum((H - i) p_i), H = 3"), generalised_mobility(count)
     if higher:
         text = _("{mobility} (each by a link with two turning pairs)")
         yield (
             _("W with links in place of higher pairs"),
-            text.format(mobility=counted_with_replacements(count)),
+            text.format(mobility=mobility_with_replacements(count)),
         )
     if any(pair.mesh is not None and pair.mesh.roller for pair in structure.pairs):
         yield _("W with rollers as links"), mobility_with_rollers(structure)
     if structure.passive:
         yield _("W in truth, by rank"), str(w + structure.redundant)
-    yield _("independent contours K = p - n"), contours_in_words(structure)
+    yield _("independent contours K = p - n"), describe_contours(structure)
     yield _("formula of structure"), structure.formula
     if len(structure.drivers) > 1:
-        yield _("primary mechanisms"), primary_mechanisms_in_words(structure)
-    for sentence in left_out(structure):
+        yield _("primary mechanisms"), describe_primary_mechanisms(structure)
+    for sentence in reduction_sentences(structure):
         yield "", sentence
     if structure.reduction:
-        yield _("W of the formula of structure"), counted_mobility(structure.count)
-    yield _("chain, and kind of structure"), kind_in_words(structure)
+        yield _("W of the formula of structure"), mobility_equation(structure.count)
+    yield _("chain, and kind of structure"), describe_classification(structure)
     yield _("class of the mechanism"), structure.roman
-    schemes = schemes_in_words(structure)
+    schemes = describe_schemes(structure)
     if schemes:
         yield _("basic schemes"), schemes

@@ -13,16 +13,16 @@ from tmm_cli.language import N_, _, numeral, translated
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.quantities import DIMENSIONS
 from tmm_cli.problem import Synthesised, UnitSystem
-from tmm_cli.reports.table import Column, Table, plain
+from tmm_cli.reports.table import Column, Table, json_value
 from tmm_cli.synthesis import Kind, Listing, MeasuredDemand, NamedValue, measure_problem
 
-NUMERIC = (*DIMENSIONS, "share")
+NUMERIC_KINDS = (*DIMENSIONS, "share")
 ROUNDING = 1e-13  # relative: a smaller difference is rounding, and is told as none
 DIGITS = 10  # on a terminal; files have 15
 # columns as those of a listing, and kinds beside its own: `by`, whether the file asks for it; `share`, to two digits.
 # what has no header is in result.json only
-VALUE = (("quantity", N_("quantity"), "word"), ("value", N_("value"), "mixed"), ("kind", N_("unit"), "unit"))
-MEASURED = (
+VALUE_COLUMNS = (("quantity", N_("quantity"), "word"), ("value", N_("value"), "mixed"), ("kind", N_("unit"), "unit"))
+MEASURED_COLUMNS = (
     ("quantity", N_("quantity"), "word"),
     ("asked", N_("by"), "by"),
     ("wanted", N_("wanted"), "mixed"),
@@ -51,23 +51,26 @@ def tables_of_synthesis(
         _("Asked: {task}").format(task=found.task),
         _("Source: {source}").format(source=translated(outcome.source)),
     )
-    yield _table(_values("asked", title, outcome.asked, bounded), units, digits)
-    given = _values("found", N_("Found"), outcome.found, found.names or None)
-    yield _table(given, units, digits, (*outcome.notes, source))
+    yield _listing_table(_value_listing("asked", title, outcome.asked, bounded), units, digits)
+    given = _value_listing("found", N_("Found"), outcome.found, found.names or None)
+    yield _listing_table(given, units, digits, (*outcome.notes, source))
     for listing in outcome.listings:
-        yield _table(listing, units, digits)
+        yield _listing_table(listing, units, digits)
     if measured:
-        yield _table(_measured(measured), units, digits)
+        yield _listing_table(_measured_listing(measured), units, digits)
 
 
-def parameters(found: Synthesised, units: UnitSystem) -> Table:
+def parameter_table(found: Synthesised, units: UnitSystem) -> Table:
     """For `tmm explain`: the parameters that were found."""
     values = tuple(found.outcome.parameters[name] for name in found.names if name in found.outcome.parameters)
-    listing, note = _values("", N_("Parameters found by synthesis"), values, found.names or None), _("Asked: {task}")
-    return _table(listing, units, DIGITS, (note.format(task=found.task),))
+    listing, note = (
+        _value_listing("", N_("Parameters found by synthesis"), values, found.names or None),
+        _("Asked: {task}"),
+    )
+    return _listing_table(listing, units, DIGITS, (note.format(task=found.task),))
 
 
-def missed(measured: Sequence[MeasuredDemand], units: UnitSystem) -> Iterable[str]:
+def unmet_demand_sentences(measured: Sequence[MeasuredDemand], units: UnitSystem) -> Iterable[str]:
     """What is not met, and what rounding leaves open, in words."""
     for m in measured:
         if m.open:
@@ -75,9 +78,11 @@ def missed(measured: Sequence[MeasuredDemand], units: UnitSystem) -> Iterable[st
                 "{quantity}: the output all but rests where a stroke ends, and rounding leaves {by} of it open"
             ).format(quantity=translated(m.demand.text), by=numeral(m.open, ".2g"))
         if not m.met:
-            wanted, on = (_shown(value, m.demand.kind, units, DIGITS) for value in (m.demand.value, m.value))
+            wanted, on = (_value_text(value, m.demand.kind, units, DIGITS) for value in (m.demand.value, m.value))
             yield _("{quantity}: wanted {wanted}, measured {found}").format(
-                quantity=translated(m.demand.text), wanted=f"{wanted} {_unit(m.demand.kind, units)}".rstrip(), found=on
+                quantity=translated(m.demand.text),
+                wanted=f"{wanted} {_unit_text(m.demand.kind, units)}".rstrip(),
+                found=on,
             )
 
 
@@ -89,43 +94,43 @@ def synthesis_json(
     keys = {value.name: value.name for value in (*outcome.asked, *outcome.found) if value.name}
     return {
         "task": found.task,
-        "asked": _records(_values("asked", "", outcome.asked, keys)),
-        "found": _records(_values("found", "", outcome.found, keys)),
-        "parameters": {found.names[n]: plain(float(v.value)) for n, v in outcome.parameters.items()},
-        "tables": {listing.name: _records(listing) for listing in outcome.listings if long or not listing.long},
+        "asked": _listing_records(_value_listing("asked", "", outcome.asked, keys)),
+        "found": _listing_records(_value_listing("found", "", outcome.found, keys)),
+        "parameters": {found.names[n]: json_value(float(v.value)) for n, v in outcome.parameters.items()},
+        "tables": {listing.name: _listing_records(listing) for listing in outcome.listings if long or not listing.long},
         "source": outcome.source,
-        "measured": None if measured is None else _records(_measured(measured)),
+        "measured": None if measured is None else _listing_records(_measured_listing(measured)),
         "met": None if measured is None else all(m.met for m in measured),
     }
 
 
-def _values(name: str, title: str, values: Sequence[NamedValue], names: Mapping[str, str] | None) -> Listing:
+def _value_listing(name: str, title: str, values: Sequence[NamedValue], names: Mapping[str, str] | None) -> Listing:
     """Quantities row by row; names: how their parameters are called; None: there are none."""
     rows = tuple((v.text, v.value, v.kind) for v in values)
     if names is None:
-        return Listing(name, title, VALUE, rows)
+        return Listing(name, title, VALUE_COLUMNS, rows)
     named = tuple((names.get(v.name), *row) for v, row in zip(values, rows, strict=True))
-    return Listing(name, title, (("name", N_("parameter"), "word"), *VALUE), named)
+    return Listing(name, title, (("name", N_("parameter"), "word"), *VALUE_COLUMNS), named)
 
 
-def _measured(measured: Sequence[MeasuredDemand]) -> Listing:
+def _measured_listing(measured: Sequence[MeasuredDemand]) -> Listing:
     rows = tuple(
         (m.demand.text, m.demand.asked, m.demand.value, m.value, m.demand.kind, m.difference, m.open, m.met)
         for m in measured
     )
-    return Listing("measured", N_("What was asked and foretold, measured on the mechanism"), MEASURED, rows)
+    return Listing("measured", N_("What was asked and foretold, measured on the mechanism"), MEASURED_COLUMNS, rows)
 
 
-def _table(listing: Listing, units: UnitSystem, digits: int, notes: tuple[str, ...] = ()) -> Table:
+def _listing_table(listing: Listing, units: UnitSystem, digits: int, notes: tuple[str, ...] = ()) -> Table:
     columns = []
     for k, (__, header, kind) in enumerate(listing.columns):
         values, dimension = [row[k] for row in listing.rows], None
         if kind in DIMENSIONS:
             dimension = DIMENSIONS[kind].dimension
         elif kind == "mixed":
-            values = [_shown(v, own, units, digits) for v, own in zip(values, _kinds(listing), strict=True)]
+            values = [_value_text(v, own, units, digits) for v, own in zip(values, _row_kinds(listing), strict=True)]
         elif kind == "unit":
-            values = [_unit(own, units) for own in values]
+            values = [_unit_text(own, units) for own in values]
         elif kind == "by":
             values = [_("asked") if value else _("foretold") for value in values]
         elif kind == "share":
@@ -137,24 +142,26 @@ def _table(listing: Listing, units: UnitSystem, digits: int, notes: tuple[str, .
     return Table(name, translated(listing.title), tuple(columns), listing.long, tuple(map(translated, notes)))
 
 
-def _records(listing: Listing) -> list[dict[str, Any]]:
+def _listing_records(listing: Listing) -> list[dict[str, Any]]:
     """Rows by the names of their columns, SI and radians."""
     return [
         {
-            name: plain(float(value)) if value is not None and (own if kind == "mixed" else kind) in NUMERIC else value
+            name: json_value(float(value))
+            if value is not None and (own if kind == "mixed" else kind) in NUMERIC_KINDS
+            else value
             for (name, __, kind), value in zip(listing.columns, row, strict=True)
         }
-        for row, own in zip(listing.rows, _kinds(listing), strict=True)
+        for row, own in zip(listing.rows, _row_kinds(listing), strict=True)
     ]
 
 
-def _kinds(listing: Listing) -> list[Kind]:
+def _row_kinds(listing: Listing) -> list[Kind]:
     """The kind of each row's numbers, where they are of several kinds."""
     unit = next((k for k, (*__, kind) in enumerate(listing.columns) if kind == "unit"), None)
     return ["" if unit is None else row[unit] for row in listing.rows]
 
 
-def _shown(value: Any, kind: Kind, units: UnitSystem, digits: int) -> str:
+def _value_text(value: Any, kind: Kind, units: UnitSystem, digits: int) -> str:
     if value is None or kind == "word":
         return "" if value is None else translated(value)
     number = float(value)
@@ -163,5 +170,5 @@ def _shown(value: Any, kind: Kind, units: UnitSystem, digits: int) -> str:
     )
 
 
-def _unit(kind: Kind, units: UnitSystem) -> str:
+def _unit_text(kind: Kind, units: UnitSystem) -> str:
     return units.spelt(DIMENSIONS[kind].dimension) if kind in DIMENSIONS else ""

@@ -26,11 +26,11 @@ def terminal_cells(column: Column, units: UnitSystem, rows: Sequence[int]) -> li
     """Words with printed signs, numbers to six digits, a dash where there is none, 0 for what is only rounding."""
     if column.dimension is None:
         return [typeset(str(column.values[k])) for k in rows]
-    values, count = column.numbers(units), figures(column, units)
-    return [_number(float(values[k]), int(count[k])) for k in rows]
+    values, count = column.numbers(units), printed_figures(column, units)
+    return [_number_text(float(values[k]), int(count[k])) for k in rows]
 
 
-def figures(column: Column, units: UnitSystem) -> Any:
+def printed_figures(column: Column, units: UnitSystem) -> Any:
     """How many figures of each number are worth printing: 0 of what is only rounding, -1 where there is none."""
     values, found = column.numbers(units), column.true_figures(units)
     if found is None:
@@ -39,13 +39,13 @@ def figures(column: Column, units: UnitSystem) -> Any:
     return np.where(np.isfinite(values), np.minimum(found, column.digits), -1)
 
 
-def _number(value: float, count: int) -> str:
+def _number_text(value: float, count: int) -> str:
     if count < 0:
         return "-"
     return numeral(value, f".{count}g") if count else "0"
 
 
-def show(
+def print_on_terminal(
     table: Table,
     units: UnitSystem,
     console: Console,
@@ -62,12 +62,12 @@ def show(
     printed = chosen[:most]
     texts = [[typeset(column.heading(units)), *terminal_cells(column, units, printed)] for column in table.columns]
     words = [column.dimension is None for column in table.columns]
-    least = [_least(*column) for column in zip(texts, words, strict=True)]
-    for number, part in enumerate(_parts(words, least, console.width)):
+    least = [_least_width(*column) for column in zip(texts, words, strict=True)]
+    for number, part in enumerate(_table_parts(words, least, console.width)):
         title = table.title if number == 0 else _("{title} (continued)").format(title=table.title)
         rich_table = RichTable(title=Text(title), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
         wide = [max(map(len, texts[k])) for k in part]
-        for k, width in zip(part, _widths(wide, [least[k] for k in part], console.width), strict=True):
+        for k, width in zip(part, _column_widths(wide, [least[k] for k in part], console.width), strict=True):
             rich_table.add_column(Text(texts[k][0]), justify="left" if words[k] else "right", width=width)
         for row in range(1, len(printed) + 1):
             rich_table.add_row(*(Text(texts[k][row]) for k in part))
@@ -78,13 +78,13 @@ def show(
         console.print(Text(typeset(note), style="dim"))
 
 
-def _least(texts: Sequence[str], words: bool) -> int:
+def _least_width(texts: Sequence[str], words: bool) -> int:
     """The least width of a column: headings and words may be broken between words, numbers may not."""
     parts = [*texts[0].split(), *(part for text in texts[1:] for part in (text.split() if words else [text]))]
     return max(map(len, parts), default=0)
 
 
-def _widths(wide: list[int], least: Sequence[int], width: int) -> list[int]:
+def _column_widths(wide: list[int], least: Sequence[int], width: int) -> list[int]:
     """Widths of columns beside each other: as their texts want, less of the widest where they do not fit."""
     while sum(wide) > width + 1 - GAP * len(wide):
         slack = [k for k in range(len(wide)) if wide[k] > least[k]]
@@ -94,7 +94,7 @@ def _widths(wide: list[int], least: Sequence[int], width: int) -> list[int]:
     return wide
 
 
-def _parts(words: Sequence[bool], least: Sequence[int], width: int) -> list[list[int]]:
+def _table_parts(words: Sequence[bool], least: Sequence[int], width: int) -> list[list[int]]:
     """Columns that fit beside each other; what tells the rows apart stands in every part."""
     count = len(words)
     keys = next((k for k in range(count) if not words[k] and k != 1), count)

@@ -9,7 +9,7 @@ from tmm_cli.mechanics.structure import ChainResults
 from tmm_cli.reports import force_warnings as forces, motion_warnings as motion
 
 WARNINGS: tuple[Callable[[Results], Iterable[str]], ...] = (  # of results with a motion, in the order they are said
-    motion.limited,
+    motion.limited_driver,
     motion.far_from_sketch,
     motion.dead_positions,
     motion.unreached_positions,
@@ -18,25 +18,25 @@ WARNINGS: tuple[Callable[[Results], Iterable[str]], ...] = (  # of results with 
     motion.short_drive,
     motion.near_dead,
     motion.passive_pairs,
-    motion.endless,
+    motion.unrepeated_cycle,
     motion.left_slots,
-    motion.pressure_angles,
+    motion.excessive_pressure_angles,
     forces.locked_positions,
-    forces.wound_springs,
-    forces.springs_of_no_length,
-    motion.impacts,
+    forces.twisted_springs,
+    forces.springs_of_zero_length,
+    motion.cam_impacts,
     forces.driving_loads,
     forces.short_tables,
     forces.long_tables,
     forces.open_tables,
-    forces.without_strokes,
+    forces.loads_without_strokes,
     forces.unmet_demands,
-    forces.lever_apart,
+    forces.lever_disagreement,
 )
 IN_CHECKS = (
     motion.left_slots,
-    motion.pressure_angles,
-    forces.lever_apart,
+    motion.excessive_pressure_angles,
+    forces.lever_disagreement,
 )  # the table of checks has them with numbers
 
 

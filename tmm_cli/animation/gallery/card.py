@@ -18,7 +18,7 @@ from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.quantities import ANGLE, NUMBER, Dimension, coordinate_dimension
 from tmm_cli.mechanics.structure import ChainResults
 from tmm_cli.problem import Tree, UnitSystem, build_any_problem, build_chain, is_chain, read_file
-from tmm_cli.reports import MET, properties_shown, with_unit
+from tmm_cli.reports import PROPERTY_TOLERANCE, shown_properties, with_unit
 from tmm_cli.synthesis import count, solve
 
 LEAST_TIME_RATIO = 1.1  # coefficient of change of mean speed, from which one stroke is the quick one
@@ -211,8 +211,8 @@ def _stroke_name(linkage: Linkage, found: Strokes | OutputTravel) -> str:
 
 
 def _shown_properties(results: Results | ChainResults) -> Iterable[Value]:
-    for one in properties_shown(results):
-        yield one.name, 0.0 if abs(one.value) <= MET else one.value, one.dimension
+    for one in shown_properties(results):
+        yield one.name, 0.0 if abs(one.value) <= PROPERTY_TOLERANCE else one.value, one.dimension
 
 
 def _format_facts(values: Iterable[Value], units: UnitSystem) -> Iterator[Fact]:

@@ -35,7 +35,7 @@ from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import DEAD
 from tmm_cli.mechanics.plans import LANDSCAPE, MARGIN, PORTRAIT, drawing_area, extent, round_scale
 from tmm_cli.mechanics.structure import Pair, Structure
-from tmm_cli.reports import place
+from tmm_cli.reports import describe_position
 
 ASSEMBLIES_PER_SHEET = 12  # assemblies on one
 ASSEMBLY_PAD = 10.0  # mm about a group for its symbols and names
@@ -69,7 +69,7 @@ def assemblies_sheet(
     sizes = [size for __, size in boxes.values()]
     largest = complex(max(size.real for size in sizes), max(size.imag for size in sizes))
     mu, paper, places = _choose_cells(len(every), largest)
-    where = place(results.problem, here.q, here.number)
+    where = describe_position(results.problem, here.q, here.number)
     title = _("Real assemblies of {group}, {place}").format(group=group.group.title, place=where)
     sheet = DrawingSheet(results.problem.title, title, paper=paper)
     sheet.mu = mu

@@ -22,7 +22,7 @@ from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.kinematics import CentreLine, InstantCentre, LinkPair
 from tmm_cli.mechanics.numerics import dot
-from tmm_cli.reports import name
+from tmm_cli.reports import centre_name
 
 SHEET_REACH = 2.0  # sizes of the mechanism about its middle: centres that are farther are not on the sheet
 CENTRE_RADIUS = 0.9  # mm: radius of a centre
@@ -66,7 +66,7 @@ def _draw_centres_sheet(here: Position, scene: MechanismScene, found: Sequence[I
 def _centre_names(links: Iterable[LinkPair]) -> tuple[Symbol | str, ...]:
     told: list[Symbol | str] = []
     for pair in links:
-        told += [", "] * bool(told) + [Symbol("P", name(pair)[1:])]
+        told += [", "] * bool(told) + [Symbol("P", centre_name(pair)[1:])]
     return tuple(told)
 
 
@@ -105,7 +105,7 @@ def _line_direction(through: Sequence[InstantCentre]) -> complex:
 def _distant_centre_notes(found: Sequence[InstantCentre], near: Mapping[LinkPair, complex]) -> Iterator[str]:
     """Yield notes on the centres that are not on the sheet."""
     for centre in found:
-        symbol = Symbol("P", name(centre.links)[1:]).name
+        symbol = Symbol("P", centre_name(centre.links)[1:]).name
         if centre.place is None and centre.direction is not None:
             angle = numeral(float(np.degrees(np.angle(centre.direction))) % 180, ".1f")
             yield _("{centre} is at infinity, at {angle}°").format(centre=symbol, angle=angle)

@@ -50,7 +50,7 @@ from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.plans import LANDSCAPE, MARGIN, PORTRAIT, drawing_area
 from tmm_cli.mechanics.structure import Group, Pair, RedundantLink, Structure
-from tmm_cli.reports import ROLES, counted_mobility, left_out
+from tmm_cli.reports import ROLES, mobility_equation, reduction_sentences
 
 SCHEME_PAD = 20.0  # mm kept free about the pairs, for guides, supports and names
 SCHEME_BASE_SIZE = 45.0  # mm: the scheme is drawn no larger than this ...
@@ -168,9 +168,9 @@ class Legend:
         ]
         if structure.reduction:
             formula = _("W of the formula of structure: {count}").format(
-                count=typeset(counted_mobility(structure.count))
+                count=typeset(mobility_equation(structure.count))
             )
-            self.facts[1:1] = [*left_out(structure), formula]
+            self.facts[1:1] = [*reduction_sentences(structure), formula]
         points = [p.point for p in structure.pairs if p.kind == "R"]
         inner = [d for d in structure.drivers if d.base != FRAME]
         if inner:

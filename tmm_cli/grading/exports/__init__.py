@@ -11,7 +11,7 @@ from typing import Final
 from tmm_cli.grading.exports import csv_files, feedback, gradescope_junit, xlsx
 from tmm_cli.grading.exports.book import Export, Gradebook
 from tmm_cli.problem import ProblemError
-from tmm_cli.reports import Staged, write_whole
+from tmm_cli.reports import StagedFolder, write_atomically
 
 EXPORTS: Final[Mapping[str, Export]] = {
     "csv": csv_files.csv_tables,
@@ -37,7 +37,7 @@ def write(
     """
     whole: dict[str, bytes] = {}
     with ExitStack() as stack:
-        staged: dict[str, Staged] = {}
+        staged: dict[str, StagedFolder] = {}
         for name in formats:
             try:
                 for file, content in EXPORTS[name](book):
@@ -46,9 +46,9 @@ def write(
                         whole[file] = b"".join(p if isinstance(p, bytes) else p.encode() for p in content)
                         continue
                     if inner not in staged:
-                        staged[inner] = stack.enter_context(Staged(folder / inner))
+                        staged[inner] = stack.enter_context(StagedFolder(folder / inner))
                     staged[inner].write(rest, content)
             except ProblemError as error:
                 say(str(error))
     for file, data in whole.items():
-        write_whole(folder / file, data)
+        write_atomically(folder / file, data)

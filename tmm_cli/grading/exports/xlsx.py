@@ -15,7 +15,7 @@ from tmm_cli.grading.record import Mark
 from tmm_cli.grading.statistics import statistics_tables
 from tmm_cli.grading.untrusted_tables import shown
 from tmm_cli.mechanics.quantities import NUMBER
-from tmm_cli.reports import WRITTEN, Column, empty_workbook
+from tmm_cli.reports import CREATED, Column, open_workbook
 
 MOST_ROWS = 1_000_000  # of a sheet; the format has 48 576 more
 COLOURS = {"right": "#d9efdf", "follows": "#fdebc8", "wrong": "#f8d7d4", "missing": "#ececec"}
@@ -32,8 +32,8 @@ def files(book: Gradebook) -> Iterator[tuple[str, Iterable[bytes]]]:
 def _workbook(book: Gradebook) -> bytes:
     """Raises ProblemError where nothing is installed that writes it."""
     stream = io.BytesIO()
-    with empty_workbook("marks.xlsx", stream) as workbook:
-        workbook.set_properties({"created": WRITTEN, "title": "marks"})
+    with open_workbook("marks.xlsx", stream) as workbook:
+        workbook.set_properties({"created": CREATED, "title": "marks"})
         formats = {name: workbook.add_format({"bg_color": colour}) for name, colour in COLOURS.items()}
         head = workbook.add_format({"bold": True, "bottom": 1, "text_wrap": True, "valign": "top"})
         marks = marks_header(book)

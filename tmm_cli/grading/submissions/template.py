@@ -14,7 +14,7 @@ from tmm_cli.batch import Question, Task
 from tmm_cli.language import _
 from tmm_cli.mechanics.quantities import ANGLE
 from tmm_cli.problem import ProblemError, quote
-from tmm_cli.reports import empty_workbook, write_whole
+from tmm_cli.reports import open_workbook, write_atomically
 
 COLUMNS = ("quantity", "position", "unit", "value", "x", "y", "size")  # and the angle, in the file's unit
 SCALAR, VECTOR = COLUMNS[3:4], (*COLUMNS[4:], "angle")  # where an answer is written
@@ -26,7 +26,7 @@ def write_template(task: Task, path: str | os.PathLike[str]) -> None:
     kind = Path(path).suffix.lower()
     if kind not in FORMATS:
         raise ProblemError(_("an answer sheet has another ending"), found=quote(kind), allowed=", ".join(FORMATS))
-    write_whole(Path(path), FORMATS[kind](task))
+    write_atomically(Path(path), FORMATS[kind](task))
 
 
 def _header(task: Task) -> list[str]:
@@ -53,7 +53,7 @@ def _xlsx(task: Task) -> bytes:
     """Where no answer belongs is grey."""
     found = io.BytesIO()
     options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
-    with empty_workbook("XLSX", found, options, _("CSV; or: pip install 'tmm-cli[excel]'")) as book:
+    with open_workbook("XLSX", found, options, _("CSV; or: pip install 'tmm-cli[excel]'")) as book:
         sheet = book.add_worksheet("answers")
         head, grey = book.add_format({"bold": True, "bottom": 1}), book.add_format({"bg_color": "#D9D9D9"})
         room = book.add_format({"border": 1})

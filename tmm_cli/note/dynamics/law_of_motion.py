@@ -16,7 +16,7 @@ from tmm_cli.note.dynamics.reduced_model import DRIVING, FLYWHEEL, INERTIA, LARG
 from tmm_cli.note.expression import Expression, Found, Function, Leaf, added
 from tmm_cli.note.formula_tree import Fraction, Letter, Sign, row
 from tmm_cli.note.subject import Subject, rows_of
-from tmm_cli.reports import signs, walk
+from tmm_cli.reports import sign_convention, walk
 
 TABLES = ("dynamics", "law-of-motion")
 
@@ -68,7 +68,7 @@ def write_steady_running(subject: Subject) -> Iterable[Block]:
         only="law-motion",
     )
     if here.running.sense < 0:
-        yield paragraph(signs(subject.results.linkage))
+        yield paragraph(sign_convention(subject.results.linkage))
     yield from tables(subject)
 
 

@@ -15,7 +15,7 @@ from tmm_cli.note.forces.equations import MU
 from tmm_cli.note.forces.sections import parts_of
 from tmm_cli.note.formula_tree import Letter, row
 from tmm_cli.note.subject import NONE, Subject, over_positions
-from tmm_cli.reports import has_flywheel, indeterminate
+from tmm_cli.reports import has_flywheel, indeterminate_reactions
 
 
 def write_forces(subject: Subject) -> Iterable[Block]:
@@ -36,7 +36,7 @@ def write_forces(subject: Subject) -> Iterable[Block]:
         R=Symbol("R"),
         h=Symbol("h"),
     )
-    yield from map(paragraph, indeterminate(subject.results.structure))
+    yield from map(paragraph, indeterminate_reactions(subject.results.structure))
     for k in subject.detail:
         yield from _position(subject, k)
     yield Heading(_("Forces in all positions"), 2)

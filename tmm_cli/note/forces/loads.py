@@ -24,7 +24,7 @@ from tmm_cli.note.blocks import Block, Line, Rows, cells, listed, said, tabled
 from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, added, read
 from tmm_cli.note.kinematics.equations import equal, sense
 from tmm_cli.note.subject import Subject
-from tmm_cli.reports import locked_ranges
+from tmm_cli.reports import describe_locked_ranges
 
 
 def weights(subject: Subject) -> Iterable[Block]:
@@ -204,7 +204,7 @@ def losses(subject: Subject) -> Iterable[Block]:
     """What friction takes of the drivers' work over the cycle."""
     lost = subject.results.losses
     if lost is None or lost.locked:
-        ranges = locked_ranges(subject.results)
+        ranges = describe_locked_ranges(subject.results)
         if ranges:
             yield said(
                 _(

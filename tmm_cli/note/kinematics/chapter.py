@@ -20,7 +20,7 @@ from tmm_cli.note.kinematics.equations import name_of, sense
 from tmm_cli.note.kinematics.on_paper import Here, unit
 from tmm_cli.note.kinematics.plans import accelerations, velocities
 from tmm_cli.note.subject import Subject, over_positions
-from tmm_cli.reports import between_rows, output_motion, states
+from tmm_cli.reports import describe_interpolation, output_motion, position_states
 
 ROUND = 1e-9  # of a speed in rpm that was given as such
 
@@ -56,7 +56,7 @@ def _rotating_driver(subject: Subject, driver: Driver) -> Iterable[Block]:
         )
     elif rpm:
         text = _("Input link {link} rotates about point {point} {sense} at {n} = {speed} rpm; its angular velocity is")
-    how = "" if driver.law is None else between_rows(driver.law)
+    how = "" if driver.law is None else describe_interpolation(driver.law)
     yield said(
         text,
         link=driver.link,
@@ -282,7 +282,7 @@ def _rates(subject: Subject, letter: str, what: str) -> list[Column]:
 
 def _table(subject: Subject, caption: str, columns: Sequence[Column], key: str) -> Rows:
     """A row a position, with the places of the drivers; what cannot be computed is said in the last column."""
-    every, told = (*_places(subject), *columns), states(subject.results)
+    every, told = (*_places(subject), *columns), position_states(subject.results)
     texts = [
         (head, [subject.shown(float(value)) if np.isfinite(value) else "–" for value in values])
         for head, values in every
