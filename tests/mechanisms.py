@@ -1,4 +1,4 @@
-"""The table of mechanisms in problems/README.md: `python -m tests.mechanisms` writes it, and the schemes that it shows.
+"""The table of mechanisms in problems/docs/bank.md: `python -m tests.mechanisms` writes it and its schemes.
 
 A row is a file of the bank with a `reference` (M7, Fig. 7); its formula, class and properties are those of its golden
 run, which `tmm check problems` holds. What a row of the list still lacks is said in LACKING.
@@ -34,7 +34,7 @@ LACKING: dict[int, str] = {
     26: "ratchet-feed takes both places of its pin as given; ratchet-return is what moves it while the shaft stands",
     31: "structure only: its links move in space",
 }
-PAGE = PROBLEMS / "README.md"
+PAGE = PROBLEMS / "docs" / "bank.md"
 BEGIN, END = "<!-- mechanisms: python -m tests.mechanisms -->\n", "<!-- end of mechanisms -->\n"
 SCHEMES = PROBLEMS / "schemes"
 SHOWN = {"m": (1e3, "mm"), "rad": (180 / math.pi, "deg")}  # by SI unit: factor and unit of the table
@@ -86,12 +86,12 @@ def lines() -> Iterator[str]:
         run, path = golden(file), file.relative_to(PROBLEMS).as_posix()
         planar = "structure" in run
         formula = run["structure"]["formula"] if planar else f"W = {run['chain']['mobility']} in space"
-        link = f"[drawn](schemes/{file.stem}.svg)" if planar else ""
+        link = f"[drawn](../schemes/{file.stem}.svg)" if planar else ""
         found = run["properties"]
         counted = all(one["of"] in COUNTED for one in data["shows"].values())
         cells = (
             data["reference"],
-            f"[{data['title']}]({path})",
+            f"[{data['title']}](../{path})",
             link,
             formula,
             run["structure"]["class"] if planar else "",

@@ -64,6 +64,6 @@ def test_what_a_page_links_to_is_there(page):
 
 
 def test_every_problem_of_the_bank_has_its_row():
-    rows = (ROOT / "problems/README.md").read_text(encoding="utf-8")
+    rows = (ROOT / "problems/docs/bank.md").read_text(encoding="utf-8")
     for name in [path.stem for path in (ROOT / "problems").glob("*.yaml")] + IN_FOLDERS:
-        assert f"({name}.yaml)" in rows, name
+        assert f"(../{name}.yaml)" in rows, name
