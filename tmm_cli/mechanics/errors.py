@@ -1,6 +1,7 @@
-"""What a stage may refuse.
+"""Errors that the stages of the calculation raise.
 
-A stage says what is wrong in numbers and names; the words are put where files are known.
+A stage reports what is wrong in numbers and names; the messages are composed where problem files are known
+(`tmm_cli.problem`).
 """
 
 from __future__ import annotations
@@ -14,11 +15,11 @@ if TYPE_CHECKING:
 
 
 class LinkageError(Exception):
-    """A linkage or a request for which a stage has no answer."""
+    """Base of all errors of a linkage, or of a request that a stage cannot answer."""
 
 
 class MobilityError(LinkageError):
-    """The linkage and its drivers do not fit: mobility is not their number, or they cannot move it."""
+    """The mobility differs from the number of drivers, or the drivers cannot move the linkage."""
 
     def __init__(self, structure: Structure) -> None:
         super().__init__(f"W = {structure.mobility}")
@@ -26,9 +27,9 @@ class MobilityError(LinkageError):
 
 
 class AssemblyError(LinkageError):
-    """The sketch cannot be assembled.
+    """The linkage cannot be assembled in the position of the sketch.
 
-    residual: how much (m) a group in closed form is short of closing at the sketch's place; others only fail to.
+    residual: by how much (m) a group in closed form fails to close there; None for other groups.
     """
 
     def __init__(self, group: Group, residual: float | None = None) -> None:
@@ -37,10 +38,10 @@ class AssemblyError(LinkageError):
 
 
 class AmbiguousSketchError(LinkageError):
-    """The sketch does not tell two assemblies apart.
+    """The sketch agrees with more than one assembly of a group.
 
-    choices: for points (m) and links (rad) that would tell, the values in the two assemblies that are nearest to the
-    sketch; none in a dead position. count: how many assemblies there are.
+    choices: points (m) and links (rad) that would decide, by name, each with its values in the two assemblies nearest
+    to the sketch; empty in a dead position. count: number of assemblies.
     """
 
     def __init__(
@@ -51,7 +52,7 @@ class AmbiguousSketchError(LinkageError):
 
 
 class SketchMismatchError(LinkageError):
-    """A sketched point (m) or angle (rad) is far from where it comes to lie in the nearest assembly."""
+    """A sketched point (m) or angle (rad) is far from its position in the nearest assembly."""
 
     def __init__(self, name: str, sketched: complex | float, found: complex | float) -> None:
         super().__init__(name)
@@ -59,7 +60,7 @@ class SketchMismatchError(LinkageError):
 
 
 class GroupTooLargeError(LinkageError):
-    """A group of more links than iteration is tried on; most: how many it may have."""
+    """A group has more links than the iterative solution accepts; most: the largest number accepted."""
 
     def __init__(self, group: Group, most: int) -> None:
         super().__init__(group.title)
@@ -69,7 +70,7 @@ class GroupTooLargeError(LinkageError):
 class ChangePointSearchError(LinkageError):
     """The change points of a group depend on too many groups over too many turns of the driver.
 
-    groups: how many groups are computed; turns: over how many turns; most: the budget, groups times turns.
+    groups: number of groups to compute; turns: number of turns; most: largest product of the two.
     """
 
     def __init__(self, group: Group, groups: int, turns: int, most: int) -> None:
@@ -78,7 +79,7 @@ class ChangePointSearchError(LinkageError):
 
 
 class UnknownPositionError(LinkageError):
-    """A position number beyond those of the file."""
+    """A position number is greater than the number of positions in the file."""
 
     def __init__(self, number: int, count: int) -> None:
         super().__init__(str(number))
@@ -86,7 +87,7 @@ class UnknownPositionError(LinkageError):
 
 
 class UnknownNameError(LinkageError):
-    """Something is asked for by a name that nothing has; allowed: those that are."""
+    """A requested name does not exist; allowed: the names that do."""
 
     def __init__(self, name: str, allowed: tuple[str, ...]) -> None:
         super().__init__(name)
@@ -94,9 +95,9 @@ class UnknownNameError(LinkageError):
 
 
 class MissingStrokesError(LinkageError):
-    """Strokes of the output are needed, by the key at `path` of the file, but it has none.
+    """The key at `path` of the file needs the strokes of an output that has none.
 
-    limits: range of a driver that does not turn fully, or moves between two ends (rad, or m).
+    limits: range (rad or m) of a driver that cannot make a full turn, or that moves between two ends.
     """
 
     def __init__(self, link: str | None, path: tuple[str, ...], limits: tuple[float, float] | None = None) -> None:
@@ -105,9 +106,9 @@ class MissingStrokesError(LinkageError):
 
 
 class TableBeyondCycleError(LinkageError):
-    """A row of a load's table, given by its path in the file, that the crank never reaches.
+    """The crank never reaches a row of a load table; path: of the row in the file.
 
-    argument: of the row (rad); cycle: the table may reach from 0 to here (rad).
+    argument: crank angle of the row (rad); cycle: largest angle that the table may contain (rad).
     """
 
     def __init__(self, path: tuple[str | int, ...], argument: float, cycle: float) -> None:
@@ -116,7 +117,7 @@ class TableBeyondCycleError(LinkageError):
 
 
 class NotOnFrameError(LinkageError):
-    """A link that cannot drive from the frame; allowed: those that can."""
+    """A link cannot be the driver because it is not connected to the frame; allowed: the links that can."""
 
     def __init__(self, link: str, allowed: tuple[str, ...]) -> None:
         super().__init__(link)
@@ -124,9 +125,9 @@ class NotOnFrameError(LinkageError):
 
 
 class SpeedTableError(LinkageError):
-    """A table of the driver's speeds, from `first` to `last` (rad), does not reach a position.
+    """A table of driver speeds, from `first` to `last` (rad), does not cover a position.
 
-    at: its place; None where the table just does not go all round the cycle.
+    at: driver coordinate of that position (rad); None if the table merely does not cover the whole cycle.
     """
 
     def __init__(self, at: float | None, first: float, last: float, cycle: float) -> None:
@@ -135,7 +136,7 @@ class SpeedTableError(LinkageError):
 
 
 class NoTurnError(LinkageError):
-    """Loads come again after several turns of a crank that does not turn fully."""
+    """Loads repeat after several turns, but the crank cannot make a full turn."""
 
     def __init__(self, turns: int) -> None:
         super().__init__(turns)
@@ -143,8 +144,8 @@ class NoTurnError(LinkageError):
 
 
 class NoCycleError(LinkageError):
-    """A law of motion, or balancing, by the block at `path` of the file, is wanted where there is no cycle: the driver
-    slides, does not turn fully, or is not alone.
+    """The block at `path` of the file (law of motion, balancing) needs a cycle, and there is none: the driver slides,
+    cannot make a full turn, or is one of several.
     """
 
     def __init__(self, path: tuple[str, ...] = ("dynamics",)) -> None:
@@ -153,7 +154,7 @@ class NoCycleError(LinkageError):
 
 
 class OutOfRangeError(LinkageError):
-    """A run is to go where the driver does not come: beyond its range from `start` to `end` (rad, or m)."""
+    """A run goes beyond the range of the driver, from `start` to `end` (rad or m)."""
 
     def __init__(self, start: float, end: float) -> None:
         super().__init__(start, end)
@@ -161,7 +162,7 @@ class OutOfRangeError(LinkageError):
 
 
 class SpeedDependentForceError(LinkageError):
-    """A law of motion is wanted where what acts hangs on it in more than the inertia; path: of it in the file."""
+    """A law of motion is requested, but forces other than inertia depend on the speed; path: of the first such key."""
 
     def __init__(self, path: tuple[str, ...]) -> None:
         super().__init__(".".join(path))
@@ -169,7 +170,7 @@ class SpeedDependentForceError(LinkageError):
 
 
 class StandstillError(LinkageError):
-    """The machine comes to rest at the way `place` of its cycle (rad): its energy is used up there."""
+    """The machine stops: its kinetic energy is used up at the driver coordinate `place` of the cycle (rad)."""
 
     def __init__(self, place: float) -> None:
         super().__init__(place)
@@ -177,7 +178,7 @@ class StandstillError(LinkageError):
 
 
 class NoInertiaError(LinkageError):
-    """A single run has no law of motion: nothing has inertia that moves with the driver at the way `place`."""
+    """A single run has no law of motion: at the driver coordinate `place` nothing with inertia moves."""
 
     def __init__(self, place: float) -> None:
         super().__init__(place)
@@ -185,7 +186,7 @@ class NoInertiaError(LinkageError):
 
 
 class LostDigitsError(LinkageError):
-    """The law of motion is lost in rounding: a motor changes the speed by too small a `share` of itself in a cycle."""
+    """The law of motion is lost in rounding: in a cycle the motor changes the speed by too small a fraction `share`."""
 
     def __init__(self, share: float) -> None:
         super().__init__(share)
@@ -193,9 +194,9 @@ class LostDigitsError(LinkageError):
 
 
 class WeakMotorError(LinkageError):
-    """A motor gives `most` (N m, or N) at its best, and the loads of a cycle want `wanted` in the mean.
+    """The largest driving moment or force `most` (N m or N) is less than the mean `wanted` that the loads require.
 
-    place: where on the way of the cycle (rad) they want most.
+    place: driver coordinate (rad) at which they require most.
     """
 
     def __init__(self, wanted: float, most: float, place: float) -> None:
@@ -204,7 +205,7 @@ class WeakMotorError(LinkageError):
 
 
 class LongRunError(LinkageError):
-    """A run that integration does not bring to its end in so many evaluations: its time (s) and way then."""
+    """Integration of a run does not finish within `count` evaluations; time (s) and way (driver coordinate) reached."""
 
     def __init__(self, time: float, way: float, count: int) -> None:
         super().__init__(f"{time:g} s")
@@ -212,11 +213,12 @@ class LongRunError(LinkageError):
 
 
 class RunawayError(LinkageError):
-    """Loads push a machine on, with `pushing` (N m, or N) in the mean, and its motor holds `most` at its best.
+    """The loads accelerate the machine beyond control of its motor: mean driving moment or force `pushing` (N m or N)
+    of the loads against the largest braking moment or force `most`.
 
-    place: where on the way of its cycle (rad) they push most, or the machine is quickest, as far as it was followed;
-    speed: there (rad/s, or m/s), nan where it was not: `pushing` is no less than `most` then. idle: speed at which the
-    motor neither drives nor holds.
+    place: driver coordinate of the cycle (rad) at which the loads drive most, or the machine is fastest, as far as it
+    was computed; speed: the speed there (rad/s or m/s), nan where it was not computed (then `pushing` is at least
+    `most`). idle: speed at which the motor neither drives nor brakes.
     """
 
     def __init__(self, pushing: float, most: float, idle: float, place: float, speed: float = nan) -> None:
@@ -225,7 +227,9 @@ class RunawayError(LinkageError):
 
 
 class NoFlywheelError(LinkageError):
-    """The fluctuation is smaller than wanted without any: its size is `own`. It is nan where no flywheel is enough."""
+    """The coefficient of fluctuation without a flywheel, `own`, is already below the required one; nan: no flywheel
+    suffices.
+    """
 
     def __init__(self, wanted: float, own: float) -> None:
         super().__init__(wanted, own)
@@ -233,11 +237,13 @@ class NoFlywheelError(LinkageError):
 
 
 class CounterweightError(LinkageError):
-    """No counterweights of the radii that are told balance: their own masses, on pivots that move, want ever more."""
+    """Balancing has no solution with counterweights of the given radii: each added mass on a moving pivot requires
+    more.
+    """
 
 
 class SettingError(LinkageError):
-    """One of the settings that take turns, by its path in the file, is refused: `error` says why."""
+    """One of several alternating settings, at `path` of the file, is invalid; error: the reason."""
 
     def __init__(self, path: tuple[str | int, ...], error: LinkageError) -> None:
         super().__init__(".".join(map(str, path)))

@@ -1,7 +1,7 @@
-"""The numbers of a linkage: links, hinges, slides, driver, loads. SI and radians; no input or output.
+"""Data of a linkage: links, hinges, sliding pairs, drivers, loads. SI units and radians; no input or output.
 
-A planar vector is a complex number. Every link has axes of its own: `points` and `centre` are given in them, and
-the pose of a link is the place of its origin and the direction of its x axis. The frame is link "0"; its axes are
+A planar vector is a complex number. Every link has its own coordinate axes, in which `points` and `centre` are given;
+the pose of a link is the position of its origin and the direction of its x axis. The frame is link "0"; its axes are
 the axes of the drawing. Lengths may be numbers or arrays that broadcast against (variants, positions).
 """
 
@@ -22,7 +22,9 @@ FRAME = "0"
 
 @dataclass(frozen=True)
 class Link:
-    """A rigid link: named points in its own axes (m), mass (kg), centre of mass (m), inertia about it (kg m2)."""
+    """A rigid link: named points in its own axes (m), mass (kg), centre of mass (m), central moment of inertia (kg
+    m2).
+    """
 
     name: str
     points: Mapping[str, complex]
@@ -34,9 +36,9 @@ class Link:
 
 @dataclass(frozen=True)
 class Hinge:
-    """A revolute pair at a named point of two links, or a compound hinge of more: k links make k - 1 pairs.
+    """A revolute pair at a common point of two links, or a compound hinge of k links, which counts as k - 1 pairs.
 
-    attached_to: the link with which each of the others makes one of these pairs, if the file names it.
+    attached_to: the link that forms a pair with each of the others, if the file names it.
     """
 
     point: str
@@ -45,17 +47,17 @@ class Hinge:
 
 
 def common_hinge(hinges: Iterable[Hinge], one: str, other: str) -> str | None:
-    """The point in which two links are hinged to one another."""
+    """Return the point at which two links are hinged to each other, or None."""
     return next((hinge.point for hinge in hinges if {one, other} <= set(hinge.links)), None)
 
 
 @dataclass(frozen=True)
 class Slide:
-    """A sliding pair: `point` of the runner moves on a straight guide of the carrier.
+    """A prismatic pair: `point` of the runner moves along a straight guide of the carrier.
 
-    The guide passes through `through` in the `direction` (rad), both in the carrier's axes. The runner's axes are
-    turned by `turned` (rad) from the carrier's, always. `at` is the running point in the runner's axes. ends: the
-    points of the carrier between which the guide is, the first one where its run is zero; None: it goes on.
+    The guide passes through the point `through` in the `direction` (rad), both in the axes of the carrier. `turned` is
+    the constant angle of the runner from the carrier (rad); `at` is the sliding point in the axes of the runner. ends:
+    the two points of the carrier that end the guide, the run is zero at the first; None if the guide is unbounded.
     """
 
     name: str
@@ -71,9 +73,9 @@ class Slide:
 
 @dataclass(frozen=True)
 class SpeedTable:
-    """Squares of a crank's speed (rad2/s2) by its angle, and its accelerations in its sense (rad/s2) if they are given.
+    """Squared speed of a crank (rad2/s2) against its angle, and the accelerations in its sense (rad/s2), if given.
 
-    Where `squares` close, they go round the whole cycle.
+    If the table `squares` is closed, it covers the whole cycle.
     """
 
     squares: InterpolationTable
@@ -82,13 +84,17 @@ class SpeedTable:
 
 @dataclass(frozen=True)
 class Driver:
-    """An input: a link that turns about its base, or slides on it, by q = q0 + rate t + acceleration t^2/2.
+    """An input link, which rotates about its base or slides on it: q = q0 + rate t + acceleration t^2/2.
 
-    The base is the frame (a crank, a cylinder on the frame) or a moving link (a cylinder that swings, a drive in the
-    hinge of an arm). q is the angle of the link's x axis from the base's (rad), or the run along the guide `joint` from
-    its `through` point (m). `sense` is +1 or -1, and `rate` >= 0 is counted in that sense; `acceleration` too
-    (negative: it slows down). `at` is its place in the sketch, for drivers beside the first; `stroke`: between which
-    places it works, if it cannot go farther. law: its speed by its angle; `rate` is then the mean of it.
+    The base is the frame (a crank, a cylinder on the frame) or a moving link (a swinging cylinder, a drive in the joint
+    of an arm). The driver coordinate q is the angle of the x axis of the link from that of its base (rad), or the run
+    along the guide `joint` from its `through` point (m).
+
+    Attributes:
+        sense: direction of motion, +1 or -1; `rate` >= 0 and `acceleration` are counted in this direction.
+        at: driver coordinate in the sketch, for all drivers but the first.
+        stroke: limits of the driver coordinate, if it has any.
+        law: speed as a function of the crank angle; `rate` is then its mean.
     """
 
     link: str
@@ -107,13 +113,16 @@ class Driver:
 
 @dataclass(frozen=True)
 class Mesh:
-    """A higher pair of two links on a common carrier: teeth in mesh, or a cam and its follower given by their law.
+    """A higher pair of two links on a common carrier: gear teeth, or a cam and follower defined by the law of motion.
 
-    a is the angle of link i from the carrier's axes (rad); b that of link j, or its run in the sliding pair `slide` on
-    the carrier (m). Then b = offset + ratio a, or for a cam b = offset + law(a). Angles are followed through full turns
-    from the sketch on, where those of links that are not driven lie within -pi..pi. pressure: angle between the force
-    of the teeth and the common tangent of the pitch circles (rad). roller: the link between cam and follower whose turn
-    about its own axis moves nothing else (a local freedom); it is counted in the structure, and has no motion here.
+    a is the angle of link i relative to the carrier (rad); b is that of link j, or its run in the sliding pair `slide`
+    on the carrier (m). For teeth b = offset + ratio a, for a cam b = offset + law(a). Angles are accumulated through
+    full turns from the sketch on; there, angles of links that are not drivers lie in -pi..pi.
+
+    Attributes:
+        pressure: angle between the tooth force and the common tangent of the pitch circles (rad).
+        roller: link between cam and follower whose rotation about its own axis moves no other link (a local freedom);
+            it counts in the structure, but its motion is not computed.
     """
 
     name: str
@@ -131,11 +140,11 @@ class Mesh:
 
 @dataclass(frozen=True)
 class Spring:
-    """A spring between two links, or a cylinder that only pushes.
+    """A spring or damper between two links, or a cylinder that exerts a force without prescribing a motion.
 
-    Linear: between two points, it pulls with force = preload + rate (length - free) + damping (speed of lengthening),
-    N. Torsion (`turns`): from link i on link j, moment = -(preload + rate (angle - free) + damping omega), N m, where
-    the angle is that of j from i, within half a turn of `free`.
+    Linear: between two points, pulls with the force preload + rate (length - free) + damping (rate of lengthening), N.
+    Torsional (`turns`): moment of link i on link j = -(preload + rate (angle - free) + damping omega), N m, where the
+    angle is that of j relative to i, within half a turn of `free`.
     """
 
     name: str
@@ -152,7 +161,7 @@ class Spring:
 
 @dataclass(frozen=True)
 class Friction:
-    """Coulomb friction in one pair: its coefficient, and for a hinge the radius of its journal (m)."""
+    """Coulomb friction in one pair: coefficient, and for a hinge the journal radius (m)."""
 
     pair: str
     coefficient: float
@@ -161,10 +170,12 @@ class Friction:
 
 @dataclass(frozen=True)
 class LoadTable(InterpolationTable):
-    """A load's size, tabulated.
+    """Table of the magnitude of a load.
 
-    shares: its rows against the stroke are shares of it, 0 to 1, not lengths or angles. stroke_link: the link whose
-    stroke it is; the main output if empty. key: the key of the load under which the file gives the table.
+    Attributes:
+        shares: rows against the stroke are given as fractions of it, 0 to 1, instead of lengths or angles.
+        stroke_link: the link whose stroke is meant; the main output if empty.
+        key: key of the load that contains the table in the file.
     """
 
     against: Literal["stroke", "crank angle", "crank turn"] = "stroke"
@@ -174,19 +185,23 @@ class LoadTable(InterpolationTable):
 
     @property
     def first_column(self) -> str:
-        """What its first column is, in the words of a file."""
+        """Name of the argument column, in the words of a problem file."""
         return f"share of {self.against}" if self.shares else self.against
 
 
 @dataclass(frozen=True)
 class Load:
-    """A force and a couple on a link, and their opposites on the link `base`, if that moves.
+    """A force and a couple on a link, with the opposite force and couple on the link `base` if that moves.
 
-    `force` (N) acts at `at` (the link's axes, m) and keeps its direction in the drawing, or in the link when
-    `follows`; `moment` in N m. With a table, both are multiplied by its value. When it `resists`, both are sizes only:
-    the force opposes the motion of its point, the moment the turning of its link, as the base sees them. when:
-    "always", "working stroke", which is that of the link `stroke_link`, or of the main output if that is empty;
-    window: and only from one angle of the crank to another (rad, counterclockwise).
+    `force` (N) acts at the point `at` (axes of the link, m) and keeps its direction in the drawing, or in the link if
+    `follows`; `moment` is in N m.
+
+    Attributes:
+        table: factor for both; it varies with the stroke or the crank angle.
+        resists: force and moment are magnitudes only: the force opposes the velocity of its point, the moment the
+            rotation of its link, both relative to the base.
+        when: "always" or "working stroke" (of the link `stroke_link`; of the main output if that is empty).
+        window: crank angles between which alone the load acts (rad, counterclockwise).
     """
 
     name: str
@@ -210,7 +225,7 @@ class Load:
 
 @dataclass(frozen=True)
 class Sketch:
-    """How the linkage looks at one place of its driver: which way round each group is assembled."""
+    """Approximate points and angles at one driver coordinate, which select the assembly of each group."""
 
     at: float
     points: Mapping[str, complex] = field(default_factory=dict)
@@ -219,7 +234,7 @@ class Sketch:
 
 @dataclass(frozen=True)
 class Output:
-    """What the mechanism is for: the stroke (m) or swing (rad) of a link, or a coordinate of a point, K.x (m)."""
+    """The output motion: stroke (m) or swing (rad) of a link, or of a coordinate of a point, e.g. K.x (m)."""
 
     link: str
     working: Literal["auto", "forward", "backward"] = "auto"
@@ -227,10 +242,10 @@ class Output:
 
 @dataclass(frozen=True)
 class Linkage:
-    """A planar linkage, complete. Links are in the order of the file, the frame first.
+    """Complete data of a planar linkage. Links are in the order of the file, the frame first.
 
-    keep_side: in exact change points groups keep to the side of the sketch, instead of going smoothly through. turns:
-    of the crank, after which its loads come again.
+    keep_side: at exact change points groups stay on the side of the sketch instead of passing smoothly through. turns:
+    crank turns after which the loads repeat.
     """
 
     links: Mapping[str, Link]
@@ -251,12 +266,12 @@ class Linkage:
 
     @property
     def drivers(self) -> tuple[Driver, ...]:
-        """All drivers; the first one counts the positions."""
+        """All drivers; the first one defines the positions."""
         return (self.driver, *self.others)
 
     @property
     def cranks(self) -> tuple[Driver, ...]:
-        """Drivers that stand on the frame: their links need no group."""
+        """Drivers on the frame: their links belong to no group."""
         return tuple(d for d in self.drivers if d.base == FRAME)
 
     @property
@@ -266,36 +281,37 @@ class Linkage:
 
     @property
     def by_strokes(self) -> bool:
-        """Whether loads may hang on the strokes: they act in working ones only, or by a table."""
+        """True if loads depend on the strokes: they act in working strokes only, or follow a table."""
         return any(load.working_stroke_only or load.table is not None for load in self.loads)
 
     @property
     def stroke_links(self) -> tuple[str, ...]:
-        """Links besides the main output whose strokes loads depend on."""
+        """Links other than the main output whose strokes the loads depend on."""
         named = [load.stroke_link for load in self.loads if load.working_stroke_only]
         named += [load.table.stroke_link for load in self.loads if load.table is not None]
         return tuple(dict.fromkeys(link for link in named if link))
 
     def working_direction(self, output: str) -> Literal["auto", "forward", "backward"]:
-        """The direction of the working stroke of an output, as the file says it."""
+        """Return the direction of the working stroke of an output, as given in the file."""
         every = self.outputs or ((self.output,) if self.output else ())
         return next((other.working for other in every if other.link == output), "auto")
 
     @property
     def by_speed(self) -> tuple[str, ...] | None:
-        """The first thing, by its keys in a file, whose force hangs on how fast the mechanism runs; friction does by
-        the reactions."""
+        """Keys of the first force that depends on the speed of the mechanism (dampers; friction through the reactions),
+        or None.
+        """
         damped = next((spring.name for spring in self.springs if spring.damping), None)
         if damped is not None:
             return ("springs", damped, "damping")
         return ("friction",) if self.friction else None
 
     def slide(self, name: str) -> Slide:
-        """A sliding pair by its name."""
+        """Return the sliding pair with this name."""
         return next(s for s in self.slides if s.name == name)
 
     def shared(self, one: str, other: str) -> str | None:
-        """The point in which two links are hinged to one another."""
+        """Return the point at which two links are hinged to each other, or None."""
         return common_hinge(self.hinges, one, other)
 
     @property
@@ -305,44 +321,48 @@ class Linkage:
 
     @property
     def moving_points(self) -> tuple[str, ...]:
-        """Named points that move, once each."""
+        """Names of the points that move, each once."""
         every = dict.fromkeys(point for link in self.moving for point in self.links[link].points)
         return tuple(point for point in every if point not in self.links[FRAME].points)
 
     def local(self, link: str, point: str) -> complex:
-        """A named point in the axes of its link, m."""
+        """Return a named point in the axes of its link, m."""
         return self.links[link].points[point]
 
     def slides_on_frame(self, link: str) -> bool:
-        """Whether the link has a guide on the frame, or is one for it."""
+        """Return True if the link forms a prismatic pair with the frame."""
         return any({s.carrier, s.runner} == {FRAME, link} for s in self.slides)
 
     def hinged_to_frame(self, link: str) -> bool:
-        """Whether the link has a hinge on the frame."""
+        """Return True if the link forms a revolute pair with the frame."""
         return any(FRAME in h.links and link in h.links for h in self.hinges)
 
     def output_point(self, output: str) -> str | None:
-        """The point of an output that is one of its coordinates; None of a link."""
+        """Return the point of an output such as K.x; None if the output is a link."""
         return None if output in self.links else output.rpartition(".")[0]
 
     def output_guide(self, output: str) -> Slide | None:
-        """The sliding pair in which an output runs: on the frame, or of a stone on a moving link."""
+        """Return the prismatic pair of an output link: with the frame, or of a sliding block on a moving link; None if
+        there is none.
+        """
         on_frame = next((s for s in self.slides if {s.carrier, s.runner} == {FRAME, output}), None)
         if on_frame is not None or self.hinged_to_frame(output):
             return on_frame
         return next((s for s in self.slides if s.runner == output), None)
 
     def output_carrier(self, output: str) -> str:
-        """The link that an output belongs to."""
+        """Return the link of an output: the link itself, or the one that owns the point."""
         point = self.output_point(output)
         return output if point is None else self.owner(point)
 
     def output_swings(self, output: str) -> bool:
-        """Whether an output is the angle of a link (rad), and no length (m)."""
+        """Return True if the output is the angle of a link (rad), False if it is a length (m)."""
         return output in self.links and self.output_guide(output) is None
 
     def output_arm(self, output: str) -> tuple[str, float] | None:
-        """The first other point of an output that swings about the frame, and its distance from the pivot (m)."""
+        """Return a point of an output link that swings about the frame, and its distance from the pivot (m), or
+        None.
+        """
         pivot = self.shared(FRAME, output) if output in self.links else None
         if pivot is None or not self.output_swings(output):
             return None
@@ -351,11 +371,13 @@ class Linkage:
         return None if point is None else (point, abs(link.points[point] - link.points[pivot]))
 
     def carriers(self, point: str) -> tuple[str, ...]:
-        """All links that have the point, moving links before the frame."""
+        """Return all links that own the point, moving links before the frame."""
         return tuple(name for name in (*self.moving, FRAME) if point in self.links[name].points)
 
     def owner(self, point: str) -> str:
-        """The first link that carries the point, moving links before the frame."""
+        """Return the first link that owns the point, moving links before the frame. Raises KeyError if there is
+        none.
+        """
         for name in (*self.moving, FRAME):
             if point in self.links[name].points:
                 return name
@@ -364,9 +386,9 @@ class Linkage:
 
 @dataclass(frozen=True)
 class Request:
-    """Which positions are asked for: a count over the range, or places of the driver given one by one.
+    """Requested positions: a count over the range, or individual driver coordinates.
 
-    centres: with the instantaneous centres of those in detail.
+    centres: True if the instantaneous centres are requested for the positions in detail.
     """
 
     count: int = 12

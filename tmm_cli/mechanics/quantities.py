@@ -1,15 +1,15 @@
-"""The quantities of motion, forces and energy: what each is called, what it measures, and how it is read.
+"""Quantities of motion, forces and energy: name, dimension, and how to read each from its record.
 
-There is one list for each kind of thing: points, links, sliding pairs, reactions, loads, drivers, forces on the lever,
-and the mechanism as a whole. A thing is a record of arrays, one value a position: `kinematics.motion.Point`,
-`forces.plan.Reaction`, ... Who reads the lists:
+There is one tuple of quantities for each kind of object: points, links, sliding pairs, reactions, loads, drivers,
+forces on the Zhukovsky lever, and the mechanism as a whole. An object is a record of arrays with one value for each
+position: `kinematics.motion.PointMotion`, `forces.plan.Reaction`, ... Users of the tuples:
 
-- tables take a column, or the columns of a vector's parts, of every quantity that has headers (`columns`);
-- result.json has a key for every quantity, and its schema the text and the unit (results.shapes.fields_of);
-- goals of optimal synthesis read reactions and what balances the driver as they are read here;
-- the bounds of rounding and `prepare` take the leading ones of all things of a linkage (analysis.selection.values).
+- tables contain a column, or columns of the components, for every quantity that has headers (`quantity_columns`);
+- result.json has a key for every quantity, and its schema the description and the unit;
+- goals of optimal synthesis read reactions and the balancing moment through them;
+- the rounding bounds and `prepare` use the quantities marked `leading` of all objects of a linkage.
 
-A further quantity of a point, say, is an attribute of `Point` and a line in POINT.
+To add a quantity of a point, for example, add an attribute to `PointMotion` and a line to POINT.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from tmm_cli.language import N_, _
 
 @dataclass(frozen=True)
 class Dimension:
-    """Exponents of length, mass, time and angle."""
+    """A physical dimension: exponents of length, mass, time and angle."""
 
     length: int = 0
     mass: int = 0
@@ -34,7 +34,7 @@ class Dimension:
     angle: int = 0
 
     def times(self, other: Dimension, power: int = 1) -> Dimension:
-        """The dimension of a product with other**power."""
+        """Return the dimension of the product with other**power."""
         return Dimension(
             self.length + power * other.length,
             self.mass + power * other.mass,
@@ -46,10 +46,10 @@ class Dimension:
         return NUMBER.times(self, exponent)
 
     def fits(self, wanted: Dimension) -> bool:
-        """Whether it may stand where `wanted` is asked for.
+        """Return True if a value of this dimension is accepted where `wanted` is required.
 
-        Radians may come and go beside other dimensions (1/s for rad/s, rad/s * m for m/s), but a ratio alone
-        is not an angle.
+        Radians are ignored beside other dimensions (1/s for rad/s, rad/s * m for m/s), but a pure number is not
+        accepted as an angle.
         """
         return self == wanted or (self._plain() == wanted._plain() != NUMBER)
 
@@ -58,11 +58,11 @@ class Dimension:
 
     @property
     def name(self) -> str | None:
-        """`length`, `moment of force`, ...; None for a dimension that has no name here."""
+        """Name of the dimension (`length`, `moment of force`, ...); None if it has no entry in DIMENSIONS."""
         return next((name for name, kind in DIMENSIONS.items() if kind.dimension == self), None)
 
     def __str__(self) -> str:
-        """With its article: `a length`, `an angle`."""
+        """Return the name with its article: `a length`, `an angle`."""
         if name := self.name:
             return _(NAMES_WITH_ARTICLE[name])
         bases = {"m": self.length, "kg": self.mass, "s": self.time, "rad": self.angle}
@@ -70,7 +70,7 @@ class Dimension:
 
     @property
     def example(self) -> str:
-        """The words for `allowed`: `an angle, e.g. 30 deg or 0.5 rad`."""
+        """Dimension with an example, for error messages: `an angle, e.g. 30 deg or 0.5 rad`."""
         name = self.name
         return (
             _("{kind}, e.g. {example}").format(kind=self, example=_translate_example(DIMENSIONS[name].example))
@@ -80,13 +80,13 @@ class Dimension:
 
 
 def _translate_example(examples: str) -> str:
-    """An example, or two of them."""
+    """Translate the `or` of an example such as "30 deg or 0.5 rad"."""
     one, __, other = examples.partition(" or ")
     return _("{one} or {other}").format(one=one, other=other) if other else one
 
 
 class NamedDimension(NamedTuple):
-    """A dimension with a name: the unit of bare numbers unless the file says otherwise, and an example."""
+    """A named dimension with its default unit for numbers without a unit, and an example."""
 
     dimension: Dimension
     default: str
@@ -151,29 +151,32 @@ NAMES_WITH_ARTICLE: Final[Mapping[str, str]] = {
     "angular acceleration": N_("an angular acceleration"),
     "stiffness": N_("a stiffness"),
     "torsional stiffness": N_("a torsional stiffness"),
-    "damping": N_("a damping"),
-    "torsional damping": N_("a torsional damping"),
+    "damping": N_("a damping coefficient"),
+    "torsional damping": N_("a torsional damping coefficient"),
     "density": N_("a density"),
 }
 
 
 def product_text(powers: Mapping[str, int]) -> str:
-    """`m^2*s^-1` from names and powers."""
+    """Write a product of powers: {"m": 2, "s": -1} gives `m^2*s^-1`."""
     return "*".join(name if power == 1 else f"{name}^{power}" for name, power in powers.items() if power)
 
 
-NamedValues = tuple[str, Any, Dimension]  # header, one value a position (None: the thing has none), dimension
+NamedValues = tuple[str, Any, Dimension]  # header, values at the positions (None if undefined), dimension
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """A quantity of a thing, in SI and radians, one value a position.
+    """A quantity of an object, in SI and radians, with one value for each position.
 
-    name: its key in result.json and, where `read` says nothing else, the attribute of the record. headers: of its
-    columns in tables: of a vector (complex, x + iy) those of x, y and perhaps its size, or of its size alone; none: in
-    no table. of_slider: header and dimension where the driver slides, if they differ. leading: whether `prepare` and
-    the bounds of rounding take it; symbol: what `prepare` calls it where not by its name. goes_with: the attribute that
-    says whether a thing has it at all.
+    Attributes:
+        name: key in result.json, and attribute of the record unless `read` is given.
+        headers: of its table columns; for a vector (complex, x + iy) those of x, y and possibly its magnitude, or of
+            the magnitude alone; empty if it is in no table.
+        of_slider: header and dimension for a sliding driver, if they differ.
+        leading: True if `prepare` and the rounding bounds use it.
+        symbol: its name in `prepare`, if not `name`.
+        goes_with: attribute that is None for objects without this quantity.
     """
 
     name: str
@@ -189,19 +192,24 @@ class Quantity:
     goes_with: str = ""
 
     def value(self, record: Any) -> Any:
-        """Its values, or None where the thing has none."""
+        """Return the values of this quantity, or None if the record has none."""
         return getattr(record, self.name) if self.read is None else self.read(record)
 
     def there(self, record: Any) -> bool:
-        """Whether a thing has it."""
+        """Return True if the record has this quantity."""
         return not self.goes_with or getattr(record, self.goes_with) is not None
 
     def measures(self, slider: bool) -> Dimension:
-        """What it measures; slider: of a mechanism whose driver slides."""
+        """Return the dimension; slider: True for a mechanism with a sliding driver."""
         return self.of_slider[1] if slider and self.of_slider is not None else self.dimension
 
     def columns(self, record: Any, slider: bool = False) -> Iterator[NamedValues]:
-        """Its columns in a table; slider: of a mechanism whose driver slides; of no record they are empty."""
+        """Yield the table columns of this quantity: header, values, dimension.
+
+        Args:
+            record: the object; None gives columns without values.
+            slider: True for a mechanism with a sliding driver.
+        """
         value = None if record is None else self.value(record)
         parts: Iterable[Any] = (value,)
         if value is None:
@@ -215,12 +223,14 @@ class Quantity:
 
 
 def quantity_columns(quantities: Iterable[Quantity], record: Any, slider: bool = False) -> list[NamedValues]:
-    """All columns of a thing's quantities."""
+    """Return the table columns of several quantities of one record."""
     return [column for quantity in quantities for column in quantity.columns(record, slider)]
 
 
 def coordinate_dimension(kind: str) -> Dimension:
-    """What the place of a driver, or of an output, measures that turns ("turn", "swing") or slides ("slide")."""
+    """Return the dimension of the coordinate of a driver or output that rotates ("turn", "swing") or slides
+    ("slide").
+    """
     return LENGTH if kind == "slide" else ANGLE
 
 

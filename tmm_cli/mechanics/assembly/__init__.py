@@ -1,4 +1,6 @@
-"""Choosing the assembly of a sketch, following it, and finding all of them."""
+"""Selection of the assembly that the sketch shows, continuation along the driver coordinate, and listing of
+assemblies.
+"""
 
 from tmm_cli.interfaces import lazy
 

@@ -1,7 +1,7 @@
-"""Exact change points of groups in closed form: dead positions that they pass and do not turn back in.
+"""Assembly of all groups as sketched, and change points of groups in closed form that are passed smoothly.
 
-A parallelogram has two. There the determinant is zero and only its sign tells the two ways on; along the smooth one,
-on which velocities are continuous, that changes.
+A parallelogram has two change points. There the determinant is zero, and only its sign distinguishes the two branches;
+along the smooth branch, on which velocities are continuous, the sign changes.
 """
 
 from __future__ import annotations
@@ -40,23 +40,22 @@ from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.numerics import Real, find_minima, find_roots
 from tmm_cli.mechanics.structure import Group, Structure, turns_of_cycle
 
-SCANNED_PER_TURN = 360  # places a turn
-LARGEST_SEARCH = (
-    5_000  # groups times turns of the driver that one search covers: a second and a tenth of a gigabyte each
-)
-CLOSER = 129  # places between two of these, where it seems to come to nothing
-BESIDE = 1e-3  # steps of the scan: so near, a determinant with a simple zero grows as the distance
-SHARED_POINT = 1e-4  # steps of the scan: a change point this near to one of an earlier group is the same
-VANISHED_BESIDE = 0.1  # of the determinant BESIDE: the rounding of many earlier groups leaves less in a shared point
-SIMPLE = 3.0  # times: at twice the distance such a one is twice as large, one with a double zero four times
+SCANNED_PER_TURN = 360  # samples per turn
+LARGEST_SEARCH = 5_000  # groups times turns of the driver in one search: a second and a tenth of a gigabyte
+CLOSER = 129  # finer samples where the reserve seems to vanish
+BESIDE = 1e-3  # steps of the scan: at this distance a determinant with a simple zero is proportional to it
+SHARED_POINT = 1e-4  # steps of the scan: a change point this near to one of an earlier group is the same point
+VANISHED_BESIDE = 0.1  # fraction of the determinant at BESIDE: rounding of earlier groups leaves less in a shared point
+SIMPLE = 3.0  # ratio at twice the distance: 2 for a simple zero, 4 for a double one
 
 
 def find_change_points(
     linkage: Linkage, before: tuple[GroupSolver, ...], kernel: ClosedFormSolver
 ) -> ChangePoints | None:
-    """The way of a group through its change points; None where it has none, or they are all touched only.
+    """Find the change points that a group passes smoothly; None if it has none, or only touches zero.
 
-    Raises ChangePointSearchError where the groups before it come back only after too many turns of the driver.
+    Raises:
+        ChangePointSearchError: the groups before it repeat only after too many turns of the driver.
     """
     upto = solvers_towards((*before, kernel), kernel.group.links)
     turns = linkage.driver.kind == "turn"
@@ -73,7 +72,7 @@ def find_change_points(
     at = link_states(linkage, upto, q, 0, blank=False).placements[-1]
     residual = np.where(np.isfinite(at.residual), at.residual, -np.inf)
     inner = residual[1:-1]
-    with np.errstate(invalid="ignore"):  # of places where nothing is
+    with np.errstate(invalid="ignore"):  # of positions without assembly
         rise = np.abs(np.diff(residual))
         near = (inner >= residual[:-2]) & (inner > residual[2:]) & (inner + 2 * np.maximum(rise[1:], rise[:-1]) >= 0)
     earlier = _change_points_before(upto, float(q[0]), float(q[-1]))
@@ -87,7 +86,7 @@ def find_change_points(
 
 
 def _change_points_before(upto: tuple[GroupSolver, ...], low: float, high: float) -> Real:
-    """Change points (points,), in growing order, of the groups that the last one depends on."""
+    """Return the change points (points,), increasing, of the groups on which the last one depends."""
     ways = [kernel.way for kernel in upto[:-1] if isinstance(kernel, ClosedFormSolver) and kernel.way is not None]
     return np.sort(np.concatenate([np.zeros(0), *(way.within(low, high) for way in ways)]))
 
@@ -95,10 +94,11 @@ def _change_points_before(upto: tuple[GroupSolver, ...], low: float, high: float
 def _refine_change_points(
     linkage: Linkage, upto: tuple[GroupSolver, ...], places: Real, step: float, earlier: Real
 ) -> Real:
-    """The change points near places (places,), to the last bit, where the group has no room to spare and can pass.
+    """Refine the change points near `places` (places,) to the last bit; points that the group cannot pass are dropped.
 
-    Earlier groups are known to half their digits beside a change point of their own (earlier, in growing order). What
-    is found next to it is that point itself: in a chain of parallelograms the points would drift apart otherwise.
+    Beside a change point of its own, an earlier group (`earlier`, increasing) is accurate to half the digits only. A
+    result next to such a point is that point itself: otherwise, in a chain of parallelograms, the points would drift
+    apart.
     """
     if not places.size:
         return places
@@ -129,20 +129,21 @@ def _refine_change_points(
 
 
 def _values_at_steps(function: Callable[[Real], Real], places: Real, steps: Real) -> Real:
-    """Values of a function at steps from each place, (places, steps)."""
+    """Return the values of a function at steps from each place, shape (places, steps)."""
     q = places[:, None] + steps
     return np.broadcast_to(function(q.ravel()), q.size).reshape(q.shape)
 
 
 def assembly_reserve(linkage: Linkage, kernels: tuple[GroupSolver, ...], q: Real) -> Real:
-    """How much the last group has to spare before it cannot be assembled."""
+    """Return the reserve (m) of the last group before it can no longer be assembled."""
     return -link_states(linkage, kernels, q, 0).placements[-1].residual
 
 
 def refine_dead_positions(linkage: Linkage, kernels: tuple[GroupSolver, ...], places: Real, step: float) -> Real:
-    """Dead positions inside the range (places,) to the last bit: there the residual of the last group stops growing.
+    """Refine dead positions (positions,) inside the range to the last bit: there the residual of the last group is
+    stationary.
 
-    The least of a quantity is known to half the digits only, the root of its rate to all of them.
+    The maximum of a quantity is known to half the digits only, the root of its rate to all of them.
     """
     last = kernels[-1]
     if not isinstance(last, ClosedFormSolver):
@@ -162,19 +163,24 @@ def refine_dead_positions(linkage: Linkage, kernels: tuple[GroupSolver, ...], pl
     return found
 
 
-# Stage: which of its assemblies each group has, from the sketch. It is kept in every position.
+# Selection of the assembly of each group from the sketch; it is kept in every position.
 
 
-MISPLACED = 0.25  # a sketched point this share of the size from its place, a link half a radian: it was sketched wrong
-ANGLES_PER_TURN = 720  # places a turn at which angles are followed through
+MISPLACED = 0.25  # sizes of the linkage: larger deviations of sketched points are mistakes; of angles twice this (rad)
+ANGLES_PER_TURN = 720  # samples per turn for the accumulation of angles
 
 
 def assemble(
     linkage: Linkage, structure: Structure, groups: tuple[Group, ...] | None = None, like: tuple[GroupSolver, ...] = ()
 ) -> tuple[GroupSolver, ...]:
-    """The groups with their assemblies, in solving order; like: those of a linkage whose lengths differ, which helps.
+    """Return the solvers of the groups in the assemblies of the sketch, in solving order.
 
-    Raises GroupTooLargeError, ChangePointSearchError, AssemblyError, AmbiguousSketchError, SketchMismatchError.
+    Args:
+        groups: groups to solve; all groups of the structure if None.
+        like: solvers of a linkage with other lengths, whose traces are corrected instead of computed anew.
+
+    Raises:
+        GroupTooLargeError, ChangePointSearchError, AssemblyError, AmbiguousSketchError, SketchMismatchError.
     """
     groups = structure.solved if groups is None else groups
     for group in groups:
@@ -191,7 +197,7 @@ def assemble(
         try:
             kernel, at = _assemble_group(group, linkage, poses, drives, tuple(chosen), other)
         except (AssemblyError, AmbiguousSketchError):
-            check_fit(linkage, poses, MISPLACED)  # a group before it, sketched wrong, may be what keeps it from closing
+            check_fit(linkage, poses, MISPLACED)  # an earlier group that is sketched wrongly may be the cause
             raise
         poses.update(zip(kernel.group.links, at.poses, strict=True))
         chosen.append(kernel)
@@ -222,12 +228,12 @@ def _assemble_group(
 
 
 def closed_form_solver(group: Group, linkage: Linkage) -> ClosedFormSolver | None:
-    """The group with its numbers, not yet assembled, if it has a closed form."""
+    """Return the solver of a group in closed form, not yet assembled; None if there is no closed form."""
     return next((kind.of(group, linkage) for kind in CLOSED_FORM_SOLVERS if kind.fits(group)), None)
 
 
 def _accumulate_angles(linkage: Linkage, kernels: tuple[GroupSolver, ...], links: tuple[str, ...]) -> AccumulatedAngles:
-    """Angles of the last group's links over a cycle about the sketch, as far as the driver can go."""
+    """Accumulate the angles of links of the last group over a cycle about the sketch, as far as the driver can move."""
     turns, at = turns_of_cycle(linkage) or 1, linkage.sketch.at
     half = turns * np.pi if linkage.driver.kind == "turn" else slider_search_range(linkage)
     q = at + half * np.linspace(-1, 1, ANGLES_PER_TURN * turns + 1)
@@ -264,9 +270,9 @@ def _choose_assembly(
 
 
 def _sketch_shift(kernel: ClosedFormSolver, linkage: Linkage, poses: dict[str, Pose]) -> complex:
-    """How far the sketch has the hinges that the group hangs on from where they are (m).
+    """Return the mean shift (m) of the known hinges of the group in the sketch from their computed positions.
 
-    What a sketch tells is on which side of them the group lies, so a group is compared with them put in their places.
+    The sketch shows on which side of these hinges the group lies, so the group is compared relative to them.
     """
     shifts = []
     for pair, end in kernel.outer_pairs:

@@ -1,8 +1,8 @@
-"""Following a group from its sketch along the driver's way: here, and only here, a place needs the last one.
+"""Continuation of a group from the sketch along the driver coordinate; only here a position depends on the one before.
 
-Steps are predicted with first and second derivatives and corrected by Newton's method; a step that corrects too much,
-or changes the side of a dead position, is halved. E. L. Allgower, K. Georg, Introduction to Numerical Continuation
-Methods, ch. 2 and 6.
+Steps are predicted with first and second derivatives and corrected by Newton's method; a step with too large a
+correction, or with a change of sign of the determinant, is halved. E. L. Allgower, K. Georg, Introduction to Numerical
+Continuation Methods, ch. 2 and 6.
 """
 
 from __future__ import annotations
@@ -25,22 +25,27 @@ from tmm_cli.mechanics.assembly.crossing import EDGE, CrossingFinder, is_far_fro
 from tmm_cli.mechanics.groups import BranchTrace, GroupState, LinkStates, NewtonSolver, Pose
 from tmm_cli.mechanics.numerics import LAST_STEP, Real, solve
 
-FIRST_STEP, LARGEST_STEP = 0.02, 0.1  # of the whole way that is looked at, divided by pi
+FIRST_STEP, LARGEST_STEP = 0.02, 0.1  # fractions of the examined range, divided by pi
 LEAST_STEP = 1e-9
-TURNS = 24  # a group that has not come back after so many turns of the driver is not followed further
-SPUN = 3e2  # rad, and as much again for a radian of a crank: a wheel is not followed farther
-FAR = 1e3  # sizes of a group: a link that is farther away when it cannot be followed any more goes to infinity
+TURNS = 24  # a group that has not returned after so many turns of the driver is not followed further
+SPUN = 3e2  # rad, and as much again per radian of a crank: larger rotations of gears are not followed
+FAR = 1e3  # sizes of a group: a link that is farther away where following fails goes to infinity
 HALVINGS = 80
-FARTHEST = 0.3  # along the group's own motion (sizes of the group, rad): a limit is looked for so far ahead
-LEFT = (0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # of the way to a limit: so near it has to be followed
-AHEAD = 0.1  # and not farther than so much of the driver's way, divided by pi
-SHIFTS = (0.0, 0.17, -0.23)  # scales of the driver
+FARTHEST = 0.3  # along the motion of the group (sizes of the group, rad): limits are searched so far ahead
+LEFT = (0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # fractions of the distance to a limit at which the branch is checked
+AHEAD = 0.1  # of the range of the driver, divided by pi: and no farther than this
+SHIFTS = (0.0, 0.17, -0.23)  # units of the driver coordinate
 
 TraceEnd = Literal["reached", "limit", "lost", "boundary"]
 
 
 class BranchFollower:
-    """Follows one group; `source` gives the links it hangs on. scale: what places of the driver are counted in."""
+    """Follows one group along the driver coordinate.
+
+    Args:
+        source: gives the states of the links on which the group depends.
+        scale: unit of the driver coordinate.
+    """
 
     def __init__(self, kernel: NewtonSolver, source: Source, scale: float = 1.0) -> None:
         self.kernel, self.source, self.scale = kernel, source, scale
@@ -49,13 +54,17 @@ class BranchFollower:
         self.crossings = CrossingFinder(kernel, source, self.corrector.node, scale)
 
     def trace(self, start: BranchNode, end: float) -> tuple[list[BranchNode], TraceEnd]:
-        """Nodes from one on to the place `end`, and how it ended; a limit is the last node. boundary: `end` is dead."""
+        """Follow the group from `start` to the driver coordinate `end`; return the nodes and why it stopped.
+
+        "reached": at `end`; "limit": the last node is a limit of the driver; "boundary": `end` is a dead position;
+        "lost": the group cannot be followed any further.
+        """
         nodes: list[BranchNode] = []
         here, failures, largest = start, 0, 0.0
         way = end - start.q
         least = LEAST_STEP * abs(way)
         step, growth = FIRST_STEP * way / np.pi, 1.0
-        smooth = [here]  # the last nodes, found in steps that did not shrink
+        smooth = [here]  # the last nodes, found in steps that were not halved
         while here.q != end:
             largest = max(largest, abs(here.det))
             places = places_ahead(here.q, end, step, growth, LARGEST_STEP * abs(way) / np.pi)
@@ -92,19 +101,21 @@ class BranchFollower:
         return nodes, "reached"
 
     def spins(self, here: BranchNode) -> bool:
-        """Whether it goes round so much faster than the driver that there is no following it."""
+        """Return True if the links rotate so much faster than the driver that they cannot be followed."""
         return self.corrector.gone(here.state)[1] > SPUN * (1 + abs(here.q - self.at) / self.scale)
 
     def beyond(self, last: BranchNode) -> list[BranchNode]:
-        """Where a group that goes away comes to infinity: at a distance c/(q* - q) its speed is c/(q* - q)^2.
+        """Return a node where a group that recedes reaches infinity; empty if it does not recede.
 
-        Nothing where it does not go away.
+        At a distance c/(q* - q) its speed is c/(q* - q)^2.
         """
         home = self.corrector.home or last.state
         if self.corrector.gone(last.state)[0] > FAR:
             far = (last.state.x - home.x).ravel()
             k = int(np.argmax(np.abs(far)))
-            speed = (np.conj(far[k]) * last.first.x.ravel()[k]).real / abs(far[k])  # the other part grows less
+            speed = (np.conj(far[k]) * last.first.x.ravel()[k]).real / abs(
+                far[k]
+            )  # the transverse part grows more slowly
             return [replace(last, q=last.q + float(abs(far[k]) / speed))]
         if self.spins(last):
             wound = (last.state.unwrapped - home.unwrapped).ravel()
@@ -113,9 +124,11 @@ class BranchFollower:
         return []
 
     def leads_to(self, here: BranchNode, limit: BranchNode) -> bool:
-        """Whether the way goes to a limit: another one may lie beyond it, behind a gap narrower than a step."""
+        """Return True if the branch leads to a limit; another branch may lie beyond it, across a gap narrower than a
+        step.
+        """
         near = self.corrector.apart(here.state, limit.state) / 2
-        share = np.sqrt(LEFT)[:, None]  # near a limit states go as the root of what is left of the way
+        share = np.sqrt(LEFT)[:, None]  # near a limit states vary as the square root of the distance
         starts = GroupState(
             *(
                 there + share * (one - there)
@@ -131,10 +144,10 @@ class BranchFollower:
         )
 
     def limit(self, last: BranchNode, sense: float) -> BranchNode | None:
-        """Where the driver turns back, to the last bit: along the group's own motion q has an extreme there.
+        """Return the limit of the driver to the last bit: along the group's own motion q has an extreme there.
 
-        With l the direction in which the group moves, F(X, q) = 0 and l (X - X0) = s give q(s), and q' = 0 is looked
-        for.
+        With the direction l of the motion of the group, F(X, q) = 0 and l (X - X0) = s give q(s), and the root of q' is
+        found.
         """
         kernel = self.kernel
         if kernel.passive:
@@ -185,7 +198,7 @@ class BranchFollower:
                 low, best, high = high, found, 2 * high
             else:
                 return None
-            # false position, the slope at an end that stays twice halved (Illinois)
+            # false position; the slope at an end that is kept twice is halved (Illinois method)
             below, above, last_sign = best[2], found[2], 0.0
             for _ in range(HALVINGS):
                 middle = low + (high - low) * below / (below - above)
@@ -219,16 +232,17 @@ class BranchFollower:
         return matrix
 
     def follow(self, at: float, state: GroupState, half: float, turns: bool) -> BranchTrace | None:
-        """The group's trace about the driver's place `at`: `half` a way to both sides, and round when it turns.
+        """Trace the group about the driver coordinate `at`: by `half` a range to both sides, or round and round.
 
-        When all has come back to where it was after some turns, the trace is closed.
+        If the group returns to its first state after some turns, the trace is closed. None if the group cannot be
+        started.
         """
         self.corrector.home, self.at = state, at
         found = self.corrector.node(at, state)
         if found is None:
             return None
         middle = found[0]
-        for shift in SHIFTS if turns else (0.0,):  # a cycle may begin anywhere but in a dead position
+        for shift in SHIFTS if turns else (0.0,):  # a cycle may start anywhere except in a dead position
             first, last = at - half + shift * self.scale, at + half + shift * self.scale
             up, above = self.trace(middle, last)
             down, below = self.trace(middle, first)
@@ -239,7 +253,7 @@ class BranchFollower:
         nodes = whole
         if turns and above == below == "reached" and self.corrector.returned(nodes[0].state, nodes[-1].state):
             return _make_trace(nodes)
-        for turn in range(1, TURNS):  # a group that never comes back is barred both ways, sooner or later
+        for turn in range(1, TURNS):  # a group that never returns reaches a limit on both sides sooner or later
             if turns and above == "reached":
                 more, above = self.trace(nodes[-1], last + 2 * half * turn)
                 nodes += more
@@ -253,12 +267,12 @@ class BranchFollower:
 
 
 def _unknowns_of(state: GroupState, size: float) -> Real:
-    """A state as the unknowns of the group's equations."""
+    """Return a state as the unknowns of the equations of the group."""
     return np.stack([state.x[0].real / size, state.x[0].imag / size, state.unwrapped[0]], axis=-1).ravel()
 
 
 def _make_trace(nodes: list[BranchNode], ends: tuple[TraceEnd, TraceEnd] | None = None) -> BranchTrace:
-    """The trace of nodes in growing order; ends: how it ended below and above, None: it is closed."""
+    """Make the trace of increasing nodes; ends: why it ended below and above, None if it is closed."""
 
     def ended(*ways: TraceEnd) -> tuple[bool, bool]:
         return (ends[0] in ways, ends[1] in ways) if ends else (False, False)

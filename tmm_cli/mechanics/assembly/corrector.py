@@ -1,4 +1,4 @@
-"""Nodes of the way of a group: its states at places of the driver with their derivatives, and states between them."""
+"""Nodes of a branch of a group, states between them, and their correction by Newton's method."""
 
 from __future__ import annotations
 
@@ -10,15 +10,17 @@ import numpy as np
 from tmm_cli.mechanics.groups import BranchTrace, GroupState, LinkStates, NewtonSolver
 from tmm_cli.mechanics.numerics import CONVERGED, SAME_STATE, Real
 
-Source = Callable[[Real, int], LinkStates]  # links placed before a group: at places, with derivatives of an order
+Source = Callable[
+    [Real, int], LinkStates
+]  # states of the known links at driver coordinates, with derivatives up to an order
 
 
 @dataclass(frozen=True)
 class BranchNode:
-    """A state of a group at a place q of the driver, its derivatives by q, and its determinant.
+    """State of a group at the driver coordinate q, its derivatives with respect to q, and its determinant.
 
-    side: the determinant's sign, in a dead position that which it has beyond it. dead: whether it is one, flips:
-    whether the determinant changes its sign there.
+    side: sign of the determinant; in a dead position, the sign beyond it. dead: True in a dead position; flips: True if
+    the determinant changes sign there.
     """
 
     q: float
@@ -32,18 +34,18 @@ class BranchNode:
 
 
 def join_states(states: Iterable[GroupState]) -> GroupState:
-    """Many states as one."""
+    """Concatenate states."""
     states = list(states)
     return GroupState(np.concatenate([s.x for s in states]), np.concatenate([s.unwrapped for s in states]))
 
 
 def predict_state(node: BranchNode, q: Real | float) -> GroupState:
-    """The state at places q from that of a node."""
+    """Return the states at q extrapolated from a node."""
     return taylor_step(node.state, node.first, node.second, (np.atleast_1d(q) - node.q)[:, None])
 
 
 def taylor_step(state: GroupState, first: GroupState, second: GroupState, step: Real) -> GroupState:
-    """States a step (rad or m) of the driver farther on, by their first and second derivatives."""
+    """Return the states after a step (rad or m) of the driver, from first and second derivatives."""
     return GroupState(
         state.x + step * (first.x + step / 2 * second.x),
         state.unwrapped + step * (first.unwrapped + step / 2 * second.unwrapped),
@@ -51,9 +53,11 @@ def taylor_step(state: GroupState, first: GroupState, second: GroupState, step: 
 
 
 def extrapolate_states(nodes: list[BranchNode], q: Real) -> GroupState:
-    """States at places q by the polynomial that has the states of some nodes and their first and second derivatives."""
+    """Return the states at q on the polynomial through the states and the first and second derivatives of some
+    nodes.
+    """
     span, most = q[-1] - nodes[0].q, 3 * len(nodes)
-    slope = np.diag(np.arange(1.0, most), 1)  # powers of t times this are their derivatives
+    slope = np.diag(np.arange(1.0, most), 1)  # differentiates powers of t
     powers = np.vander([(n.q - q[0]) / span for n in nodes], most, increasing=True)
     given = [
         [state_components(n.state) for n in nodes],
@@ -66,45 +70,52 @@ def extrapolate_states(nodes: list[BranchNode], q: Real) -> GroupState:
 
 
 def state_components(state: GroupState) -> Real:
-    """The numbers of one state: x, y and angle of each link."""
+    """Return the components of one state: x, y and angle of each link."""
     return np.concatenate([state.x[0].real, state.x[0].imag, state.unwrapped[0]])
 
 
 def states_from_components(parts: Real) -> GroupState:
-    """States of which these are the parts (states, parts)."""
+    """Return states from their components, shape (states, components)."""
     x, y, unwrapped = np.split(parts, 3, axis=-1)
     return GroupState(x + 1j * y, unwrapped)
 
 
-# One group corrected at places of the driver by Newton's method: at one of them, or at many at once.
+# Correction of one group by Newton's method, at one or many driver coordinates.
 #
-# A call costs nearly the same for many places as for one, so a step along the way looks ahead.
+# A call costs nearly the same for many coordinates as for one, so a step looks ahead.
 
 
-FEW_ITERATIONS = 6  # rounds of Newton's method: more than that begin too far away
-CORRECTION = 0.02  # a corrected step may be this far from the predicted one (sizes of the group, rad)
-MANY_TURNS = 50.0  # rad: a link that has gone round so far is followed in longer steps
-PATIENCE = 4  # halvings of a step that are tried at once
-MOST_AHEAD = 16  # places
-NODES = 4  # that a polynomial is laid through
+FEW_ITERATIONS = 6  # of Newton's method: an initial guess that needs more is too far away
+CORRECTION = 0.02  # largest correction of a predicted state (sizes of the group, rad)
+MANY_TURNS = 50.0  # rad: links with larger rotations are followed in longer steps
+PATIENCE = 4  # halved steps that are tried at once
+MOST_AHEAD = 16  # driver coordinates
+NODES = 4  # of an extrapolating polynomial
 
 
 class Corrector:
-    """`source` gives the links that the group hangs on; home: where it began."""
+    """Corrects states of one group at one or many driver coordinates.
+
+    source: gives the states of the links on which the group depends. home: first state of the branch.
+    """
 
     def __init__(self, kernel: NewtonSolver, source: Source) -> None:
         self.kernel, self.source = kernel, source
         self.home: GroupState | None = None
-        self.near: dict[tuple[float, float], BranchNode | None] = {}  # found by single steps from a place to another
+        self.near: dict[
+            tuple[float, float], BranchNode | None
+        ] = {}  # found by single steps from one coordinate to another
         self.far: dict[float, BranchNode | None] = {}  # found by a polynomial
 
     def node(self, q: float, start: GroupState) -> tuple[BranchNode, float] | None:
-        """The group at q, from a start, and how far it is from it; None where there is nothing to be found."""
+        """Return the group at q, from an initial guess, and its distance from the guess; None if there is no
+        solution.
+        """
         found = self.nodes(np.array([q]), start)[0]
         return None if found is None else (found, self.apart(found.state, start))
 
     def nodes(self, q: Real, start: GroupState) -> list[BranchNode | None]:
-        """The group at many places at once, each from a start of its own."""
+        """Return the group at many driver coordinates at once, each from an initial guess of its own."""
         found = self.motion(q, start)
         if found is None:
             return [None] * len(q)
@@ -117,8 +128,8 @@ class Corrector:
         return [one(k) if sound[k] else None for k in range(len(q))]
 
     def motion(self, q: Real, start: GroupState) -> tuple[GroupState, GroupState, GroupState, Real, Real] | None:
-        """States at places, each from a start of its own, with first and second derivatives by q; determinants; where
-        all that is sound. None where it is nowhere.
+        """Return corrected states, first and second derivatives, determinants, and where all these are valid; None if
+        nowhere.
         """
         before = self.source(q, 2)
         if not np.any(before.placed):
@@ -142,11 +153,11 @@ class Corrector:
         return state, first, second, det, sound
 
     def step(self, smooth: list[BranchNode], places: list[float]) -> tuple[BranchNode, float] | None:
-        """The group at the first of some places, as `node` finds it from the last of some nodes on a smooth way.
+        """Return the group at the first of `places`, as `node` finds it from the last of the nodes on a smooth branch.
 
-        Many places are looked at at once: those of halved steps and, from a polynomial through the smooth nodes, as
-        many of the others as it has led to so far. What is found is kept for the next steps, and that from the
-        polynomial counts only where it is what a single step leads to; if not, `smooth` begins anew.
+        Many coordinates are solved at once: those of halved steps and, from a polynomial through the smooth nodes, as
+        many of the others as it has predicted correctly so far. Results are kept for the next steps; one from the
+        polynomial counts only if a single step leads to the same state; otherwise `smooth` is restarted.
         """
         here, q = smooth[-1], places[0]
         start = predict_state(here, q)
@@ -154,7 +165,7 @@ class Corrector:
         if there is not None and (apart := self.apart(there.state, start)) < CORRECTION:
             return there, apart
         if (here.q, q) not in self.near:
-            if q in self.far:  # the polynomial did not lead there
+            if q in self.far:  # the prediction of the polynomial failed
                 smooth[:-1] = []
             places = places[: max(1, len(smooth) - 1)]
             halves = [q]
@@ -170,7 +181,7 @@ class Corrector:
         return None if there is None else (there, self.apart(there.state, start))
 
     def apart(self, one: GroupState, other: GroupState) -> float:
-        """How far two states are apart: lengths against the group's size, angles in rad."""
+        """Return the distance of two states: lengths divided by the size of the group, angles in rad."""
         away, wound = self.gone(one)
         return float(
             max(
@@ -180,15 +191,16 @@ class Corrector:
         )
 
     def returned(self, one: GroupState, other: GroupState) -> bool:
-        """Whether two states are the same but for full turns."""
+        """Return True if two states are equal up to full turns."""
         around = (other.unwrapped - one.unwrapped) / (2 * np.pi)
         same = GroupState(other.x, one.unwrapped + (around - np.round(around)) * 2 * np.pi)
         return self.apart(one, same) < SAME_STATE
 
     def gone(self, state: GroupState) -> tuple[float, float]:
-        """How far the group is from where it began: the farthest link (sizes of the group), the most turned one (rad).
+        """Return the distance of the group from its first state: of the farthest link (sizes of the group), largest
+        rotation (rad).
 
-        As guides become parallel links go away, and wheels on them round, for ever; steps grow with them then.
+        As guides become parallel, links recede and gears on them rotate without limit; then the steps grow with them.
         """
         home = self.home or state
         return (
@@ -198,7 +210,7 @@ class Corrector:
 
 
 def places_ahead(q: float, end: float, step: float, growth: float, largest: float) -> list[float]:
-    """Places up to `end` in steps that grow."""
+    """Return driver coordinates up to `end` in growing steps."""
     found: list[float] = []
     while q != end and len(found) < MOST_AHEAD:
         step = np.sign(step) * min(abs(step), largest)
@@ -208,21 +220,24 @@ def places_ahead(q: float, end: float, step: float, growth: float, largest: floa
     return found
 
 
-# A group whose lengths differ little from those of one that was followed: the nodes of its cycle found all at once.
+# A group whose lengths differ little from those of a traced one: all nodes of its cycle are corrected at once.
 #
-# They have to pass the tests of nodes that are found one after another (continuation): each is where its neighbour's
-# derivatives lead to, and no dead position lies between them.
+# They must pass the tests of continuation: each node is where the derivatives of its neighbour lead, and no dead
+# position lies between them.
 
 
-NEARLY_DEAD = 0.05  # of the largest determinant: beside a dead position nodes have to lie closer
+NEARLY_DEAD = 0.05  # fraction of the largest determinant: below it nodes would have to be closer
 
 
 def correct_trace(
     kernel: NewtonSolver, source: Source, trace: BranchTrace, at: float, state: GroupState
 ) -> BranchTrace | None:
-    """The trace of a group from that of its neighbour; None where the neighbour does not tell it.
+    """Return the trace of a group from that of a linkage with slightly different lengths; None if it cannot be derived.
 
-    source: links placed before the group. state: the group at the driver's place `at`, in the assembly that is meant.
+    Args:
+        source: gives the states of the links on which the group depends.
+        at: driver coordinate of the sketch.
+        state: the group at `at`, in the required assembly.
     """
     here = np.flatnonzero(trace.q == at)
     if not trace.closed or trace.dead.size or not here.size or kernel.passive:

@@ -1,8 +1,9 @@
-"""Dead positions that a group passes on a smooth way: change points, where the way of another assembly crosses its own.
+"""Dead positions that a group passes smoothly: change points, where two branches of assemblies cross.
 
-Near one, at a distance h, Newton's method knows a state to u/h only, and at the place itself it has no next step. So
-the smooth way is sampled on both sides from farther off, and polynomials through the samples give the state there and
-the place, a root of the determinant. E. L. Allgower, K. Georg, Introduction to Numerical Continuation Methods, ch. 8.
+At a distance h from one, Newton's method determines a state to roundoff/h only, and at the point itself it has no next
+step. So the smooth branch is sampled at some distance on both sides, and polynomials through the samples give the state
+and the point, a root of the determinant. E. L. Allgower, K. Georg, Introduction to Numerical Continuation Methods,
+ch. 8.
 """
 
 from __future__ import annotations
@@ -35,17 +36,22 @@ from tmm_cli.mechanics.numerics import (
     to_float,
 )
 
-RADII = (0.2, 0.1, 0.05, 0.025, 0.012, 0.005)  # of the samples about the place, in scales of the driver
-SAMPLES = 28  # of Chebyshev; those in the middle are left out
+RADII = (0.2, 0.1, 0.05, 0.025, 0.012, 0.005)  # distances of the samples, in units of the driver coordinate
+SAMPLES = 28  # Chebyshev nodes; those in the middle are omitted
 MIDDLE = 0.2
-DEGREES = (10, 13)  # of the polynomials: places of both agree
-PROBES = (1e-3, 1e-4, 1e-5, 1e-6)  # scales; a determinant that falls as h^2 leaves no digits at the last ones
-FOUND = 0.02  # a corrected state may be this far from the predicted one
+DEGREES = (10, 13)  # of two polynomials, whose roots must agree
+PROBES = (
+    1e-3,
+    1e-4,
+    1e-5,
+    1e-6,
+)  # units of the driver coordinate; for a determinant that falls as h^2 only the first two
+FOUND = 0.02  # sizes of the group, rad: largest correction of a predicted state
 ROUNDS = 12
-SMALL = 0.3  # of the largest determinant on the way: less than this may come to nothing
-AHEAD = 1e-5  # scales of the driver, for the slope of the determinant
-CLOSER = 10  # times: a dead position that was not found is looked for again from so much nearer
-EDGE = 1e-3  # scales of the driver: this near to an end of the way a dead position is at it
+SMALL = 0.3  # fraction of the largest determinant, below which it may touch zero
+AHEAD = 1e-5  # units of the driver coordinate, step for the slope of the determinant
+CLOSER = 10  # factor: a dead position that was not found is searched again from a distance smaller by it
+EDGE = 1e-3  # units of the driver coordinate: a dead position this near to an end of the range is at the end
 
 
 Correct = Callable[[float, GroupState], "tuple[BranchNode, float] | None"]
@@ -54,7 +60,7 @@ Finest = Callable[[list[BranchNode]], list[BranchNode]]
 
 @dataclass(frozen=True)
 class _Fit:
-    """Polynomials of the states' parts (columns) and of the determinant in t = (q - middle)/radius."""
+    """Polynomials of the components of the states and of the determinant in t = (q - middle)/radius."""
 
     middle: float
     radius: float
@@ -62,23 +68,26 @@ class _Fit:
     det: Chebyshev
 
     def state(self, q: float, order: int = 0) -> GroupState:
-        """The state at q, or a derivative of it by q."""
+        """Return the state at q, or its derivative of this order with respect to q."""
         t = (q - self.middle) / self.radius
         found = np.array([(part.deriv(order) if order else part)(t) for part in self.parts]) / self.radius**order
         return states_from_components(found[None, :])
 
 
 class CrossingFinder:
-    """Looks for them on the way of one group: `source` gives the links it hangs on, `correct` the group itself."""
+    """Finds the crossings on the branch of one group.
+
+    source: gives the states of the known links; correct: solves the group at q; scale: unit of the driver coordinate.
+    """
 
     def __init__(self, kernel: NewtonSolver, source: Source, correct: Correct, scale: float) -> None:
         self.kernel, self.source, self.correct, self.scale = kernel, source, correct, scale
         self.refused: list[tuple[float, float]] = []
 
     def between(self, nodes: list[BranchNode], beyond: BranchNode, largest: float) -> BranchNode | None:
-        """A dead position between the last node and the next one that the group passes smoothly.
+        """Return a dead position between the last node and the next one that the group passes smoothly, or None.
 
-        largest: size of the determinant in one of the nodes.
+        largest: largest determinant so far.
         """
         here = nodes[-1]
         if self.kernel.passive or here.dead:
@@ -95,7 +104,7 @@ class CrossingFinder:
         return found
 
     def _finest(self, nodes: list[BranchNode]) -> list[BranchNode]:
-        """The same nodes found in double-doubles, and rounded."""
+        """Return the nodes solved in double-doubles and rounded."""
         kernel = self.kernel
         before = self.source(to_double_double([n.q for n in nodes]), 0)
         states = join_states(n.state for n in nodes)
@@ -111,9 +120,10 @@ class CrossingFinder:
         ]
 
     def _touches(self, here: BranchNode, beyond: BranchNode, largest: float) -> bool:
-        """Whether a determinant of one sign seems to come to nothing between two nodes, as the square of the way.
+        """Return True if a determinant of constant sign seems to touch zero between two nodes, like the square of the
+        distance.
 
-        From both of them it is so at twice the way that the tangent leads to.
+        From both nodes the zero is then at twice the distance to which the tangent leads.
         """
         if max(abs(here.det), abs(beyond.det)) > SMALL * largest:
             return False
@@ -123,7 +133,7 @@ class CrossingFinder:
         return all(abs(end - middle) < abs(way) for end in ends)
 
     def _slope(self, node: BranchNode) -> np.float64:
-        """Derivative of the determinant by q, roughly."""
+        """Return the approximate derivative of the determinant with respect to q."""
         step = AHEAD * self.scale
         before, state = self.source(np.array([node.q + step]), 0), predict_state(node, node.q + step)
         moved = np.linalg.det(self.kernel.matrix({**before.poses, **self.kernel.poses_of(state)}))
@@ -131,17 +141,20 @@ class CrossingFinder:
 
 
 def is_far_from_dead(end: BranchNode, nodes: list[BranchNode]) -> bool:
-    """Whether a node is not all but in a dead position."""
+    """Return True if a node is not close to a dead position."""
     return abs(end.det) > 2 * EDGE * max(abs(n.det) for n in nodes)
 
 
 def find_crossing(
     correct: Correct, finest: Finest, nodes: list[BranchNode], beyond: BranchNode, scale: float
 ) -> BranchNode | None:
-    """The dead position between the last node and one beyond it; None where the way does not go smoothly through one.
+    """Return the dead position between the last node and the one beyond it; None if the branch does not pass it
+    smoothly.
 
-    correct: the group at a place, from a start, and how far it is from it. finest: nodes in extended precision. scale:
-    what places are counted in.
+    Args:
+        correct: solves the group at q from an initial guess; returns the node and its distance from the guess.
+        finest: solves nodes in extended precision.
+        scale: unit of the driver coordinate.
     """
     flips = beyond.side != nodes[-1].side
     about = _bracket_crossing(correct, nodes[-1], beyond) if flips else (nodes[-1].q + beyond.q) / 2
@@ -163,7 +176,7 @@ def find_crossing(
 
 
 def _bracket_crossing(correct: Correct, low: BranchNode, high: BranchNode) -> float:
-    """About where the determinant is zero, by false position as far as Newton's method goes."""
+    """Return approximately where the determinant is zero, by false position as far as Newton's method converges."""
     for _ in range(ROUNDS):
         q = low.q + (high.q - low.q) * low.det / (low.det - high.det)
         near = low if abs(q - low.q) < abs(high.q - q) else high
@@ -180,7 +193,9 @@ def _bracket_crossing(correct: Correct, low: BranchNode, high: BranchNode) -> fl
 def _fit_crossing(
     correct: Correct, finest: Finest, nodes: list[BranchNode], about: float, radius: float, flips: bool
 ) -> tuple[BranchNode, float, _Fit] | None:
-    """A dead position from samples at the distance `radius` about a place near it, how well it is known; the fit."""
+    """Return a dead position fitted to samples within `radius` of an estimate, its uncertainty, and the fit; or
+    None.
+    """
     for _ in range(3):
         samples = _sample_branch(correct, nodes, about, radius, flips)
         if samples is None:
@@ -207,7 +222,9 @@ def _fit_crossing(
 def _sample_branch(
     correct: Correct, nodes: list[BranchNode], about: float, radius: float, flips: bool
 ) -> list[BranchNode] | None:
-    """Nodes on both sides of a place; the first ones beyond it start from what those before it lead to."""
+    """Return nodes on both sides of a point; the first ones beyond it start from an extrapolation of those before
+    it.
+    """
     sense = np.sign(about - nodes[-1].q)
     places = np.cos(np.pi * (np.arange(SAMPLES) + 0.5) / SAMPLES)
     places = places[np.abs(places) > MIDDLE]
@@ -252,7 +269,7 @@ def _fit_samples(samples: list[BranchNode], about: float, radius: float, degree:
 
 
 def _root(fit: _Fit, flips: bool) -> float:
-    """Where the determinant is zero, or where it is least if it does not change its sign."""
+    """Return the zero of the determinant, or its extreme if it does not change sign."""
     function = fit.det if flips else fit.det.deriv()
     slope = function.deriv()
     t = 0.0
@@ -264,9 +281,9 @@ def _root(fit: _Fit, flips: bool) -> float:
 
 
 def _is_passed_smoothly(correct: Correct, dead: BranchNode, fit: _Fit, scale: float) -> bool:
-    """Whether the way goes through: beside the place, closer and closer, the group is where the polynomials say.
+    """Return True if, ever closer to the point, the group is where the polynomials predict.
 
-    Where it turns back before a gap however narrow (w), it is off by w^2/h at the distance h.
+    If the branch turns back before a gap, however narrow (w), it deviates by w^2/h at the distance h.
     """
     for h in PROBES if dead.flips else PROBES[:2]:
         places = (dead.q - h * scale, dead.q + h * scale)

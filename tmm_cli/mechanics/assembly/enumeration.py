@@ -1,9 +1,9 @@
-"""Stage: every real assembly of each group at one place of the driver, the links before it placed as in the sketch.
+"""All real assemblies of each group at one driver coordinate, with the links before it as sketched.
 
-Groups of class II have two assemblies in closed form, or one; triads those of a polynomial (assembly_triad); groups
-whose angles follow from equations of angles alone (gear trains) have one. Of all others Newton's method from many
-starts finds what it finds, in bounded work and without a proof that there are no more. Where there is more than one,
-real assemblies come in pairs, but for dead positions, in which two of them meet.
+Groups of class II have one or two assemblies in closed form; triads those of a polynomial (see triad); groups whose
+angles follow from linear equations of angles (gear trains) have one. For all other groups Newton's method from many
+initial guesses finds assemblies, with bounded work and without proof of completeness. If there is more than one, real
+assemblies come in pairs, except in dead positions, in which two of them coincide.
 """
 
 from __future__ import annotations
@@ -34,17 +34,17 @@ from tmm_cli.mechanics.structure import Group, Structure
 
 Method = Literal["closed form", "polynomial", "angles", "many starts"]
 
-STARTS, LEAST_STARTS, SMALL = 400, 60, 8  # many starts; fewer for groups of more links, as each then costs more
-ROUNDS = 4  # of many starts at most, while an odd number shows that one is missing
-STEP, STAYS = 0.02, 0.005  # sizes, rad: a step that shows whether a group moves by itself, and what it then keeps of it
-BACK = 40  # rounds that would bring it back
+STARTS, LEAST_STARTS, SMALL = 400, 60, 8  # initial guesses; fewer for larger groups, as each then takes longer
+ROUNDS = 4  # most rounds of initial guesses, while an odd number shows that an assembly is missing
+STEP, STAYS = 0.02, 0.005  # sizes, rad: step that tests whether a group is movable, and least deviation that remains
+BACK = 40  # iterations that would return it
 
 
 @dataclass(frozen=True)
 class Assembly:
-    """One assembly: poses of the group's links, their angles (rad), its own points (m), distance from a dead position.
+    """One assembly: poses and angles (rad) of the links, its own points (m), distance from a dead position (margin).
 
-    of_sketch: whether it is the one in which the linkage was sketched.
+    of_sketch: True for the assembly of the sketch.
     """
 
     poses: Mapping[str, Pose]
@@ -56,9 +56,10 @@ class Assembly:
 
 @dataclass(frozen=True)
 class GroupAssemblies:
-    """The assemblies of a group. most: so many are possible, where that is known.
+    """The assemblies of a group.
 
-    moves: the group moves by itself at this place, so that its assemblies have no end; one of them is here.
+    most: largest possible number, if known. moves: the group is movable with the driver fixed, so that its assemblies
+    are infinite in number; one of them is listed.
     """
 
     group: Group
@@ -69,21 +70,24 @@ class GroupAssemblies:
 
     @property
     def complete(self) -> bool:
-        """Whether it is proved that there are no others."""
+        """True if it is proved that there are no other assemblies."""
         return self.method != "many starts" and not self.moves
 
     @property
     def dead(self) -> bool:
-        """Whether two assemblies meet in one here."""
+        """True if two assemblies coincide here."""
         return any(found.margin < DEAD for found in self.assemblies)
 
 
 @dataclass(frozen=True)
 class Assemblies:
-    """All groups at the driver's place q (rad or m), position `number` if it is one; in solving order.
+    """Assemblies of all groups at the driver coordinate q (rad or m), in solving order.
 
-    poses: those of all links in the assembly of the sketch. undecided: the group of which the sketch does not tell the
-    assembly; groups after it are not listed. lost: groups that hang on links that cannot be placed here.
+    Attributes:
+        number: number of the position, if it is one.
+        poses: poses of all links in the assembly of the sketch.
+        undecided: group whose assembly the sketch does not determine; later groups are not listed.
+        lost: groups attached to links that have no position here.
     """
 
     q: float
@@ -95,7 +99,7 @@ class Assemblies:
 
 
 def name_assembly_files(places: Sequence[Assemblies]) -> list[tuple[str, Assemblies, GroupAssemblies]]:
-    """The groups with the names of their files: assemblies-III-2-3-4-5, with the position when there are several."""
+    """Return the groups with their file names: assemblies-III-2-3-4-5, with the position if there are several."""
     found: dict[str, tuple[str, Assemblies, GroupAssemblies]] = {}
     for here in places:
         for group in here.groups:
@@ -110,9 +114,11 @@ def name_assembly_files(places: Sequence[Assemblies]) -> list[tuple[str, Assembl
 def find_assemblies(
     linkage: Linkage, structure: Structure, kernels: tuple[GroupSolver, ...], q: float, number: int | None = None
 ) -> Assemblies:
-    """All assemblies at q of the groups given as they are assembled, and of the one after them.
+    """Find all assemblies of each group at q, and of the first group without a solver.
 
-    A group after them is there only when the sketch does not tell its assembly.
+    Args:
+        kernels: solvers of the groups in the assemblies of the sketch; incomplete if the sketch is ambiguous.
+        number: number of the position, if it is one.
     """
     motion = link_states(linkage, kernels, np.array([q]), 0)
     decided = {kernel.group.links for kernel in kernels}
@@ -144,14 +150,14 @@ def _list_assemblies(group: Group, linkage: Linkage, motion: LinkStates, placed:
 
 
 def _sketched_poses(group: Group, motion: LinkStates) -> dict[str, Pose] | None:
-    """The group's own poses in the assembly of the sketch, if it is decided and comes so far."""
+    """Return the poses of the group in the assembly of the sketch, if it is determined and can be assembled here."""
     poses = {link: motion.poses[link] for link in group.links if link in motion.poses}
     sound = len(poses) == len(group.links) and all(np.isfinite(p.x[0] + p.z[0]) for p in poses.values())
     return poses if sound else None
 
 
 def _pose_distance(one: Mapping[str, Pose], other: Mapping[str, Pose], size: float) -> float:
-    """How far two poses of the same links are apart; infinite where one of them is nothing."""
+    """Return the distance of two sets of poses of the same links; infinite where a pose is undefined."""
     off = max(
         abs(complex(p.x[0] - other[n].x[0])) / size + abs(complex(p.z[0] - other[n].z[0])) for n, p in one.items()
     )
@@ -173,7 +179,7 @@ def _make_assembly(linkage: Linkage, placed: Iterable[str], poses: Mapping[str, 
 def _closed_form_assemblies(
     kernel: ClosedFormSolver, linkage: Linkage, placed: Mapping[str, Pose], drives: DriverStates
 ) -> Iterable[Assembly]:
-    """One for each sign, one in a dead position, none where it does not reach."""
+    """Yield one assembly for each sign, one in a dead position, none out of reach."""
     for sign in (1, -1)[: kernel.assemblies]:
         with np.errstate(invalid="ignore", divide="ignore"):
             at = replace(kernel, sign=sign).closed(placed, drives)
@@ -187,7 +193,7 @@ def _closed_form_assemblies(
 def _iterated_assemblies(
     group: Group, linkage: Linkage, placed: Mapping[str, Pose], motion: LinkStates
 ) -> GroupAssemblies:
-    """Groups of class III and higher, and those with higher pairs or drivers in them."""
+    """List the assemblies of a group of class III or higher, or with higher pairs or drivers."""
     kernel = NewtonSolver.of(group, linkage)
     with np.errstate(all="ignore"):
         states, method, most = _search_states(kernel, linkage, placed, motion)
@@ -209,7 +215,7 @@ def _iterated_assemblies(
 def _search_states(
     kernel: NewtonSolver, linkage: Linkage, placed: Mapping[str, Pose], motion: LinkStates
 ) -> tuple[list[GroupState], Method, int | None]:
-    """States of all assemblies (some more than once), the way they were found, and how many there are at most."""
+    """Return the states of all assemblies (possibly repeated), the method, and the largest possible number."""
     drives = motion.drives
     triad = Triad.of(kernel.group, linkage, kernel.size)
     found = None if triad is None else triad_starts(triad, placed)
@@ -224,16 +230,16 @@ def _search_states(
     known = {name: pose.spread((number,)) for name, pose in placed.items()}
     residuals = np.max(np.abs(kernel.residuals({**known, **kernel.poses_of(start)}, drives)), axis=-1)
     near, closed = close_from_afar(kernel, placed, drives, start)
-    # exactly in a dead position Newton's method has no next step, but the root is there
+    # exactly in a dead position Newton's method has no next step, but the initial guess is the solution
     sound = [(near if closed[k] else start, k) for k in range(number) if closed[k] or residuals[k] < GROUP_CLOSED]
     return [which.part(slice(k, k + 1)) for which, k in sound], "polynomial", most
 
 
 def _by_many_starts(kernel: NewtonSolver, placed: Mapping[str, Pose], motion: LinkStates) -> list[GroupState]:
-    """What many starts find, and the assembly of the sketch.
+    """Return the states found from many initial guesses, and that of the sketch.
 
-    With turning pairs alone the way of a group with one lead cut is closed, so that the lead closes an even number of
-    times: an odd number shows that one is missing.
+    With revolute pairs alone the curve of a group with one external pair released is closed, so that the pair closes an
+    even number of times: an odd number shows that one is missing.
     """
     own = _sketched_poses(kernel.group, motion)
     states: list[GroupState] = []
@@ -253,13 +259,13 @@ def _by_many_starts(kernel: NewtonSolver, placed: Mapping[str, Pose], motion: Li
 
 
 def _is_listed(size: float, poses: Mapping[str, Pose], margin: float, other: Assembly) -> bool:
-    """Whether an assembly is there already; in a dead position both that meet are known to half the digits only."""
+    """Return True if an assembly is already listed; in a dead position both are accurate to half the digits only."""
     apart = _pose_distance(poses, other.poses, size)
     return apart < SAME_ASSEMBLY or (apart < ASSEMBLIES_MEET and max(margin, other.margin) < DEAD)
 
 
 def _moves_by_itself(kernel: NewtonSolver, state: GroupState, placed: Mapping[str, Pose], drives: DriverStates) -> bool:
-    """Whether a dead group moves by itself: closed again after a step along its free motion, it does not come back."""
+    """Return True if a dead group is movable: closed again after a step along its free motion, it does not return."""
     free = np.linalg.svd(kernel.matrix({**placed, **kernel.poses_of(state)})[0])[2][-1]
     here = state.moved(STEP * free / np.max(np.abs(free)), kernel.size)
     residual = np.inf

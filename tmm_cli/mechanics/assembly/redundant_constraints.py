@@ -1,9 +1,9 @@
-"""Which links and pairs of a linkage with redundant constraints the structural report leaves out.
+"""Redundant links and pairs, which the structural report leaves out, and mobility by numerical rank.
 
-Decided by the rank of the equations at one position: without what is left out the mobility is the same. Links that are
-rigid to one another count as one. Links between moving links are left out first, then pairs, then links connected to
-the frame; the later in the file before the earlier, loaded links last. Drivers, outputs and links to which the file
-attaches others stay. Where nothing more can be left out as a whole, pairs lose single conditions.
+Redundancy is decided by the rank of the equations at one position: the mobility is the same without what is left out.
+Links that are rigid to one another count as one. Links between moving links are left out first, then pairs, then links
+connected to the frame; later ones in the file before earlier ones, loaded links last. Drivers, outputs and links to
+which the file attaches others are kept. If nothing more can be left out as a whole, pairs lose single conditions.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ MOST_TRIES = 3000
 
 @dataclass(frozen=True)
 class RemainingLinkage:
-    """A linkage without some links and ties, at known poses of all links."""
+    """A linkage without some links and ties, in known poses of all links."""
 
     linkage: Linkage
     poses: Mapping[str, Pose]
@@ -48,7 +48,7 @@ class RemainingLinkage:
 
     @cached_property
     def _kernel(self) -> NewtonSolver | None:
-        """What is left as one group; None if nothing is joined."""
+        """Solver of the remaining linkage as one group; None if no pairs remain."""
         left, dropped = {*self.links}, {tie for k, tie in enumerate(list_ties(self.linkage)) if k in self.ties}
         names = {tie.name for tie in dropped}
         hinges = []
@@ -73,12 +73,12 @@ class RemainingLinkage:
 
     @property
     def moving(self) -> tuple[str, ...]:
-        """The moving links that are left."""
+        """The remaining moving links."""
         return tuple(link for link in self.links if link != FRAME)
 
     @cached_property
     def equations(self) -> Real:
-        """The Jacobian without dimension, (rows, unknowns), with the rows of the drivers last."""
+        """Dimensionless Jacobian, shape (rows, unknowns), the rows of the drivers last."""
         if self._kernel is None:
             return np.zeros((0, 3 * len(self.moving)))
         matrix: Real = self._kernel.matrix(self.poses)[0]
@@ -86,33 +86,33 @@ class RemainingLinkage:
 
     @cached_property
     def undriven(self) -> Real:
-        """The Jacobian without the rows of the drivers."""
+        """Jacobian without the rows of the drivers."""
         drivers = 0 if self._kernel is None else len(self._kernel.group.drivers)
         return self.equations[: len(self.equations) - drivers]
 
     @cached_property
     def rank(self) -> int:
-        """The rank of the pairs."""
+        """Rank of the equations of the pairs."""
         return equation_rank(self.undriven)
 
     @property
     def redundant(self) -> int:
-        """The number of redundant constraints."""
+        """Number of redundant constraints."""
         return len(self.undriven) - self.rank
 
     @property
     def moves(self) -> bool:
-        """True if the drivers move all of it, and nothing moves without them."""
+        """True if the drivers move all links, and no link moves without them."""
         columns, drivers = self.undriven.shape[1], len(self.linkage.drivers)
         return bool(columns - self.rank == drivers and equation_rank(self.equations) == columns)
 
     def without(self, links: Iterable[str] = (), ties: Iterable[int] = ()) -> RemainingLinkage:
-        """The same without further links and ties."""
+        """Return the linkage without further links and ties."""
         gone = {*links}
         return replace(self, links=tuple(n for n in self.links if n not in gone), ties=self.ties | {*ties})
 
     def rigid_sets(self) -> list[tuple[str, ...]]:
-        """Sets of links that are rigid to one another by their pairs with one another alone."""
+        """Return sets of links that are rigid to one another by the pairs among them alone."""
         free = np.linalg.svd(self.undriven)[2][self.rank :]
         fields = {link: np.zeros(2 * len(free), complex) for link in self.links}
         size = 1.0 if self._kernel is None else float(np.ravel(self._kernel.size)[0])
@@ -121,18 +121,18 @@ class RemainingLinkage:
             origin = complex(np.ravel(self.poses[link].x)[0]) / size
             fields[link] = np.concatenate([x + 1j * y - 1j * turn * origin, turn])
         sets = _group_by_velocity(fields)
-        if sets == [self.links]:  # others may only have the same velocities at this one position
+        if sets == [self.links]:  # smaller sets may have the same velocities in this one position only
             return sets
         return [rigid for links in sets for rigid in replace(self, links=links).rigid_sets()]
 
 
 def equation_rank(matrix: Real) -> int:
-    """The rank of equations without dimension."""
+    """Return the rank of dimensionless equations."""
     return int(np.linalg.matrix_rank(matrix, rtol=REDUNDANT)) if matrix.size else 0
 
 
 def _group_by_velocity(fields: Mapping[str, Vector]) -> list[tuple[str, ...]]:
-    """Links that have the same velocities in all motions, two or more together."""
+    """Return sets of two or more links that have the same velocities in all motions."""
     sets: list[list[str]] = []
     for link, field in fields.items():
         like = next((s for s in sets if np.max(np.abs(fields[s[0]] - field), initial=0.0) < SHARED), None)
@@ -144,7 +144,7 @@ def _group_by_velocity(fields: Mapping[str, Vector]) -> list[tuple[str, ...]]:
 
 
 class _Selection:
-    """What is left of a linkage while redundant links and pairs are left out, one after another."""
+    """The remaining linkage while redundant links and pairs are left out one by one."""
 
     def __init__(self, linkage: Linkage, poses: Mapping[str, Pose]) -> None:
         self.left = RemainingLinkage(linkage, poses, tuple(linkage.links))
@@ -154,13 +154,13 @@ class _Selection:
         self.links: list[RedundantLink] = []
 
     def excess(self, left: RemainingLinkage) -> int:
-        """The redundant constraints that do not lie within rigid sets."""
+        """Return the number of redundant constraints outside the rigid sets."""
         there = {*left.links}
         return left.redundant - sum(number for links, number in self.among_rigid.items() if there.issuperset(links))
 
     @property
     def ties(self) -> list[int]:
-        """The ties between the bodies that are left, the last of the file first."""
+        """Ties between the remaining bodies, the last of the file first."""
         gone = replace(self.reduction, links=tuple(self.links)).touched(self.every) | self.left.ties
         return [k for k in reversed(range(len(self.every))) if k not in gone]
 
@@ -175,7 +175,7 @@ class _Selection:
                 self.left = trial
 
     def leave_pairs(self) -> None:
-        """Leave out each pair all constraints of which are redundant."""
+        """Leave out each pair whose constraints are all redundant."""
         stay = _pairs_to_keep(self.left.linkage)
         for k in self.ties:
             constraints = self.every[k].constraints
@@ -187,7 +187,7 @@ class _Selection:
 
 
 def find_reduction(linkage: Linkage, poses: Mapping[str, Pose], structure: Structure) -> Reduction | None:
-    """Rigid sets, redundant links and conditions such that what is left are Assur groups; None if there are none."""
+    """Return a reduction after which all groups are Assur groups; None if there is none."""
     selection = _Selection(linkage, poses)
     between, on_frame = _removable_bodies(linkage, selection.reduction)
     selection.leave_links(between)
@@ -206,14 +206,16 @@ def find_reduction(linkage: Linkage, poses: Mapping[str, Pose], structure: Struc
 
 
 def _pairs_to_keep(linkage: Linkage) -> set[str]:
-    """Names of the pairs in which drivers work, and of those of gears, cams and followers with their carrier."""
+    """Return the names of the pairs of drivers, and of gears, cams and followers with their carrier."""
     on_carrier = {linkage.shared(link, mesh.carrier) for mesh in linkage.meshes for link in (mesh.i, mesh.j)}
     slides = {mesh.slide for mesh in linkage.meshes}
     return {driver.joint for driver in linkage.drivers} | {name for name in on_carrier | slides if name}
 
 
 def _removable_bodies(linkage: Linkage, reduction: Reduction) -> tuple[Sequence[str], Sequence[str]]:
-    """Bodies that may be left out in this order: those between moving links, and those connected to the frame."""
+    """Return the bodies that may be left out, in order: those between moving links, and those connected to the
+    frame.
+    """
     on_frame = [n for n in linkage.moving if linkage.hinged_to_frame(n) or linkage.slides_on_frame(n)]
     driving = {link for driver in linkage.drivers for link in (driver.base, driver.link)}
     outputs = [linkage.output_carrier(output.link) for output in linkage.outputs]
@@ -227,21 +229,21 @@ def _removable_bodies(linkage: Linkage, reduction: Reduction) -> tuple[Sequence[
     return [body for body in bodies if body not in held], [body for body in bodies if body in held]
 
 
-# Where counting says that a linkage is locked and its dimensions let it move: the numerical rank decides.
+# Mobility by numerical rank, for a linkage that is locked by the count but movable because of its dimensions.
 #
 # All pairs of the linkage are closed at the sketch by least squares; the rank of their equations gives the true
-# mobility, and what is left over are passive constraints (the coupler that a parallelogram does not need, a second
-# parallel guide). They are left out of the count, which then gives groups as usual; in these groups the equations
-# agree, and are solved by least squares. J. Garcia de Jalon, E. Bayo, Kinematic and Dynamic Simulation of Multibody
-# Systems, ch. 2.
+# mobility, and the surplus equations are redundant constraints (the coupler that a parallelogram does not need, a
+# second parallel guide). They are left out of the count, which then gives groups as usual; in these groups the
+# equations are consistent, and are solved by least squares. J. Garcia de Jalon, E. Bayo, Kinematic and Dynamic
+# Simulation of Multibody Systems, ch. 2.
 
 
-STEP = 0.05  # rad, or of the linkage's size: how far it must really move, both ways
+STEP = 0.05  # rad, or sizes of the linkage: step by which it must be movable
 STARTS = 200
 
 
 def analyse_mobile_structure(linkage: Linkage) -> Structure:
-    """The groups of a linkage whose drivers move all of it, by the count or the rank. Raises MobilityError."""
+    """Return the structure of a linkage whose drivers move all of it, by counting or by rank. Raises MobilityError."""
     structure = analyse_structure(linkage)
     moving = structure if structure.sound else analyse_by_rank(linkage, structure)
     if moving is None:
@@ -250,7 +252,7 @@ def analyse_mobile_structure(linkage: Linkage) -> Structure:
 
 
 def analyse_by_rank(linkage: Linkage, structure: Structure) -> Structure | None:
-    """The structure with its passive constraints left out; None when the linkage is locked in truth as well."""
+    """Return the structure without redundant constraints; None if the linkage is locked by rank as well."""
     wanted = len(linkage.drivers)
     if structure.under_constrained or structure.mobility >= wanted:
         return None
@@ -269,7 +271,7 @@ def analyse_by_rank(linkage: Linkage, structure: Structure) -> Structure | None:
 
 
 def _whole_linkage_solver(linkage: Linkage, structure: Structure) -> NewtonSolver:
-    """The linkage as one group on the frame."""
+    """Return a solver of the linkage as one group on the frame."""
     inner = tuple(p for p in structure.pairs if FRAME not in (p.i, p.j))
     outer = tuple(p for p in structure.pairs if FRAME in (p.i, p.j))
     return NewtonSolver.of(Group(linkage.moving, inner, outer, 0, "", linkage.drivers), linkage)
@@ -290,7 +292,7 @@ def _close_at_sketch(kernel: NewtonSolver, linkage: Linkage) -> tuple[GroupState
 
 
 def _can_move(kernel: NewtonSolver, linkage: Linkage, state: GroupState) -> bool:
-    """Whether it can be closed beside the sketch too: a truss may have a mobility at one place only."""
+    """Return True if the linkage closes beside the sketch too: a truss may have a mobility in a single position."""
     step = STEP if linkage.driver.kind == "turn" else STEP * kernel.size
     ways = []
     for sense in (1, -1):
@@ -306,8 +308,10 @@ def _can_move(kernel: NewtonSolver, linkage: Linkage, state: GroupState) -> bool
 def _leave_out_redundant(
     linkage: Linkage, structure: Structure, kernel: NewtonSolver, undriven: Real, poses: Mapping[str, Pose], number: int
 ) -> Structure | None:
-    """Leave out so many conditions that the count is right; of what the report leaves out first, then the last ones."""
-    left = np.linalg.svd(undriven.T)[2][len(undriven) - number :]  # combinations of rows that say nothing new
+    """Leave out `number` conditions so that the count is right: first those the report leaves out, then the last
+    ones.
+    """
+    left = np.linalg.svd(undriven.T)[2][len(undriven) - number :]  # null space: combinations of rows that are redundant
     rows = [c for c in kernel.constraints for _ in c.lengths][: len(undriven)]
     heavy = np.max(np.abs(left), axis=0) > SHARED
     names = dict.fromkeys(row.name for row, there in zip(rows, heavy, strict=True) if there)
@@ -339,7 +343,9 @@ def _list_redundancies(
     for k, count in dropped.items():
         name = ties[k].name
         joined = [p for p in found.pairs if name in (p.name, p.point)]
-        joined = [p for p in joined if ties[k].b in (p.i, p.j)] or joined  # in a compound hinge: that of the tie's link
+        joined = [
+            p for p in joined if ties[k].b in (p.i, p.j)
+        ] or joined  # in a compound hinge, the pair of the link of the tie
         pair = max(joined, key=lambda p: max(placed.get(p.i, -1), placed.get(p.j, -1)))
         links = sorted((pair.i, pair.j), key=lambda n: placed.get(n, -1))
         yield PairRedundancy(pair.name, count, (links[0], links[1]), among)

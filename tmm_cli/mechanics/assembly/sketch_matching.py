@@ -1,4 +1,10 @@
-"""What the sketch shows of an assembly: which of several it is, and whether it is about that one."""
+"""Comparison of assemblies with the sketch, and assembly of groups of class III and higher.
+
+For given angles the origins of the links follow from linear equations; so the initial guesses of Newton's method are
+made from angles, those of the sketch or many others, the same in every run. A triad of revolute pairs has up to six
+assemblies: C. Innocenti, Direct kinematics in analytical form of the planar (Assur) structure, ASME J. Mech. Design
+(1992-1995).
+"""
 
 from __future__ import annotations
 
@@ -38,16 +44,14 @@ from tmm_cli.mechanics.numerics import (
 )
 from tmm_cli.mechanics.structure import Group, turns_of_cycle
 
-DISTINCT = 0.6  # a sketch tells two assemblies apart when it lies this much nearer to one of them
-SKETCH_FITS = (
-    0.5  # a sketched point may lie this share of the linkage's size from its place, a link 1 rad from its angle
-)
+DISTINCT = 0.6  # ratio of deviations below which the sketch distinguishes the nearest assembly from the next
+SKETCH_FITS = 0.5  # allowed deviation of sketched points (sizes of the linkage); of angles twice this (rad)
 
 SketchableValues = dict[str, complex | float]  # points (m) and angles of links (rad) by their names
 
 
 def sketchable_values(linkage: Linkage, poses: Mapping[str, Pose]) -> SketchableValues:
-    """Everything about some links that a sketch may name: points and angles."""
+    """Return the points (m) and angles (rad) of some links that a sketch may contain, by name."""
     shown: SketchableValues = {}
     for name, pose in poses.items():
         shown |= {point: complex(pose.at(local)[0]) for point, local in linkage.links[name].points.items()}
@@ -56,7 +60,9 @@ def sketchable_values(linkage: Linkage, poses: Mapping[str, Pose]) -> Sketchable
 
 
 def sketch_distance(sketched: Mapping[str, complex | float], shown: SketchableValues, size: float) -> float:
-    """The worst deviation of the sketch from an assembly: points against the group's size, angles against a radian."""
+    """Return the largest deviation of the sketch from an assembly: points relative to the size of the group, angles in
+    rad.
+    """
     worst = 0.0
     for name, value in sketched.items():
         if isinstance(value, complex):
@@ -69,9 +75,13 @@ def sketch_distance(sketched: Mapping[str, complex | float], shown: SketchableVa
 def nearest_to_sketch(
     kernel: GroupSolver, linkage: Linkage, assemblies: Sequence[Mapping[str, Pose]], shift: complex = 0j
 ) -> int:
-    """Which of several assemblies the sketch shows. Raises AmbiguousSketchError when it does not tell.
+    """Return the index of the assembly that the sketch shows.
 
-    shift: how far the sketch has the links that the group hangs on from where they are (m).
+    Args:
+        shift: shift (m) of the known links in the sketch from their computed positions.
+
+    Raises:
+        AmbiguousSketchError: the sketch does not distinguish the assemblies.
     """
     if len(assemblies) == 1:
         return 0
@@ -95,7 +105,9 @@ def nearest_to_sketch(
 
 
 def sketch_deviations(linkage: Linkage, poses: Mapping[str, Pose]) -> dict[str, float]:
-    """How far every sketched point is from its place, as a share of the linkage's size."""
+    """Return the distance of each sketched point from its computed position, as a fraction of the size of the
+    linkage.
+    """
     places = [complex(pose.at(p)[0]) for name, pose in poses.items() for p in linkage.links[name].points.values()]
     size = max(abs(p - q) for p in places for q in places) or 1.0
     found = {}
@@ -107,9 +119,8 @@ def sketch_deviations(linkage: Linkage, poses: Mapping[str, Pose]) -> dict[str, 
 
 
 def check_fit(linkage: Linkage, poses: Mapping[str, Pose], fits: float = SKETCH_FITS) -> None:
-    """Every sketched point and angle, whether it decided something or not, lies about where it was drawn.
-
-    Raises SketchMismatchError.
+    """Check that each sketched point and angle, decisive or not, is near its computed value. Raises
+    SketchMismatchError.
     """
     for point, off in sketch_deviations(linkage, poses).items():
         if off > fits:
@@ -123,25 +134,20 @@ def check_fit(linkage: Linkage, poses: Mapping[str, Pose], fits: float = SKETCH_
                 raise SketchMismatchError(link, angle, turned)
 
 
-# Assemblies of groups of class III and higher: from the sketch where it shows them, else all there are.
-#
-# For given angles the places of the links follow from linear equations; so starts for Newton's method are made from
-# angles, those of the sketch or many others, the same ones in every run. A triad of turning pairs has up to six
-# assemblies: C. Innocenti, Direct kinematics in analytical form of the planar (Assur) structure, ASME J. Mech. Design
-# (1992-1995).
+# Assembly of groups of class III and higher: from the sketch if it shows all links, otherwise from all assemblies.
 
 
-STARTS = 400  # in one round of looking for all assemblies
-MOST_LINKS = 16  # of one group: its equations are solved some ten thousand times
-QUIET_ROUNDS = 3  # rounds without a new assembly that end the search
-MOST_ASSEMBLIES = 64  # assemblies that are looked for: with more the group moves by itself there, and they have no end
-ROUNDS = 60  # of damped steps from a start that may be anywhere
-STRIDE = 0.5  # rad, or of the group's size: the longest step then
-SKETCH_CLOSE = 0.25  # an assembly this near to a full sketch (group's sizes, rad) is the one that is meant
+STARTS = 400  # initial guesses in one round of a search for all assemblies
+MOST_LINKS = 16  # of a group: its equations are solved some ten thousand times
+QUIET_ROUNDS = 3  # rounds without a new assembly, after which the search ends
+MOST_ASSEMBLIES = 64  # a group with more is movable there, with an infinite number of assemblies
+ROUNDS = 60  # damped steps from an arbitrary initial guess
+STRIDE = 0.5  # rad, or sizes of the group: longest damped step
+SKETCH_CLOSE = 0.25  # sizes of the group, rad: an assembly this near to a complete sketch is the required one
 
 
 def refuse_large_group(group: Group) -> None:
-    """Raise GroupTooLargeError for a group of more links than iteration is tried on."""
+    """Raise GroupTooLargeError for a group with more links than iteration accepts."""
     if len(group.links) > MOST_LINKS:
         raise GroupTooLargeError(group, MOST_LINKS)
 
@@ -154,9 +160,15 @@ def assemble_by_iteration(
     before: tuple[GroupSolver, ...],
     like: GroupSolver | None = None,
 ) -> tuple[NewtonSolver, Placement]:
-    """The group in the assembly that the sketch shows, followed along the driver's way; like: with other lengths.
+    """Return the solver of a group in the assembly of the sketch, traced along the driver range, and its placement.
 
-    Raises AssemblyError, AmbiguousSketchError.
+    Args:
+        poses, drives: states of the known links and drivers in the sketch.
+        before: solvers of the earlier groups.
+        like: solver of the same group with other lengths, whose trace is corrected.
+
+    Raises:
+        AssemblyError, AmbiguousSketchError.
     """
     kernel = NewtonSolver.of(group, linkage)
     q = np.array([linkage.sketch.at])
@@ -189,7 +201,7 @@ def _trace_branch(
 def placed_by_angles(
     kernel: NewtonSolver, poses: Mapping[str, Pose], drives: DriverStates, unwrapped: Real
 ) -> GroupState:
-    """Origins for given angles (..., links), as near to closing as they can come."""
+    """Return the state with the given angles (..., links) and the origins that close the group best."""
     shape, links = unwrapped.shape[:-1], len(kernel.group.links)
     still = GroupState(np.zeros((*shape, links), complex), unwrapped)
     known = {name: pose.spread(shape) for name, pose in poses.items()}
@@ -203,7 +215,7 @@ def placed_by_angles(
 def close_from_afar(
     kernel: NewtonSolver, poses: Mapping[str, Pose], drives: DriverStates, state: GroupState
 ) -> tuple[GroupState, Real]:
-    """Damped steps, then Newton's method; the states and whether each has closed."""
+    """Apply damped steps, then Newton's method; return the states and where they have closed."""
     known = {name: pose.spread(state.x.shape[:-1]) for name, pose in poses.items()}
     with np.errstate(all="ignore"):
         for _ in range(ROUNDS):
@@ -223,9 +235,8 @@ def close_from_afar(
 def all_assemblies(
     kernel: NewtonSolver, poses: Mapping[str, Pose], drives: DriverStates, seed: int = 1, starts: int = STARTS
 ) -> list[GroupState]:
-    """Every real assembly of a group at one place of the driver, by many starts; those in a dead position once.
-
-    Of a group that moves by itself at this place, some of them.
+    """Return the real assemblies of a group at one driver coordinate, from many initial guesses; of a movable group,
+    some.
     """
     random = np.random.default_rng(seed)
     found: list[GroupState] = []
@@ -257,7 +268,7 @@ def _is_same_state(kernel: NewtonSolver, one: GroupState, other: GroupState) -> 
 def _close_from_sketch(
     kernel: NewtonSolver, linkage: Linkage, poses: Mapping[str, Pose], drives: DriverStates
 ) -> GroupState | None:
-    """The assembly that a full sketch leads to, when it stays near to it."""
+    """Return the assembly near a complete sketch; None if there is none near it."""
     unwrapped = sketched_angles(kernel, linkage, poses, drives)
     if unwrapped is None:
         return None
@@ -274,10 +285,12 @@ def _close_from_sketch(
 def sketched_angles(
     kernel: NewtonSolver, linkage: Linkage, poses: Mapping[str, Pose], drives: DriverStates
 ) -> Real | None:
-    """Angles of the group's links read off the sketch, (..., links); None when it does not show all of them."""
+    """Return the angles of the links of the group in the sketch, shape (..., links); None if it does not show all of
+    them.
+    """
     angles: dict[str, Any] = {name: np.angle(pose.z) for name, pose in poses.items()}
     angles |= {name: angle for name, angle in linkage.sketch.angles.items() if name in kernel.order}
-    for driver in kernel.group.drivers:  # a crank's angle and a point of it are known before its group is
+    for driver in kernel.group.drivers:  # the angle of a driven link follows from that of its base
         if driver.kind == "turn" and driver.base in angles:
             angles[driver.link] = angles[driver.base] + drives[driver.link].value
     known = {p: pose.at(at) for n, pose in poses.items() for p, at in linkage.links[n].points.items()}
@@ -311,6 +324,6 @@ def _search_state(
     states = all_assemblies(kernel, poses, drives)
     if not states:
         raise AssemblyError(kernel.group)
-    if len(states) == MOST_ASSEMBLIES:  # places of one motion of a group that moves by itself
+    if len(states) == MOST_ASSEMBLIES:  # positions of a movable group
         raise AmbiguousSketchError(kernel.group, {})
     return states[nearest_to_sketch(kernel, linkage, [kernel.poses_of(state) for state in states])]

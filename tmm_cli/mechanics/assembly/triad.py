@@ -1,18 +1,18 @@
-"""All assemblies of a triad: the roots of one polynomial, of degree six at most, so that none can be missed.
+"""All assemblies of a triad as the roots of one polynomial of degree six at most, so that none can be missed.
 
-A triad is a link, the middle one, that hangs by three legs on links whose places are known. For the middle link at x
-with the direction z = e^(i phi), every leg is one condition:
+A triad has a middle link that is connected by three legs to links of known position. For the middle link at x with the
+direction z = e^(i phi), every leg is one condition:
 
-- turning pairs at both ends: a circle, |x + p z - C| = r;
+- revolute pairs at both ends: a circle, |x + p z - C| = r;
 - a guide on the known link: the inner hinge stays on a line, Re(conj(n) x) = e with a constant n;
-- a guide on the middle link: the outer hinge stays on a line that turns with it, the same with n turning with z;
+- a guide on the middle link: the outer hinge stays on a line that rotates with it, the same with n rotating with z;
 - guides at both ends: z itself is known.
 
-Circles are made lines by subtracting one of them; x follows from two lines, and the third condition is a trigonometric
-polynomial in phi of the third degree at most, sampled on the unit circle. K. H. Hunt, Structural kinematics of
-in-parallel-actuated robot arms, ASME J. Mech. Transm. Autom. Des. 105 (1983); C. Gosselin, J. Sefrioui, M. Richard,
-Solutions polynomiales au probleme de la cinematique directe des manipulateurs paralleles plans, Mech. Mach. Theory 27
-(1992).
+Circles are reduced to lines by subtracting one of them; x follows from two lines, and the third condition is a
+trigonometric polynomial in phi of the third degree at most, sampled on the unit circle. K. H. Hunt, Structural
+kinematics of in-parallel-actuated robot arms, ASME J. Mech. Transm. Autom. Des. 105 (1983); C. Gosselin, J. Sefrioui,
+M. Richard, Solutions polynomiales au probleme de la cinematique directe des manipulateurs paralleles plans, Mech. Mach.
+Theory 27 (1992).
 """
 
 from __future__ import annotations
@@ -30,14 +30,16 @@ from tmm_cli.mechanics.numerics import PARALLEL, VANISHED, Real, Vector, cross, 
 from tmm_cli.mechanics.structure import Group, Pair
 
 DEGREE = 3  # of the trigonometric polynomial
-SAMPLES = 16  # places on the unit circle, more than 2 * DEGREE
+SAMPLES = 16  # samples on the unit circle, more than 2 * DEGREE
 ANNULUS = 0.5  # roots farther from the unit circle than this factor are not nearly real
-NEAR = 0.03  # sizes of the group: what a place found from a root may leave of the third condition before refinement
+NEAR = 0.03  # sizes of the group: largest violation of the third condition before refinement
 
 
 @dataclass(frozen=True)
 class LegJoint:
-    """One end of a leg: the hinge's place on the other link and on the leg, or the sliding pair as the leg sees it."""
+    """One end of a leg: position of the hinge on the other link and on the leg, or the prismatic pair as seen from the
+    leg.
+    """
 
     there: complex = 0j
     here: complex = 0j
@@ -46,7 +48,7 @@ class LegJoint:
 
 @dataclass(frozen=True)
 class Leg:
-    """A leg of a triad: its link, the known link it hangs on, its outer and its inner joint."""
+    """A leg of a triad: its link, the known link to which it is attached, its outer and inner joints."""
 
     link: str
     known: str
@@ -56,7 +58,7 @@ class Leg:
 
 @dataclass(frozen=True)
 class Triad:
-    """A group as a triad: its middle link and its legs. size (m) is what lengths are counted in."""
+    """A triad: middle link, legs, order of the links in the group, and size (m), the unit of lengths."""
 
     middle: str
     legs: tuple[Leg, Leg, Leg]
@@ -65,7 +67,7 @@ class Triad:
 
     @classmethod
     def of(cls, group: Group, linkage: Linkage, size: float) -> Triad | None:
-        """The group seen as a triad; None when it is another group."""
+        """Recognise a triad; None if the group is another one."""
         pairs = (*group.inner, *group.outer)
         if len(group.links) != 4 or len(pairs) != 6 or group.drivers or any(p.kind not in ("R", "P") for p in pairs):
             return None
@@ -78,8 +80,8 @@ class Triad:
 
 
 def _make_leg(link: str, middle: str, group: Group, linkage: Linkage) -> Leg | None:
-    """The link as a leg of the triad about the middle link; None when it is none."""
-    # links of later groups may hang on a leg too: they hold nothing
+    """Return the link as a leg of the triad about the middle link; None if it is not one."""
+    # links of later groups may be attached to a leg too: they do not constrain it
     outer = _find_joint(link, group.known, group.outer, linkage)
     inner = _find_joint(link, (middle,), group.inner, linkage)
     if outer is None or inner is None:
@@ -93,7 +95,7 @@ def _make_leg(link: str, middle: str, group: Group, linkage: Linkage) -> Leg | N
 def _find_joint(
     link: str, others: Sequence[str], pairs: Iterable[Pair], linkage: Linkage
 ) -> tuple[str, LegJoint] | None:
-    """The one joint of a link with any of the others; a compound hinge counts for each two of its links."""
+    """Return the only joint of a link with any of the others, or None; a compound hinge joins each two of its links."""
     found: dict[str, tuple[str, LegJoint]] = {}
     for hinge in linkage.hinges:
         other = next((n for n in hinge.links if n in others), None)
@@ -108,9 +110,9 @@ def _find_joint(
 
 @dataclass(frozen=True)
 class LegCondition:
-    """What a leg asks of the middle link at directions z: lines Re(conj(n) x) = e, or circles |x + g| = r.
+    """Condition of a leg for the middle link at directions z: lines Re(conj(n) x) = e, or circles |x + g| = r.
 
-    Without dimension. z: the only direction that the leg allows.
+    Dimensionless. z: the only direction that the leg allows, if it allows only one.
     """
 
     n: Vector | None = None
@@ -120,7 +122,7 @@ class LegCondition:
     z: complex | None = None
 
     def residual(self, x: Vector) -> Real:
-        """How far x is from fulfilling it."""
+        """Return the distance by which x violates the condition."""
         if self.g is not None:
             distance: Real = np.abs(x + self.g) - self.r
             return distance
@@ -130,9 +132,10 @@ class LegCondition:
 
 
 def triad_starts(triad: Triad, poses: Mapping[str, Pose]) -> tuple[GroupState, int] | None:
-    """Starts for Newton's method (starts, links), one at least at every assembly, and how many there are at most.
+    """Return initial guesses (guesses, links), at least one for each assembly, and the largest number of assemblies.
 
-    From all roots of the polynomial, real or nearly so. None when it vanishes: then it tells nothing.
+    They follow from all roots of the polynomial that are real or nearly so. None if the polynomial vanishes
+    identically.
     """
     known = {name: Pose(np.ravel(pose.x)[0], np.ravel(pose.z)[0]) for name, pose in poses.items()}
     fixed = next((c.z for c in leg_conditions(triad, known, np.ones(1, complex)) if c.z is not None), None)
@@ -156,7 +159,9 @@ def triad_starts(triad: Triad, poses: Mapping[str, Pose]) -> tuple[GroupState, i
 
 
 def triad_polynomial(triad: Triad, poses: Mapping[str, Pose]) -> Vector:
-    """Coefficients of z^-3 ... z^3 of the polynomial that vanishes where the triad closes (real for |z| = 1)."""
+    """Return the coefficients of z^-3 ... z^3 of the polynomial that is zero where the triad closes (real for |z| =
+    1).
+    """
     z = unit(2 * np.pi * np.arange(SAMPLES) / SAMPLES)
     values = np.broadcast_to(closing_value(leg_conditions(triad, poses, z)), z.shape)
     spectrum = np.fft.fft(values) / SAMPLES
@@ -164,7 +169,7 @@ def triad_polynomial(triad: Triad, poses: Mapping[str, Pose]) -> Vector:
 
 
 def closing_value(three: Sequence[LegCondition]) -> Real:
-    """What vanishes where three conditions meet in one x."""
+    """Return the expression that is zero where three conditions hold at the same x."""
     circles = [c for c in three if c.g is not None]
     lines = [c for c in three if c.g is None]
     if not circles:
@@ -178,7 +183,7 @@ def closing_value(three: Sequence[LegCondition]) -> Real:
 
 
 def _as_line(condition: LegCondition, circle: LegCondition) -> tuple[Vector, Real]:
-    """A condition as a line for w = x + g, the place of the inner hinge about the centre of a circle |w| = r."""
+    """Return a condition as a line for w = x + g, the inner hinge relative to the centre of a circle |w| = r."""
     assert circle.g is not None
     if condition.g is None:
         assert condition.n is not None
@@ -188,7 +193,7 @@ def _as_line(condition: LegCondition, circle: LegCondition) -> tuple[Vector, Rea
 
 
 def leg_conditions(triad: Triad, poses: Mapping[str, Pose], z: Vector) -> list[LegCondition]:
-    """What each leg asks at the directions z of the middle link; lengths in the triad's size."""
+    """Return the condition of each leg at the directions z of the middle link; lengths in units of the size."""
     return [_leg_condition(leg, poses, z, triad.size) for leg in triad.legs]
 
 
@@ -212,13 +217,13 @@ def _leg_condition(leg: Leg, poses: Mapping[str, Pose], z: Vector, size: float) 
 
 
 def _leg_direction(leg: Leg, poses: Mapping[str, Pose]) -> Any:
-    """Direction of a leg that a known link guides."""
+    """Return the direction of a leg that is guided by a known link."""
     assert leg.outer.run is not None
     return poses[leg.known].z * unit(leg.outer.run.turned)
 
 
 def _middle_link_origins(three: Sequence[LegCondition]) -> list[complex]:
-    """Places x (in sizes) at one direction at which any two conditions meet and the third nearly holds."""
+    """Return the origins x (in sizes) at one direction where two conditions hold and the third nearly holds."""
     binding = [c for c in three if c.z is None]
     places = []
     for one, other in combinations(binding, 2):
@@ -230,7 +235,7 @@ def _middle_link_origins(three: Sequence[LegCondition]) -> list[complex]:
 
 
 def _meeting_points(one: LegCondition, other: LegCondition) -> list[Vector]:
-    """Places where two conditions meet, or are nearest when they just miss one another."""
+    """Return the points where two conditions hold, or are nearest to each other if they just miss."""
     if one.g is None:
         one, other = other, one
     if one.g is None:  # two lines
@@ -238,7 +243,7 @@ def _meeting_points(one: LegCondition, other: LegCondition) -> list[Vector]:
         det = cross(one.n, other.n)
         return [] if abs(det[0]) < PARALLEL else [1j * (other.e * one.n - one.e * other.n) / det]
     n, e = _as_line(other, one)
-    if abs(n[0]) < PARALLEL:  # circles about one centre
+    if abs(n[0]) < PARALLEL:  # concentric circles
         return []
     foot = n * (e / np.abs(n) ** 2)
     half = np.sqrt(np.maximum(one.r**2 - np.abs(foot) ** 2, 0)) * 1j * n / np.abs(n)
@@ -248,7 +253,7 @@ def _meeting_points(one: LegCondition, other: LegCondition) -> list[Vector]:
 
 
 def _make_state(triad: Triad, poses: Mapping[str, Pose], starts: Sequence[tuple[complex, complex]]) -> GroupState:
-    """Places of all links for places x (m) and directions z of the middle one."""
+    """Return the states of all links for origins x (m) and directions z of the middle one."""
     x, z = (np.array([start[k] for start in starts], complex) for k in (0, 1))
     places = {triad.middle: (x, z)}
     for leg in triad.legs:

@@ -1,4 +1,4 @@
-"""Assur groups that can be solved, a module a type, and the pairs of which they are made."""
+"""Solvers of Assur groups, one module for each type, and the constraint equations of pairs."""
 
 from tmm_cli.interfaces import lazy
 

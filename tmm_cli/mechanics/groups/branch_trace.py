@@ -1,4 +1,4 @@
-"""Which sign the determinant of a group of two assemblies has, where it goes smoothly through exact change points."""
+"""Assemblies along the range of the driver: change points, traces of iterated groups, accumulated angles."""
 
 from __future__ import annotations
 
@@ -14,8 +14,14 @@ from tmm_cli.mechanics.numerics import Real, Vector, pi, to_float
 
 @dataclass(frozen=True)
 class ChangePoints:
-    """Growing places of the driver at which the sign of a group's determinant changes, within a `cycle` that begins at
-    `start` and is repeated (None: it is not); at the place `at` the sign is that of the sketch.
+    """Change points of a group that it passes smoothly: driver coordinates at which the sign of its determinant
+    changes.
+
+    Attributes:
+        places: driver coordinates, increasing, within a cycle.
+        start: beginning of the cycle.
+        at: driver coordinate of the sketch, at which the sign is that of the sketch.
+        cycle: length of the cycle; None if the driver has none.
     """
 
     places: Real
@@ -24,15 +30,15 @@ class ChangePoints:
     cycle: float | None
 
     def side(self, q: Real) -> Real:
-        """1, or -1 where the group has passed an odd number of them from the sketch on."""
+        """Return 1, or -1 after an odd number of change points from the sketch."""
         return 1.0 - 2.0 * ((self._passed(q) - self._passed(np.array(self.at))) % 2)
 
     def within(self, low: float, high: float) -> Real:
-        """Those from one place to another, in growing order."""
+        """Return the change points from low to high, increasing."""
         return repeat_in_cycles(self.places, self.start, self.cycle, low, high)
 
     def _passed(self, q: Real) -> Real:
-        """How many there are from the start to places q."""
+        """Return the number of change points between the start and q."""
         within = to_float(q)
         whole = np.zeros(np.shape(q)) if self.cycle is None else np.floor((within - self.start) / self.cycle)
         inside = within - whole * (self.cycle or 0.0)
@@ -41,7 +47,7 @@ class ChangePoints:
 
 
 def repeat_in_cycles(places: Real, start: float, cycle: float | None, low: float, high: float) -> Real:
-    """Places of a cycle that begins at `start`, as often as they come between two others; None: they come once."""
+    """Repeat values of a cycle from `start` throughout the interval from low to high; cycle None: they occur once."""
     turns = np.zeros(1)
     if cycle is not None:
         turns = np.arange(np.floor((low - start) / cycle) - 1, np.ceil((high - start) / cycle) + 1)
@@ -49,19 +55,23 @@ def repeat_in_cycles(places: Real, start: float, cycle: float | None, low: float
     return found[(found >= low) & (found < high)]
 
 
-# Where a group's links are along the driver's range: nodes from which Newton's method starts at any place alone.
+# States of a group along the range of the driver: nodes from which Newton's method starts at any position on its own.
 
 
 @dataclass(frozen=True)
 class BranchTrace:
-    """States at growing places q of the driver with their first and second derivatives by q.
+    """States of a group at increasing driver coordinates q, with first and second derivatives with respect to q.
 
-    closed: the last node is the first one again, a cycle later (then the driver may go on for ever). Else the trace
-    ends where the group cannot follow, or where one stopped looking (`open_ends`: below, above). limits: whether the
-    first, the last node is a place where the driver turns back; derivatives are infinite there. lost: whether the trace
-    ends there for another reason: the links it hangs on go no further, or links of its own go to infinity. unit: what
-    residuals are counted in, 1 rad for a driver that turns, the group's size (m) for one that slides. dead: places of
-    nodes in dead positions that are passed smoothly; flips: whether the determinant changes its sign there.
+    Attributes:
+        closed: the last node is the first one, a cycle later. Otherwise the trace ends where the group cannot continue,
+            or where tracing was stopped.
+        open_ends: (below, above), True where tracing was stopped.
+        limits: (first, last), True where the node is a limit of the driver; derivatives are infinite there.
+        lost: (first, last), True where the trace ends for another reason: the known links go no further, or links of
+            the group go to infinity.
+        unit: unit of residuals: 1 rad for a rotating driver, the size of the group (m) for a sliding one.
+        dead: driver coordinates of dead positions that are passed smoothly.
+        flips: for each of these, True if the determinant changes sign.
     """
 
     q: Real
@@ -78,20 +88,21 @@ class BranchTrace:
 
     @cached_property
     def _bend(self) -> Real:
-        """Size of the second derivative at each node."""
+        """Magnitude of the second derivative at each node."""
         bend: Real = np.max(np.abs(self.second.x), axis=-1) + np.max(np.abs(self.second.unwrapped), axis=-1)
         return bend
 
     def within(self, q: Real) -> Real:
-        """Places q of a closed trace in its own cycle."""
+        """Return q reduced to the cycle of a closed trace."""
         cycle = self.q[-1] - self.q[0]
         return q - np.floor((q - self.q[0]) / cycle) * cycle if self.closed else q
 
     def in_dead(self, q: Real, rounding: float) -> Real:
-        """Whether places cannot be told from a dead position that is passed, for relative errors of the data.
+        """Return True where q cannot be distinguished from a dead position that is passed; rounding: relative error of
+        the data.
 
-        At a distance h they move the group by their h-th part, the h^2-th where the determinant only touches zero, and
-        that has to be less than h.
+        At a distance h, errors of the data move the group by error/h, or error/h^2 where the determinant only touches
+        zero, and that must be less than h.
         """
         if not self.dead.size:
             return np.zeros(np.shape(q), dtype=bool)
@@ -100,18 +111,20 @@ class BranchTrace:
         return found
 
     def side(self, q: Real) -> Real:
-        """1, or -1 where the determinant has another sign than at the trace's beginning."""
+        """Return 1, or -1 where the sign of the determinant differs from that at the beginning of the trace."""
         passed = np.searchsorted(self.dead[self.flips], self.within(q))
         return 1.0 - 2.0 * (passed % 2)
 
     def dead_within(self, low: float, high: float) -> Real:
-        """Dead positions that are passed between two places, in growing order."""
+        """Return the dead positions that are passed between low and high, increasing."""
         cycle = self.q[-1] - self.q[0]
         return repeat_in_cycles(self.dead, float(self.q[0]), float(cycle) if self.closed else None, low, high)
 
     def start(self, q: Real) -> tuple[GroupState, Real]:
-        """A state near that at each place q, from the nearest node, and the residual: how far q is beyond the trace's
-        ends, in its units. Negative inside, by the distance to the nearer end; -1 on a closed trace.
+        """Return approximate states at q, extrapolated from the nearest nodes, and the residuals.
+
+        The residual is the distance of q beyond the ends of the trace, in its units; negative inside, down to -1; -1 on
+        a closed trace.
         """
         low, high = self.q[0], self.q[-1]
         cycle = high - low
@@ -119,7 +132,7 @@ class BranchTrace:
         within = np.clip(q - whole * cycle, low, high)
         right = np.clip(np.searchsorted(self.q, within), 1, len(self.q) - 1)
         left = right - 1
-        # the node from which the second derivative carries least far: near a limit that is the one farther from it
+        # the node with the smaller second-order term: near a limit that is the one farther from it
         bend = self._bend
         from_left = bend[left] * (within - self.q[left]) ** 2 <= bend[right] * (within - self.q[right]) ** 2
         node = np.where(from_left, left, right)
@@ -133,7 +146,7 @@ class BranchTrace:
 
         def at(value: Vector, first: Vector, second: Vector) -> Vector:
             taylor = value[node] + step * (first[node] + step / 2 * second[node])
-            # at a limit the group moves as the root of the way that is left to the driver
+            # near a limit the group moves as the square root of the distance of the driver from it
             root = value[limit] + (value[inner] - value[limit]) * share
             here: Vector = np.where(near_limit[..., None], root, taylor)
             return here
@@ -151,10 +164,11 @@ class BranchTrace:
         return state, np.where((q < low) | (q > high), np.maximum(np.maximum(under, over), 1e-12), residual)
 
 
-# Angles followed through full turns: which of the angles 2 pi apart a link has at each place of the driver.
+# Angles accumulated through full turns, as functions of the driver coordinate.
 #
-# A toothed wheel's place depends on how often its partner has gone round; nothing else does, so only links that wheels
-# depend on are followed. A position is still found alone: the number of turns comes from a table made once.
+# The position of a gear depends on the number of turns of its mating gear; nothing else does, so only the angles of
+# links on which gears depend are accumulated. Each position is still solved on its own: the number of turns comes from
+# a table that is made once.
 
 
 TAU = 2 * np.pi
@@ -162,14 +176,16 @@ TAU = 2 * np.pi
 
 @dataclass(frozen=True)
 class AccumulatedAngles:
-    """Angles of links (rad, unwrapped) at places q of the driver that grow; when closed they go on by full cycles."""
+    """Accumulated angles of links (rad, unwrapped) at increasing driver coordinates q; closed: q covers a full
+    cycle.
+    """
 
     q: Real
     angles: Mapping[str, Real]
     closed: bool
 
     def followed(self, links: tuple[str, ...], poses: tuple[Pose, ...], q: Real) -> tuple[Pose, ...]:
-        """The same poses with their angles followed through full turns."""
+        """Return the poses with their angles accumulated through full turns."""
         found = []
         for link, pose in zip(links, poses, strict=True):
             if link not in self.angles:
@@ -181,7 +197,7 @@ class AccumulatedAngles:
         return tuple(found)
 
     def sure(self, links: tuple[str, ...], poses: tuple[Pose, ...], q: Real) -> Real:
-        """Where the table tells the turns of such poses: it is less than a quarter of a turn off."""
+        """Return True where the table determines the full turns: it is less than a quarter of a turn off."""
         off = [
             np.abs(pose.turned - self._about(n, q)) for n, pose in zip(links, poses, strict=True) if n in self.angles
         ]
@@ -189,7 +205,7 @@ class AccumulatedAngles:
         return sure
 
     def _about(self, link: str, q: Real) -> Real:
-        """The angle of a link at places q, by the table."""
+        """Return the angle of a link at q, interpolated in the table."""
         cycle = self.q[-1] - self.q[0]
         whole = np.floor((q - self.q[0]) / cycle) if self.closed else np.zeros(np.shape(q))
         table = self.angles[link]

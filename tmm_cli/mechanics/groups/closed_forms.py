@@ -1,4 +1,4 @@
-"""Assur groups that can be solved, one file a type. A new type in closed form is a file and a name here."""
+"""Register of the group solvers in closed form. A new type is a module and an entry here."""
 
 from tmm_cli.mechanics.groups.dyads import DYAD_SOLVERS
 from tmm_cli.mechanics.groups.group_solver import ClosedFormSolver

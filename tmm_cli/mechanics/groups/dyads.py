@@ -1,4 +1,4 @@
-"""The groups of two links, one file a type."""
+"""Register of the dyad solvers, one module for each type."""
 
 from typing import Any
 

@@ -1,9 +1,9 @@
-"""A group seen from outside, and what all Assur groups of two links share.
+"""Interface of group solvers, and the common parts of the dyads (Assur groups of two links).
 
-A group knows the states of the links it hangs on and gives those of its own links: first places, then rates, then
-accelerations; and backward the reactions. Arrays are (variants, positions) by broadcasting. The formulas of each type
-of two links, a and b, stand in its own file; they follow from writing the closure of the group as complex numbers and
-taking dot and cross products until one unknown is left.
+A group solver takes the states of the links on which the group depends and returns those of its own links: first
+positions, then velocities, then accelerations; and in the reverse order the reactions. Arrays broadcast against
+(variants, positions). The formulas of each dyad, with links a and b, are in its own module; they follow from the loop
+closure in complex numbers, by scalar and vector products until one unknown is left.
 """
 
 from __future__ import annotations
@@ -38,31 +38,32 @@ __all__ = ["Accels", "ClosedFormSolver", "Dyad", "GroupSolver", "Poses", "Rates"
 
 @dataclass(frozen=True)
 class HingeEnd:
-    """An outer hinge: its place on the link that is known and on the group's own."""
+    """An external hinge: its position on the known link (`there`) and on the group's own link (`here`), m."""
 
     known: str
     there: complex
     here: complex
 
     def place(self, poses: Poses) -> Vector:
-        """Where the hinge is, m."""
+        """Return the position of the hinge, m."""
         return poses[self.known].at(self.there)
 
     def velocity(self, poses: Poses, rates: Rates) -> Vector:
-        """Velocity of the hinge, m/s."""
+        """Return the velocity of the hinge, m/s."""
         return rates[self.known].at(self.there * poses[self.known].z)
 
     def acceleration(self, poses: Poses, rates: Rates, accels: Accels) -> Vector:
-        """Acceleration of the hinge, m/s2."""
+        """Return the acceleration of the hinge, m/s2."""
         return accels[self.known].at(self.there * poses[self.known].z, rates[self.known].w)
 
 
 @dataclass(frozen=True)
 class SliderEnd:
-    """A sliding pair seen from one side: `here` (own axes) stays on the line through `there` along e^(i direction).
+    """A prismatic pair seen from one link: the point `here` (own axes) stays on the line through `there` along
+    `direction`.
 
-    there and direction are in the axes of the other link, and own angle - other's angle = turned. It says the same
-    whichever link carries the guide. runs_here: `here` is the running point, else `there` is.
+    there and direction (rad) are in the axes of the other link; own angle - angle of the other link = turned. The form
+    is the same whichever link carries the guide. runs_here: True if `here` is the sliding point, False if `there` is.
     """
 
     known: str
@@ -73,12 +74,14 @@ class SliderEnd:
     runs_here: bool
 
     def runner_arm(self, own: Pose, poses: Poses) -> Vector:
-        """The running point, to which the couple is reduced, from the own link's origin (drawing's axes, m)."""
+        """Return the vector from the origin of the own link to the sliding point, at which the couple is given (m, axes
+        of the drawing).
+        """
         return self.here * own.z if self.runs_here else poses[self.known].at(self.there) - own.x
 
 
 def slider_end(pair: Pair, own: str) -> SliderEnd:
-    """A sliding pair as its link `own` sees it."""
+    """Return a prismatic pair as seen from its link `own`."""
     slide = pair.slide
     assert slide is not None
     if own == slide.runner:
@@ -87,7 +90,7 @@ def slider_end(pair: Pair, own: str) -> SliderEnd:
 
 
 def pair_end(pair: Pair, own: str, linkage: Linkage) -> HingeEnd | SliderEnd:
-    """A lower pair as its link `own` sees it."""
+    """Return a lower pair as seen from its link `own`."""
     if pair.kind == "P":
         return slider_end(pair, own)
     known = pair.other(own)
@@ -96,60 +99,71 @@ def pair_end(pair: Pair, own: str, linkage: Linkage) -> HingeEnd | SliderEnd:
 
 @dataclass(frozen=True)
 class GroupSolver(ABC):
-    """An Assur group that can be solved."""
+    """Solver of an Assur group in one assembly."""
 
     group: Group
-    size: float  # m, the farthest two points on one of the links concerned: what distances are measured against
+    size: float  # m, greatest extent of its links and known links: the unit of distances
 
     @property
     def followed(self) -> BranchTrace | None:
-        """Where its links are along the driver's range, if it had to be followed there."""
+        """Trace of the group along the range of the driver; None if the group did not have to be traced."""
         return None
 
     @abstractmethod
     def rebind(self, linkage: Linkage) -> GroupSolver:
-        """The same group in the same assembly, with the numbers of another linkage (of another precision)."""
+        """Return the solver of the same assembly with the dimensions of another linkage (of another precision)."""
 
     def side(self, q: Real) -> Real:
-        """1, or -1 where the sign of its determinant has changed since the sketch, in change points that it passes."""
+        """Return the sign of the determinant relative to the sketch: -1 after an odd number of change points that are
+        passed.
+        """
         return np.ones(np.shape(q))
 
-    near: ClassVar[float] = NEAR_DEAD  # a margin below this is said to be near a dead position
+    near: ClassVar[float] = NEAR_DEAD  # a margin below this is reported as near a dead position
 
     @property
     def blurred(self) -> float:
-        """A margin below this calls for double-doubles."""
+        """Margin below which double-doubles are required."""
         return self.near
 
     @abstractmethod
     def place(self, poses: Poses, q: Real, drives: DriverStates) -> Placement:
-        """Places of its links at the driver's places q, or the nearest it comes to being assembled (see residual)."""
+        """Return the positions of the links at the driver coordinates q, or the closest approach to assembly (see
+        `residual`).
+
+        Args:
+            poses: poses of the links on which the group depends.
+            q: coordinates of the first driver (rad or m).
+            drives: coordinates of all drivers, by the driven link.
+        """
 
     @abstractmethod
     def rates(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> tuple[Rate, ...]:
-        """Velocities of its links."""
+        """Return the velocities of the links, in their order."""
 
     @abstractmethod
     def accelerations(
         self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
-        """Accelerations of its links; rates holds those of its own links too."""
+        """Return the accelerations of the links, in their order; `rates` contains their velocities too."""
 
     @abstractmethod
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
-        """Reactions of its pairs that hold its links, in their order, under the given forces."""
+        """Return the reactions of the pairs under the applied forces (one wrench for each link, in their order)."""
 
     def inner_on(self, pair: Pair) -> str:
-        """The link on which an inner pair's reaction is given."""
+        """Return the link on which the reaction of an internal pair is given."""
         return pair.j
 
 
 @dataclass(frozen=True)
 class ClosedFormSolver(GroupSolver):
-    """A group whose places are found in closed form. sign tells its two assemblies apart.
+    """Solver of a group whose positions have a closed form.
 
-    winding: how often its links have gone round, where something depends on that. way: where it goes smoothly through
-    change points, beyond which it has the other sign.
+    Attributes:
+        sign: +1 or -1, selects one of the two assemblies.
+        winding: accumulated angles of the links, where others depend on their full turns.
+        way: change points that the group passes smoothly, where the sign changes.
     """
 
     sign: Any = field(default=1, kw_only=True)
@@ -162,12 +176,12 @@ class ClosedFormSolver(GroupSolver):
     @classmethod
     @abstractmethod
     def fits(cls, group: Group) -> bool:
-        """Whether a group is of this type."""
+        """Return True if the group is of this type."""
 
     @classmethod
     @abstractmethod
     def of(cls, group: Group, linkage: Linkage) -> Self:
-        """A group with its numbers, in its first assembly."""
+        """Return the solver of a group with the dimensions of the linkage, in its first assembly."""
 
     def rebind(self, linkage: Linkage) -> Self:
         new = type(self).of(self.group.rebind(linkage), linkage)
@@ -175,18 +189,18 @@ class ClosedFormSolver(GroupSolver):
 
     @property
     def plain(self) -> bool:
-        """Whether it is the same formulas at every place of the driver."""
+        """True if the same formulas hold at every driver coordinate."""
         return self.winding is None and self.way is None
 
     @property
     @abstractmethod
     def assemblies(self) -> int:
-        """How many there are at most, 1 or 2."""
+        """Largest number of assemblies, 1 or 2."""
 
     @property
     @abstractmethod
     def outer_pairs(self) -> tuple[tuple[Pair, HingeEnd | SliderEnd], ...]:
-        """Its outer pairs, each as its own link sees it."""
+        """External pairs, each as seen from the group's own link."""
 
     def place(self, poses: Poses, q: Real, drives: DriverStates) -> Placement:
         at = (self if self.way is None else replace(self, sign=self.sign * self.way.side(q))).closed(poses, drives)
@@ -194,11 +208,11 @@ class ClosedFormSolver(GroupSolver):
 
     @abstractmethod
     def closed(self, poses: Poses, drives: DriverStates) -> Placement:
-        """Places of its links in the group's own assembly."""
+        """Return the positions of the links in the assembly of this solver."""
 
     @abstractmethod
     def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> Real:
-        """The rate at which its residual grows, from the motion of the links it hangs on and of its drivers alone."""
+        """Return the rate of the residual, from the motion of the known links and of the group's drivers alone."""
 
 
 EndA = TypeVar("EndA", bound=HingeEnd | SliderEnd)
@@ -208,7 +222,7 @@ Inner = TypeVar("Inner", bound=HingeEnd | SliderEnd)
 
 @dataclass(frozen=True)
 class Dyad(ClosedFormSolver, Generic[EndA, EndB, Inner]):
-    """An Assur group of class II: two links, one inner pair, two outer pairs."""
+    """Assur group of class II: two links, one internal and two external pairs."""
 
     ends: tuple[EndA, EndB]
     inner: Inner
@@ -222,7 +236,7 @@ class Dyad(ClosedFormSolver, Generic[EndA, EndB, Inner]):
 
     @classmethod
     def of(cls, group: Group, linkage: Linkage) -> Self:
-        """The inner pair is seen from link b."""
+        """Return the solver of a dyad; the internal pair is seen from link b."""
         a, b = group.links
         ends: Any = (pair_end(group.outer[0], a, linkage), pair_end(group.outer[1], b, linkage))
         size = reduce(np.maximum, [link_extent(linkage, link) for link in (a, b, *(end.known for end in ends))])
@@ -231,7 +245,7 @@ class Dyad(ClosedFormSolver, Generic[EndA, EndB, Inner]):
 
     @property
     def parts(self) -> tuple[EndA, EndB, Inner]:
-        """Outer pairs of a and of b, and the inner pair."""
+        """External pairs of a and of b, and the internal pair."""
         return *self.ends, self.inner
 
     @property
@@ -243,51 +257,60 @@ class Dyad(ClosedFormSolver, Generic[EndA, EndB, Inner]):
 
 
 def link_extent(linkage: Linkage, link: str) -> Any:
-    """The farthest that a point of a link is from its first one, m."""
+    """Return the greatest distance of a point of a link from its first point, m."""
     points = list(linkage.links[link].points.values()) or [0j]
     return reduce(np.maximum, [np.abs(point - points[0]) for point in points])
 
 
 def slider_search_range(linkage: Linkage) -> float:
-    """How far (m) to both sides of the sketch a sliding driver is looked at: nothing is as long as that."""
+    """Return the distance (m) to both sides of the sketch over which a sliding driver is examined: greater than any
+    link.
+    """
     return 4 * (max(link_extent(linkage, link) for link in linkage.links) or 1.0)
 
 
 def guide_line(run: SliderEnd, poses: Poses) -> tuple[Vector, Vector]:
-    """A point of the guide and its direction, in the drawing's axes."""
+    """Return a point of the guide and its direction, in the axes of the drawing."""
     pose = poses[run.known]
     return pose.at(run.there), pose.z * unit(run.direction)
 
 
-# A link held by two guides: where two straight lines of known links meet. Shared by PRP and RPP.
+# Intersection of two guides of known links, shared by PRP and RPP.
 
 
 def intersect_lines(P: Vector, u: Vector, Q: Vector, v: Vector) -> tuple[Vector, Real]:
-    """The common point of the lines through P along u and through Q along v, and u x v (0 when parallel)."""
+    """Return the intersection of the lines through P along u and through Q along v, and u x v (0 if parallel)."""
     det = cross(u, v)
     with np.errstate(divide="ignore", invalid="ignore"):
         return P + u * (cross(Q - P, v) / det), det
 
 
 def parallel_residual(det: Real) -> tuple[Real, Real]:
-    """Residual and slack of two guides: they are parallel within rounding, or not."""
+    """Return residual and slack of two guides with u x v = det; they lose their intersection when parallel within
+    rounding.
+    """
     return -np.abs(det), np.full(np.shape(det), ROUNDINGS * roundoff(det))
 
 
 def parallel_residual_rate(u: Vector, v: Vector, wu: Real, wv: Real) -> Real:
-    """Rate of the residual -|u x v| when the two guides turn."""
+    """Return the rate of the residual -|u x v| for guides with angular velocities wu and wv."""
     rate: Real = -np.sign(cross(u, v)) * (wv - wu) * dot(u, v)
     return rate
 
 
 def common_point_rate(v1: Vector, u1: Vector, v2: Vector, u2: Vector, det: Real) -> Vector:
-    """Velocity of the common point when the two guides carry it with v1 and v2 and it runs along u1 and u2."""
+    """Return the velocity of the intersection of two guides whose own points there have the velocities v1 and v2.
+
+    u1 and u2 are the directions of the guides, det = u1 x u2. The same formula holds for accelerations.
+    """
     velocity: Vector = v1 + u1 * (cross(v2 - v1, u2) / det)
     return velocity
 
 
 def guide_acceleration(point: Vector, vP: Vector, guide: tuple[Vector, Vector, Rate, Accel]) -> Vector:
-    """Acceleration that a guide gives a point running on it, without the unknown part along the guide (Coriolis in)."""
+    """Return the acceleration of a point on a moving guide, with the Coriolis part and without the part along the
+    guide.
+    """
     origin, u, rate, accel = guide
     arm = point - origin
     sliding = dot(u, vP - rate.at(arm))
@@ -296,11 +319,11 @@ def guide_acceleration(point: Vector, vP: Vector, guide: tuple[Vector, Vector, R
 
 
 def split_across_guides(rest: Vector, u1: Vector, u2: Vector, det: Real) -> tuple[Vector, Vector]:
-    """The two forces across u1 and across u2 that balance `rest`."""
+    """Return the two forces perpendicular to u1 and u2 that balance the force `rest`."""
     return 1j * u1 * (-dot(rest, u2) / det), 1j * u2 * (dot(rest, u1) / det)
 
 
-# A group that does as another one does: what it does otherwise a subclass says.
+# Solvers that modify another solver.
 
 
 Step = TypeVar("Step")
@@ -308,17 +331,17 @@ Step = TypeVar("Step")
 
 @dataclass(frozen=True)
 class WrappedSolver(GroupSolver):
-    """A subclass overrides one of the steps, or `passed`, through which all of them go."""
+    """A solver that passes its work to an inner one; subclasses override single steps, or `passed` for all of them."""
 
     inner: GroupSolver
 
     @classmethod
     def around(cls, inner: GroupSolver, *own: Any) -> Self:
-        """A kernel about another one; own: the fields of the subclass."""
+        """Wrap a solver; own: the further fields of the subclass."""
         return cls(inner.group, inner.size, inner, *own)
 
     def passed(self, work: Callable[..., Step], *given: Any) -> Step:
-        """One step of the inner kernel."""
+        """Call one step of the inner solver."""
         return work(*given)
 
     def rebind(self, linkage: Linkage) -> Self:

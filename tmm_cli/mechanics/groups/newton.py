@@ -1,9 +1,9 @@
-"""Groups of any class: Newton's method on the equations of the group's own pairs, all positions at once.
+"""Groups of any class: Newton's method on the constraint equations of the pairs, at all positions at once.
 
-Unknowns are the origins and angles of the group's links, lengths counted in the group's size. One matrix serves places,
+Unknowns are the origins and angles of the links, lengths divided by the size of the group. One matrix serves positions,
 velocities, accelerations and, transposed, reactions. E. J. Haug, Computer Aided Kinematics and Dynamics of Mechanical
-Systems, ch. 3 and 4. Where a group has more equations than unknowns (passive constraints) they are solved by least
-squares, which is exact as long as they agree.
+Systems, ch. 3 and 4. A group with more equations than unknowns (redundant constraints) is solved by least squares,
+which is exact as long as the equations are consistent.
 """
 
 from __future__ import annotations
@@ -56,12 +56,14 @@ from tmm_cli.mechanics.numerics import (
 )
 from tmm_cli.mechanics.structure import Group
 
-MOST_ITERATIONS = 12  # of Newton's method at most
+MOST_ITERATIONS = 12  # of Newton's method
 
 
 @dataclass(frozen=True)
 class NewtonSolver(GroupSolver):
-    """A group with its pairs and drivers as constraints: outer pairs, inner pairs, drivers, in the group's order."""
+    """A group with its pairs and drivers as constraints: external pairs, internal pairs, drivers, in the order of the
+    group.
+    """
 
     constraints: tuple[PairConstraint, ...]
     start: GroupState | None = None
@@ -73,13 +75,16 @@ class NewtonSolver(GroupSolver):
 
     @property
     def blurred(self) -> float:
-        """With passive constraints more than near a dead position: there motion follows from equations that agree to
-        the last bit of float64 only, which angles lose by 1/margin and accelerations by its square."""
+        """Margin below which double-doubles are required; greater with redundant constraints.
+
+        There the motion follows from equations that are consistent to the last bit of float64 only; angles lose
+        1/margin of it, accelerations its square.
+        """
         return BLURRED_PASSIVE if self.passive else self.near
 
     @classmethod
     def of(cls, group: Group, linkage: Linkage) -> NewtonSolver:
-        """The group with its numbers, which may be arrays, not yet assembled."""
+        """Return the solver of a group with the dimensions of the linkage, which may be arrays; not yet assembled."""
         pairs = tuple(PAIR_CONSTRAINTS[pair.kind](pair, linkage) for pair in (*group.outer, *group.inner))
         drives = tuple(DriverConstraint.of(driver, linkage) for driver in group.drivers)
         size = reduce(np.maximum, [link_extent(linkage, link) for link in sorted({*group.links, *group.known})])
@@ -97,7 +102,9 @@ class NewtonSolver(GroupSolver):
 
     @cached_property
     def by_angle(self) -> bool:
-        """Whether the angles follow from equations of angles alone: then there is one assembly, wherever one starts."""
+        """True if the angles follow from linear equations of angles alone: then there is one assembly, from any initial
+        guess.
+        """
         still = {name: Pose(np.zeros(1, complex), np.ones(1, complex), np.zeros(1)) for name in self._all}
         rows = []
         for constraint in self.constraints:
@@ -123,11 +130,11 @@ class NewtonSolver(GroupSolver):
 
     @property
     def unit(self) -> Real:
-        """The size on an axis of its own."""
+        """Size of the group with an additional last axis."""
         return _stack([self.size])
 
     def _fill(self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]], like: Real) -> Real:
-        """Rows of all pairs as a matrix (..., rows, unknowns), without dimension."""
+        """Assemble the rows of all pairs into a dimensionless matrix (..., rows, unknowns)."""
         matrix: Real = np.zeros_like(like, shape=(*np.shape(like), self._scale.shape[-1], 3 * len(self.group.links)))
         row = 0
         for constraint, of_links in zip(self.constraints, parts, strict=True):
@@ -135,7 +142,7 @@ class NewtonSolver(GroupSolver):
                 if link in self.order:
                     at = 3 * self.order[link]
                     for k, (c, m) in enumerate(lines):
-                        constant = isinstance(c, complex)  # along an axis, or nothing
+                        constant = isinstance(c, complex)  # along an axis, or zero
                         if not constant or c.real:
                             matrix[..., row + k, at] = c.real
                         if not constant or c.imag:
@@ -146,7 +153,7 @@ class NewtonSolver(GroupSolver):
         return matrix  # noqa: RET504  typed
 
     def matrix(self, poses: Poses) -> Real:
-        """The Jacobian without dimension, (..., rows, unknowns)."""
+        """Return the dimensionless Jacobian, shape (..., rows, unknowns)."""
         x = poses[self.group.links[0]].x
         return self._fill(self._rows(poses), x.real + 0 * self.size)
 
@@ -154,11 +161,14 @@ class NewtonSolver(GroupSolver):
         return [c.jacobian_rows(poses) for c in self.constraints]
 
     def residuals(self, poses: Poses, drives: DriverStates) -> Real:
-        """What is short of closing, without dimension, (..., rows)."""
+        """Return the dimensionless residuals of the equations, shape (..., rows)."""
         return _stack([residual for c in self.constraints for residual in c.residuals(poses, drives)]) * self._scale
 
     def known(self, poses: Poses, motion: Mapping[str, tuple[object, Real]]) -> Real:
-        """What given motions (of origins, of angles) of the links it hangs on do to each row, without dimension."""
+        """Return the contribution of the motion of the known links to each row, dimensionless.
+
+        motion: velocities (or accelerations) of origin and angle, by link.
+        """
         shape = np.shape(poses[self.group.links[0]].x)
         rows: list[Real] = []
         nothing = np.zeros(shape)
@@ -177,21 +187,23 @@ class NewtonSolver(GroupSolver):
         return _stack(rows) * self._scale
 
     def asked(self, drives: DriverStates, order: int, shape: tuple[int, ...]) -> Real:
-        """Derivative of each row that the drivers ask for, without dimension."""
+        """Return the derivative of each row that the drivers prescribe, dimensionless; order: 1 or 2."""
         if not self.group.drivers:
             return np.zeros((*shape, self._scale.shape[-1]))
         rows = [value for c in self.constraints for value in c.asked(drives, order)]
         return _stack([np.zeros(shape), *rows])[..., 1:] * self._scale
 
     def poses_of(self, state: GroupState) -> dict[str, Pose]:
-        """A state as poses."""
+        """Convert a state to poses, by link."""
         x, z, unwrapped = state.x, unit(state.unwrapped), state.unwrapped
         return {link: Pose(x[..., k], z[..., k], unwrapped[..., k]) for link, k in self.order.items()}
 
     def close(
         self, start: GroupState, poses: Poses, drives: DriverStates, rounds: int = MOST_ITERATIONS
     ) -> tuple[GroupState, Real]:
-        """Newton's method from a start; the state found and the size of the last step (small where it converged)."""
+        """Apply Newton's method; return the state and the size of the last step, which is small where it has
+        converged.
+        """
         state = start
         if isinstance(self.size, DoubleDouble) or any(isinstance(pose.x, DoubleDouble) for pose in poses.values()):
             state = GroupState(to_double_double(start.x), to_double_double(start.unwrapped))
@@ -207,10 +219,12 @@ class NewtonSolver(GroupSolver):
         return state, size
 
     def begun(self, poses: Poses, q: Real, drives: DriverStates) -> tuple[GroupState, Real]:
-        """States from which Newton's method begins, and how far q is beyond where the group goes (see BranchTrace)."""
+        """Return initial guesses for Newton's method, and the residual of q relative to the range of the group (see
+        BranchTrace).
+        """
         if self.trace is not None:
             start, residual = self.trace.start(q)
-            nothing = (residual > 0)[..., None]  # is there to be found
+            nothing = (residual > 0)[..., None]  # no solution there
             return GroupState(start.x, np.where(nothing, np.nan, start.unwrapped)), residual
         assert self.start is not None
         shape = (*np.shape(q), len(self.group.links))
@@ -222,7 +236,7 @@ class NewtonSolver(GroupSolver):
         with np.errstate(all="ignore"):
             state, step = self.close(start, poses, drives)
         dead, side = np.zeros(np.shape(q), dtype=bool), np.ones(np.shape(q))
-        if self.trace is not None:  # in a dead position that it passes the group is where its way leads through
+        if self.trace is not None:  # in a dead position that is passed, the state is that of the trace
             dead, side = self.trace.in_dead(q, ROUNDINGS**2 * roundoff(start.unwrapped)), self.trace.side(q)
             through = dead[..., None]
             state = GroupState(np.where(through, start.x, state.x), np.where(through, start.unwrapped, state.unwrapped))
@@ -255,7 +269,7 @@ class NewtonSolver(GroupSolver):
     def rates_at(
         self, everything: Poses, matrix: Real, det: Real, rates: Rates, drives: DriverStates
     ) -> tuple[Rate, ...]:
-        """Velocities of its links from the poses of all links and the matrix there; nan where det is."""
+        """Return the velocities of the links from all poses and their matrix; nan where det is nan."""
         known = self.known(everything, {name: (rate.v, rate.w) for name, rate in rates.items()})
         found = solve(matrix, self.asked(drives, 1, np.shape(det)) - known)
         return tuple(Rate(v, w) for v, w in self._by_link(found, det))
@@ -269,24 +283,24 @@ class NewtonSolver(GroupSolver):
     def accelerations_at(
         self, everything: Poses, matrix: Real, det: Real, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
-        """Accelerations of its links, likewise; rates holds those of its own links too."""
+        """Return the accelerations likewise; `rates` contains the velocities of the group's own links too."""
         known = self.known(everything, {name: (accel.a, accel.e) for name, accel in accels.items()})
         bend = _stack(self.velocity_terms(everything, rates)) * self._scale
         found = solve(matrix, self.asked(drives, 2, np.shape(det)) - known - bend)
         return tuple(Accel(a, e) for a, e in self._by_link(found, det))
 
     def velocity_terms(self, poses: Poses, rates: Rates) -> list[Real]:
-        """Second derivative of each row when no link accelerates."""
+        """Return the second derivative of each row with all link accelerations zero."""
         return [term for constraint in self.constraints for term in constraint.velocity_terms(poses, rates)]
 
     def _by_link(self, found: Real, det: Real) -> Iterator[tuple[Vector, Real]]:
-        """The unknowns with their dimensions, of each link; nan where det is."""
+        """Yield the unknowns of each link with their dimensions; nan where det is nan."""
         found = np.where(np.isfinite(det)[..., None], found * self._columns, np.nan)
         for k in range(0, found.shape[-1], 3):
             yield found[..., k] + 1j * found[..., k + 1], found[..., k + 2]
 
     def _by_constraint(self, found: Sequence[Real]) -> list[tuple[PairConstraint, list[Real]]]:
-        """The multipliers of each pair and driver, from those of each row."""
+        """Split the multipliers of all rows by pair and driver."""
         each, row = [], 0
         for constraint in self.constraints:
             each.append((constraint, list(found[row : row + len(constraint.lengths)])))
@@ -294,7 +308,7 @@ class NewtonSolver(GroupSolver):
         return each
 
     def _apart(self, everything: Poses, found: Sequence[Real]) -> dict[str, Wrench]:
-        """Forces on the group's links that follow from those of the teeth and do no work."""
+        """Return the separating forces of teeth on the links, which follow from the tangential ones and do no work."""
         total: dict[str, Wrench] = {}
         for constraint, here in self._by_constraint(found):
             apart = constraint.apart(everything, here)
@@ -308,7 +322,7 @@ class NewtonSolver(GroupSolver):
         return total
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
-        """The transposed equations; then what teeth do along the line of their axes, which only hinges feel."""
+        """Solve the transposed equations; then again with the separating forces of teeth, which only hinges carry."""
         everything = self._all_poses(at, poses)
         under = self._transposed(at, everything)
         found = under(applied)
@@ -319,7 +333,7 @@ class NewtonSolver(GroupSolver):
         return self.given_by(everything, self._by_constraint(found))
 
     def _transposed(self, at: Placement, everything: Poses) -> Callable[[Sequence[Wrench]], Sequence[Real]]:
-        """What gives the multipliers of all rows under wrenches on the group's links."""
+        """Return a function from wrenches on the links to the multipliers of all rows."""
         pushes = self._fill([c.pushes(everything) for c in self.constraints], at.poses[0].x.real + 0 * self.size)
         turned = np.swapaxes(pushes, -1, -2)
 
@@ -332,7 +346,7 @@ class NewtonSolver(GroupSolver):
         return under
 
     def given_by(self, everything: Poses, multipliers: Sequence[tuple[PairConstraint, list[Real]]]) -> GroupReactions:
-        """Reactions from the multipliers of each pair and driver."""
+        """Return the reactions from the multipliers of each pair and driver."""
         reaction = [constraint.reaction(everything, here) for constraint, here in multipliers]
         outer, inner = len(self.group.outer), len(self.group.inner)
         for k, pair in enumerate(self.group.outer):
@@ -346,7 +360,7 @@ class NewtonSolver(GroupSolver):
 
 
 def _stack(values: Sequence[Any]) -> Real:
-    """Numbers, or arrays of them, on a last axis."""
+    """Stack numbers, or arrays of them, on a new last axis."""
     if len({np.shape(value) for value in values}) > 1:
         values = np.broadcast_arrays(*values)
     return np.stack(values, axis=-1)

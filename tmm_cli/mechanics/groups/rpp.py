@@ -1,7 +1,7 @@
-"""RPP: link a hangs on A; b slides along a guide of a known link and along a.
+"""RPP dyad: link a is hinged at A; b slides along a guide of a known link and along a.
 
-Both angles follow from the known link; a's place from A; b lies where the two guides meet: every result is divided by
-det, the sine of the angle between them.
+Both angles follow from the known link, the position of a from A; b is at the intersection of the two guides: every
+result is divided by det, the sine of the angle between them.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from tmm_cli.mechanics.numerics import Real, Vector, cross, unit
 
 @dataclass(frozen=True)
 class RPP(Dyad[HingeEnd, SliderEnd, SliderEnd]):
-    """Two lines: one assembly only."""
+    """Solver of an RPP dyad: the intersection of two lines, with one assembly only."""
 
     type = "RPP"
     assemblies = 1
@@ -52,18 +52,18 @@ class RPP(Dyad[HingeEnd, SliderEnd, SliderEnd]):
         A = a.place(poses)
         pose_a = Pose(A - a.here * za, za)
         u = za * unit(run.direction)
-        # b's origin runs along both guides
+        # the origin of b lies on both guides
         origin, det = intersect_lines(pose_a.at(run.there) - run.here * zb, u, Q - b.here * zb, v)
         residual, slack = parallel_residual(det)
         return Placement((pose_a, Pose(origin, zb)), det, np.abs(det), residual, slack)
 
     def _frame(self, at: Placement, poses: Poses) -> tuple[Vector, Vector]:
-        """Directions of the guides on a and on the known link."""
+        """Return the directions of the guides on a and on the known link."""
         _, b, run = self.parts
         return at.a.z * unit(run.direction), guide_line(b, poses)[1]
 
     def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> Real:
-        return np.zeros(np.shape(at.det))  # both guides turn with the known link: their angle never changes
+        return np.zeros(np.shape(at.det))  # both guides rotate with the known link: their angle is constant
 
     def rates(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> tuple[Rate, ...]:
         a, b, _ = self.parts
@@ -89,13 +89,15 @@ class RPP(Dyad[HingeEnd, SliderEnd, SliderEnd]):
         return accel_a, Accel(common_point_rate(by_a, u, by_g, v, at.det), e)
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
-        """b's polygon gives both guides' forces, a's the hinge; moments of a about A, then of b, the couples."""
+        """The force polygon of b gives the forces of both guides, that of a the hinge reaction; moments of a about A,
+        then of b, give the couples.
+        """
         on_a, on_b = applied
         a, b, run = self.parts
         u, v = self._frame(at, poses)
         inner, guide = split_across_guides(on_b.force, u, v, at.det)  # on b, from a and from the known link
         RA = inner - on_a.force
-        # a carries the opposite of `inner` and of its couple, both at the running point
+        # on a act the opposite force and couple, both at the sliding point
         arm_a = a.here * at.a.z
         on_own = run.there * at.a.z if not run.runs_here else at.b.at(run.here) - at.a.x
         couple = on_a.about(arm_a) - cross(on_own - arm_a, inner)

@@ -1,7 +1,7 @@
-"""RPR: link a hangs on A, link b on B, and they slide along one another.
+"""RPR dyad: link a is hinged at A, link b at B, and they slide along each other.
 
-Both turn together. With u along the guide and B - A = (x + i h) u, h is fixed and x is the length of the slide:
-every result is divided by det = x. It is lost when the stone comes over the pivot of its slotted link.
+Both rotate together. With u along the guide and B - A = (x + i h) u, h is constant and x is the length of the slide:
+every result is divided by det = x. The group is dead when the sliding block reaches the pivot of its slotted link.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ from tmm_cli.mechanics.numerics import ROUNDINGS, Real, Vector, cross, dot, roun
 
 @dataclass(frozen=True)
 class RPR(Dyad[HingeEnd, HingeEnd, SliderEnd]):
-    """A right triangle on AB: the sign tells which way along the guide b lies from a."""
+    """Solver of an RPR dyad: a right triangle on AB; the sign selects the direction from a to b along the guide."""
 
     type = "RPR"
 
     def _offset(self) -> Real:
-        """h: how far B lies to the left of the line through A along the guide, m."""
+        """Return h, the distance of B to the left of the line through A along the guide, m."""
         a, b, run = self.parts
         turned = unit(run.turned)
         # In a's axes, B - A = (there - a.here) + s e^(i direction) - (run.here - b.here) e^(i turned).
@@ -91,7 +91,7 @@ class RPR(Dyad[HingeEnd, HingeEnd, SliderEnd]):
         return Accel.through(aA, e, w, a.here * at.a.z), Accel.through(aB, e, w, b.here * at.b.z)
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
-        """b along the guide, moments of the whole group about A, then the polygons of each link."""
+        """Forces on b along the guide, moments of the whole group about A, then the force polygon of each link."""
         on_a, on_b = applied
         a, b, run = self.parts
         u, h = self._frame(at)
@@ -102,7 +102,7 @@ class RPR(Dyad[HingeEnd, HingeEnd, SliderEnd]):
         RB = tau + normal
         guide = -1j * u * dot(RB + on_b.force, 1j * u)  # on b from a
         RA = guide - on_a.force
-        # on b; from moments of the runner, whose arm is fixed and often nothing, so that no large terms cancel
+        # on b; from moments of the runner, whose arm is constant and often zero, so that no large terms cancel
         if run.runs_here:
             couple = -on_b.about(b.here * at.b.z) - cross((run.here - b.here) * at.b.z, guide)
         else:

@@ -1,4 +1,4 @@
-"""RRP: link a hangs on A and is hinged to b at C; b slides along a guide of a known link.
+"""RRP dyad: link a is hinged at A and to b at C; b slides along a guide of a known link.
 
 With ra = C - A and u along the guide every result is divided by det = u . ra.
 """
@@ -28,7 +28,9 @@ from tmm_cli.mechanics.numerics import ROUNDINGS, Real, Vector, cross, dot, roun
 
 @dataclass(frozen=True)
 class RRP(Dyad[HingeEnd, SliderEnd, HingeEnd]):
-    """A circle and a line: the sign tells on which side of the foot of A on the guide the hinge C lies."""
+    """Solver of an RRP dyad: a circle and a line; the sign selects the side of the foot of A on the guide on which C
+    lies.
+    """
 
     type = "RRP"
 
@@ -39,7 +41,7 @@ class RRP(Dyad[HingeEnd, SliderEnd, HingeEnd]):
         zb = poses[b.known].z * unit(b.turned)
         arm = c.there - a.here
         la = np.abs(arm)
-        start = Q + (c.here - b.here) * zb  # C runs on the parallel line through here
+        start = Q + (c.here - b.here) * zb  # C moves on the parallel line through this point
         off = A - start
         y, run = cross(u, off), dot(u, off)
         half = self.sign * np.sqrt(np.maximum((la - y) * (la + y), 0))
@@ -53,7 +55,7 @@ class RRP(Dyad[HingeEnd, SliderEnd, HingeEnd]):
         )
 
     def _arms(self, at: Placement, poses: Poses) -> tuple[Vector, Vector, Vector]:
-        """ra, u, and C from the origin of the guide's link."""
+        """Return ra, u, and the vector to C from the origin of the link with the guide."""
         a, b, c = self.parts
         _, u = guide_line(b, poses)
         return (c.there - a.here) * at.a.z, u, at.b.at(c.here) - poses[b.known].x
@@ -95,7 +97,7 @@ class RRP(Dyad[HingeEnd, SliderEnd, HingeEnd]):
         return Accel.through(aA, ea, wa, a.here * at.a.z), Accel.through(aC, eb, wb, c.here * at.b.z)
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
-        """Moments of a about C, then the polygon, then moments of b about C for the guide's couple."""
+        """Moments of a about C, then the force polygon, then moments of b about C for the couple of the guide."""
         on_a, on_b = applied
         a, b, c = self.parts
         ra, u, _ = self._arms(at, poses)

@@ -1,4 +1,4 @@
-"""RRR: links a and b hinged at C; a hangs on A, b on B, and the places of A and B are known.
+"""RRR dyad: links a and b, hinged to each other at C; a is hinged at A, b at B, both known.
 
 With ra = C - A, rb = C - B every result is divided by det = ra x rb = (distance AB) (half-chord).
 """
@@ -28,8 +28,11 @@ from tmm_cli.mechanics.numerics import ROUNDINGS, Real, Vector, dot, roundoff, s
 
 @dataclass(frozen=True)
 class RRR(Dyad[HingeEnd, HingeEnd, HingeEnd]):
-    """Two circles: the half-chord from the factored (Heron) product, W. Kahan, Miscalculating area and angles of a
-    needle-like triangle, 2014; the side of AB on which C lies is the sign of the group."""
+    """Solver of an RRR dyad: two circles; the sign selects the side of AB on which C lies.
+
+    Half-chord from the factored (Heron) product: W. Kahan, Miscalculating area and angles of a needle-like triangle,
+    2014.
+    """
 
     type = "RRR"
 
@@ -52,7 +55,7 @@ class RRR(Dyad[HingeEnd, HingeEnd, HingeEnd]):
             p = np.maximum(spare, 0) * (d + (R + r)) / (2 * d)
             h = self.sign * np.sqrt(m * p)
             x = (p - m) / 2
-            # Seen from the smaller circle's centre; from B the base runs the other way and so does the side.
+            # Relative to the centre of the smaller circle; from B the base and the side are reversed.
             small = np.where(flip, x - 1j * h, x + 1j * h) * np.where(flip, -base, base) / d
         ra = np.where(flip, small + base, small)
         rb = np.where(flip, small, small - base)
@@ -95,9 +98,10 @@ class RRR(Dyad[HingeEnd, HingeEnd, HingeEnd]):
         return Accel.through(aA, ea, wa, a.here * at.a.z), Accel.through(aB, eb, wb, b.here * at.b.z)
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
-        """Moments of each link about its outer hinge give the reaction in C, the polygon of each link the outer ones.
+        """Moments of each link about its external hinge give the reaction at C, the force polygon of each link the
+        external ones.
 
-        Tangential components follow from the moments about C alone, normal ones are the rest.
+        Tangential components follow from the moments about C alone; normal ones are the remainder.
         """
         on_a, on_b = applied
         a, b, c = self.parts
@@ -117,7 +121,7 @@ class RRR(Dyad[HingeEnd, HingeEnd, HingeEnd]):
 
 
 def _slacks(d: Real, r: Real, R: Real) -> tuple[Real, Real]:
-    """How far d is from the sum of the radii and from their difference, subtracting the nearest numbers first."""
+    """Return R + r - d and d - (R - r), evaluated with the nearest numbers subtracted first."""
     with_base = 2 * r <= R
     t = d - R
     return np.where(with_base, r - t, (R + r) - d), np.where(with_base, r + t, d - (R - r))

@@ -1,7 +1,7 @@
-"""The groups one after another: places of all links, and how these change with the driver's place.
+"""Solution of the groups in turn: positions of all links, and their derivatives with respect to the driver coordinate.
 
-Every place of the driver is found alone. First and second derivatives by it are the transfer functions; with the
-driver's speed kinematics/motion.py makes velocities and accelerations of them.
+Every position is solved independently. First and second derivatives are the transfer functions (kinematic
+coefficients); with the speed of the driver kinematics/motion.py converts them to velocities and accelerations.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from tmm_cli.mechanics.numerics import Real, Vector, dot, unit
 
 @dataclass(frozen=True)
 class DriverMotion:
-    """How the driver moves: from `start` at t = 0 with a rate and an acceleration, both in its sense."""
+    """Motion of the driver with constant acceleration: from `start` at t = 0; rate and acceleration in its sense."""
 
     start: float
     rate: float
@@ -28,18 +28,18 @@ class DriverMotion:
     sense: int
 
     def time(self, q: Real) -> Real:
-        """t (s) at which the driver comes to q; nan where it stops before."""
+        """Return the time (s) at which the driver reaches q; nan if it stops before."""
         gone = self.sense * (q - self.start)
         with np.errstate(invalid="ignore", divide="ignore"):
             root = np.sqrt(self.rate * self.rate + 2 * self.acceleration * gone)
             return np.where(gone == 0, 0.0, 2 * gone / (self.rate + root))
 
     def accelerated(self, q: Real) -> Real:
-        """d2q/dt2 at q, with its sign."""
+        """Return d2q/dt2 at q, signed."""
         return np.zeros(np.shape(q)) + self.sense * self.acceleration
 
     def speed(self, q: Real) -> Real:
-        """dq/dt at q, with its sign; nan where the driver stops before."""
+        """Return dq/dt at q, signed; nan if the driver stops before."""
         if self.acceleration == 0:
             return np.zeros(np.shape(q)) + self.sense * self.rate
         with np.errstate(invalid="ignore"):
@@ -48,7 +48,7 @@ class DriverMotion:
 
 
 class LawOfMotion(Protocol):
-    """Speed, acceleration (with their signs) and time of a driver by its place."""
+    """Speed, acceleration (both signed) and time of a driver as functions of its coordinate."""
 
     def speed(self, q: Real) -> Real: ...
     def accelerated(self, q: Real) -> Real: ...
@@ -57,12 +57,18 @@ class LawOfMotion(Protocol):
 
 @dataclass(frozen=True)
 class LinkStates:
-    """Links at the places q of the first driver. Arrays are (positions,); nan where `placed` or `moving` is False.
+    """States of the links at the coordinates q of the first driver; arrays (positions,), nan unless `placed` and
+    `moving`.
 
-    poses, and first and second, their derivatives by q, are by the names of links; placements one a group. placed: all
-    groups are assembled; moving: and none of them is dead. dead, missing: positions that a group, by its title, is the
-    first to lose. drives say where all drivers are. order: 0 places only, 1 first derivatives too, 2 second ones too;
-    asking for what was not computed is NotComputed.
+    Attributes:
+        poses: pose of each link, by name.
+        first, second: first and second derivatives of the poses with respect to q, by link name.
+        placements: placement of each group.
+        placed: True where all groups are assembled.
+        moving: True where, besides, none of them is dead.
+        dead, missing: by the title of a group, positions in which it is the first to be dead, or not to assemble.
+        drives: coordinates of all drivers, by the driven link.
+        order: 0 positions only, 1 with first derivatives, 2 with second ones; access to others raises NotComputed.
     """
 
     linkage: Linkage
@@ -80,23 +86,23 @@ class LinkStates:
     order: int = 2
 
     def spot(self, point: str) -> Vector:
-        """Place of a named point, m."""
+        """Return the position of a named point, m."""
         link = self.linkage.owner(point)
         return self.poses[link].at(self.linkage.local(link, point))
 
     def angle(self, name: str) -> Real:
-        """Angle of a link, rad: in -pi..pi, of a crank that is driven as it is."""
+        """Return the angle of a link, rad: in -pi..pi, or the driver coordinate of a driven crank."""
         own = any(d.link == name and d.kind == "turn" for d in self.linkage.cranks)
         return self.drives[name].value if own else np.angle(self.poses[name].z)
 
     def run(self, slide: Slide) -> Real:
-        """Run in a sliding pair, m."""
+        """Return the run in a prismatic pair, m."""
         carrier, runner = self.poses[slide.carrier], self.poses[slide.runner]
         run: Real = dot(carrier.z * unit(slide.direction), runner.at(slide.at) - carrier.at(slide.through))
         return run
 
     def slope(self, slide: Slide) -> Real:
-        """First transfer function of the run in a sliding pair."""
+        """Return the first transfer function of the run in a prismatic pair."""
         carrier, runner = self.poses[slide.carrier], self.poses[slide.runner]
         arm = runner.at(slide.at) - carrier.x
         relative = self.first[slide.runner].at(slide.at * runner.z) - self.first[slide.carrier].at(arm)
@@ -104,12 +110,12 @@ class LinkStates:
         return slope
 
 
-class NotComputed(LookupError):  # noqa: N818  it says what is the matter
-    """Velocities or accelerations of a motion that was computed without them."""
+class NotComputed(LookupError):  # noqa: N818  the name is the message
+    """Velocities or accelerations are requested of a motion that was computed without them."""
 
 
 class MissingRates(dict[str, Any]):
-    """In the place of what was not computed."""
+    """Placeholder for rates that were not computed; any access raises NotComputed."""
 
     def __init__(self, what: str) -> None:
         super().__init__()
@@ -120,7 +126,7 @@ class MissingRates(dict[str, Any]):
 
 
 def solvers_towards(kernels: Iterable[GroupSolver], links: Iterable[str]) -> tuple[GroupSolver, ...]:
-    """The groups that lie on the way from the drivers to some links, in solving order."""
+    """Return the solvers of the groups between the drivers and the given links, in solving order."""
     wanted, kept = set(links), []
     for kernel in reversed(tuple(kernels)):
         group = kernel.group
@@ -134,13 +140,13 @@ def solvers_towards(kernels: Iterable[GroupSolver], links: Iterable[str]) -> tup
 
 
 def frame_state(q: Real) -> tuple[Pose, Rate, Accel]:
-    """The frame's pose and its rest, one value a position."""
+    """Return pose, velocity and acceleration of the frame at the positions of q."""
     zero, one = np.zeros(np.shape(q), dtype=complex), np.ones(np.shape(q), dtype=complex)
     return Pose(zero, one, zero.real), Rate(zero, zero.real), Accel(zero, zero.real)
 
 
 def driven_state(linkage: Linkage, driver: Driver, drive: DriverState) -> tuple[Pose, Rate, Accel]:
-    """Pose of a link that is driven from the frame, and its transfer functions."""
+    """Return pose and transfer functions of a link that is driven from the frame."""
     q = drive.value
     zero = np.zeros(np.shape(q))
     if driver.kind == "turn":
@@ -164,10 +170,9 @@ def driven_state(linkage: Linkage, driver: Driver, drive: DriverState) -> tuple[
 
 
 def drives_at(linkage: Linkage, q: Real) -> dict[str, DriverState]:
-    """Where each driver is when the first one is at q, by the driven link.
+    """Return the coordinates of all drivers with the first one at q, by the driven link.
 
-    Several drivers move by their own speeds and pass together through the places of the sketch; their speeds are those
-    of that moment.
+    Several drivers move at their own speeds and are in the position of the sketch at the same time.
     """
     zero = np.zeros(np.shape(q))
     found = {linkage.driver.link: DriverState(q, zero + 1, zero)}
@@ -192,14 +197,17 @@ def link_states(
     blank: bool = True,
     drives: DriverStates | None = None,
 ) -> LinkStates:
-    """All links at the first driver's places q (rad or m), each found alone.
+    """Compute the states of all links at the coordinates q of the first driver, each position independently.
 
-    Of the given groups only, which must include those they hang on (see towards); order: 0 places alone, 1 with
-    velocities, 2 with accelerations.
+    A position that a group cannot reach, or in which it is dead, is marked for that group and for all that depend on
+    it.
 
-    A position that a group cannot reach, or where it is dead, is marked for that group and all that hang on it. blank:
-    whether there are no numbers in such positions, but nan; else they are what the formulas give. drives: where the
-    drivers are, if by another parameter than q.
+    Args:
+        kernels: solvers of the groups; with each group, all groups on which it depends (see solvers_towards).
+        q: driver coordinates, rad or m.
+        order: 0 positions only, 1 with velocities, 2 with accelerations.
+        blank: replace values in such positions by nan; otherwise they are what the formulas give.
+        drives: coordinates of the drivers, if the parameter is not that of the first driver.
     """
     kernels = tuple(kernels)
     q = np.atleast_1d(q)
@@ -226,7 +234,7 @@ def link_states(
         for kernel in kernels:
             at = kernel.place(poses, q, drives)
             sound = at.assembled & np.isfinite(sum(pose.x + pose.z for pose in at.poses))
-            # with its stone exactly on its pivot a link may lie in any direction: it has no place, and is dead
+            # with the sliding block exactly at the pivot, the direction of a link is arbitrary: dead, without a pose
             missing[kernel.group.title] = placed & ~sound & ~at.dead
             dead[kernel.group.title] = placed & at.dead
             placed = placed & sound
@@ -247,6 +255,6 @@ def link_states(
 
 
 def _blank_pose(pose: Pose, lost: Real) -> Pose:
-    """A pose that is nothing where it is lost."""
+    """Return the pose with nan where `lost`."""
     unwrapped = None if pose.unwrapped is None else np.where(lost, np.nan, pose.unwrapped)
     return Pose(np.where(lost, np.nan, pose.x), np.where(lost, np.nan, pose.z), unwrapped)

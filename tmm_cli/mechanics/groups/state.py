@@ -1,6 +1,6 @@
-"""States that groups work on: places and motions of links, forces on them, and what a group finds.
+"""Records of group solvers: poses and motions of links, forces on them, and results.
 
-Arrays are (variants, positions) by broadcasting.
+Arrays broadcast against (variants, positions).
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from tmm_cli.mechanics.numerics import Real, Vector, cross
 
 @dataclass(frozen=True)
 class Pose:
-    """Place of a link: its origin x (m) and e^(i angle) of its x axis, z.
+    """Pose of a link: origin x (m) and direction z = e^(i angle) of its x axis.
 
-    unwrapped: the angle itself (rad), followed through full turns, where something depends on it (toothed wheels).
+    unwrapped: the angle accumulated through full turns (rad), where something depends on it (gears).
     """
 
     x: Vector
@@ -27,51 +27,55 @@ class Pose:
 
     @property
     def turned(self) -> Real:
-        """The angle (rad): followed through where it was, else within -pi..pi."""
+        """Angle (rad): accumulated where available, otherwise in -pi..pi."""
         return np.arctan2(self.z.imag, self.z.real) if self.unwrapped is None else self.unwrapped
 
     def spread(self, shape: tuple[int, ...]) -> Pose:
-        """The same pose at many positions."""
+        """Return the pose broadcast to many positions."""
         unwrapped = None if self.unwrapped is None else np.broadcast_to(self.unwrapped, shape)
         return Pose(np.broadcast_to(self.x, shape), np.broadcast_to(self.z, shape), unwrapped)
 
     def at(self, local: Any) -> Vector:
-        """A point of the link in the drawing's axes, m."""
+        """Return a point of the link, given in its own axes, in the axes of the drawing, m."""
         place: Vector = self.x + local * self.z
         return place
 
 
 @dataclass(frozen=True)
 class Rate:
-    """Velocity of a link: of its origin v (m/s), and w (rad/s)."""
+    """Velocity of a link: v of its origin (m/s), and angular velocity w (rad/s)."""
 
     v: Vector
     w: Real
 
     @classmethod
     def through(cls, v: Vector, w: Real, arm: Vector) -> Rate:
-        """Of a link that turns with w while its point `arm` from the origin has the velocity v."""
+        """Return the velocity of a link with angular velocity w whose point at `arm` from the origin has the velocity
+        v.
+        """
         return cls(v - 1j * w * arm, w)
 
     def at(self, arm: Vector) -> Vector:
-        """Velocity of the point of the link that lies `arm` (drawing's axes) from its origin, m/s."""
+        """Return the velocity of the point at `arm` from the origin (axes of the drawing), m/s."""
         return self.v + 1j * self.w * arm
 
 
 @dataclass(frozen=True)
 class Accel:
-    """Acceleration of a link: of its origin a (m/s2), and e (rad/s2)."""
+    """Acceleration of a link: a of its origin (m/s2), and angular acceleration e (rad/s2)."""
 
     a: Vector
     e: Real
 
     @classmethod
     def through(cls, a: Vector, e: Real, w: Real, arm: Vector) -> Accel:
-        """Of a link that turns with w and e while its point `arm` from the origin has the acceleration a."""
+        """Return the acceleration of a link with angular rates w and e whose point at `arm` from the origin has
+        acceleration a.
+        """
         return cls(a - (1j * e - w * w) * arm, e)
 
     def at(self, arm: Vector, w: Real) -> Vector:
-        """Acceleration of the point that lies `arm` from the origin when the link turns with w, m/s2."""
+        """Return the acceleration of the point at `arm` from the origin of a link with angular velocity w, m/s2."""
         acceleration: Vector = self.a + (1j * self.e - w * w) * arm
         return acceleration
 
@@ -92,19 +96,22 @@ class Wrench:
         return Wrench(self.force + other.force, self.moment + other.moment)
 
     def about(self, arm: Vector) -> Real:
-        """Moment of the same forces about the point that lies `arm` from the link's origin, N m."""
+        """Return the moment of the same forces about the point at `arm` from the origin, N m."""
         moment: Real = self.moment - cross(arm, self.force)
         return moment
 
 
 @dataclass(frozen=True)
 class Placement:
-    """Places of a group's links, in its order, and how far it is from losing them.
+    """Poses of the links of a group, in its order, and its distance from a dead position.
 
-    det is the determinant (or root) that velocities, accelerations and reactions are divided by; margin its size
-    without dimension, 1 at best and 0 in a dead position (the sine of the transmission angle where there is one);
-    residual (m, or a pure number for two guides) is negative by as much as the group can still give way, positive by as
-    much as it falls short of assembling, and cannot be told from zero within slack.
+    Attributes:
+        det: determinant (or root) by which velocities, accelerations and reactions are divided.
+        margin: its dimensionless magnitude, 1 at best and 0 in a dead position (the sine of the transmission angle
+            where there is one).
+        residual: negative by the distance (m; dimensionless for two guides) to the loss of the assembly, positive by
+            the distance by which the group fails to assemble.
+        slack: rounding error of the residual.
     """
 
     poses: tuple[Pose, ...]
@@ -115,12 +122,12 @@ class Placement:
 
     @property
     def a(self) -> Pose:
-        """Place of the first link."""
+        """Pose of the first link."""
         return self.poses[0]
 
     @property
     def b(self) -> Pose:
-        """Place of the second link."""
+        """Pose of the second link."""
         return self.poses[1]
 
     @property
@@ -134,11 +141,14 @@ class Placement:
 
 @dataclass(frozen=True)
 class PairReaction:
-    """A reaction on one link at one point: force (N), couple (N m, sliding pairs only).
+    """Reaction on one link at one point: force (N), and for a prismatic pair a couple (N m).
 
-    tangential and normal are the two components of an outer hinge's reaction, across its link and along it, that the
-    force plan finds one after the other. at: its point (m), where the pair has none of its own (teeth). back: couple on
-    the other link (N m), where it is not the opposite of this one (a cam given by its law).
+    Attributes:
+        tangential, normal: components of the reaction of an external hinge across and along its link, in the order in
+            which the force plan determines them.
+        at: point of action (m), if the pair has none of its own (teeth).
+        back: couple on the other link (N m), if it is not the opposite of this one (a cam defined by its law of
+            motion).
     """
 
     force: Vector
@@ -150,7 +160,7 @@ class PairReaction:
 
     @property
     def opposite(self) -> PairReaction:
-        """The reaction on the pair's other link."""
+        """Reaction on the other link of the pair."""
         if self.back is not None:
             return PairReaction(-self.force, self.back, at=self.at, back=self.couple)
         return PairReaction(-self.force, None if self.couple is None else -self.couple, at=self.at)
@@ -158,11 +168,10 @@ class PairReaction:
 
 @dataclass(frozen=True)
 class GroupReactions:
-    """Reactions of a group: of the outer pairs on its own links, of the inner pairs on their second links.
+    """Reactions of a group: of external pairs on its own links, of internal pairs on their second links (in a dyad: b).
 
-    Both in the order of the group's pairs; of a dyad the inner one acts on link b. A couple belongs to the running
-    point of its sliding pair. drives: the force (N) or moment (N m) of each driver between links of the group, by its
-    link.
+    Both are in the order of the pairs of the group. The couple of a prismatic pair is taken about its sliding point.
+    drives: force (N) or moment (N m) of each driver between links of the group, by the driven link.
     """
 
     outer: tuple[PairReaction, ...]
@@ -172,7 +181,9 @@ class GroupReactions:
 
 @dataclass(frozen=True)
 class DriverState:
-    """Where a driver is: its place (rad or m) and its first and second derivatives by the parameter of the motion."""
+    """Coordinate of a driver (rad or m), with its first and second derivatives with respect to the parameter of the
+    motion.
+    """
 
     value: Real
     first: Real
@@ -184,16 +195,18 @@ DriverStates = Mapping[str, DriverState]
 
 @dataclass(frozen=True)
 class GroupState:
-    """Origins (m) and angles (rad, through full turns) of a group's links on the last axis."""
+    """Origins (m) and accumulated angles (rad) of the links of a group, on the last axis."""
 
     x: Vector
     unwrapped: Real
 
     def moved(self, step: Real, size: Real | float) -> GroupState:
-        """The state after a step (..., 3 links) of x, y and angle of each link; lengths of the step in sizes (m)."""
+        """Return the state after a step (..., 3 links) of x, y and angle of each link; lengths of the step in units of
+        `size` (m).
+        """
         parts = step.reshape(*np.shape(step)[:-1], np.shape(step)[-1] // 3, 3)
         return GroupState(self.x + size * (parts[..., 0] + 1j * parts[..., 1]), self.unwrapped + parts[..., 2])
 
     def part(self, chosen: slice) -> GroupState:
-        """Some of many states."""
+        """Return a slice of many states."""
         return GroupState(self.x[chosen], self.unwrapped[chosen])

@@ -1,9 +1,9 @@
-"""A telescope and an arm: three links, two of which slide along one another as a driver between them says.
+"""Telescope and arm: a group of three links, two of which slide in each other as a driver between them prescribes.
 
-With the run of the drive they are one body, so the group is placed as a group of two links: the arm, and the telescope
-in the axes of its link m that hangs on another, on which the pin of its link n, the one that holds the arm, has moved.
-A point of n moves as if n hung on a link that moves as m's does and along the guide besides: so velocities and
-accelerations come from those of the two links too, and reactions as if both parts were one body.
+With the run of the driver given, these two are one body. So the group is solved as a dyad of the arm and of the outer
+part m of the telescope, in whose axes the pin of the inner part n, which holds the arm, has moved. A point of n moves
+as if n were attached to a link that moves like that of m and, besides, along the guide: so velocities and accelerations
+follow from the dyad too, and reactions as if both parts were one body.
 """
 
 from __future__ import annotations
@@ -34,14 +34,15 @@ from tmm_cli.mechanics.linkage import Driver, Linkage, Slide
 from tmm_cli.mechanics.numerics import Real, Vector, cross, dot, unit
 from tmm_cli.mechanics.structure import Group, Pair
 
-UNDER = "\0under m"  # the link that m hangs on, as n sees it: no link of a file is called so
+UNDER = "\0under m"  # the link to which m is attached, as seen from n; no link of a file can have this name
 
 
 @dataclass(frozen=True)
 class TelescopeParts:
-    """The links of such a group: arm, n and m, and the dyad they are when n does not slide on m; its inner pair is n's.
+    """Links of the group: arm, n and m, and the dyad that they form when n does not slide on m; its internal pair is
+    n's.
 
-    Links of the dyad are the arm and m in the order of their outer pairs, those that turn first.
+    The links of the dyad are the arm and m, in the order of their external pairs, revolute pairs first.
     """
 
     arm: str
@@ -52,7 +53,7 @@ class TelescopeParts:
 
     @classmethod
     def of(cls, group: Group) -> TelescopeParts | None:
-        """None where the group is no such chain."""
+        """Recognise a telescope; None if the group is another one."""
         if (len(group.links), len(group.inner), len(group.outer), len(group.drivers)) != (3, 2, 2, 1):
             return None
         driven = [pair for pair in group.inner if pair.slide and pair.name == group.drivers[0].joint]
@@ -75,13 +76,15 @@ class TelescopeParts:
 
     @property
     def joint(self) -> Pair:
-        """The pair of n and the arm."""
+        """Pair of n and the arm."""
         return self.dyad.inner[0]
 
 
 @dataclass(frozen=True)
 class Telescope(ClosedFormSolver):
-    """Such a group. dyad: its two links with the joint of n where n itself has it; hung: what m hangs on."""
+    """Solver of a telescope. dyad: its dyad with the joint of n in n's own axes; hung: the link to which m is
+    attached.
+    """
 
     chain: TelescopeParts
     dyad: AnyDyad
@@ -118,12 +121,12 @@ class Telescope(ClosedFormSolver):
 
     @property
     def driver(self) -> Driver:
-        """That of the telescope."""
+        """Driver of the telescope."""
         return self.group.drivers[0]
 
     @property
     def _along(self) -> Vector:
-        """Where n goes along m as the run grows, in m's axes."""
+        """Direction of n along m for an increasing run, in the axes of m."""
         slide = self.chain.slide
         direction: Vector = (
             unit(slide.direction) if slide.carrier == self.chain.m else -unit(slide.direction - slide.turned)
@@ -131,7 +134,7 @@ class Telescope(ClosedFormSolver):
         return direction
 
     def _of_n(self, run: Real) -> tuple[Vector, float]:
-        """Origin (m) and angle (rad) of n in m's axes at a run of the drive."""
+        """Return origin (m) and angle (rad) of n in the axes of m, at a run of the driver."""
         slide = self.chain.slide
         if slide.carrier == self.chain.m:
             return slide.through + run * unit(slide.direction) - slide.at * unit(slide.turned), slide.turned
@@ -139,7 +142,7 @@ class Telescope(ClosedFormSolver):
         return slide.at - there * unit(-slide.turned), -slide.turned
 
     def _locked(self, run: Real) -> AnyDyad:
-        """The group of two links that it is at a run of the drive."""
+        """Return the dyad with the driver fixed at a run."""
         origin, angle = self._of_n(run)
         of_m, inner = self.chain.m == self.dyad.group.links[0], self.dyad.inner
         known = self.chain.m if of_m else self.chain.arm
@@ -147,14 +150,14 @@ class Telescope(ClosedFormSolver):
         there = origin + inner.there * turned if of_m else inner.there
         here = inner.here if of_m else origin + inner.here * turned
         moved = replace(inner, known=known, there=there, here=here)
-        if isinstance(moved, SliderEnd):  # angles of a guide are against m now
+        if isinstance(moved, SliderEnd):  # angles of a guide are now relative to m
             moved = replace(
                 moved, direction=moved.direction + angle * of_m, turned=moved.turned + (angle if of_m else -angle)
             )
         return replace(self.dyad, inner=moved, sign=self.sign)
 
     def _two(self, at: Placement) -> Placement:
-        """Places of the two links alone."""
+        """Return the placement of the two links of the dyad."""
         own = dict(zip(self.group.links, at.poses, strict=True))
         return replace(at, poses=tuple(own[link] for link in self.chain.dyad.links))
 
@@ -162,7 +165,7 @@ class Telescope(ClosedFormSolver):
         return {**poses, UNDER: poses[self.hung]}
 
     def _ordered(self, arm: Any, n: Any, m: Any) -> Any:
-        """Of the three links in the group's order."""
+        """Return the values of the three links in the order of the group."""
         own = {self.chain.arm: arm, self.chain.n: n, self.chain.m: m}
         return tuple(own[link] for link in self.group.links)
 
@@ -180,14 +183,14 @@ class Telescope(ClosedFormSolver):
     def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> Real:
         drive, known = self._drive(drives), self._poses(poses)
         dyad = self._locked(drive.value)
-        # what is short of closing is measured where the two links lie as in a dead position
+        # the residual is measured with the two links as in a dead position
         flat = replace(dyad, sign=0).closed(known, drives)
         z = flat.poses[self.chain.dyad.links.index(self.chain.m)].z
         slid = drive.first * self._along * z / np.abs(z)
         return dyad.residual_rate(flat, known, self._rates(rates, slid), drives)
 
     def _rates(self, rates: Rates, slid: Vector) -> dict[str, Rate]:
-        """Of the known links, with that on which n hangs as if m were a part of it."""
+        """Return the rates of the known links, with that of the link to which n appears attached."""
         hung = rates[self.hung]
         return {**rates, UNDER: Rate(hung.v + slid, hung.w)}
 
@@ -197,14 +200,14 @@ class Telescope(ClosedFormSolver):
         slid = drive.first * self._along * m.z
         found = self._locked(drive.value).rates(self._two(at), self._poses(poses), self._rates(rates, slid), drives)
         own = dict(zip(self.chain.dyad.links, found, strict=True))
-        body = own[self.chain.m]  # n, at m's origin
+        body = own[self.chain.m]  # velocity of n at the origin of m
         ordered: tuple[Rate, ...] = self._ordered(
             own[self.chain.arm], Rate(body.at(off), body.w), Rate(body.v - slid, body.w)
         )
         return ordered
 
     def _m(self, at: Placement) -> tuple[Pose, Vector]:
-        """m's place, and the origin of n from its origin."""
+        """Return the pose of m, and the vector from its origin to that of n."""
         own = dict(zip(self.group.links, at.poses, strict=True))
         m = own[self.chain.m]
         return m, own[self.chain.n].x - m.x
@@ -230,7 +233,7 @@ class Telescope(ClosedFormSolver):
         return ordered
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
-        """Those of the two links; then n alone gives what the guide and the driver do to it."""
+        """Reactions of the dyad; then the equilibrium of n gives the forces of the guide and of the driver."""
         chain, slide = self.chain, self.chain.slide
         pose = dict(zip(self.group.links, at.poses, strict=True))
         borne = dict(zip(self.group.links, applied, strict=True))
@@ -256,7 +259,7 @@ class Telescope(ClosedFormSolver):
         joint_at = n.at(self.pin) if guide is None else pose[guide.runner].at(guide.at)
         moment = on_n.about(point - n.x) + cross(joint_at - point, back.force)
         moment = moment if back.couple is None else moment + back.couple
-        sense = -1.0 if slide.runner == chain.n else 1.0  # what holds n, on the runner
+        sense = -1.0 if slide.runner == chain.n else 1.0  # sign of the force that supports n, as a force on the runner
         push, across = sense * dot(u, force), sense * dot(1j * u, force)
         inner = {
             slide.name: PairReaction(1j * u * across, sense * moment),

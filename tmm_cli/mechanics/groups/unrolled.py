@@ -1,4 +1,10 @@
-"""What follows from what in the equations of a group's pairs: angles from angles, then origins from angles."""
+"""Newton's method as straight-line arithmetic, for traced operations and many positions at once.
+
+The equations are those of newton.py, with every coefficient an array of its own. Angles that a pair determines from
+other angles, and origins that a hinge determines from angles, are explicit, so that few unknowns remain (two, after
+elimination, for a group of class III); these get a fixed number of steps from given initial guesses. The residual
+tells where that was enough; the other positions have to be solved by newton.py.
+"""
 
 from __future__ import annotations
 
@@ -25,16 +31,18 @@ from tmm_cli.mechanics.numerics import (
     unit,
 )
 
-GIVE_ANGLES = "PGD"  # kinds of constraints whose first row may give an angle from others
+GIVE_ANGLES = "PGD"  # kinds of constraints whose first row may determine an angle from others
 
 
 @dataclass(frozen=True)
 class ExplicitOrder:
-    """Explicit angles and origins as (number of the constraint, link), in their order, and the order of elimination.
+    """Explicit angles and origins as (index of the constraint, link), in their order, and the order of elimination.
 
-    An unknown is three times the number of its link, and 0, 1 or 2 more for x, y and the angle. shifts: whole turns
-    (rad) by which the angle of a link lies beyond what its constraint gives. pushing: order of the equations of forces,
-    where some constraint pushes otherwise than it moves.
+    The index of an unknown is three times that of its link, plus 0, 1 or 2 for x, y and the angle.
+
+    Attributes:
+        shifts: full turns (rad) of the angle of a link beyond the value that its constraint gives.
+        pushing: order of elimination of the force equations, if some constraint has other coefficients for forces.
     """
 
     angles: tuple[tuple[int, str], ...]
@@ -45,7 +53,7 @@ class ExplicitOrder:
 
 
 def find_explicit_order(constraints: Sequence[PairConstraint], links: Sequence[str]) -> ExplicitOrder:
-    """Of constraints on some links; as many unknowns as can be are explicit."""
+    """Find the order for the constraints on these links that makes as many unknowns as possible explicit."""
     alike = {n for n, c in enumerate(constraints) if type(c).pushes is PairConstraint.pushes}
     own = {n: [link for link in _links_with_angles(c) if link in links] for n, c in enumerate(constraints)}
     angles, origins, order = _order_unknowns(constraints, links, own)
@@ -61,7 +69,7 @@ Explicit = tuple[tuple[int, str], ...]
 def _order_unknowns(
     constraints: Sequence[PairConstraint], links: Sequence[str], turning: dict[int, list[str]]
 ) -> tuple[Explicit, Explicit, EliminationOrder]:
-    """Explicit angles, those that constraints with these links may give, and origins; and their order."""
+    """Return explicit angles (from the constraints in `turning`), explicit origins, and the order of elimination."""
     order = {link: k for k, link in enumerate(links)}
     first = [sum(len(c.lengths) for c in constraints[:n]) for n in range(len(constraints))]
     busy = {link: sum(link in c.links for c in constraints) for link in links}
@@ -82,7 +90,7 @@ def _order_unknowns(
 
 
 def _links_with_angles(constraint: PairConstraint) -> tuple[str, ...]:
-    """Links whose angles are in the first row of a constraint that may give one of them."""
+    """Return the links whose angles are in the first row of a constraint that can determine one of them."""
     if constraint.kind not in GIVE_ANGLES or constraint.lengths[0]:
         return ()
     return constraint.links
@@ -91,9 +99,9 @@ def _links_with_angles(constraint: PairConstraint) -> tuple[str, ...]:
 def _assign_rows(
     rows: dict[int, list[str]], links: Sequence[str], busy: Mapping[str, int]
 ) -> tuple[list[tuple[int, str]], list[str]]:
-    """Which rows, of links that are not known, give which link, in their order; and links that none gives.
+    """Assign each link to a row that determines it, in order; return these, and the links that remain free.
 
-    Where no row has one link alone that is not given yet, the busiest link of one is left free.
+    If no row has a single undetermined link, the link with most constraints is left free.
     """
     found: list[tuple[int, str]] = []
     free: list[str] = []
@@ -111,27 +119,24 @@ def _assign_rows(
     return found, free
 
 
-# Newton's method as straight-line arithmetic: for tapes, and many positions at once.
-#
-# The same equations as in newton.py, with every coefficient an array of its own. Angles that a pair gives from
-# others, and origins that a hinge gives from angles, are written down at once, so that few unknowns are left (two,
-# after thin columns are turned away, of a group of class III); these get a fixed number of steps from given starts.
-# Whether that was enough is told by `doubt`, for all positions at once; where it was not, the group has to be found
-# by newton.py.
+# Newton's method on the free unknowns.
 
 
-STEPS = 1  # from starts that are read from a table
+STEPS = 1  # from tabulated initial guesses
 
 
 class NotUnrolledError(ValueError):
-    """The group cannot be written so: more equations than unknowns, or nothing is known of where it goes."""
+    """The group has no such form: more equations than unknowns, or no trace for initial guesses."""
 
 
 @dataclass(frozen=True)
 class UnrolledNewton(NewtonSolver):
-    """A group so. starts: of its free unknowns (m, rad), arrays over positions; steps: of Newton's method.
+    """Newton's method on the free unknowns of a group.
 
-    enough: it has closed where the last of these was less (sizes of the group, rad).
+    Attributes:
+        starts: initial guesses of the free unknowns (m, rad), arrays over positions.
+        steps: number of steps.
+        enough: size of the last step below which the group is closed (sizes of the group, rad).
     """
 
     closure: ExplicitOrder | None = None
@@ -143,9 +148,8 @@ class UnrolledNewton(NewtonSolver):
     def from_newton(
         cls, kernel: NewtonSolver, poses: Poses, drives: DriverStates, geared: Container[str] = ()
     ) -> UnrolledNewton:
-        """The same group; poses and drives: at the sketch; geared: links whose whole turns count.
-
-        Raises NotUnrolledError.
+        """Convert a solver; poses and drives: in the sketch; geared: links whose full turns count. Raises
+        NotUnrolledError.
         """
         rows = sum(len(c.lengths) for c in kernel.constraints)
         if kernel.passive or kernel.start is None or rows != 3 * len(kernel.group.links):
@@ -175,27 +179,27 @@ class UnrolledNewton(NewtonSolver):
 
     @property
     def closed_by(self) -> ExplicitOrder:
-        """How it is written."""
+        """Explicit unknowns and order of elimination."""
         assert self.closure is not None
         return self.closure
 
     @property
     def free(self) -> tuple[int, ...]:
-        """Free unknowns: three times the number of a link, and 0, 1 or 2 for x, y or the angle."""
+        """Indices of the free unknowns: three times that of the link, plus 0, 1 or 2 for x, y or the angle."""
         return self.closed_by.order.free
 
     @cached_property
     def linear(self) -> bool:
-        """Whether one step from anywhere closes it."""
+        """True if the equations of the free unknowns are linear, so that one step solves them."""
         return all(column % 3 < 2 for column in self.free)
 
     @cached_property
     def lengths(self) -> list[bool]:
-        """For each row, whether it is in metres."""
+        """For each row, True if it is in metres."""
         return [length for c in self.constraints for length in c.lengths]
 
     def values(self, states: Sequence[Any]) -> list[Any]:
-        """Of free unknowns from the three unknowns x, y and angle of all links, one after another."""
+        """Select the free unknowns from x, y and angle of all links in turn."""
         return [states[column] for column in self.free]
 
     def _shifts(self, poses: Poses, drives: DriverStates) -> dict[str, float]:
@@ -210,7 +214,7 @@ class UnrolledNewton(NewtonSolver):
         return shifts
 
     def posed(self, free: Mapping[int, Any], poses: Poses, drives: DriverStates) -> dict[str, Pose]:
-        """All links for values of the free unknowns; explicit equations hold."""
+        """Return the poses of all links for values of the free unknowns; the explicit equations hold."""
         angles: dict[str, Any] = _AnglesOfLinks(poses)
         names = self.group.links
         angles.update({names[k // 3]: value for k, value in free.items() if k % 3 == 2})
@@ -230,7 +234,7 @@ class UnrolledNewton(NewtonSolver):
         return found
 
     def rows(self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]]) -> list[EquationRow]:
-        """Rows of all constraints; lengths are not scaled."""
+        """Return the rows of all constraints; lengths are not scaled."""
         found: list[dict[int, Any]] = []
         for constraint, of_links in zip(self.constraints, parts, strict=True):
             own: list[dict[int, Any]] = [{} for _ in constraint.lengths]
@@ -247,7 +251,7 @@ class UnrolledNewton(NewtonSolver):
     def eliminated(
         self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]], order: EliminationOrder
     ) -> EliminatedSystem:
-        """The equations of given rows, ready to be solved."""
+        """Eliminate the explicit unknowns from the rows and make the rest triangular."""
         mixed = len({self.lengths[row] for row in order.closing}) > 1 or len({k % 3 == 2 for k in order.free}) > 1
         scales = None
         if mixed:
@@ -256,7 +260,7 @@ class UnrolledNewton(NewtonSolver):
         return EliminatedSystem(self.rows(parts), order, scales)
 
     def _moved(self, free: Mapping[int, Any], poses: Poses, drives: DriverStates) -> dict[int, Any]:
-        """A step of Newton's method."""
+        """Return one step of Newton's method."""
         everything = self.posed(free, poses, drives)
         short = [value for c in self.constraints for value in c.residuals(everything, drives)]
         by = self.eliminated(self._rows(everything), self.closed_by.order)
@@ -304,7 +308,9 @@ class UnrolledNewton(NewtonSolver):
     def _right(
         self, poses: Poses, motion: Mapping[str, tuple[Any, Any]], drives: DriverStates, order: int
     ) -> list[Any]:
-        """What drivers ask of each row less what the links it hangs on do to it, with dimensions."""
+        """Return the right-hand sides: derivatives prescribed by drivers less the contributions of the known links, in
+        SI.
+        """
         found = []
         for constraint in self.constraints:
             total = list(constraint.asked(drives, order))
@@ -327,7 +333,7 @@ class UnrolledNewton(NewtonSolver):
 
 
 class _AnglesOfLinks(dict[str, Any]):
-    """Angles of a group's links, and when they are asked for those of the links it hangs on."""
+    """Angles of the links of a group, and on first access those of the known links."""
 
     def __init__(self, poses: Poses) -> None:
         super().__init__()
@@ -339,6 +345,6 @@ class _AnglesOfLinks(dict[str, Any]):
 
 
 def _split_by_link(found: Sequence[Any]) -> Iterator[tuple[Any, Any]]:
-    """Unknowns by links."""
+    """Yield origin and angle of each link from the list of unknowns."""
     for k in range(0, len(found), 3):
         yield found[k] + 1j * found[k + 1], found[k + 2]

@@ -1,4 +1,4 @@
-"""Motion, range of the driver, strokes, pressure angles."""
+"""Motion of links and points, range of the driver, strokes, pressure angles, instantaneous centres."""
 
 from tmm_cli.interfaces import lazy
 

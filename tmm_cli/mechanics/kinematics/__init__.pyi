@@ -1,4 +1,4 @@
-"""Motion, range of the driver, strokes, pressure angles."""
+"""Motion of links and points, range of the driver, strokes, pressure angles, instantaneous centres."""
 
 from . import driver_range as driver_range, motion as motion, pressure_angles as pressure_angles, strokes as strokes
 from .driver_range import (

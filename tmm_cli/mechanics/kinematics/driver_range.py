@@ -1,4 +1,4 @@
-"""Stage: how far the driver can go, and the dead positions on its way."""
+"""Range of the driver, dead positions within it, and travel of sliding blocks beyond their guides."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ from tmm_cli.mechanics.linkage import Linkage, Slide
 from tmm_cli.mechanics.numerics import CAME_BACK, DEAD, END_OF_SLOT, Real, find_minima, find_roots
 from tmm_cli.mechanics.structure import MOST_TURNS, turns_of_cycle
 
-SCAN = 1440  # places looked at in a first round; what lies between is refined
-PARTS = 64  # into which an interval is cut at once
-ALMOST = 1e-5  # of its way: so near to infinity a group is not found
+SCAN = 1440  # samples per turn of the first scan, which is refined
+PARTS = 64  # parts into which an interval is divided at once
+ALMOST = 1e-5  # fraction of the range of the trace: so near to infinity a group cannot be solved
 
 
 @dataclass(frozen=True)
 class DriverLimit:
-    """An end of the driver's range: its place, the group that stops it, or `driver` where the first one itself stops.
+    """A limit of the driver coordinate, and the group that stops the driver.
 
-    The latter only with several drivers, whose places follow from the time.
+    driver: with several drivers, whose coordinates follow from time, the first driver if it stops by itself.
     """
 
     place: float
@@ -43,10 +43,12 @@ class DriverLimit:
 
 @dataclass(frozen=True)
 class DriverRange:
-    """Where the driver can go from the sketch on: all round, or between two limits (rad, or m for a slider).
+    """Range of the driver from the sketch on: full turns, or between two limits (rad, or m for a slider).
 
-    turns: after how many turns of the driver everything is back where it was; from start to end are so many. repeats is
-    False when no such number was found. inclusive: both ends are those of the driver's stroke, and no dead positions.
+    Attributes:
+        turns: turns of the driver after which the mechanism repeats; the range covers that many.
+        repeats: False if no such number was found.
+        inclusive: both ends are those of the stroke of the driver, and not dead positions.
     """
 
     start: float
@@ -60,9 +62,9 @@ class DriverRange:
 
 @dataclass(frozen=True)
 class DeadPosition:
-    """A place of the driver at which a group has no determinate velocities, and what is left of its margin there.
+    """Driver coordinate at which a group has no determinate velocities, and its margin there.
 
-    passed: the group was followed through it on a smooth way, on which its determinant may change sign.
+    passed: the group passes it smoothly; its determinant may change sign.
     """
 
     place: float
@@ -72,7 +74,9 @@ class DeadPosition:
 
 
 def find_range(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> DriverRange:
-    """The driver's range about the sketch, its limits to the last bit; no farther than its stroke, if it has one."""
+    """Find the range of the driver about the sketch, with limits to the last bit; no greater than its stroke, if
+    given.
+    """
     driver_range = _range_about_sketch(linkage, kernels)
     stroke = linkage.driver.stroke
     if stroke is None:
@@ -91,7 +95,7 @@ def _range_about_sketch(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> D
     half = np.pi * number if turns else slider_search_range(linkage)
     low, high = _search_interval(kernels, at, half)
     steps = np.linspace(low, high, round(SCAN * number * (high - low) / (2 * half)) + 1)
-    # np.unique would import masked arrays, which costs more than all the rest of this stage
+    # np.unique would import masked arrays, which takes longer than the rest of this stage
     steps = np.sort(steps if np.any(steps == 0.0) else np.append(steps, 0.0))
     side = [np.sign(p.det[0]) for p in link_states(linkage, kernels, np.array([at]), 0).placements]
     scan = link_states(linkage, kernels, at + steps, 0)
@@ -109,7 +113,7 @@ def _range_about_sketch(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> D
     def limit(index: int, towards: int) -> DriverLimit:
         good, bad = at + steps[index - towards], at + steps[index]
         first = kernels[int(np.argmax(lost[:, index]))]
-        for end in _trace_limits(first):  # found to the last bit when the group was followed
+        for end in _trace_limits(first):  # accurate to the last bit for a traced group
             if min(good, bad) <= end <= max(good, bad):
                 return DriverLimit(end, first.group.title)
         while True:
@@ -132,7 +136,7 @@ def _range_about_sketch(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> D
     first = limit(int(below[-1]), -1) if below.size else None
     last = limit(int(above[0]), 1) if above.size else None
     around = turns and cycle is not None
-    if around and first is None and last is not None:  # the places that are blocked straddle the scan's end
+    if around and first is None and last is not None:  # the blocked interval contains the end of the scan
         first = limit_a_cycle_away(last, blocked, steps, (at, 2 * half), limit)
     if around and last is None and first is not None:
         last = limit_a_cycle_away(first, blocked, steps, (at, 2 * half), limit)
@@ -142,7 +146,7 @@ def _range_about_sketch(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> D
 
 
 def _stops_before(linkage: Linkage, q: Real) -> Real:
-    """Whether the first of several drivers never comes to a place: it slows down and stops before."""
+    """Return True where the first of several drivers decelerates to rest before it reaches q."""
     lead = linkage.driver
     if not linkage.others:
         return np.zeros(np.shape(q), dtype=bool)
@@ -151,7 +155,7 @@ def _stops_before(linkage: Linkage, q: Real) -> Real:
 
 
 def _returns_after_cycle(linkage: Linkage, kernels: tuple[GroupSolver, ...], at: float, half: float) -> bool:
-    """Whether all is back after a cycle: a rack that a turning wheel drives goes on and on."""
+    """Return True if all links return after a cycle; a rack driven by a rotating gear does not."""
     motion = link_states(linkage, kernels, np.array([at, at + 2 * half]), 0)
     size = max((kernel.size for kernel in kernels), default=1.0)
     moved = [max(abs(np.diff(pose.x)[0]) / size, abs(np.diff(pose.z)[0])) for pose in motion.poses.values()]
@@ -159,7 +163,7 @@ def _returns_after_cycle(linkage: Linkage, kernels: tuple[GroupSolver, ...], at:
 
 
 def _at_infinity(kernel: GroupSolver, place: float, towards: int) -> float:
-    """A limit where links of a followed group go to infinity: its last places are too far away to be found."""
+    """Return the limit where links of a traced group go to infinity: positions just before it cannot be solved."""
     trace = kernel.followed
     end = (0, -1)[towards > 0]
     if trace is None or not trace.lost[end]:
@@ -170,7 +174,7 @@ def _at_infinity(kernel: GroupSolver, place: float, towards: int) -> float:
 
 
 def _search_interval(kernels: tuple[GroupSolver, ...], at: float, half: float) -> tuple[float, float]:
-    """How far to both sides of the sketch to look: a cycle, or to where a followed group ends beyond that."""
+    """Return the interval about the sketch to examine: a cycle, or to the ends of a trace beyond that."""
     low, high = -half, half
     for kernel in kernels:
         trace = kernel.followed
@@ -180,7 +184,7 @@ def _search_interval(kernels: tuple[GroupSolver, ...], at: float, half: float) -
 
 
 def _trace_limits(kernel: GroupSolver) -> tuple[float, ...]:
-    """Places where a followed group turns back."""
+    """Return the driver coordinates at which a traced group reaches a limit."""
     trace = kernel.followed
     if trace is None or trace.closed:
         return ()
@@ -188,7 +192,9 @@ def _trace_limits(kernel: GroupSolver) -> tuple[float, ...]:
 
 
 def link_rotations(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> dict[str, int]:
-    """How often links that toothed wheels depend on go round in a turn of the driver, where they were followed."""
+    """Return the turns in one turn of the driver of the links on which gears depend, where their angles were
+    accumulated.
+    """
     found = {}
     for kernel in kernels:
         winding = kernel.winding if isinstance(kernel, ClosedFormSolver) else None
@@ -200,7 +206,9 @@ def link_rotations(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> dict[s
 
 
 def cycle_turns(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> int | None:
-    """Turns of the driver in a cycle, from loads, wheels, drivers and groups that come back only after several."""
+    """Return the driver turns in a cycle, from loads, gears, drivers and groups that repeat after several turns; or
+    None.
+    """
     turns = turns_of_cycle(linkage, link_rotations(linkage, kernels))
     for kernel in kernels:
         trace = kernel.followed
@@ -215,10 +223,12 @@ def cycle_turns(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> int | Non
 
 
 def _nearly_lost(linkage: Linkage, kernels: tuple[GroupSolver, ...], scan: LinkStates, number: int) -> Real:
-    """Places where a group comes nearest to losing its assembly: it may lose it between two places of a scan."""
+    """Return the driver coordinates at which a group is closest to losing its assembly, between the samples of a
+    scan.
+    """
     residual = np.where(np.isfinite(scan.placements[number].residual), scan.placements[number].residual, -np.inf)
     inner = residual[1:-1]
-    # between two places it cannot rise by much more than it does from one to the next
+    # between two samples it rises by little more than from one sample to the next
     with np.errstate(invalid="ignore"):
         rise = np.maximum(inner - residual[:-2], inner - residual[2:])
     close = (
@@ -231,10 +241,10 @@ def _nearly_lost(linkage: Linkage, kernels: tuple[GroupSolver, ...], scan: LinkS
 
 
 def _is_lost(motion: LinkStates, side: list[float]) -> Real:
-    """For each group and place whether the linkage cannot be there: no assembly, or only past a dead position.
+    """Return, for each group and driver coordinate, True if the linkage cannot be there: shape (groups, positions).
 
-    The latter shows as another sign of the determinant: two guides became parallel on the way, and their common point
-    went to infinity.
+    Either it cannot be assembled, or only beyond a dead position, which shows as another sign of the determinant: two
+    guides became parallel in between, and their intersection went to infinity.
     """
     lost = [
         motion.missing[kernel.group.title] | (np.sign(at.det) * kernel.side(motion.q) == -sign)
@@ -246,9 +256,9 @@ def _is_lost(motion: LinkStates, side: list[float]) -> Real:
 def limit_a_cycle_away(
     known: DriverLimit, blocked: Real, steps: Real, about: tuple[float, float], limit: Callable[[int, int], DriverLimit]
 ) -> DriverLimit | None:
-    """The other limit when all blocked places lie on one side of the sketch: a cycle away.
+    """Return the other limit if all blocked coordinates lie on one side of the sketch: a cycle away.
 
-    None when they go on to the end of what was looked at.
+    None if the blocked coordinates extend to the end of the examined interval.
     """
     at, cycle = about
     sense = -1 if known.place > at else 1
@@ -262,7 +272,7 @@ def limit_a_cycle_away(
 def find_dead_positions(
     linkage: Linkage, kernels: tuple[GroupSolver, ...], driver_range: DriverRange
 ) -> tuple[DeadPosition, ...]:
-    """Dead positions inside the driver's range (its limits are dead too and are not repeated here)."""
+    """Find the dead positions inside the range; its limits, which are dead positions too, are not repeated."""
     q = np.linspace(driver_range.start, driver_range.end, SCAN * driver_range.turns + 1)
     motion = link_states(linkage, kernels, q, 0)
     found = []
@@ -270,7 +280,7 @@ def find_dead_positions(
         at = motion.placements[number]
         margin = np.where(motion.placed | at.dead, at.margin, np.inf)
         inner = margin[1:-1]
-        with np.errstate(invalid="ignore"):  # where it cannot fall by so much between two places, none is dead there
+        with np.errstate(invalid="ignore"):  # no dead position where the margin cannot fall so much between two samples
             reach = inner - 2 * np.maximum(margin[:-2] - inner, margin[2:] - inner) < DEAD
         low = np.flatnonzero((inner <= margin[:-2]) & (inner < margin[2:]) & (inner < 0.1) & reach) + 1
         places = list(q[low])
@@ -285,7 +295,7 @@ def find_dead_positions(
         for best, left in zip(*narrowest, strict=True):
             if left < DEAD and (driver_range.full or driver_range.start + steps < best < driver_range.end - steps):
                 best = float(refine_dead_positions(linkage, upto, np.array([best]), steps)[0])
-                passive = getattr(dyad, "passive", False)  # what holds it twice leads it through
+                passive = getattr(dyad, "passive", False)  # the redundant constraints guide it through
                 found.append(DeadPosition(best, dyad.group.title, left, passive))
     return tuple(sorted(found, key=lambda d: d.place))
 
@@ -293,7 +303,9 @@ def find_dead_positions(
 def _passed_dead_positions(
     linkage: Linkage, upto: tuple[GroupSolver, ...], driver_range: DriverRange
 ) -> list[DeadPosition]:
-    """Dead positions inside the range that the last group passes smoothly: nodes of its trace, change points."""
+    """Return the dead positions inside the range that the last group passes smoothly: from its trace or its change
+    points.
+    """
     last, title = upto[-1], upto[-1].group.title
     trace, way = last.followed, last.way if isinstance(last, ClosedFormSolver) else None
     if trace is not None and trace.dead.size:
@@ -307,29 +319,31 @@ def _passed_dead_positions(
 
 
 def _driver_distance(one: float, other: float, driver_range: DriverRange) -> float:
-    """From one place to another, round the cycle where the way is a whole one."""
+    """Return the signed distance of two driver coordinates, the shorter way round a full cycle."""
     cycle = driver_range.end - driver_range.start
     return one - other - cycle * round((one - other) / cycle) if driver_range.full else one - other
 
 
 def _last_margin(linkage: Linkage, kernels: tuple[GroupSolver, ...], q: Real) -> Real:
-    """Of the last group."""
+    """Return the margin of the last group."""
     motion = link_states(linkage, kernels, q, 0)
     return np.where(motion.placed, motion.placements[-1].margin, 0.0)
 
 
-# Stage: whether each stone stays on the segment of its guide, over all places of the driver, not the positions alone.
+# Travel of sliding blocks relative to the ends of their guides, over the whole range of the driver.
 #
-# A guide along two points of a moving link ends in them. The extremes between the places of a scan are found too; a
-# cylinder that is driven has its stroke instead.
+# A guide through two points of a moving link ends at them. The extremes between the samples of a scan are found too; a
+# driven cylinder has its stroke instead.
 
 
 @dataclass(frozen=True)
 class SlotExcess:
-    """How a stone comes nearest to an end of its segment, or goes beyond it.
+    """Largest travel of a sliding block beyond an end of its guide, or its closest approach to it.
 
-    point: the end. far: how far beyond it at most (m; negative: what is left before it), with the driver at `place`.
-    ways: the driver's places (rad or m) from which to which it is beyond; empty when it never is.
+    Attributes:
+        point: the end of the guide.
+        far: largest distance beyond it (m; negative: distance left before it), at the driver coordinate `place`.
+        ways: intervals of the driver coordinate (rad or m) in which the block is beyond the end.
     """
 
     slide: Slide
@@ -343,8 +357,10 @@ class SlotExcess:
 def find_slot_excess(
     linkage: Linkage, kernels: tuple[GroupSolver, ...], driver_range: DriverRange, asked: Sequence[float]
 ) -> tuple[SlotExcess, ...]:
-    """Both ends of every segment, over the driver's range. asked: its places that were given one by one; where the
-    driver does not turn fully, it goes from the first to the last of them only.
+    """Return the result for both ends of every bounded guide, over the range of the driver.
+
+    asked: individually requested driver coordinates; if the driver cannot make a full turn, the range is that between
+    the first and the last of them.
     """
     driven = {driver.joint for driver in linkage.drivers if driver.kind == "slide"}
     slides = [slide for slide in linkage.slides if slide.ends is not None and slide.name not in driven]
@@ -367,7 +383,7 @@ def find_slot_excess(
 
 @dataclass(frozen=True)
 class _SegmentEnd:
-    """One end of a segment. forward: +1 at its last point, -1 at its first."""
+    """One end of a bounded guide; forward: +1 for its last point, -1 for its first."""
 
     linkage: Linkage
     kernels: tuple[GroupSolver, ...]
@@ -381,14 +397,14 @@ class _SegmentEnd:
         return abs(last - first)
 
     def beyond(self, run: Real) -> Real:
-        """How far beyond the end a run along the guide is, m."""
+        """Return the distance of a run along the guide beyond the end, m."""
         return run - self.length if self.forward > 0 else -run
 
     def at(self, q: Real) -> Real:
         return self.beyond(link_states(self.linkage, self.kernels, q, 0).run(self.slide))
 
     def excess(self, q: Real, run: Real, full: bool) -> SlotExcess:
-        """Over the places q, which are the whole cycle when `full`."""
+        """Return the result over the driver coordinates q; full: they cover the whole cycle."""
         far = self.beyond(run)
         k = int(np.argmax(far))
         low, high = q[max(k - 1, 0)], q[min(k + 1, len(q) - 1)]
@@ -398,7 +414,7 @@ class _SegmentEnd:
         return SlotExcess(self.slide, self.point, self.length, most, place, ways)
 
     def ways(self, q: Real, far: Real, full: bool) -> tuple[tuple[float, float], ...]:
-        """From where to where it is beyond; of a cycle the last way may go on through its end."""
+        """Return the intervals beyond the end; in a cycle the last interval may continue through its end."""
         out = far > 0
         change = np.flatnonzero(out[:-1] != out[1:])
         places = find_roots(self.at, q[change], q[change + 1]) if change.size else np.zeros(0)

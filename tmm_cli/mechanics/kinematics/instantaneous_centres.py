@@ -1,7 +1,7 @@
-"""Instantaneous centres: the point of two links that moves alike on both, and how Kennedy's theorem finds it.
+"""Instantaneous centres of all pairs of links, and their construction by Kennedy's theorem.
 
-The places come from velocities, so that they are there for every linkage; what is told beside them is the construction:
-the centres of three links lie on a line, so a centre is where two such lines cross. A. B. W. Kennedy, The Mechanics of
+The centres are computed from velocities, which works for every linkage; the construction is given besides: the centres
+of three links are collinear, so a centre is the intersection of two such lines. A. B. W. Kennedy, The Mechanics of
 Machinery (1886).
 """
 
@@ -17,21 +17,25 @@ from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import cross, unit
 from tmm_cli.mechanics.structure import Pair, Structure
 
-FAR = 1e6  # sizes of the mechanism: what is farther is at infinity
-STILL = 1e-10  # of the largest velocities: links that move so little beside one another stand still
-SHARP = 1e-3  # rad: lines that cross under less are no construction
-NEAR = 1e-6  # of the size: centres that are nearer than that are one
+FAR = 1e6  # sizes of the mechanism: a more distant centre is at infinity
+STILL = 1e-10  # fraction of the largest velocity: below it there is no relative motion
+SHARP = 1e-3  # rad: least angle of two lines of a construction
+NEAR = 1e-6  # fraction of the size: centres closer together coincide
 
 LinkPair = tuple[str, str]
 CentreLine = tuple[LinkPair, LinkPair]
-CentrePlace = tuple[complex | None, complex | None]  # m; or a direction of unit size, where it is at infinity
+CentrePlace = tuple[complex | None, complex | None]  # position (m), or unit vector towards infinity
 
 
 @dataclass(frozen=True)
 class InstantCentre:
-    """Of two links in one position: its place (m), or the direction of unit size in which it is at infinity; neither
-    where they do not move beside one another. pair: a kinematic pair of theirs that shows it; lines: pairs of centres
-    whose lines cross in it.
+    """Instantaneous centre of two links in one position.
+
+    Attributes:
+        place: its position (m); None at infinity, or if the links have no relative motion.
+        direction: unit vector towards a centre at infinity, otherwise None.
+        pair: a kinematic pair of the two links that determines it.
+        lines: two lines through known centres that intersect in it.
     """
 
     links: LinkPair
@@ -42,7 +46,7 @@ class InstantCentre:
 
 
 def find_centres(states: LinkStates, structure: Structure, k: int) -> list[InstantCentre]:
-    """All centres in a position: those of pairs, then the others in the order in which Kennedy's lines find them."""
+    """Return all centres in position k: those of pairs, then the others in the order of the construction."""
     names = (FRAME, *states.linkage.moving)
     size = _linkage_size(states, k)
     motion = {name: _velocity_about_origin(states, name, k) for name in names}
@@ -50,7 +54,7 @@ def find_centres(states: LinkStates, structure: Structure, k: int) -> list[Insta
     places = {(i, j): _relative_centre(motion[i], motion[j], size, least) for i, j in combinations(names, 2)}
     pairs = {
         _ordered_links(p.i, p.j, names): p for p in reversed(structure.pairs) if p.kind != "C"
-    }  # a cam shows no centre
+    }  # a cam pair does not determine a centre
     for links, pair in pairs.items():
         places[links] = _pair_centre(states, pair, k) or places[links]
     told = [InstantCentre(links, *places[links], pair=pairs[links].name) for links in places if links in pairs]
@@ -69,7 +73,7 @@ def find_centres(states: LinkStates, structure: Structure, k: int) -> list[Insta
 
 
 def _pair_centre(states: LinkStates, pair: Pair, k: int) -> CentrePlace | None:
-    """Of a hinge or a guide: it is there also where the links do not move beside one another."""
+    """Return the centre of a hinge or guide, which exists even without relative motion; None for a higher pair."""
     if pair.slide is not None:
         guide = complex(states.poses[pair.slide.carrier].z[k]) * complex(unit(pair.slide.direction))
         return None, 1j * guide
@@ -89,7 +93,9 @@ def _linkage_size(states: LinkStates, k: int) -> float:
 def _relative_centre(
     one: tuple[complex, float], other: tuple[complex, float], size: float, least: float
 ) -> CentrePlace:
-    """Place, or direction at infinity, of two links by their motions; least: what one that stands has."""
+    """Return the centre of two links, or its direction at infinity, from their motions; least: velocity of a link at
+    rest.
+    """
     slip, turn = one[0] - other[0], one[1] - other[1]
     if abs(turn) * size <= max(least, abs(slip) / FAR):
         return None, None if abs(slip) <= least else 1j * slip / abs(slip)
@@ -97,7 +103,7 @@ def _relative_centre(
 
 
 def _velocity_about_origin(states: LinkStates, name: str, k: int) -> tuple[complex, float]:
-    """Velocity of the link's point in the origin, and its angular velocity, by the driver."""
+    """Return the velocity of the point of a link at the origin, and its angular velocity, per unit of the driver's."""
     if name == FRAME:
         return 0j, 0.0
     pose, rate = states.poses[name], states.first[name]
@@ -112,7 +118,7 @@ def _crossing_lines(
     known: set[LinkPair],
     size: float,
 ) -> tuple[CentreLine, ...]:
-    """Two lines through known centres that cross in this one; one pair of them where it lies in both."""
+    """Return two lines through known centres that intersect in this one; one line if its centres coincide in it."""
     i, j = links
     ways: list[tuple[CentreLine, complex]] = []
     for k in names:
@@ -124,7 +130,7 @@ def _crossing_lines(
         along = _line_direction(places[line[0]], places[line[1]], size)
         if along is None:
             continue
-        if along == 0:  # one point: a compound hinge
+        if along == 0:  # both centres coincide: a compound hinge
             return (line,)
         ways.append((line, along))
     for (one, along), (other, across) in combinations(ways, 2):
@@ -138,7 +144,7 @@ def _ordered_links(i: str, j: str, names: tuple[str, ...]) -> LinkPair:
 
 
 def _line_direction(one: CentrePlace, other: CentrePlace, size: float) -> complex | None:
-    """The direction of the line through two centres; 0 where they are one, None where they tell no line."""
+    """Return the direction of the line through two centres; 0 if they coincide, None if both are at infinity."""
     (p, u), (q, v) = one, other
     if p is not None and q is not None:
         return (q - p) / abs(q - p) if abs(q - p) > NEAR * size else 0j

@@ -1,6 +1,4 @@
-"""Stage: velocities and accelerations of points, links and sliding pairs, from the states of links and the speed of
-the driver.
-"""
+"""Velocities and accelerations of points, links and prismatic pairs, from link states and the speed of the driver."""
 
 from __future__ import annotations
 
@@ -30,12 +28,12 @@ from tmm_cli.mechanics.numerics import (
 FIELDS_WITHOUT_POSITIONS = frozenset(
     {"linkage", "kernels", "group", "pair", "driver", "finer", "where", "order", "bare"}
 )
-"""Names of fields of a motion, and of what follows from it, that hold no array over positions."""
+"""Names of fields of a motion, and of records derived from it, that are not arrays over positions."""
 
 
 @dataclass(frozen=True)
 class PointMotion:
-    """Motion of a point: x (m), v (m/s), a (m/s2); first and second are its transfer functions."""
+    """Motion of a point: position x (m), v (m/s), a (m/s2), and first and second transfer functions."""
 
     x: Vector
     v: Vector
@@ -46,7 +44,7 @@ class PointMotion:
 
 @dataclass(frozen=True)
 class LinkMotion:
-    """Motion of a link: angle (rad, in -pi..pi), omega (rad/s), epsilon (rad/s2) and its transfer functions."""
+    """Rotation of a link: angle (rad, in -pi..pi), omega (rad/s), epsilon (rad/s2), and transfer functions."""
 
     angle: Real
     omega: Real
@@ -57,7 +55,9 @@ class LinkMotion:
 
 @dataclass(frozen=True)
 class SlidingMotion:
-    """Motion in a sliding pair: run (m) along the guide u, v (m/s), a (m/s2), Coriolis acceleration (vector, m/s2)."""
+    """Relative motion in a prismatic pair: run (m) along the guide u, v (m/s), a (m/s2), Coriolis acceleration
+    (m/s2).
+    """
 
     run: Real
     v: Real
@@ -70,10 +70,13 @@ class SlidingMotion:
 
 @dataclass(frozen=True, kw_only=True)
 class Motion(LinkStates):
-    """States of links in time: time (s), rate of the driver's place (rad/s or m/s) and its acceleration.
+    """States of links in time: time (s), speed (rad/s or m/s) and acceleration of the driver; nan where it never
+    arrives.
 
-    nan where the driver never comes. finer: the positions of the mask `where` in extended precision. limits: the mask
-    of change points in which velocities and accelerations are limits (kinematics.limits); bare: without these.
+    Attributes:
+        finer: positions of the mask `where` in extended precision.
+        limits: mask of change points in which velocities and accelerations are limits (see fill_in_limits).
+        bare: the motion without these limits.
     """
 
     time: Real
@@ -85,14 +88,14 @@ class Motion(LinkStates):
     bare: Motion | None = None
 
     def point(self, link: str, local: complex) -> PointMotion:
-        """Motion of a point given in the axes of a link (m)."""
-        if local is self.linkage.links[link].centre:  # where weights and forces of inertia act
+        """Return the motion of a point given in the axes of a link (m)."""
+        if local is self.linkage.links[link].centre:  # point of action of weight and inertia force
             return self.centre(link)
         return self._finest(lambda motion: motion._point(link, local))
 
     @cached_property
     def _known(self) -> dict[tuple[str, ...], Any]:
-        """Motions of what was asked for by name: tables, result.json, forces and energy ask for the same."""
+        """Cache of motions requested by name: tables, result.json, forces and energy request the same ones."""
         return {}
 
     def _once(self, kind: str, name: str, of: Callable[[], Record]) -> Record:
@@ -103,11 +106,11 @@ class Motion(LinkStates):
 
     @cached_property
     def largest(self) -> LargestRates:
-        """The largest rates of the links at every position."""
+        """Largest rates of the links at every position."""
         return LargestRates.of(self)
 
     def _finest(self, of: Callable[[Motion], Record]) -> Record:
-        """What is asked of the motion, from its finer one where there is one."""
+        """Evaluate a function of the motion, taking values from the finer one where available."""
         found = of(self)
         return (
             found if self.finer is None or self.where is None else splice_positions(found, of(self.finer), self.where)
@@ -120,24 +123,24 @@ class Motion(LinkStates):
         return PointMotion(pose.x + arm, v1 * self.rate, a1 * self.rate**2 + v1 * self.acceleration, v1, a1)
 
     def named(self, point: str) -> PointMotion:
-        """Motion of a named point, from that of its links whose own motion is the least: there least is lost."""
+        """Return the motion of a named point, from the link with the smallest motion, which loses the fewest digits."""
         there = [link for link in self.linkage.carriers(point) if link in self.poses]
         return self._once(
             "point", point, lambda: self.named_on(min(there, key=lambda link: self._sway(link, point)), point)
         )
 
     def _sway(self, link: str, point: str) -> float:
-        """Size of the terms that a point's acceleration is the sum of."""
+        """Return the magnitude of the terms that sum to the acceleration of a point."""
         first, second, arm = self.first[link], self.second[link], abs(self.linkage.local(link, point))
         terms = np.abs(to_float(second.a)) + (np.abs(to_float(second.e)) + to_float(first.w) ** 2) * to_float(arm)
         return float(np.max(np.where(np.isfinite(terms), terms, 0.0), initial=0.0))
 
     def named_on(self, link: str, point: str) -> PointMotion:
-        """Motion of a named point as one of a given link."""
+        """Return the motion of a named point as a point of the given link."""
         return self._finest(lambda motion: motion._point(link, motion.linkage.local(link, point)))
 
     def centre(self, link: str) -> PointMotion:
-        """Motion of a centre of mass."""
+        """Return the motion of the centre of mass of a link."""
         return self._once(
             "centre",
             link,
@@ -145,7 +148,7 @@ class Motion(LinkStates):
         )
 
     def link(self, name: str) -> LinkMotion:
-        """Turning of a link."""
+        """Return the rotation of a link."""
 
         def turning() -> LinkMotion:
             w1, e1 = self.first[name].w, self.second[name].e
@@ -154,7 +157,7 @@ class Motion(LinkStates):
         return self._once("link", name, turning)
 
     def slide(self, slide: Slide) -> SlidingMotion:
-        """Relative motion in a sliding pair: of the runner's point along the carrier's guide."""
+        """Return the relative motion in a prismatic pair: of the sliding point along the guide."""
         return self._once(
             "slide", slide.name, lambda: self._finest(lambda motion: motion._slide(motion.linkage.slide(slide.name)))
         )
@@ -173,11 +176,11 @@ class Motion(LinkStates):
         return SlidingMotion(run, v, second * self.rate**2 + first * self.acceleration, coriolis, u, first, second)
 
     def run(self, slide: Slide) -> Real:
-        """Run in a sliding pair, m."""
+        """Return the run in a prismatic pair, m."""
         return self._finest(lambda motion: LinkStates.run(motion, motion.linkage.slide(slide.name)))
 
     def slope(self, slide: Slide) -> Real:
-        """First transfer function of the run in a sliding pair."""
+        """Return the first transfer function of the run in a prismatic pair."""
         return self._finest(lambda motion: LinkStates.slope(motion, motion.linkage.slide(slide.name)))
 
 
@@ -191,9 +194,11 @@ def compute_motion(
     blank: bool = True,
     drives: DriverStates | None = None,
 ) -> Motion:
-    """Kinematics at the first driver's places q (rad or m), as link_states has it; law: how the driver moves.
+    """Compute the kinematics at the coordinates q of the first driver (rad or m).
 
-    With drives by another parameter than q, the law is that of the parameter.
+    Args:
+        kernels, order, blank, drives: as in link_states.
+        law: speed and acceleration of the driver; of the parameter, if `drives` use another one than q.
     """
     states = link_states(linkage, kernels, q, order, blank=blank, drives=drives)
     rate = law.speed(states.q)
@@ -203,10 +208,10 @@ def compute_motion(
 
 @dataclass(frozen=True)
 class LargestRates:
-    """The largest rates in a mechanism at every position: a rate is told from rest by comparison with them.
+    """Largest rates in a mechanism at every position, by comparison with which a link is at rest.
 
-    Compared with its own largest value, what never moves would move, by rounding. size: m; speed and acceleration of
-    points, m per unit of the driver coordinate and per its square, with what rotation adds over the size.
+    Compared with its own largest value, a link that never moves would seem to move, because of rounding. size: m; speed
+    and acceleration of points, m per unit of the driver coordinate and per its square, including rotation times size.
     """
 
     size: Real | float
@@ -215,10 +220,10 @@ class LargestRates:
 
     @classmethod
     def of(cls, states: LinkStates) -> LargestRates:
-        """Of all links; accelerations follow from speeds where they were not computed."""
+        """Return the largest rates of all links; accelerations are estimated from speeds if they were not computed."""
         linkage = states.linkage
         size: Any = reduce(np.maximum, [kernel.size for kernel in states.kernels], 0.0)
-        size = np.where(size > 0, size, 1.0)  # links with one point each, which only slide
+        size = np.where(size > 0, size, 1.0)  # all links have a single point and only slide
         speeds, gains = [], []
         for link, rate in states.first.items():
             arm = next(iter(linkage.links[link].points.values()), 0j) * states.poses[link].z
@@ -231,12 +236,14 @@ class LargestRates:
 
 
 def zero_at_rest(rates: Real | Vector, largest: Real) -> Real | Vector:
-    """Rates, with zeros for those of what is at rest; largest: the largest of their kind in the mechanism."""
+    """Return the rates, with zeros at rest; largest: the largest rate of the kind in the mechanism."""
     return np.where(np.abs(rates) > AT_REST * largest, rates, 0.0)
 
 
 def splice_positions(full: Record, part: Record, where: Real) -> Record:
-    """A record of arrays over positions with those of `where` taken from another one, rounded to its own precision."""
+    """Return a record whose arrays take the positions of the mask `where` from another record, rounded to their
+    precision.
+    """
 
     def joined(path: str, leaf: Any, finer: Any) -> Any:
         if not isinstance(leaf, np.ndarray) or not hasattr(finer, "astype") or leaf.shape[-1:] != where.shape:
@@ -256,8 +263,8 @@ def splice_positions(full: Record, part: Record, where: Real) -> Record:
 # Approximation Theory and Approximation Practice (2013), ch. 5. Reactions in general grow without bound.
 
 
-NODES = 16  # on both sides of a change point; an even number, so that none lies in it
-RADII = (0.1, 0.05)  # rad, and of a slider this share of the largest group: how far the outer nodes are
+NODES = 16  # about a change point; an even number, so that none coincides with it
+RADII = (0.1, 0.05)  # rad, or for a slider sizes of the largest group: distance of the outer nodes
 STATE_FIELDS = ("poses", "first", "second")
 COMPARED_FIELDS = (
     "x",
@@ -267,19 +274,20 @@ COMPARED_FIELDS = (
     "w",
     "a",
     "e",
-)  # of poses, rates and accelerations: what is compared alike
+)  # fields of poses, rates and accelerations that are compared
 CHEBYSHEV_NODES: Real = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
 WEIGHTS: Real = chebyshev.chebvander(np.zeros(1), NODES - 1)[0] @ np.linalg.inv(
     chebyshev.chebvander(CHEBYSHEV_NODES, NODES - 1)
 )
-"""Values at the nodes to the value in the middle between them."""
+"""Weights of the values at the nodes for the interpolated value in the middle."""
 
 
 def fill_in_limits(motion: Motion) -> Motion:
-    """Put the limits of positions, velocities and accelerations into change points that are passed smoothly.
+    """Replace undefined values in change points that are passed smoothly by the limits of positions, velocities,
+    accelerations.
 
-    `moving` stays False in these positions, as forces have no limit there in general; the mask `limits` says which they
-    are, and `bare` is the motion without them.
+    `moving` stays False in these positions, as forces in general have no limit there; `limits` of the result is their
+    mask, and `bare` the motion without the limits.
     """
     if motion.order < 2 or not motion.dead:
         return motion
@@ -297,7 +305,7 @@ def fill_in_limits(motion: Motion) -> Motion:
             return values
         found, own = values.copy(), limit[smooth]
         known = np.abs(values[..., filled] - own) <= LIMIT_ROUNDED * np.maximum(np.abs(own), 1.0)
-        found[..., filled] = np.where(known, values[..., filled], own)  # a place that is known needs no interpolation
+        found[..., filled] = np.where(known, values[..., filled], own)  # a known value is kept
         return found
 
     parts = {name: map_record(put, getattr(motion, name), getattr(limits, name)) for name in STATE_FIELDS}
@@ -307,7 +315,7 @@ def fill_in_limits(motion: Motion) -> Motion:
 
 
 def _interpolate_limits(motion: Motion, q: Real) -> tuple[LinkStates, Real]:
-    """States of links in the middle of nodes about places q, and which of these are passed smoothly."""
+    """Return the states in the middle of nodes about q, and which of these positions are passed smoothly."""
     size = float(np.max([np.max(kernel.size) for kernel in motion.kernels], initial=0.0)) or 1.0
     unit = 1.0 if motion.linkage.driver.kind == "turn" else size
     smooth = np.ones(len(q), dtype=bool)
@@ -330,7 +338,7 @@ def _interpolate_limits(motion: Motion, q: Real) -> tuple[LinkStates, Real]:
 
 
 def _limits_agree(one: LinkStates, other: LinkStates, size: float) -> Real:
-    """Whether two states of all links are the same at each place; size: of the mechanism (m)."""
+    """Return where two states of all links agree; size: of the mechanism (m)."""
     gaps: dict[str, Any] = dict.fromkeys(COMPARED_FIELDS, 0.0)
     largest: dict[str, Any] = dict.fromkeys(COMPARED_FIELDS, 0.0)
 

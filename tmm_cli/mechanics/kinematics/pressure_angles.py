@@ -1,14 +1,14 @@
-"""Stage: pressure angles of the groups over the driver's range.
+"""Pressure angles of the groups over the range of the driver.
 
 The pressure angle is the acute angle between the force that drives a link, without gravity and inertia, and the
-velocity of the point where it acts (I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 5). The force follows
-from statics: the link is resisted by a moment (a force along its guide), the rest of its group carries nothing, and the
-reactions of the group say where it is driven and in what direction. So it holds for a group of any class, with no
-formula of its own.
+velocity of its point of action (I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 5). The force follows from
+statics: the link is resisted by a moment (a force along its guide), the rest of its group is not loaded, and the
+reactions of the group show where the link is driven and in what direction. So the method holds for groups of any class,
+without special formulas.
 
-A link that is driven in several pairs at once (a lead of a class IV contour) has a force and a velocity in each. Its
-angle is that whose cosine is the power of these forces over what they would give along the velocities: for one pair
-that is the angle above, and it is 90 deg in dead positions only.
+A link that is driven in several pairs at once (an external link of a class IV contour) has a force and a velocity in
+each. The cosine of its angle is the power of these forces divided by the power that they would have along the
+velocities: for one pair this is the angle above, and it is 90 deg in dead positions only.
 """
 
 from __future__ import annotations
@@ -42,13 +42,16 @@ from tmm_cli.mechanics.structure import Group, Pair
 
 @dataclass(frozen=True)
 class PressureAngle:
-    """The largest pressure angle (rad) of a driven link, and the driver's place there (rad or m).
+    """Largest pressure angle (rad) of a driven link, and the driver coordinate there (rad or m).
 
-    pair: where the link is driven (several names with commas). slides: whether it slides on what holds it (else it
-    turns). allowed: rad; gain: the coefficient of force increase, 1/cos of the largest (infinite in a dead position).
-    angles: at the positions of a motion. other, other_place: the extreme of the angle on the other side (rad), where
-    the force leans to the other side of the velocity, or least, and the driver's place there (of a four-bar the crank
-    is on the line of the frame at both extremes); nan of a link that is driven in several pairs, or at a constant one.
+    Attributes:
+        pair: pair in which the link is driven (several names with commas).
+        slides: True if the link slides on the frame, False if it rotates.
+        allowed: allowed pressure angle, rad.
+        angles: values at the positions of a motion.
+        other, other_place: extreme of the angle on the other side of the velocity (rad), and the driver coordinate
+            there; in a four-bar the crank is on the line of the frame at both extremes. nan for a link that is driven
+            in several pairs, or at a constant angle.
     """
 
     group: str
@@ -64,33 +67,37 @@ class PressureAngle:
 
     @property
     def transmission(self) -> float:
-        """The least transmission angle, rad."""
+        """Least transmission angle, rad."""
         return np.pi / 2 - self.largest
 
     @property
     def gain(self) -> float:
+        """Force amplification 1/cos of the largest pressure angle; infinite in a dead position."""
         return float(1 / np.cos(self.largest)) if self.largest < np.pi / 2 - DEAD else float("inf")
 
     @property
     def holds(self) -> bool:
-        """Whether it stays within what is allowed."""
+        """True if the angle stays within the allowed value."""
         return self.largest <= self.allowed + ALIKE_ANGLES
 
 
-FLAT = 3  # places of the scan: beside a top that is bent no more than two are as high
+FLAT = 3  # samples: at a curved maximum at most two are equal
 
-DrivenLink = tuple[str, Pair, tuple[Pair, ...]]  # a driven link, the pair that holds it, those in which it is driven
+DrivenLink = tuple[
+    str, Pair, tuple[Pair, ...]
+]  # a driven link, the pair that supports it, the pairs in which it is driven
 
 
 def driving_pair_names(lead: DrivenLink) -> str:
-    """The pairs in which a link is driven."""
+    """Return the names of the pairs in which a link is driven, with commas."""
     return ", ".join(pair.name for pair in lead[2])
 
 
 def driven_links(group: Group) -> Iterable[DrivenLink]:
-    """Links of a group that it drives: with the pair that holds them and those in which they are driven.
+    """Return the links of a group that it drives, each with the pair that supports it and the pairs in which it is
+    driven.
 
-    Those held by the frame count, or the last one where none is.
+    These are the links supported by the frame; if there are none, the last link with an external pair.
     """
     leads = []
     for outer in group.outer:
@@ -104,13 +111,15 @@ def driven_links(group: Group) -> Iterable[DrivenLink]:
 
 
 def pressure_angle(motion: LinkStates, kernel: GroupSolver, at: Placement, lead: DrivenLink) -> Real:
-    """Pressure angle of a driven link at every position, rad; nan where there is none."""
+    """Return the pressure angle of a driven link at every position, rad; nan where undefined."""
     found: Real = np.arctan2(*pressure_sine_and_cosine(motion, kernel, at, lead))
     return np.where(found < NO_PRESSURE, 0.0, found)
 
 
 def signed_pressure_angle(motion: LinkStates, kernel: GroupSolver, at: Placement, lead: DrivenLink) -> Real:
-    """Pressure angle with the side to which the force leans from the velocity, rad, for a link driven in one pair."""
+    """Return the pressure angle (rad) of a link driven in one pair, signed by the side of the velocity to which it
+    leans.
+    """
     across, along = _single_pair_components(motion, kernel, at, lead)
     angles: Real = np.arctan2(across * np.sign(along), np.abs(along))
     return angles
@@ -119,7 +128,7 @@ def signed_pressure_angle(motion: LinkStates, kernel: GroupSolver, at: Placement
 def pressure_sine_and_cosine(
     motion: LinkStates, kernel: GroupSolver, at: Placement, lead: DrivenLink
 ) -> tuple[Real, Real]:
-    """What is to each other as sine and cosine of the pressure angle: both above zero."""
+    """Return two values >= 0 that are proportional to the sine and cosine of the pressure angle."""
     parts = list(_force_components(motion, kernel, at, lead))
     if len(parts) == 1:
         ((power, aside),) = parts
@@ -136,7 +145,7 @@ def pressure_sine_and_cosine(
 def _single_pair_components(
     motion: LinkStates, kernel: GroupSolver, at: Placement, lead: DrivenLink
 ) -> tuple[Real, Real]:
-    """Components of the driving force across and along the velocity of its point."""
+    """Return the components of the driving force across and along the velocity of its point."""
     ((power, aside),) = _force_components(motion, kernel, at, lead)
     return aside, power
 
@@ -144,10 +153,11 @@ def _single_pair_components(
 def _force_components(
     motion: LinkStates, kernel: GroupSolver, at: Placement, lead: DrivenLink
 ) -> Iterable[tuple[Real, Real]]:
-    """Of the force in each pair in which a link is driven: its component along the velocity of its point, and across.
+    """Yield, for each pair in which a link is driven, the components of the force along the velocity of its point and
+    across.
 
-    The link is resisted by a unit moment, or a unit force along its guide. Against the resistance the components along
-    have one sign together; the ones across are counted to the left of the velocity.
+    The link is resisted by a unit moment, or a unit force along its guide. The components along the velocity have a
+    common sign, opposite to the resistance; those across are positive to the left of the velocity.
     """
     link, outer, pairs = lead
     group, poses = kernel.group, motion.poses
@@ -179,7 +189,9 @@ def _force_components(
 def find_pressure(
     linkage: Linkage, kernels: tuple[GroupSolver, ...], driver_range: DriverRange, allowed: tuple[float, float]
 ) -> tuple[PressureAngle, ...]:
-    """The largest pressure angle of every driven link; allowed: of sliding and of turning links (rad)."""
+    """Find the largest pressure angle of every driven link; allowed: values (rad) for sliding and for rotating
+    links.
+    """
     ends = (driver_range.end - driver_range.start) * 1e-9 * (not (driver_range.full or driver_range.inclusive))
     q = np.linspace(driver_range.start + ends, driver_range.end - ends, SCAN * driver_range.turns + 1)
     scan = link_states(linkage, kernels, q, 0)  # statics needs no velocities
@@ -191,7 +203,7 @@ def find_pressure(
                 angles = pressure_angle(scan, kernel, scan.placements[number], lead)
                 if not np.any(np.isfinite(angles)):
                     continue
-                k = int(np.argmax(angles >= np.nanmax(angles) - ALIKE_ANGLES))  # the first of those that are equal
+                k = int(np.argmax(angles >= np.nanmax(angles) - ALIKE_ANGLES))  # the first of equal values
                 place, value = float(q[k]), float(angles[k])
                 right = [
                     end
@@ -202,7 +214,7 @@ def find_pressure(
                     place, value = right[0], np.pi / 2
                 elif value > 0 and not _is_constant(
                     angles[k : k + FLAT]
-                ):  # else rounding would tell where it is the largest
+                ):  # otherwise rounding would determine the position of the maximum
                     low, high = q[max(k - 1, 0)], q[min(k + 1, len(q) - 1)]
                     back = partial(_negative_angle, linkage, upto, lead)
                     place, value = find_minima(back, low, high)
@@ -224,12 +236,14 @@ def find_pressure(
 def _other_extreme(
     linkage: Linkage, kernels: tuple[GroupSolver, ...], lead: DrivenLink, scan: LinkStates, number: int, place: float
 ) -> tuple[float, float] | None:
-    """The extreme of the pressure angle (rad) on the other side than that at `place`, and the driver's place there."""
+    """Return the extreme of the pressure angle (rad) on the other side than at `place`, and the driver coordinate
+    there.
+    """
     if len(lead[2]) > 1:
         return None
     q = scan.q
     angles = signed_pressure_angle(scan, scan.kernels[number], scan.placements[number], lead)
-    known = np.isfinite(angles)  # at a change point there is none
+    known = np.isfinite(angles)  # undefined at a change point
     side = np.sign(angles[int(np.argmin(np.where(known, np.abs(q - place), np.inf)))])
     if not side or not np.ptp(angles[known]) > ALIKE_ANGLES:
         return None
@@ -247,7 +261,7 @@ def _other_extreme(
 
 
 def pressure_at(motion: LinkStates, group: str, link: str) -> Real:
-    """The pressure angle of a driven link of a group at every position, rad; nan where there is none."""
+    """Return the pressure angle of a driven link of a group at every position, rad; nan where undefined."""
     for kernel, at in zip(motion.kernels, motion.placements, strict=True):
         for lead in driven_links(kernel.group) if kernel.group.title == group else ():
             if lead[0] == link:
@@ -257,12 +271,12 @@ def pressure_at(motion: LinkStates, group: str, link: str) -> Real:
 
 
 def _is_constant(angles: Real) -> bool:
-    """Whether the angle stays as it is over these places of the scan."""
+    """Return True if the angle is constant over these samples."""
     return len(angles) == FLAT and bool(np.ptp(angles) < ALIKE_ANGLES)
 
 
 def _blocked_ends(driver_range: DriverRange) -> tuple[tuple[float, int], ...]:
-    """Ends of the range at which a group stops the driver, and where the range is from there."""
+    """Return the ends of the range at which a group stops the driver, each with the direction into the range."""
     stops = {limit.place for limit in driver_range.limits}
     return tuple(end for end in ((driver_range.start, 1), (driver_range.end, -1)) if end[0] in stops)
 
@@ -270,15 +284,16 @@ def _blocked_ends(driver_range: DriverRange) -> tuple[tuple[float, int], ...]:
 def _tends_to_right_angle(
     linkage: Linkage, kernels: tuple[GroupSolver, ...], lead: DrivenLink, end: float, inward: float
 ) -> bool:
-    """Whether the angle of the last group is a right one at an end: as a polynomial of the root of what is left to it,
-    once, four and sixteen times a step inward, it tells where it goes.
+    """Return True if the angle of the last group tends to 90 deg at an end of the range.
+
+    It is extrapolated as a polynomial of the square root of the distance, from one, four and sixteen steps inward.
     """
     near = -_negative_angle(linkage, kernels, lead, end + inward * np.array([1, 4, 16]))
     return bool(abs(np.array([8, -6, 1]) @ near / 3 - np.pi / 2) < RIGHT_ANGLE)
 
 
 def _negative_angle(linkage: Linkage, kernels: tuple[GroupSolver, ...], lead: DrivenLink, q: Real) -> Real:
-    """Of the last group; where it is dead the angle is a right one."""
+    """Return minus the pressure angle of the last group; -90 deg where it is dead."""
     motion = link_states(linkage, kernels, q, 0)
     at = motion.placements[-1]
     return np.where(at.dead, -np.pi / 2, -pressure_angle(motion, kernels[-1], at, lead))

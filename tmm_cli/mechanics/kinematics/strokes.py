@@ -1,4 +1,4 @@
-"""The output of the mechanism over its driver's places: where it is, how fast it goes, how far it goes."""
+"""Output of the mechanism: position, transfer functions and strokes, and the driver coordinates of the positions."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from tmm_cli.mechanics.numerics import (
 )
 from tmm_cli.mechanics.structure import output_link
 
-PARTS = 64  # of a stroke, through which an angle is followed
+PARTS = 64  # of a stroke, over which an angle is accumulated
 
 
 def output_run(motion: Motion, link: str) -> tuple[Real, Real, Real]:
-    """Run of the output (m, or its angle in rad) and its first and second transfer functions."""
+    """Return the run of the output (m, or its angle in rad) and its first and second transfer functions."""
     slide = motion.linkage.output_guide(link)
     if slide is not None:
         sliding = motion.slide(slide)
@@ -44,7 +44,7 @@ def output_run(motion: Motion, link: str) -> tuple[Real, Real, Real]:
 
 
 def output_coordinate(motion: LinkStates, link: str) -> Real:
-    """Run of the output (m, or its angle in rad) alone."""
+    """Return the run of the output (m, or its angle in rad)."""
     point = motion.linkage.output_point(link)
     if point is not None:
         return _coordinate(link, motion.spot(point))
@@ -53,7 +53,7 @@ def output_coordinate(motion: LinkStates, link: str) -> Real:
 
 
 def output_slope(motion: LinkStates, link: str) -> Real:
-    """First transfer function of the output alone."""
+    """Return the first transfer function of the output."""
     linkage = motion.linkage
     point = linkage.output_point(link)
     if point is not None:
@@ -64,9 +64,9 @@ def output_slope(motion: LinkStates, link: str) -> Real:
 
 
 def moving_slope(motion: LinkStates, link: str) -> Real:
-    """First transfer function of the output; zero in all positions of a variant where it moves in none of them.
+    """Return the first transfer function of the output; zero in all positions of a variant whose output never moves.
 
-    The speed of what stays at rest is rounding, and so is its sign.
+    The speed of an output at rest, and its sign, are rounding errors.
     """
     slope, rates = output_slope(motion, link), LargestRates.of(motion)
     largest = rates.speed / rates.size if motion.linkage.output_swings(link) else rates.speed
@@ -75,12 +75,12 @@ def moving_slope(motion: LinkStates, link: str) -> Real:
 
 
 def _coordinate(output: str, vector: Vector) -> Real:
-    """The coordinate of a vector that an output K.x or K.y is about."""
+    """Return the coordinate of a vector that an output K.x or K.y denotes."""
     return vector.real if output.endswith(".x") else vector.imag
 
 
 class StrokeCurve(Protocol):
-    """What tells the strokes of an output, see OutputCurve."""
+    """Interface of an output whose strokes are found, see OutputCurve."""
 
     @property
     def link(self) -> str: ...
@@ -93,7 +93,7 @@ class StrokeCurve(Protocol):
 
 @dataclass(frozen=True)
 class OutputCurve:
-    """An output over the driver's places; kernels: the groups on the way to it."""
+    """An output as a function of the driver coordinate; kernels: solvers of the groups on which it depends."""
 
     linkage: Linkage
     kernels: tuple[GroupSolver, ...]
@@ -101,7 +101,7 @@ class OutputCurve:
 
     @property
     def swings(self) -> bool:
-        """Whether it turns, else it slides."""
+        """True if the output rotates, False if it slides."""
         return self.linkage.output_swings(self.link)
 
     @property
@@ -109,22 +109,28 @@ class OutputCurve:
         return "swing" if self.swings else "slide"
 
     def place(self, q: Real) -> Real:
-        """Run, m, or angle in -pi..pi, rad."""
+        """Return the run, m, or the angle in -pi..pi, rad."""
         return output_coordinate(link_states(self.linkage, self.kernels, q, 0), self.link)
 
     def slope(self, q: Real) -> Real:
-        """First transfer function."""
+        """Return the first transfer function."""
         return output_slope(link_states(self.linkage, self.kernels, q, 1), self.link)
 
     def moving_slope(self, q: Real) -> Real:
-        """First transfer function at many places of each variant; zero at all of them if the output stays at rest."""
+        """Return the first transfer function at many positions of each variant; zero in all of them if the output stays
+        at rest.
+        """
         return moving_slope(link_states(self.linkage, self.kernels, q, 1), self.link)
 
 
 def measure_runs(curve: StrokeCurve, starts: Real, ways: Real) -> tuple[Real, Real]:
-    """Where an output is at the start of each way of the driver (..., ways), and how far it goes in it.
+    """Return the coordinate of an output at the start of each driver interval, and its change over the interval.
 
-    An angle is followed through, so that it may pass 180 degrees.
+    Angles are accumulated, so that they may pass 180 degrees.
+
+    Args:
+        starts: driver coordinates, shape (..., intervals).
+        ways: signed lengths of the intervals, same shape.
     """
     shares = np.linspace(0, 1, PARTS + 1 if curve.swings else 2)
     places = starts[..., None] + ways[..., None] * shares
@@ -135,7 +141,9 @@ def measure_runs(curve: StrokeCurve, starts: Real, ways: Real) -> tuple[Real, Re
 
 @dataclass(frozen=True)
 class OutputTravel:
-    """How far an output goes between two ends of the driver that were asked for: run (m or rad) and driver's place."""
+    """Extreme coordinates (m or rad) of an output between two requested driver coordinates, and the driver coordinates
+    there.
+    """
 
     link: str
     kind: str
@@ -146,13 +154,15 @@ class OutputTravel:
 
 
 def find_travel(linkage: Linkage, kernels: tuple[GroupSolver, ...], asked: Real, link: str) -> OutputTravel | None:
-    """Extremes of an output over the places asked for, found between them; for drivers that do not turn fully."""
+    """Find the extremes of an output over the requested driver coordinates, for drivers that cannot make a full
+    turn.
+    """
     curve = OutputCurve(linkage, solvers_towards(kernels, [linkage.output_carrier(link)]), link)
     q = np.linspace(np.min(asked), np.max(asked), SCAN + 1)
-    moved = link_states(linkage, kernels, q, 1)  # all groups: it goes only where the whole linkage can
+    moved = link_states(linkage, kernels, q, 1)  # all groups: the output moves only where the whole linkage can
     run, slope = output_coordinate(moved, link), output_slope(moved, link)
     before, after = moved.placed[:-1], moved.placed[1:]
-    turning = (before & after & (slope[:-1] * slope[1:] < 0))[before]  # not over a gap between two ways of the driver
+    turning = (before & after & (slope[:-1] * slope[1:] < 0))[before]  # not across a gap in the range of the driver
     q, run = q[moved.placed], run[moved.placed]
     if len(q) < 2:
         return None
@@ -168,14 +178,15 @@ def find_travel(linkage: Linkage, kernels: tuple[GroupSolver, ...], asked: Real,
     return OutputTravel(link, curve.kind, float(run[low]), float(run[high]), float(q[low]), float(q[high]))
 
 
-# Stage: the strokes of the output of the mechanism, which of them is the working one.
+# Strokes of the output, and which of them is the working one.
 
 
 @dataclass(frozen=True)
 class Stroke:
-    """One way of the output: driver from `start` on by `length` in its sense; output from `low` by `run` (signed).
+    """One stroke of the output: the driver moves from `start` by `length` in its sense, the output from `low` by `run`
+    (signed).
 
-    rest: how far the driver goes on in the dwell after it (a follower on the round of its cam), before the next stroke.
+    rest: travel of the driver in the dwell after the stroke (a follower on the circular part of its cam).
     """
 
     start: float
@@ -188,12 +199,14 @@ class Stroke:
 
 @dataclass(frozen=True)
 class Strokes:
-    """Strokes of an output in a turn of the driver, beginning with the working one; empty when it has none.
+    """Strokes of an output in a cycle of the driver, beginning with a working one; empty if it has none.
 
-    link: a link's name, or a coordinate of a point (K.x). kind: it slides (m), or swings (rad). k is the time of the
-    working strokes over that of the idle ones at constant speed, without the dwells between them. rule: why that stroke
-    is the working one. cycle: how far the driver goes until they repeat (rad). others: strokes of further links, on
-    which loads depend.
+    Attributes:
+        link: name of a link, or coordinate of a point (K.x).
+        kind: "slide" (m) or "swing" (rad).
+        rule: why the working stroke is the working one.
+        cycle: travel of the driver until the strokes repeat (rad).
+        others: strokes of further links, on which loads depend.
     """
 
     link: str
@@ -204,13 +217,13 @@ class Strokes:
     others: tuple[Strokes, ...] = ()
 
     def of_link(self, link: str) -> Strokes:
-        """The strokes of one of the links on which loads depend; of the main output if `link` is empty."""
+        """Return the strokes of a link on which loads depend; of the main output if `link` is empty."""
         if link in ("", self.link):
             return self
         return next((other for other in self.others if other.link == link), Strokes(link, self.kind, (), ""))
 
     def changed(self, change: Callable[[Stroke], Stroke]) -> Strokes:
-        """The same with every stroke changed, also of the other links."""
+        """Return a copy with every stroke changed, those of the other links too."""
         strokes, others = map(change, self.strokes), (other.changed(change) for other in self.others)
         return replace(self, strokes=tuple(strokes), others=tuple(others))
 
@@ -220,17 +233,17 @@ class Strokes:
 
     @property
     def travel(self) -> float:
-        """Stroke H (m) or swing psi (rad)."""
+        """Stroke H (m) or swing angle psi (rad)."""
         return max((abs(s.run) for s in self.strokes), key=np.max, default=0.0)
 
     @property
     def k(self) -> float:
-        """Coefficient of change of mean speed."""
+        """Time ratio k of working to return strokes at constant driver speed, without dwells between them."""
         idle = sum(s.length for s in self.strokes if not s.working)
         return sum(s.length for s in self.working) / idle if idle else float("nan")
 
     def share(self, q: Real, sense: int) -> Real:
-        """Whether each place of the driver lies in a working stroke; its first position does, its last does not."""
+        """Return True where the driver coordinate is in a working stroke, its start included and its end excluded."""
         inside = np.zeros(np.shape(q), dtype=bool)
         for stroke in self.working:
             gone = np.mod(sense * (q - stroke.start) + SAME_DRIVER_POSITION, self.cycle) - SAME_DRIVER_POSITION
@@ -245,11 +258,13 @@ def find_strokes(
     resists: float = 0.0,
     link: str | None = None,
 ) -> Strokes | None:
-    """Strokes of an output over the driver's way; None when there is no output.
+    """Find the strokes of an output over the cycle of the driver; None if there is no output.
 
-    link: the main output when left out. resists: sign of the output's run against which the useful resistance acts, 0
-    when it tells nothing. The working stroke is the slower one; when both last equally long, the one that is resisted;
-    then the one that runs forward.
+    The working stroke is the slower one; of equally long ones the one that the load resists; otherwise the forward one.
+
+    Args:
+        resists: sign of the run of the output against which the useful resistance acts, 0 if unknown.
+        link: the output; the main one if None.
     """
     link = link or output_link(linkage, tuple(d.group for d in kernels))
     if link is None:
@@ -260,13 +275,13 @@ def find_strokes(
         return none
     sense, cycle = linkage.driver.sense, 2 * np.pi * driver_range.turns
     q = np.linspace(driver_range.start, driver_range.end, SCAN * driver_range.turns + 1)
-    # one step more: at the seam of the scan rounding may hide the end of a stroke
+    # one extra step: at the ends of the scan rounding may hide the end of a stroke
     q = np.append(q, q[-1] + (q[1] - q[0]))
     slope = curve.moving_slope(q)
     if not np.any(slope):
         return none
     moves = np.flatnonzero(slope)
-    if moves[0] > 0:  # a dwell at the seam is not to be cut in two
+    if moves[0] > 0:  # a dwell at the ends of the scan must not be split
         q = q + (q[moves[0]] - q[0])
         slope = curve.slope(q)
     turns, rests = _find_reversals(curve, q, slope, sense)
@@ -289,18 +304,18 @@ def find_strokes(
         Stroke(float(t), float(n), float(s), float(r), bool(np.sign(r) == direction), float(rest))
         for t, n, s, r, rest in zip(turns, lengths, lows, runs, rests, strict=True)
     ]
-    if not any(s.working for s in strokes):  # the output stands still but for rounding
+    if not any(s.working for s in strokes):  # the output is at rest within rounding
         return none
     first = max((i for i, s in enumerate(strokes) if s.working), key=lambda i: (round(strokes[i].length, 9), -i))
     return Strokes(link, curve.kind, tuple(strokes[first:] + strokes[:first]), rule, cycle)
 
 
 def _find_reversals(curve: OutputCurve, q: Real, slope: Real, sense: int) -> tuple[Real, Real]:
-    """Where the output turns back: the driver's places from which it goes the other way, and the dwells before them.
+    """Return the driver coordinates at which the output reverses, and the dwells before them.
 
-    slope: the output's first transfer function at the places q, which rise; it is exactly zero in a dwell, and jumps
-    from one sign to the other, large on both sides, at a change point, which is no end of a stroke, or at a hard impact
-    of a cam, which is one.
+    slope: first transfer function of the output at increasing q. It is exactly zero in a dwell. It jumps from one sign
+    to the other, with large values on both sides, at a change point, which does not end a stroke, and at a hard impact
+    of a cam, which does.
     """
     moves = np.flatnonzero(slope)
     back = slope[moves[:-1]] * slope[moves[1:]] < 0
@@ -317,7 +332,7 @@ def _find_reversals(curve: OutputCurve, q: Real, slope: Real, sense: int) -> tup
     ends = np.where((rests > 0) & (sense < 0), stops, goes_on)
     sides = np.abs(curve.slope(ends + BESIDE_END * np.array([[-1], [0], [1]]))).min(axis=0)
     laws = [mesh.law for mesh in curve.linkage.meshes if mesh.law is not None]
-    if laws:  # a piece is taken to begin so little before its edge, and at that very place rounding would choose
+    if laws:  # pieces start AT_EDGE_OF_CAM before their boundary; exactly there rounding would select the piece
         ends = ends + sense * AT_EDGE_OF_CAM
     impacts = any(law.jumps() for law in laws)
     true = impacts | (rests > 0) | (sides < NO_JUMP * np.nanmax(np.abs(slope)))
@@ -325,10 +340,10 @@ def _find_reversals(curve: OutputCurve, q: Real, slope: Real, sense: int) -> tup
 
 
 def _drop_rounding_reversals(curve: OutputCurve, turns: Real, cycle: float, sense: int) -> Real:
-    """Ends of strokes, without those that only rounding makes.
+    """Drop the ends of strokes that are due to rounding.
 
-    Where the output all but rests, its rounded speed may change sign over and over: such places are one end, in their
-    middle, or none when the output goes on the same way after them.
+    Where the output almost rests, its rounded speed may change sign repeatedly: such reversals are replaced by one in
+    their middle, or by none if the output continues in the same direction after them.
     """
     if turns.size < 2:
         return turns
@@ -337,7 +352,7 @@ def _drop_rounding_reversals(curve: OutputCurve, turns: Real, cycle: float, sens
     moves = np.abs(runs) > RESTS * np.max(np.abs(runs), initial=0.0)
     if bool(np.all(moves)) or not bool(np.any(moves)):
         return turns
-    first = int(np.argmax(moves)) + 1  # the place after a true stroke
+    first = int(np.argmax(moves)) + 1  # the reversal after a real stroke
     order = np.roll(np.arange(len(turns)), -first)
     kept: list[float] = []
     before, at, rested = runs[first - 1], float(turns[order[0]]), 0.0
@@ -352,7 +367,9 @@ def _drop_rounding_reversals(curve: OutputCurve, turns: Real, cycle: float, sens
 
 
 def _working_direction(asked: str, forward: float, back: float, resists: float) -> tuple[int, str]:
-    """In which direction (+1 or -1) the output works, and why: forward, back: how long strokes of each last (rad)."""
+    """Return the working direction (+1 or -1) and the reason; forward, back: total length (rad) of the strokes of
+    each.
+    """
     if asked != "auto":
         return (1 if asked == "forward" else -1), "as the file says"
     if abs(forward - back) > SAME_DRIVER_POSITION:
@@ -363,8 +380,10 @@ def _working_direction(asked: str, forward: float, back: float, resists: float) 
 
 
 def resisted_direction(linkage: Linkage, link: str | None) -> Any:
-    """The sign of the output's run that the loads of the working stroke resist, of each variant where the loads differ
-    (variants, 1); 0 when they tell nothing."""
+    """Return the sign of the run of the output that the loads of the working stroke resist; 0 if they do not decide.
+
+    Shape (variants, 1) if the loads vary.
+    """
     for slide in linkage.slides:
         if {slide.carrier, slide.runner} == {FRAME, link}:
             along = np.exp(1j * slide.direction)
@@ -385,10 +404,10 @@ def _mean_table_value(load: Load) -> Any:
 
 
 def driver_positions(request: Request, driver_range: DriverRange, strokes: Strokes | None, sense: int) -> Real:
-    """The driver's places that are asked for (rad or m); position 0 is the zero.
+    """Return the requested driver coordinates (rad or m); the first is position 0.
 
-    On a limited way the positions are the middles of equal parts, since at its very ends velocities are lost; over the
-    stroke of a driver they go from end to end.
+    In a limited range the positions are the middles of equal parts, since velocities are lost at its ends; over the
+    stroke of a driver they extend from end to end.
     """
     if request.places:
         return np.array(request.places)

@@ -1,4 +1,4 @@
-"""Numbers: planar vectors, roots, interpolation, tolerances, linear equations, numbers of 31 digits."""
+"""Numerical tools: planar vectors, roots and extremes, interpolation, tolerances, linear equations, double-doubles."""
 
 from .double_double import (
     EPS as EPS,

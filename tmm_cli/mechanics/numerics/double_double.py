@@ -1,4 +1,9 @@
-"""What NumPy's functions do with numbers of 31 digits."""
+"""NumPy functions of double-double numbers (31 digits).
+
+Each number is the unevaluated sum of two float64, in an array that NumPy functions accept. The ordinary code of the
+stages runs on them unchanged, with the same results on every machine; the difference from the results in float64 is the
+rounding error. The real and imaginary parts of a complex number are double-doubles of their own.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +46,7 @@ def _where(truth: Any, one: Any, other: Any) -> DoubleDouble:
 
 
 def _comparison(ufunc: Any) -> Callable[[Any, Any], Any]:
-    """By the higher parts, and by the lower ones where these are equal."""
+    """Return a comparison of the high parts, or of the low parts where the high parts are equal."""
 
     def compare(x: Any, y: Any) -> Any:
         (a, b), (c, d) = high_and_low(x), high_and_low(y)
@@ -65,7 +70,7 @@ def _cumsum(x: DoubleDouble, axis: int) -> DoubleDouble:
 
 
 def _interp(x: Any, at: Any, values: Any) -> DoubleDouble:
-    """A piecewise linear table (np.interp), which jumps where two arguments are equal."""
+    """Interpolate linearly in a table (np.interp), which may jump where two arguments are equal."""
     at, values = (DoubleDouble(*high_and_low(array(column))) for column in (at, values))
     left = np.clip(np.searchsorted(at.hi, high_and_low(x)[0], side="right") - 1, 0, max(len(at) - 2, 0))
     right = np.minimum(left + 1, len(at) - 1)
@@ -117,12 +122,6 @@ FUNCTIONS |= {
     np.clip: lambda x, low, high: np.minimum(np.maximum(x, low), high),
     np.searchsorted: lambda a, v, **how: np.searchsorted(high_and_low(a)[0], high_and_low(v)[0], **how),
 }
-
-
-# Numbers of some 31 digits, the sum of two doubles, as arrays that NumPy's functions take.
-#
-# The ordinary code of the stages runs on them as it stands, alike on every machine; the difference to float64 is the
-# rounding error itself. A complex number is a sum of two complex ones: real and imaginary parts are sums of their own.
 
 
 __all__ = ["EPS", "PI", "DoubleDouble", "array", "to_double_double", "to_float"]

@@ -1,4 +1,4 @@
-"""The number itself: a sum of two doubles in the place of an array; what it can do is in `functions`."""
+"""Double-double arrays and their arithmetic; the NumPy functions for them are in `double_double`."""
 
 from __future__ import annotations
 
@@ -11,14 +11,24 @@ from typing import Any
 import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
-EPS = 2.0**-103  # a sum, product, quotient or root is off by less, in units of itself
+EPS = 2.0**-103  # bound of the relative error of a sum, product, quotient or root
 EXACT = Context(prec=60)
 
 Pair = tuple[Any, Any]
 
-UFUNCS: dict[str, Callable[..., Any]] = {}  # NumPy's, by their names
-FUNCTIONS: dict[Any, Callable[..., Any]] = {}  # others of NumPy that compute
-ROUNDED = {np.shape, np.max, np.min, np.nanmax, np.nanmin, np.any, np.all, np.round, np.argmax}  # by the higher part
+UFUNCS: dict[str, Callable[..., Any]] = {}  # ufuncs of NumPy, by name
+FUNCTIONS: dict[Any, Callable[..., Any]] = {}  # other functions of NumPy that compute
+ROUNDED = {
+    np.shape,
+    np.max,
+    np.min,
+    np.nanmax,
+    np.nanmin,
+    np.any,
+    np.all,
+    np.round,
+    np.argmax,
+}  # evaluated for the high part
 ARRANGING = {
     np.stack,
     np.concatenate,
@@ -38,19 +48,19 @@ ARRANGING = {
 
 
 class DoubleDouble(NDArrayOperatorsMixin):
-    """hi + lo, arrays of one shape, real or complex; lo is at most half a unit of the last place of hi."""
+    """Array of double-double numbers hi + lo, real or complex; |lo| is at most half a unit in the last place of hi."""
 
     __slots__ = ("angle", "hi", "lo", "turn")
 
     def __init__(self, hi: Any, lo: Any = None) -> None:
         self.hi = np.asarray(hi)
         self.lo = np.zeros_like(self.hi) if lo is None else np.asarray(lo)
-        self.turn: DoubleDouble | None = None  # e^(i x), once it was asked for
-        self.angle: DoubleDouble | None = None  # of a complex number, likewise
+        self.turn: DoubleDouble | None = None  # cache of e^(i x)
+        self.angle: DoubleDouble | None = None  # cache of the angle of a complex number
 
     @classmethod
     def decimal(cls, written: str) -> DoubleDouble:
-        """The number that decimals write. Raises decimal.InvalidOperation where they write none."""
+        """Convert a decimal string. Raises decimal.InvalidOperation if it is not a number."""
         return from_decimals([EXACT.create_decimal(written)])[0]
 
     @property
@@ -94,7 +104,7 @@ class DoubleDouble(NDArrayOperatorsMixin):
         return DoubleDouble(self.hi.copy(), self.lo.copy())
 
     def astype(self, kind: Any) -> Any:
-        """Rounded to an array of plain numbers."""
+        """Return the values rounded to an ordinary NumPy array."""
         return self.hi.astype(kind)
 
     def __getitem__(self, key: Any) -> DoubleDouble:
@@ -154,7 +164,7 @@ class DoubleDouble(NDArrayOperatorsMixin):
 
 
 def high_and_low(value: Any) -> Pair:
-    """Higher and lower parts of an array of either kind."""
+    """Return the high and low parts of a double-double or ordinary array; the low parts of the latter are zero."""
     if isinstance(value, DoubleDouble):
         return value.hi, value.lo
     array = np.asarray(value)
@@ -162,7 +172,9 @@ def high_and_low(value: Any) -> Pair:
 
 
 def _arguments_of_part(args: Any, part: int) -> Any:
-    """Arguments of a function that arranges numbers, with the higher (0) or the lower parts (1) of these."""
+    """Return the arguments of a rearranging NumPy function with the high (part 0) or low (part 1) parts of double-
+    doubles.
+    """
     found = []
     mixed = any(isinstance(arg, DoubleDouble) for arg in args)
     for arg in args:
@@ -170,19 +182,19 @@ def _arguments_of_part(args: Any, part: int) -> Any:
             found.append(_arguments_of_part(arg, part))
         elif isinstance(arg, DoubleDouble):
             found.append((arg.hi, arg.lo)[part])
-        else:  # integers and truths say where, other plain numbers have no lower part
+        else:  # integers and booleans are indices or masks; other ordinary numbers have a zero low part
             number = mixed and part and np.asarray(arg).dtype.kind in "fc"
             found.append(np.zeros_like(arg) if number else arg)
     return type(args)(found)
 
 
 def to_double_double(values: Any) -> Any:
-    """Plain numbers as double-doubles, in the place of an array."""
+    """Convert an ordinary array to double-doubles, exactly."""
     return values if isinstance(values, DoubleDouble) else DoubleDouble(values)
 
 
 def array(values: Any) -> Any:
-    """An array of numbers, of double-doubles where one of them is such."""
+    """Make an array of values; of double-doubles if at least one value is a double-double."""
     if isinstance(values, DoubleDouble):
         return values
     if not isinstance(values, list | tuple):
@@ -195,42 +207,42 @@ def array(values: Any) -> Any:
 
 
 def to_float(values: Any) -> Any:
-    """Plain numbers of an array of either kind."""
+    """Round double-doubles to an ordinary array; other values are returned unchanged."""
     return values.hi if isinstance(values, DoubleDouble) else values
 
 
 def from_decimals(numbers: Sequence[Decimal]) -> DoubleDouble:
-    """The nearest numbers."""
+    """Convert decimals to the nearest double-doubles."""
     hi = [float(number) for number in numbers]
     lo = [EXACT.subtract(number, Decimal(h)) for number, h in zip(numbers, hi, strict=True)]
     return DoubleDouble(np.array(hi), np.array(lo, float))
 
 
-# Sums, products, quotients and roots, each off by less than EPS of itself.
+# Sums, products, quotients and roots, each with a relative error below EPS.
 #
 # Exact sums: D. E. Knuth, The Art of Computer Programming 2, 4.2.2; exact products: T. J. Dekker, A floating-point
 # technique for extending the available precision, Numer. Math. 18 (1971).
 
 
-SPLIT = 2.0**27 + 1  # tears a double into two halves of 26 bits
-LARGEST_POWER = 8  # that is multiplied out
+SPLIT = 2.0**27 + 1  # splits a double into two halves of 26 bits
+LARGEST_POWER = 8  # largest exponent computed by multiplication
 
 
 def two_sum(a: Any, b: Any) -> Pair:
-    """a + b, and exactly what rounding took from it."""
+    """Return a + b rounded, and the exact rounding error."""
     total = a + b
     other = total - a
     return total, (a - (total - other)) + (b - other)
 
 
 def fast_two_sum(a: Any, b: Any) -> Pair:
-    """The same where |a| is not less than |b|."""
+    """Return a + b rounded, and the exact rounding error; requires |a| >= |b|."""
     total = a + b
     return total, b - (total - a)
 
 
 def two_product(a: Any, b: Any) -> Pair:
-    """a b, one of them real, and exactly what rounding took from it."""
+    """Return a b rounded, and the exact rounding error; at least one of them is real."""
     product = a * b
     torn = SPLIT * a
     a1 = torn - (torn - a)
@@ -241,7 +253,7 @@ def two_product(a: Any, b: Any) -> Pair:
 
 
 def add(x: Any, y: Any) -> DoubleDouble:
-    """x + y, one of them of 31 digits."""
+    """Return x + y; at least one of them is a double-double."""
     if not isinstance(y, DoubleDouble):
         x, y = y, x
     total, error = two_sum(y.hi, x.hi if isinstance(x, DoubleDouble) else x)
@@ -253,17 +265,17 @@ def add(x: Any, y: Any) -> DoubleDouble:
 
 
 def negative(x: DoubleDouble) -> DoubleDouble:
-    """-x."""
+    """Return -x."""
     return DoubleDouble(-x.hi, -x.lo)
 
 
 def subtract(x: Any, y: Any) -> DoubleDouble:
-    """x - y, one of them of 31 digits."""
+    """Return x - y; at least one of them is a double-double."""
     return add(x, -y)
 
 
 def multiply(x: Any, y: Any) -> DoubleDouble:
-    """x y, one of them of 31 digits, real or complex."""
+    """Return x y, real or complex; at least one of them is a double-double."""
     if not isinstance(y, DoubleDouble):
         x, y = y, x
     if isinstance(x, DoubleDouble):
@@ -284,21 +296,21 @@ def multiply(x: Any, y: Any) -> DoubleDouble:
 
 
 def _is_exact_factor(x: Any) -> bool:
-    """Whether products with it are exact: a power of two, or i."""
+    """Return True if products with x are exact: x is a power of two, i or -i."""
     if isinstance(x, complex):
         return x in (1j, -1j)
     return isinstance(x, int | float) and abs(frexp(x)[0]) == 0.5
 
 
 def _real_and_imaginary(values: Any) -> Any:
-    """Real and imaginary parts on a first axis."""
+    """Return the real and imaginary parts on a new first axis."""
     planes = np.empty((2, *values.shape))
     planes[0], planes[1] = values.real, values.imag
     return planes
 
 
 def divide(x: Any, y: Any) -> DoubleDouble:
-    """x / y, real or complex."""
+    """Return x / y, real or complex."""
     x, y = DoubleDouble(*high_and_low(x)), DoubleDouble(*high_and_low(y))
     if y.dtype.kind == "c":
         return divide(multiply(x, y.conjugate()), square(y))
@@ -309,7 +321,7 @@ def divide(x: Any, y: Any) -> DoubleDouble:
 
 
 def _keep_nonfinite(found: DoubleDouble, plain: Any) -> DoubleDouble:
-    """What was found, or the plain number where that is infinite or none."""
+    """Return `found`, but the float64 result `plain` where that is infinite or nan."""
     sound = np.isfinite(plain)
     if sound.all():
         return found
@@ -317,7 +329,7 @@ def _keep_nonfinite(found: DoubleDouble, plain: Any) -> DoubleDouble:
 
 
 def square(z: DoubleDouble) -> DoubleDouble:
-    """|z|^2 of complex numbers."""
+    """Return |z|^2 of complex numbers."""
     planes = _real_and_imaginary(z.hi)
     squares, errors = two_product(planes, planes)
     total, error = two_sum(squares[0], squares[1])
@@ -326,7 +338,7 @@ def square(z: DoubleDouble) -> DoubleDouble:
 
 
 def sqrt(x: DoubleDouble) -> DoubleDouble:
-    """One step from the double's root."""
+    """Return the square root, by one Newton step from the float64 root."""
     root = np.sqrt(x.hi)
     square, error = two_product(root, root)
     rest = (x.hi - square) - error + x.lo
@@ -334,7 +346,7 @@ def sqrt(x: DoubleDouble) -> DoubleDouble:
 
 
 def absolute(x: DoubleDouble) -> DoubleDouble:
-    """|x|, real or complex."""
+    """Return |x|, real or complex."""
     if x.dtype.kind == "c":
         return sqrt(square(x))
     sign = np.copysign(1.0, x.hi)
@@ -342,7 +354,7 @@ def absolute(x: DoubleDouble) -> DoubleDouble:
 
 
 def power(x: Any, n: Any) -> DoubleDouble:
-    """To 31 digits for whole powers up to a few and for the root; else as good as a double's."""
+    """Return x**n: to 31 digits for small integer n and n = 0.5, otherwise to float64 accuracy."""
     x, number = to_double_double(x), float(n)
     if number == 0.5:
         return sqrt(x)
@@ -353,13 +365,13 @@ def power(x: Any, n: Any) -> DoubleDouble:
 
 
 def floor(x: DoubleDouble) -> DoubleDouble:
-    """The largest whole number that is not above x."""
+    """Return the largest integer not above x."""
     whole = np.floor(x.hi)
     return DoubleDouble(*fast_two_sum(whole, np.where(whole == x.hi, np.floor(x.lo), 0.0)))
 
 
 def remainder(x: Any, y: Any) -> DoubleDouble:
-    """What is left of x when y is taken from it as often as it goes."""
+    """Return x - floor(x / y) y."""
     return subtract(x, multiply(floor(divide(x, y)), y))
 
 
@@ -367,12 +379,12 @@ def remainder(x: Any, y: Any) -> DoubleDouble:
 
 
 PI = "3.14159265358979323846264338327950288419716939937510582097494"
-PARTS = 64  # of a turn: directions that sines and cosines start from
-POWERS, PRECISE = 9, 5  # of the square in the series from there on; those from PRECISE on are small enough for doubles
+PARTS = 64  # of a full turn: tabulated directions for sines and cosines
+POWERS, PRECISE = 9, 5  # number of terms of the series; those from PRECISE on are small enough for float64
 
 
 def exp_i(x: DoubleDouble) -> DoubleDouble:
-    """e^(i x): the nearest of some directions, and the power series from there."""
+    """Return e^(i x), from the nearest of PARTS tabulated directions by a power series."""
     if x.turn is None:
         steps, directions, series = _trigonometric_tables()
         number = np.round(x.hi * (PARTS / (2 * np.pi)))
@@ -395,7 +407,9 @@ def exp_i(x: DoubleDouble) -> DoubleDouble:
 
 
 def arctan2(y: Any, x: Any) -> DoubleDouble:
-    """One step from the double's: the sine of the angle that is left is that angle."""
+    """Return the angle of (x, y), by one correction of the float64 value: the sine of the remaining angle is that
+    angle.
+    """
     y, x = DoubleDouble(*high_and_low(y)), DoubleDouble(*high_and_low(x))
     near = DoubleDouble(np.arctan2(y.hi, x.hi))
     there, size = exp_i(near), np.hypot(y.hi, x.hi)
@@ -404,7 +418,7 @@ def arctan2(y: Any, x: Any) -> DoubleDouble:
 
 
 def angle(z: DoubleDouble) -> DoubleDouble:
-    """Of complex numbers."""
+    """Return the angles of complex numbers, rad."""
     if z.angle is None:
         z.angle = arctan2(z.imag, z.real)
     return z.angle
@@ -412,7 +426,7 @@ def angle(z: DoubleDouble) -> DoubleDouble:
 
 @cache
 def _trigonometric_tables() -> tuple[list[float], DoubleDouble, DoubleDouble]:
-    """A part of a turn in two doubles; the directions it leads to; coefficients of cosine and sine by powers."""
+    """Return 2 pi / PARTS as two doubles, the tabulated directions, and the series coefficients of cosine and sine."""
     with localcontext(EXACT):
         step = 2 * Decimal(PI) / PARTS
         steps, rest = [], step

@@ -1,9 +1,9 @@
-"""A function by a table: linear between its rows, in steps, or a cubic spline; constant beyond the first and the last.
+"""Tabulated functions: linear, stepwise, or a cubic spline; constant before the first and after the last row.
 
-The spline's slopes follow from continuous second derivatives; at its ends these are zero, or it closes on itself. C. de
-Boor, A Practical Guide to Splines (2001), ch. 4. Numbers may be of any precision, or arrays (variants, 1).
-
-Two rows with the same argument are a jump: the value of the first holds up to it, that of the second from it on.
+The slopes of the spline follow from continuous second derivatives, which are zero at the ends unless the spline is
+periodic. C. de Boor, A Practical Guide to Splines (2001), ch. 4. Numbers may be of any precision, or arrays
+(variants, 1). Two rows with the same argument are a jump: the value of the first row holds up to the argument, that of
+the second from it on.
 """
 
 from __future__ import annotations
@@ -20,15 +20,16 @@ from tmm_cli.mechanics.numerics.tolerances import SEAM
 from tmm_cli.mechanics.numerics.vectors import Real
 
 Between = Literal["linear", "step", "smooth"]
-SAMPLES_BETWEEN = 17  # places between two rows
+SAMPLES_BETWEEN = 17  # samples between two rows
 
 
 @dataclass(frozen=True)
 class InterpolationTable:
-    """Rows by growing arguments. step: each row's value holds up to the next row; smooth: a cubic spline.
+    """Rows by increasing arguments. between: "linear"; "step": each value holds up to the next row; "smooth": cubic
+    spline.
 
-    closed: the spline goes on from its last row to its first, which has the same value. With jumps it does not: the
-    rows between two of them have a spline of their own.
+    closed: the spline is periodic; its first and last rows have the same value. If the table has jumps, the rows
+    between two jumps have a spline of their own, and `closed` has no effect.
     """
 
     arguments: tuple[Any, ...]
@@ -47,15 +48,16 @@ class InterpolationTable:
         return found
 
     def slope(self, argument: Real) -> Real:
-        """Its derivative; in a row where it jumps, that after it, and none of a jump itself."""
+        """Return the derivative; at a jump, the one after it."""
         from_row, (_, first, second, third) = self._from_row(self._as_precise(argument))
         found: Real = first + from_row * (2 * second + 3 * from_row * third)
         return found
 
     @property
     def overshoot(self) -> tuple[int, float]:
-        """After which row (from 0) a smooth curve goes farthest beyond the values of all rows, and by what share of
-        their range."""
+        """Row (from 0) after which a spline overshoots the range of the tabulated values most, and the overshoot as a
+        fraction of that range.
+        """
         if self.between != "smooth":
             return 0, 0.0
         rows, low, span = np.array(self.arguments, float), min(self.values), np.ptp(np.array(self.values, float))
@@ -67,11 +69,11 @@ class InterpolationTable:
 
     @cached_property
     def jumps(self) -> tuple[int, ...]:
-        """Rows (from 0) with the argument of the row before them."""
+        """Rows (from 0) with the same argument as the row before."""
         return tuple(k + 1 for k, (a, b) in enumerate(pairwise(self.arguments)) if np.all(a == b))
 
     def _as_precise(self, argument: Real) -> Real:
-        """The argument in the precision of the rows: NumPy finds no double-doubles in a list of them."""
+        """Convert the argument to the precision of the rows: NumPy does not recognise double-doubles in a list."""
         first = self.arguments[0]
         return argument if isinstance(first, int | float | np.ndarray) else argument + 0 * first
 
@@ -80,17 +82,17 @@ class InterpolationTable:
         return not any(isinstance(x, np.ndarray) and x.ndim for x in (*self.arguments, *self.values))
 
     def _from_row(self, argument: Real) -> tuple[Real, tuple[Real, ...]]:
-        """How far each argument is from the row before it, and the coefficients of its piece by powers of that."""
+        """Return the distance of each argument from the row before it, and the polynomial coefficients of its piece."""
         within = np.minimum(np.maximum(argument, self.arguments[0]), self.arguments[-1])
-        # rounding does not take an argument in a row to the piece before it
+        # rounding must not move an argument at a row to the piece before it
         at = argument + SEAM * (1 + np.abs(argument))
-        ends = self.between == "step" or len(self.arguments) - 1 in self.jumps  # the last value begins in its row
+        ends = self.between == "step" or len(self.arguments) - 1 in self.jumps  # the last value starts at its row
         starts = self.arguments if ends else self.arguments[:-1]
         row, *pieces = (self._held(at, starts, held) for held in (starts, *zip(*self._pieces, strict=True)))
         return within - row, tuple(pieces)
 
     def _held(self, at: Real, starts: Sequence[Any], values: Sequence[Any]) -> Real:
-        """The value of the last start before each place."""
+        """Return the value that belongs to the last start at or before each argument."""
         found: Real
         if self._plain:
             twice = [start for start in starts for _ in range(2)][1:]
@@ -103,18 +105,18 @@ class InterpolationTable:
 
     @cached_property
     def _pieces(self) -> list[tuple[Any, ...]]:
-        """Coefficients of each piece by powers of the way from its row."""
+        """Coefficients of each piece, by powers of the distance from its first row."""
         if self.between == "step":
             return [(value, 0.0, 0.0, 0.0) for value in self.values]
         borders = [0, *self.jumps, len(self.arguments)]
         found: list[tuple[Any, ...]] = []
         for first, last in pairwise(borders):
             found += self._smooth_or_linear(self.arguments[first:last], self.values[first:last])
-            found.append((self.values[last - 1], 0.0, 0.0, 0.0))  # up to the jump, over no distance
+            found.append((self.values[last - 1], 0.0, 0.0, 0.0))  # piece of zero length up to the jump
         return found if len(self.arguments) - 1 in self.jumps else found[:-1]
 
     def _smooth_or_linear(self, arguments: Sequence[Any], values: Sequence[Any]) -> list[tuple[Any, ...]]:
-        """Coefficients of the pieces between rows without a jump; none of one row."""
+        """Return the coefficients of the pieces between rows without a jump; empty for a single row."""
         if len(arguments) < 2:
             return []
         steps = [end - start for start, end in pairwise(arguments)]
@@ -130,22 +132,23 @@ class InterpolationTable:
 
 
 def _slope_of_step(change: Any, step: Any) -> Any:
-    """Change over a step, for each variant; none where a variant has a jump there."""
+    """Return change / step for each variant; zero where a variant has a jump (step 0)."""
     if not np.any(step == 0):
         return change / step
     return np.where(step == 0, 0.0, change) / np.where(step == 0, 1.0, step)
 
 
 def _natural_spline_slopes(steps: list[Any], rises: list[Any]) -> list[Any]:
-    """Slopes in the rows of a spline whose second derivative is zero at both ends."""
+    """Return the slopes at the rows of a natural spline (zero second derivative at both ends)."""
     lower, middle, upper, right = _inner_equations(steps, rises)
     return _solve_tridiagonal([*lower, 1.0], [2.0, *middle, 2.0], [1.0, *upper], [3 * rises[0], *right, 3 * rises[-1]])
 
 
 def _periodic_spline_slopes(steps: list[Any], rises: list[Any]) -> list[Any]:
-    """Slopes in the rows of a spline that goes on from its last row to its first.
+    """Return the slopes at the rows of a periodic spline.
 
-    The slope m of that row is what fits: all others follow from it, linearly.
+    All other slopes are linear functions of the slope m of the first and last row, which follows from the last
+    equation.
     """
     lower, middle, upper, right = _inner_equations(steps, rises)
     fixed = _solve_tridiagonal(lower[1:], middle, upper[:-1], right)
@@ -158,7 +161,9 @@ def _periodic_spline_slopes(steps: list[Any], rises: list[Any]) -> list[Any]:
 
 
 def _inner_equations(steps: list[Any], rises: list[Any]) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
-    """Rows of the equations for slopes between the ends: factors of the slope before, of the own and of the next."""
+    """Return the equations of the inner rows: coefficients of the previous, own and next slope, and right-hand
+    sides.
+    """
     both = list(zip(pairwise(steps), pairwise(rises), strict=True))
     return (
         [1 / a for (a, __), __ in both],
@@ -169,7 +174,7 @@ def _inner_equations(steps: list[Any], rises: list[Any]) -> tuple[list[Any], lis
 
 
 def _solve_tridiagonal(lower: list[Any], middle: list[Any], upper: list[Any], right: list[Any]) -> list[Any]:
-    """A system of three diagonals, of which the middle one is the largest."""
+    """Solve a diagonally dominant tridiagonal system."""
     kept = [(middle[0], right[0])]
     for below, own, above, value in zip(lower, middle[1:], upper, right[1:], strict=True):
         pivot, before = kept[-1]

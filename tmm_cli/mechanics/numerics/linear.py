@@ -1,4 +1,4 @@
-"""Small systems of linear equations, one a position: solved all at once, of double-doubles too, never an exception."""
+"""Small linear systems, one for each position, solved together; also in double-doubles. Never raises an exception."""
 
 from __future__ import annotations
 
@@ -13,13 +13,18 @@ from tmm_cli.mechanics.numerics.double_double import to_double_double, to_float
 from tmm_cli.mechanics.numerics.tolerances import TRUNCATED
 from tmm_cli.mechanics.numerics.vectors import Real
 
-REFINEMENTS = 5  # each gives as many digits more as float64 has beyond those that the matrix loses
+REFINEMENTS = 5  # each adds the digits of float64 less those that the matrix loses
 
 
 def solve(matrix: Real, right: Real) -> Real:
-    """x of matrix x = right for matrices (..., m, n) and right sides (..., m); nan where a matrix is singular.
+    """Solve matrix x = right; nan where a matrix is singular.
 
-    With more equations than unknowns, or fewer, the least squares solution of least size.
+    Args:
+        matrix: shape (..., m, n); for m != n the least-squares solution of least norm is returned.
+        right: shape (..., m).
+
+    Returns:
+        x, shape (..., n).
     """
     if not (isinstance(matrix, np.ndarray) and isinstance(right, np.ndarray)):
         return _solve_refined(matrix, right)
@@ -35,7 +40,7 @@ def solve(matrix: Real, right: Real) -> Real:
 
 
 def _solve_refined(matrix: Real, right: Real) -> Real:
-    """Of double-doubles: what the solution in float64 leaves is solved for, again and again."""
+    """Solve in double-doubles by iterative refinement of the float64 solution."""
     near = to_float(matrix)
     found: Real = to_double_double(solve(near, to_float(right)))
     for _ in range(REFINEMENTS):
@@ -50,12 +55,14 @@ def _least_squares(matrix: Real, right: Real) -> Real:
     inverse = np.linalg.pinv(clean, rcond=TRUNCATED)
     found = np.einsum("...ij,...j->...i", inverse, right)
     rest = right - np.einsum("...ij,...j->...i", clean, found)
-    found = found + np.einsum("...ij,...j->...i", inverse, rest)  # an inverse rounds more than a solution does
+    found = found + np.einsum(
+        "...ij,...j->...i", inverse, rest
+    )  # one refinement, as an inverse is less accurate than a solution
     return np.where(sound[..., None], found, np.nan)
 
 
 def singular_value_ratio(matrix: Real) -> Real:
-    """Least singular value over the largest, nan where the matrix is not finite."""
+    """Return the least singular value divided by the largest; nan where the matrix is not finite."""
     sound = np.all(np.isfinite(matrix), axis=(-1, -2))
     clean = np.where(sound[..., None, None], to_float(matrix), 0.0)
     values = np.linalg.svd(clean, compute_uv=False)
@@ -64,7 +71,7 @@ def singular_value_ratio(matrix: Real) -> Real:
 
 
 def determinant_sign(matrix: Real) -> Real:
-    """Sign of the determinant; 1 where there are more equations than unknowns."""
+    """Return the sign of the determinant; 1 for a matrix that is not square."""
     if matrix.shape[-1] != matrix.shape[-2]:
         return np.ones(matrix.shape[:-2])
     sign: Real = np.linalg.slogdet(to_float(matrix))[0]
@@ -72,9 +79,14 @@ def determinant_sign(matrix: Real) -> Real:
 
 
 def singular_margin(rows: Sequence[Mapping[int, Any]], lengths: Sequence[bool], size: Any) -> Any:
-    """Least singular value over the largest of as many rows {unknown: coefficient} as there are unknowns.
+    """Return the ratio of the least to the largest singular value of a square system in dimensionless form.
 
-    Without dimension: lengths tells which rows are in metres; of three unknowns two are. On a tape it is one operation.
+    Args:
+        rows: coefficients {unknown: coefficient}, as many rows as unknowns; unknowns x, y, angle of each link in turn.
+        lengths: for each row, True if it is in metres.
+        size: length (m) by which lengths are divided.
+
+    When operations are traced, it is recorded as a single operation.
     """
     scale = [1 / size if length else 1.0 for length in lengths]
     columns = [1.0 if k % 3 == 2 else size for k in range(len(rows))]
@@ -93,13 +105,13 @@ def _margin(*entries: Any) -> Real:
     return singular_value_ratio(together.reshape(*together.shape[:-1], many, many))
 
 
-# Linear equations whose coefficients are arrays one by one: eliminated in an order that is chosen beforehand.
+# Linear equations whose coefficients are separate arrays, eliminated in an order chosen beforehand.
 #
-# A matrix is a list of rows, {column: coefficient}; what is not there is zero. Some unknowns are explicit: in their
-# order each follows from a row of its own, with a plain number as its coefficient, from those before it and from the
-# free ones. What is left for the free unknowns is made triangular by rotations of two rows at a time (W. Givens,
-# 1958), which needs no search for pivots, takes few of them where columns are thin, and is stable wherever the
-# equations are sound.
+# A matrix is a list of rows, {column: coefficient}; missing coefficients are zero. Some unknowns are explicit: in turn,
+# each follows from a row of its own, with a constant coefficient, from the explicit ones before it and from the free
+# ones. The remaining equations of the free unknowns are made triangular by rotations of two rows at a time (W. Givens,
+# 1958), which need no search for pivots, are few where columns are sparse, and are stable wherever the equations are
+# regular.
 
 
 EquationRow = Mapping[int, Any]
@@ -107,7 +119,7 @@ EquationRow = Mapping[int, Any]
 
 @dataclass(frozen=True)
 class EliminationOrder:
-    """explicit: (row, column) one after another; closing: rows that are left; free: columns that are left."""
+    """Order of elimination: explicit (row, column) in turn; closing: remaining rows; free: remaining columns."""
 
     explicit: tuple[tuple[int, int], ...]
     closing: tuple[int, ...]
@@ -115,16 +127,19 @@ class EliminationOrder:
 
 
 class EliminatedSystem:
-    """Equations made triangular: solved for several right sides, with the matrix or its transpose.
+    """A linear system in triangular form, which is solved for several right-hand sides, with the matrix or its
+    transpose.
 
-    scales: what rows are multiplied by and columns counted in where lengths and angles meet in the free unknowns.
+    scales: factors of the rows and units of the columns, used if both lengths and angles occur in the free unknowns.
     """
 
     def __init__(
         self, rows: Sequence[EquationRow], order: EliminationOrder, scales: tuple[Sequence[Any], Sequence[Any]] | None
     ) -> None:
         self.rows, self.order, self.scales = rows, order, scales
-        self.following: dict[int, dict[int, Any]] = {}  # of each explicit unknown what a free one moves it by
+        self.following: dict[
+            int, dict[int, Any]
+        ] = {}  # derivatives of each explicit unknown with respect to the free ones
         for row, column in order.explicit:
             self.following[column] = {
                 k: -value / rows[row][column] for k, value in self._by_free(row, skip=column).items()
@@ -132,7 +147,7 @@ class EliminatedSystem:
         self._triangular([self._by_free(row) for row in order.closing])
 
     def _by_free(self, row: int, skip: int = -1) -> dict[int, Any]:
-        """A row by the free unknowns alone."""
+        """Return a row in terms of the free unknowns alone."""
         found: dict[int, Any] = {}
         for column, value in self.rows[row].items():
             if column in self.following:
@@ -150,7 +165,7 @@ class EliminatedSystem:
                 for row, one in zip(self.order.closing, left, strict=True)
             ]
         self.left = left
-        self.turns: list[tuple[int, int, Any, Any]] = []  # rows and the cosine and sine by which they are turned
+        self.turns: list[tuple[int, int, Any, Any]] = []  # two rows, and cosine and sine of their rotation
         self.pivots: list[tuple[int, int]] = []
         rows, columns = list(range(len(left))), list(self.order.free)
         while columns:
@@ -171,11 +186,11 @@ class EliminatedSystem:
 
     @property
     def diagonal(self) -> list[Any]:
-        """Of the triangle; their product is the determinant but for a constant."""
+        """Diagonal of the triangular matrix; its product is the determinant up to a constant factor."""
         return [self.left[row][column] for row, column in self.pivots]
 
     def solve(self, right: Sequence[Any]) -> list[Any]:
-        """x of matrix x = right."""
+        """Return x of matrix x = right."""
         found: dict[int, Any] = {}
         for row, column in self.order.explicit:
             found[column] = self._rest(row, right[row], found, column) / self.rows[row][column]
@@ -192,7 +207,9 @@ class EliminatedSystem:
         return right
 
     def free(self, right: Sequence[Any]) -> dict[int, Any]:
-        """Free unknowns by the right sides of the closing rows, those of the explicit ones being zero."""
+        """Return the free unknowns for the right-hand sides of the closing rows, those of the explicit rows being
+        zero.
+        """
         down, across = self.scales or ((), ())
         turned = list(right)
         if self.scales is not None:
@@ -210,7 +227,7 @@ class EliminatedSystem:
         return found if self.scales is None else {k: value * across[k] for k, value in found.items()}
 
     def transposed(self, right: Sequence[Any]) -> list[Any]:
-        """y of y matrix = right."""
+        """Return y of y matrix = right."""
         down, across = self.scales or ((), ())
         whole = {k: right[k] for k in self.order.free}
         for _, column in self.order.explicit:
@@ -240,7 +257,7 @@ class EliminatedSystem:
 
 
 def _combine(c: Any, one: Any, s: Any, other: Any) -> Any:
-    """c one + s other, where None is nothing."""
+    """Return c one + s other, where None stands for zero."""
     if one is None:
         return s * other
     return c * one if other is None else c * one + s * other

@@ -1,4 +1,4 @@
-"""Roots and least values of functions that are computed at many places at once."""
+"""Roots, minima and peaks of functions that are evaluated at many arguments at once."""
 
 from __future__ import annotations
 
@@ -11,19 +11,23 @@ import numpy as np
 from tmm_cli.mechanics.numerics.tolerances import SMOOTH
 from tmm_cli.mechanics.numerics.vectors import Real
 
-SPARE = 8  # halvings more than a mantissa has bits: from a step of a scan to the last bit
-DEGREE = 8  # of the polynomial that tells where an extreme lies
-THIRDS = 18  # of a step of a scan, to a place 1e-12 of a radian wide
-REFINEMENTS, PARTS = 16, 4  # of a step of a scan about a peak: finer grids, and their steps in one step of the last
-FLAT = 1e-12  # of the largest value: a peak that rises by less from its neighbours is rounding
+SPARE = 8  # bisections beyond the bits of a mantissa: from a step of a scan to the last bit
+DEGREE = 8  # of the polynomial that locates an extreme
+THIRDS = 18  # trisections of a step of a scan, to an interval of 1e-12 rad
+REFINEMENTS, PARTS = 16, 4  # finer grids about a peak, and the steps of each in one step of the grid before
+FLAT = 1e-12  # fraction of the largest value: a lower rise above the neighbours is rounding
 
 
 def find_roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:
-    """Roots between places where a function has different signs, of all intervals at once, to the last bit.
+    """Find a root in each interval, to the last bit, in all intervals at once.
 
-    In the precision of the places, float64 at least. Inverse quadratic interpolation where it is safe, else halving:
-    T. R. Chandrupatla, A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function,
-    Advances in Engineering Software 28 (1997).
+    Inverse quadratic interpolation where it is safe, otherwise bisection: T. R. Chandrupatla, A new hybrid
+    quadratic/bisection algorithm for finding the zero of a nonlinear function, Advances in Engineering Software 28
+    (1997).
+
+    Args:
+        function: takes and returns arrays of the shape of `low`; it has different signs at `low` and `high`.
+        low, high: ends of the intervals; the root has their precision, float64 at least.
     """
     kind = np.result_type(np.asarray(low), np.asarray(high), float)
     b, a = np.asarray(low, kind), np.asarray(high, kind)
@@ -54,9 +58,11 @@ def find_roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:
 def bisect(
     holds: Callable[[Real], Real], inside: Real, outside: Real, halvings: int | None = None
 ) -> tuple[Real, Real]:
-    """The last places at which a condition holds and the first at which it does not, of all intervals at once.
+    """Return the last argument at which a condition holds and the first at which it does not, in each interval.
 
-    It holds at `inside` and not at `outside`; by default they are neighbours in the end, in their own precision.
+    Args:
+        holds: the condition; True at `inside`, False at `outside`.
+        halvings: number of bisections; by default until the two arguments are neighbouring floating-point numbers.
     """
     for _ in range(count_halvings(inside) if halvings is None else halvings):
         middle = (inside + outside) / 2
@@ -66,19 +72,22 @@ def bisect(
 
 
 def count_halvings(places: Real) -> int:
-    """How many halvings leave nothing of an interval in the precision of its ends."""
+    """Return the number of bisections that reduce an interval to the precision of its ends."""
     return int(np.finfo(np.result_type(places, float)).nmant) + SPARE
 
 
 def _bisect_sign_changes(function: Callable[[Real], Real], low: Real, high: Real, at_low: Real) -> Real:
-    """Where the sign of the lower end ends, by halving: beside a dwell that is its edge, not any place of it."""
+    """Bisect for the end of the sign that the function has at `low`: beside an interval of zeros (a dwell), its
+    edge.
+    """
     same, other = bisect(lambda place: np.sign(function(place)) == np.sign(at_low), low, high)
     return (same + other) / 2
 
 
 def find_minima(function: Callable[[Real], Real], low: Real | float, high: Real | float) -> tuple[Any, Any]:
-    """Places and values of the least between places, of all intervals at once, in each of which there is one minimum:
-    nine places of each, the best third kept.
+    """Return the position and value of the minimum in each interval, each of which has only one.
+
+    Nine samples of each interval, of which the best third is kept.
     """
     ends = np.array([low, high])
     if not ends.size:
@@ -92,16 +101,17 @@ def find_minima(function: Callable[[Real], Real], low: Real | float, high: Real 
 
 
 def greatest_values(curves: Callable[[Real, Real], Real], q: Real, values: Real, *, turns: bool = False) -> Real:
-    """The largest values of curves that may jump or bend, (curves,); nan of those that have no value anywhere.
+    """Return the largest value of each curve, shape (curves,); nan for curves without any value. Curves may jump or
+    bend.
 
-    About every peak of a scan that may reach the largest value between two of its places, finer grids are laid, one
-    within another. Between places a curve is expected to rise by no more than twice what it rises to the next one.
+    About each peak of a scan that may reach the largest value between samples, finer and finer grids are evaluated.
+    Between samples a curve is expected to rise by at most twice its rise to the next sample.
 
     Args:
-        curves: values, shape (k, n), of the curves with the numbers (k,) at places of each (k, n).
-        q: places at equal steps from one end to the other, of a cycle too, shape (places,).
-        values: of all curves there, (curves, places), nan where there is none.
-        turns: values are angles (rad), unwrapped.
+        curves: function of the curve numbers (k,) and arguments (k, n); returns values (k, n).
+        q: arguments at equal steps from one end of the range or cycle to the other, shape (points,).
+        values: values of all curves at q, shape (curves, points), nan where there is none.
+        turns: True if the values are angles (rad), unwrapped.
     """
     y = np.where(np.isfinite(values), values, -np.inf)
     best = np.max(y, axis=1)
@@ -130,10 +140,10 @@ def greatest_values(curves: Callable[[Real, Real], Real], q: Real, values: Real,
 
 
 def locate_extreme(function: Callable[[Real], Real], place: float, half: float) -> float:
-    """The place of a smooth extreme near `place`, to nearly all digits: where the slope of a polynomial vanishes.
+    """Return the position of a smooth extreme near `place`, to nearly all digits, from the slope of a fitted
+    polynomial.
 
-    The extreme itself is known to half the digits only, as long as one compares values. `place` is given back where
-    the function is not smooth within `half` of it.
+    Comparing values would give half the digits only. Returns `place` if the function is not smooth within `half` of it.
     """
     nodes = np.cos(np.pi * np.arange(DEGREE + 5) / (DEGREE + 4))
     values = function(place + half * nodes)
@@ -152,21 +162,23 @@ def locate_extreme(function: Callable[[Real], Real], place: float, half: float) 
     return place + half * here if smooth and abs(here) < 1 else place
 
 
-# Peaks and zeros between the places at which a quantity is known, many variants at once.
+# Peaks and zeros between the samples of a quantity, for many variants at once.
 #
-# Seven neighbours on equal steps h determine a polynomial of degree 6, which is off by h^7 times the seventh derivative
-# over 7! and less; arrays are (variants, places).
+# Seven neighbouring samples at equal steps h determine a polynomial of degree 6, whose error is at most h^7 times the
+# seventh derivative over 7!. Arrays are (variants, samples).
 
 
-WINDOW = 33  # places about a peak
-WINDOW_SIDE = 3  # neighbours on either side
+WINDOW = 33  # samples about a peak
+WINDOW_SIDE = 3  # samples on either side
 WINDOW_FIT = np.linalg.inv(
     np.vander(np.arange(-WINDOW_SIDE, WINDOW_SIDE + 1.0), increasing=True)
-).T  # values @ FIT: coefficients
+).T  # values @ WINDOW_FIT: coefficients
 NEWTON_STEPS = 6
-MOST_PEAKS = 8  # highest places of what may jump
-LOWEST_PEAK = 0.3  # of its range: a lower peak so far below the highest one is no rival
-FACTORS = [[float(perm(power, order)) for power in range(2 * WINDOW_SIDE + 1)] for order in range(3)]  # of derivatives
+MOST_PEAKS = 8  # of a curve that may jump
+LOWEST_PEAK = 0.3  # fraction of the range: peaks farther below the highest one are ignored
+FACTORS = [
+    [float(perm(power, order)) for power in range(2 * WINDOW_SIDE + 1)] for order in range(3)
+]  # factors of the coefficients in derivatives
 
 
 def _fit_windows(y: Real, k: Real) -> tuple[Real, Real]:
@@ -176,12 +188,12 @@ def _fit_windows(y: Real, k: Real) -> tuple[Real, Real]:
 
 
 def polynomial_value(c: Real, u: Real, order: int = 0) -> Real:
-    """A derivative of the polynomials with coefficients c (..., 7) at u steps from their middles."""
+    """Return a derivative of the polynomials with coefficients c (..., 7) at u steps from their centres."""
     return _horner(_derivative_coefficients(c, order), u)
 
 
 def _derivative_coefficients(c: Real, order: int) -> list[Real]:
-    """Coefficients of a derivative, that of the highest power first."""
+    """Return the coefficients of a derivative, highest power first."""
     return [FACTORS[order][power] * c[..., power] for power in range(2 * WINDOW_SIDE, order - 1, -1)]
 
 
@@ -193,7 +205,7 @@ def _horner(coefficients: list[Real], u: Real) -> Real:
 
 
 def window_peak(y: Real) -> Real:
-    """The largest value within a window; (variants,)."""
+    """Return the largest value within a window of samples, shape (variants,)."""
     top, most = np.argmax(y, axis=1), np.max(y, axis=1)
     c, middle = _fit_windows(y, top)
     slopes, bends = _derivative_coefficients(c, 1), _derivative_coefficients(c, 2)
@@ -211,7 +223,7 @@ def window_peak(y: Real) -> Real:
 
 
 def locate_zero(y: Real) -> Real:
-    """Where in a window a quantity changes its sign, in steps from its first place; (variants,)."""
+    """Return where in a window a quantity changes sign, in steps from the first sample, shape (variants,)."""
     c, middle = _fit_windows(y, np.argmin(np.abs(y), axis=1))
     u = np.zeros(len(y))
     with np.errstate(all="ignore"):
@@ -222,9 +234,11 @@ def locate_zero(y: Real) -> Real:
 
 
 def highest_value(curve: Callable[[Real], Real], scan: Real, *, closed: bool) -> float:
-    """The largest value of a curve that may jump or bend sharply: closer and closer about its highest places.
+    """Return the largest value of a curve that may jump or bend sharply, by refinement about its highest peaks.
 
-    scan: shares of the way at equal steps; closed: the curve goes on after its end as at its beginning.
+    Args:
+        scan: arguments as fractions of the range, 0 to 1, at equal steps.
+        closed: True if the curve is periodic.
     """
     y = curve(scan)
     best, step = float(np.nanmax(y)), scan[1] - scan[0]
@@ -235,7 +249,9 @@ def highest_value(curve: Callable[[Real], Real], scan: Real, *, closed: bool) ->
 
 
 def highest_peaks(y: Real, most: int, closed: bool) -> list[int]:
-    """The highest peaks of a curve, on a closed cycle or between two ends, which may be peaks too."""
+    """Return the indices of the `most` highest peaks of a sampled curve; closed: it is periodic, else its ends may be
+    peaks.
+    """
     before, after = np.roll(y, 1), np.roll(y, -1)
     if not closed:
         before[0] = after[-1] = -np.inf
@@ -245,4 +261,4 @@ def highest_peaks(y: Real, most: int, closed: bool) -> list[int]:
     found = found[np.argsort(-y[found], kind="stable")][:most]
     return [
         int(k) for k in found if not y[k] < np.max(y) - LOWEST_PEAK * np.ptp(y)
-    ]  # some are kept where not all is known
+    ]  # `not <` keeps peaks where values are nan

@@ -1,4 +1,4 @@
-"""Planar vectors as complex numbers, x + iy, metres, turning is multiplying; and records that hold arrays of them."""
+"""Planar vectors as complex numbers x + iy (m), rotated by multiplication; and records that contain arrays of them."""
 
 from __future__ import annotations
 
@@ -13,59 +13,59 @@ from tmm_cli.mechanics.numerics.double_double import EPS, PI, DoubleDouble
 from tmm_cli.mechanics.numerics.tolerances import CONSTRUCTION_ROUNDINGS, NO_VECTOR
 
 Real = NDArray[Any]  # float arrays of any precision; positions on the last axis
-Vector = NDArray[Any]  # complex arrays, likewise
+Vector = NDArray[Any]  # complex arrays of any precision; positions on the last axis
 Record = TypeVar("Record")
 
 
 def pi(values: Any) -> Any:
-    """Pi in the precision of an array."""
+    """Return pi in the precision of an array."""
     if isinstance(values, DoubleDouble):
         return DoubleDouble.decimal(PI)
     return np.finfo(getattr(values, "dtype", float)).dtype.type(PI)
 
 
 def largest_magnitude(values: Any) -> float:
-    """The size of the largest of them; zero where there is none."""
+    """Return the largest absolute value; zero for an empty array."""
     return float(np.nanmax(np.abs(values), initial=0.0))
 
 
 def without_rounding(values: Any, beside: float) -> Real:
-    """With zeros for what only rounding leaves beside a value so large."""
+    """Replace values by zero that are only rounding errors beside the value `beside`."""
     return np.where(np.abs(values) <= NO_VECTOR * beside, 0.0, values)
 
 
 def roundoff(values: Any) -> float:
-    """Unit roundoff of an array's own precision."""
+    """Return the unit roundoff of the precision of an array."""
     return EPS if isinstance(values, DoubleDouble) else float(np.finfo(values.real.dtype).eps) / 2
 
 
 def dot(a: Any, b: Any) -> Any:
-    """Scalar product a.b."""
+    """Return the scalar product a.b."""
     return a.real * b.real + a.imag * b.imag
 
 
 def cross(a: Any, b: Any) -> Any:
-    """z component of a x b: positive when b lies to the left of a."""
+    """Return the z component of a x b: positive if b points to the left of a."""
     return a.real * b.imag - a.imag * b.real
 
 
 def squared_length(a: Any) -> Any:
-    """The square of its length."""
+    """Return the squared length |a|^2."""
     return a.real * a.real + a.imag * a.imag
 
 
 def scaled(a: Any, amount: Any) -> Any:
-    """The vector a scaled by a real amount (no complex product, so no spurious rounding)."""
+    """Return the vector a times a real factor (without the rounding of a complex product)."""
     return a * amount
 
 
 def unit(angle: Any) -> Any:
-    """e^(i angle)."""
+    """Return e^(i angle)."""
     return np.cos(angle) + 1j * np.sin(angle)
 
 
 def zero_within_rounding(values: Any, size: Any) -> Any:
-    """Numbers or vectors computed from others of a size; parts that are zero within the rounding of these are 0."""
+    """Replace by zero the components that are within the rounding of a construction from values of this size."""
     values = values if isinstance(values, DoubleDouble) else np.asarray(values)
     if np.iscomplexobj(values):
         return (zero_within_rounding(values.real, size) + 1j * zero_within_rounding(values.imag, size))[()]
@@ -73,17 +73,22 @@ def zero_within_rounding(values: Any, size: Any) -> Any:
 
 
 def rotated_left(a: Any) -> Any:
-    """a turned through +90 degrees."""
+    """Return the vector a rotated by +90 degrees."""
     return 1j * a
 
 
 def map_record(
     change: Callable[..., Any], record: Record, *others: Any, skip: Collection[str] = (), path: str = ""
 ) -> Record:
-    """A record like this one with change(path, leaf, *leaves of the others) in the place of each leaf.
+    """Return a copy of a record with each leaf replaced by change(path, leaf, *leaves of the others).
 
-    A record is a dataclass, mapping, tuple or list of records; anything else is a leaf. The others have the same shape.
-    skip: names of fields that stay as they are. A path reads links.2.points.A or loads[0].force.
+    A record is a dataclass, mapping, tuple or list of records; anything else is a leaf. A path reads links.2.points.A
+    or loads[0].force.
+
+    Args:
+        others: records of the same structure.
+        skip: names of fields that are left unchanged.
+        path: path of the record itself.
     """
 
     def at(name: str, part: Any, rest: Any) -> Any:
@@ -106,7 +111,7 @@ def map_record(
 
 
 def record_leaves(record: Any, skip: Collection[str] = (), path: str = "") -> Iterator[tuple[str, Any]]:
-    """Paths and leaves of a record, as `mapped` has them."""
+    """Yield path and value of each leaf of a record, as `map_record` defines them."""
     if is_dataclass(record) and not isinstance(record, type):
         for f in fields(record):
             if f.name not in skip:

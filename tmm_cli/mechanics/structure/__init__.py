@@ -1,4 +1,4 @@
-"""Who is joined to whom: mobility, Assur groups, names of links."""
+"""Structure of a linkage, from its links and pairs: mobility, Assur groups, names of links and schemes."""
 
 from tmm_cli.interfaces import lazy
 

@@ -1,7 +1,7 @@
-"""Mobility, pairs and Assur groups of a linkage, from who is joined to whom alone.
+"""Mobility, pairs and Assur groups of a linkage, from the connections between its links alone.
 
-The order of a group is the number of its outer pairs; its class see group_class. The groups of the structural report
-are those of the linkage without its redundant links and pairs (see reduction); kinematics solves groups of all links.
+The order of a group is the number of its external pairs; for its class see `group_class`. The structural report lists
+the groups of the linkage without its redundant links and pairs (see Reduction); kinematics solves groups of all links.
 """
 
 from __future__ import annotations
@@ -30,13 +30,16 @@ HIGHER_PAIR_KINDS: dict[str, Literal["G", "K", "C"]] = {"gear": "G", "rack": "K"
 
 @dataclass(frozen=True)
 class Structure:
-    """The structure of a linkage.
+    """Structure of a linkage.
 
-    mobility is Chebyshev's 3n - 2 p1 - p2; freedom is what the count on all sub-chains leaves (equal unless a part is
-    over-held). groups are those of the structural report, all_groups those of all links, both in solving order;
-    reduction says what the report leaves out. under_constrained and redundant_pairs name what is wrong when the
-    mobility is not the number of drivers. passive: what the numerical rank found to be redundant; mobility is then
-    less than the truth by as much.
+    Attributes:
+        mobility: by Chebyshev's formula, 3n - 2 p1 - p2.
+        freedom: freedoms left by the count on all sub-chains; equal to the mobility unless a part is overconstrained.
+        groups: Assur groups of the structural report, in solving order.
+        all_groups: groups of all links, in solving order.
+        reduction: what the structural report leaves out.
+        under_constrained, redundant_pairs: what is wrong if the mobility differs from the number of drivers.
+        passive: redundant constraints found by numerical rank; the true mobility is greater by their number.
     """
 
     links: tuple[str, ...]
@@ -53,7 +56,7 @@ class Structure:
 
     @property
     def redundant(self) -> int:
-        """Number of passive constraints in the plane."""
+        """Number of redundant constraints in the plane."""
         return sum(passive.constraints for passive in self.passive)
 
     @property
@@ -63,7 +66,7 @@ class Structure:
 
     @property
     def sound(self) -> bool:
-        """Whether each freedom is driven and nothing held twice, but for what is known to be passive."""
+        """True if every freedom is driven and no constraint is redundant, apart from those in `passive`."""
         wanted = len(self.drivers)
         return (
             self.freedom == wanted == self.mobility + self.redundant
@@ -72,25 +75,25 @@ class Structure:
         )
 
     def rebind(self, linkage: Linkage) -> Structure:
-        """The same structure with the numbers of another linkage."""
+        """Return the same structure with the dimensions of another linkage."""
         groups, all_groups = (tuple(g.rebind(linkage) for g in some) for some in (self.groups, self.all_groups))
         pairs = tuple(pair.rebind(linkage) for pair in self.pairs)
         return replace(self, pairs=pairs, groups=groups, all_groups=all_groups)
 
     def driving_pair(self, driver: Driver) -> Pair:
-        """The pair in which a driver works; in a compound hinge its two links may both be attached to a third."""
+        """Return the pair of a driver; a new one if in a compound hinge both its links are attached to a third link."""
         ends, apart = {driver.base, driver.link}, Pair(driver.joint, "R", driver.base, driver.link, driver.joint)
         pairs = (p for p in self.pairs if p.lower and {p.i, p.j} == ends and driver.joint in (p.point, p.name))
         return next(pairs, apart)
 
     @property
     def contours(self) -> int:
-        """Independent closed contours, K = p - n."""
+        """Number of independent closed contours, K = p - n."""
         return len(self.pairs) - len(self.links)
 
     @property
     def formula(self) -> str:
-        """Structural formula: I(0,1) -> II(2,3) -> II(4,5); branches as structural_formula() writes them."""
+        """Structural formula, e.g. I(0,1) -> II(2,3) -> II(4,5); branches as in `structural_formula`."""
         titles = {driver.link: self.driver_title(driver) for driver in self.drivers}
         parts: dict[str, Collection[str]] = dict.fromkeys(titles.values(), ())
         title_of = {
@@ -106,36 +109,37 @@ class Structure:
         return structural_formula(parts)
 
     def rigid_with(self, link: str) -> tuple[str, ...]:
-        """A link with those that are rigid to it."""
+        """Return the rigid set of links that contains this link; the link alone if there is none."""
         return next((rigid.links for rigid in self.reduction.rigid if link in rigid.links), (link,))
 
     def driver_title(self, driver: Driver) -> str:
-        """I(0,1): a driver, as the structural formula writes it."""
+        """Return a driver as written in the structural formula, e.g. I(0,1)."""
         base, link = ("+".join(self.rigid_with(n)) if n != FRAME else n for n in (driver.base, driver.link))
         return f"I({printed(base)},{link})"
 
     @property
     def count(self) -> tuple[int, int, int]:
-        """n, p1, p2 without what the structural report leaves out: their 3n - 2p1 - p2 is the mobility."""
+        """Numbers n, p1, p2 without what the structural report leaves out; their 3n - 2p1 - p2 is the mobility."""
         counts = [group.count for group in self.groups]
         n, lower, higher = (sum(column) for column in zip((0, 0, 0), *counts, strict=True))
         return n + len(self.drivers), lower + len(self.drivers), higher
 
     @property
     def mechanism_class(self) -> int:
-        """The class of its highest group."""
+        """Class of the mechanism: the highest class of its groups."""
         return max((g.group_class for g in self.groups), default=1)
 
     @property
     def roman(self) -> str:
-        """This class as it is written."""
+        """Class of the mechanism in Roman numerals."""
         return ROMAN[min(self.mechanism_class, 10)]
 
     @property
     def solved(self) -> tuple[Group, ...]:
-        """The groups as they are solved: those that hold one another twice in one, with all that lies between them.
+        """Groups as they are solved: groups that share redundant constraints are united, with all groups between them.
 
-        Together they can pass where one of them alone is dead; that is what passive constraints are often for.
+        Together they can pass a position in which one of them alone is dead; redundant constraints often serve this
+        purpose.
         """
         among = {link for passive in self.passive for link in passive.among}
         held = [group for group in self.all_groups if among & set(group.links)]
@@ -158,7 +162,7 @@ class Structure:
         )
 
     def _united(self, groups: Sequence[Group]) -> Group:
-        """Several groups as one."""
+        """Unite several groups into one."""
         links = {link for group in groups for link in group.links}
         names = {pair.name for group in groups for pair in (*group.inner, *group.outer)}
         pairs = [pair for pair in self.pairs if pair.name in names]
@@ -176,13 +180,13 @@ class Structure:
 
 
 def structural_formula(parts: Mapping[str, Collection[str]]) -> str:
-    """The formula of a structure whose parts are attached to one another.
+    """Write the formula of a structure whose parts are attached to one another.
 
-    A chain is broken where it branches: I(0,1) -> II(2,3), I(0,1) -> II(4,5). What is attached to several parts, none
-    of which is attached to another of them, stands after their sum: I(0,1) + I(0,4) -> II(2,3).
+    A chain is broken where it branches: I(0,1) -> II(2,3), I(0,1) -> II(4,5). A part attached to several parts, none of
+    which is attached to another of them, follows their sum: I(0,1) + I(0,4) -> II(2,3).
 
     Args:
-        parts: the title of each part (a driver or a group), in solving order, with the titles of those it is attached
+        parts: title of each part (a driver or a group), in solving order, with the titles of the parts it is attached
             to.
     """
     before: dict[str, set[str]] = {}
@@ -202,10 +206,11 @@ def structural_formula(parts: Mapping[str, Collection[str]]) -> str:
 
 
 def analyse_structure(linkage: Linkage, dropped: Mapping[int, int] | None = None) -> Structure:
-    """Structure of a linkage; never fails: what is wrong with it is in the result.
+    """Analyse the structure of a linkage. Never raises an error: what is wrong is in the returned Structure.
 
-    dropped: how many conditions of which tie (by its number) are left out of the count; the groups of the report are
-    then still those of all links.
+    Args:
+        dropped: number of conditions of each tie (by its index) that are left out of the count; the groups of the
+            report are then those of all links.
     """
     less = dropped or {}
     ties = [replace(tie, constraints=tie.constraints - less.get(k, 0)) for k, tie in enumerate(list_ties(linkage))]
@@ -228,7 +233,7 @@ def analyse_structure(linkage: Linkage, dropped: Mapping[int, int] | None = None
         groups,
         mobility,
         undriven.free,
-        # with the driver in, a link is loose when it moves on its own; without it, every link may move with the crank
+        # with the drivers fixed, a link is under-constrained if it still moves; without them all links may move
         tuple(sorted(driven.under_constrained, key=order.__getitem__)),
         tuple((tie.name, tuple(sorted(bodies, key=order.__getitem__))) for tie, bodies in over_held),
         all_groups=groups,
@@ -240,9 +245,9 @@ def analyse_structure(linkage: Linkage, dropped: Mapping[int, int] | None = None
 
 
 def reduce_structure(linkage: Linkage, structure: Structure, reduction: Reduction) -> Structure | None:
-    """The structure with the groups of what a reduction leaves; None where these are not Assur groups.
+    """Return the structure with the groups that a reduction leaves; None if these are not Assur groups.
 
-    Groups of all links get the class of the report's groups that they contain.
+    Groups of all links get the class of the groups of the report that they contain.
     """
     every = list(list_ties(linkage))
     ties = list(reduction.ties(every))
@@ -285,13 +290,13 @@ def reduce_structure(linkage: Linkage, structure: Structure, reduction: Reductio
 def _play_pebble_games(
     bodies: tuple[str, ...], ties: Sequence[Tie], pins: tuple[str, ...], drivers: Iterable[tuple[str, str]]
 ) -> tuple[PebbleCount, PebbleCount]:
-    """What the pebble game says without the drivers and with them."""
+    """Return the results of the pebble game without and with the drivers."""
     driving = [Tie("driver", base, link, 1) for base, link in drivers]
     return count_freedoms(bodies, FRAME, ties, pins), count_freedoms(bodies, FRAME, [*ties, *driving], pins)
 
 
 def _list_group_bodies(driven: PebbleCount, bodies: Sequence[str]) -> list[tuple[str, ...]]:
-    """The bodies of each group in solving order, without pins and the frame."""
+    """Return the bodies of each group in solving order, without pins and the frame."""
     parts = [
         tuple(body for body in part if body in bodies and body != FRAME)
         for part in dependence_components(driven.depends)
@@ -300,7 +305,7 @@ def _list_group_bodies(driven: PebbleCount, bodies: Sequence[str]) -> list[tuple
 
 
 def _is_sound(undriven: PebbleCount, driven: PebbleCount, linkage: Linkage) -> bool:
-    """True if each freedom is driven, and nothing is held twice."""
+    """Return True if every freedom is driven and no constraint is redundant."""
     held_twice = undriven.redundant_pairs or driven.redundant_pairs
     return undriven.free == len(linkage.drivers) and not held_twice and driven.free == 0
 
@@ -314,7 +319,7 @@ def _pin_name(hinge: Hinge) -> str:
 
 
 def list_ties(linkage: Linkage) -> Iterable[Tie]:
-    """Who is joined to whom; a compound hinge through its pin, or as the file attaches its links."""
+    """Yield the ties between links: of a compound hinge through its pin, or as the file attaches its links."""
     for hinge in linkage.hinges:
         if len(hinge.links) == 2:
             yield Tie(hinge.point, *hinge.links, 2)
@@ -327,14 +332,14 @@ def list_ties(linkage: Linkage) -> Iterable[Tie]:
 
 
 def list_pairs(linkage: Linkage) -> tuple[Pair, ...]:
-    """The pairs of a linkage whose solving order is not known."""
+    """Return the pairs of a linkage whose solving order is not known."""
     return tuple(_iterate_pairs(linkage, dict.fromkeys(linkage.links, 0)))
 
 
 def _iterate_pairs(linkage: Linkage, rank: Mapping[str, int]) -> Iterable[Pair]:
-    """Pairs of the linkage; in a compound hinge all links are attached to one of them.
+    """Yield the pairs of a linkage; in a compound hinge all links are attached to one of them.
 
-    `rank` is the number of a link's group in solving order.
+    rank: index of the group of each link in solving order.
     """
     order = {name: k for k, name in enumerate(linkage.links)}
     for hinge in linkage.hinges:
@@ -350,10 +355,10 @@ def _iterate_pairs(linkage: Linkage, rank: Mapping[str, int]) -> Iterable[Pair]:
 
 
 def _common_link(links: list[str], rank: Mapping[str, int], linkage: Linkage) -> str:
-    """The link to which the others in a hinge are attached unless the file says otherwise.
+    """Return the link to which the other links of a hinge are attached, unless the file names it.
 
-    The frame, else the driver, else, within the group that is solved first, a link connected to the frame, else the
-    first. `links` stand in solving order.
+    The frame; otherwise the driver; otherwise, in the group that is solved first, a link connected to the frame, or
+    else the first link. `links` are in solving order.
     """
     first = [link for link in links if rank[link] == rank[links[0]]]
     driven = [driver.link for driver in linkage.drivers if driver.link in first]
@@ -369,7 +374,7 @@ def _make_group(
     reduction: Reduction = NO_REDUCTION,
     as_higher: Collection[str] = (),
 ) -> Group:
-    """The group of these bodies. `rank` is the number of a link's group; as_higher: see Group."""
+    """Make the group of these bodies. rank: index of the group of each link; as_higher: see Group."""
     here, member = rank[bodies[0]], {body: reduction.members(body) for body in bodies}
     links = tuple(link for body in bodies for link in member[body])
     rigid = tuple(links for links in member.values() if len(links) > 1)
@@ -380,7 +385,7 @@ def _make_group(
     drivers = tuple(d for d in linkage.drivers if d not in linkage.cranks and max(rank[d.base], rank[d.link]) == here)
     halved = tuple(pair.name for pair in (*inner, *outer) if pair.name in as_higher)
     if len(bodies) == 2 and len(inner) == 1 and len(outer) == 2 and not drivers and not halved:
-        # The standard names write the turning end first: RRP, RPP.
+        # The standard names start with the revolute end: RRP, RPP.
         outer.sort(key=lambda p: p.kind == "P")
         kind = outer[0].kind + inner[0].kind + outer[1].kind
         in_order = tuple(link for p in outer for link in member[reduction.body(own[p.name])])

@@ -1,4 +1,4 @@
-"""After how many turns of the driver everything is back where it was: toothed wheels and further drivers take part."""
+"""Number of driver turns after which the whole mechanism repeats, with gears and several drivers."""
 
 from __future__ import annotations
 
@@ -9,15 +9,16 @@ from fractions import Fraction
 from tmm_cli.mechanics.linkage import FRAME, Linkage, Mesh
 from tmm_cli.mechanics.numerics import SAME_RATIO
 
-POSITIONS_PER_TURN = 361  # places of a curve that is drawn, a turn
-MOST_TURNS = 60  # turns; a cycle that is longer is not a cycle for anybody who looks at it
-LARGEST_DENOMINATOR = 500  # denominators of ratios that are looked for
+POSITIONS_PER_TURN = 361  # samples per turn of a drawn curve
+MOST_TURNS = 60  # longer cycles are of no practical use
+LARGEST_DENOMINATOR = 500  # of gear ratios that count as fractions
 
 
 def turns_of_cycle(linkage: Linkage, rounds: Mapping[str, int] | None = None) -> int | None:
-    """Turns of the first driver in a cycle; None when there are more than anyone counts, or none at all.
+    """Return the turns of the first driver in a cycle; None if the motion never repeats, or only after MOST_TURNS or
+    more.
 
-    rounds: how often links go round in a turn of the driver, as far as that is known; a rocker does not.
+    rounds: turns of links in one turn of the driver, as far as known (a rocker makes none).
     """
     turns = 1
     for share in _gear_turns(linkage, rounds or {}).values():
@@ -32,10 +33,10 @@ def turns_of_cycle(linkage: Linkage, rounds: Mapping[str, int] | None = None) ->
 
 
 def _gear_turns(linkage: Linkage, rounds: Mapping[str, int]) -> dict[str, Fraction | None]:
-    """Turns of each wheel in a turn of the driver, as far as other wheels and the driver tell; None: not in any number.
+    """Return the turns of each gear in one turn of the driver; None for a gear that never returns.
 
-    Links that no wheel turns come round with the driver: their turns are whole, which is all that counts here where
-    they are not known.
+    Links that are not driven by gears return with the driver: their turns are integers, and where they are unknown any
+    integer serves.
     """
     whole, lead = Fraction(1), linkage.driver
     found: dict[str, Fraction | None] = {FRAME: Fraction(0)}
@@ -65,11 +66,12 @@ def _gear_turns(linkage: Linkage, rounds: Mapping[str, int]) -> dict[str, Fracti
 
 
 def _solve_gear_turns(gears: list[Mesh], found: Mapping[str, Fraction | None]) -> dict[str, Fraction]:
-    """Turns that follow from several pairs of wheels at once, as those of a carrier between its sun and a fixed ring.
+    """Solve for turns that follow from several gear pairs together, e.g. of a carrier between its sun and a fixed ring
+    gear.
 
-    Every pair says turns of j = ratio (turns of i) + (1 - ratio) (turns of its carrier); solved by elimination.
+    Each pair gives turns of j = ratio (turns of i) + (1 - ratio) (turns of its carrier); solved by elimination.
     """
-    solved: dict[str, dict[str, Fraction]] = {}  # a link's turns by those of others; "" counts what is known
+    solved: dict[str, dict[str, Fraction]] = {}  # turns of a link in terms of those of others; "" is the constant term
     for mesh in gears:
         ratio = _fraction(mesh.ratio)
         if ratio is None or any(found.get(link, ratio) is None for link in (mesh.i, mesh.j, mesh.carrier)):
@@ -92,7 +94,7 @@ def _solve_gear_turns(gears: list[Mesh], found: Mapping[str, Fraction | None]) -
 
 
 def _add_multiple(row: dict[str, Fraction], other: Mapping[str, Fraction], factor: Fraction) -> None:
-    """Adds a multiple of another sum to a sum; what comes to nothing is left out."""
+    """Add a multiple of another linear combination in place; zero terms are dropped."""
     for link, share in other.items():
         row[link] = row.get(link, Fraction(0)) + factor * share
         if not row[link]:
@@ -100,7 +102,9 @@ def _add_multiple(row: dict[str, Fraction], other: Mapping[str, Fraction], facto
 
 
 def _mate_turns(share: Fraction | None, carrier: Fraction | None, step: Fraction | None) -> Fraction | None:
-    """Turns of a wheel from those of its partner; where that stands still on the carrier, so does the wheel."""
+    """Return the turns of a gear from those of its mating gear; equal to the carrier's if the mating gear rests on
+    it.
+    """
     if share is None or carrier is None:
         return None
     if share == carrier:
@@ -109,6 +113,6 @@ def _mate_turns(share: Fraction | None, carrier: Fraction | None, step: Fraction
 
 
 def _fraction(ratio: float) -> Fraction | None:
-    """The ratio of two whole numbers that it is, if it is one."""
+    """Return the ratio as a fraction with a small denominator, or None if it is not one."""
     near = Fraction(ratio).limit_denominator(LARGEST_DENOMINATOR)
     return near if abs(float(near) - ratio) <= SAME_RATIO * max(1.0, abs(ratio)) else None

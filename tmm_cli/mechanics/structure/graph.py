@@ -1,8 +1,8 @@
-"""Counting freedoms: the pebble game on bodies, and what it says of mobility and solving order.
+"""Freedoms of a linkage by the pebble game on its bodies; solving order, contours and classification.
 
-Each link is a body with three freedoms (pebbles), a pair takes two of them, the driver one more. A compound hinge is
-a point with two freedoms, the pin, joined to each of its links. The orientation that the game leaves is a map of
-dependence: its strongly connected components are the Assur groups, in solving order.
+Each link is a body with three freedoms (pebbles), a pair takes two of them, the driver one more. A compound hinge is a
+point with two freedoms, the pin, joined to each of its links. The orientation that the game leaves is a directed graph
+of dependence: its strongly connected components are the Assur groups, in solving order.
 Source: A. Sljoka, O. Shai, W. Whiteley, Checking mobility and decomposition of linkages via pebble game algorithm,
 ASME DETC 2011, sections 3 and 4; the count 3n - 2p for all sub-chains is the (3, 3) game of A. Lee and I. Streinu,
 Pebble game algorithms and sparse graphs, Discrete Mathematics 308 (2008).
@@ -29,7 +29,7 @@ PIN_FREEDOMS = 2
 
 @dataclass(frozen=True)
 class Tie:
-    """`constraints` scalar conditions between two bodies, put there by the pair `name`."""
+    """Connection of two bodies by `constraints` scalar conditions of the pair `name`."""
 
     name: str
     a: str
@@ -39,11 +39,13 @@ class Tie:
 
 @dataclass(frozen=True)
 class PebbleCount:
-    """What the game found.
+    """Result of the pebble game.
 
-    free: freedoms left to all bodies together, the root's three excepted. depends: body -> bodies its place depends
-    on directly. redundant_pairs: ties with a condition that repeats others, with the bodies that were rigid already.
-    under_constrained: bodies that still have a freedom.
+    Attributes:
+        free: freedoms left to all bodies together, without the three of the root.
+        depends: for each body, the bodies on whose positions its position directly depends.
+        redundant_pairs: ties with a redundant condition, each with the bodies that were already rigid.
+        under_constrained: bodies that still have a freedom.
     """
 
     free: int
@@ -53,7 +55,7 @@ class PebbleCount:
 
 
 def reachable_nodes(out: Mapping[Node, Iterable[Node]], *starts: Node) -> dict[Node, None]:
-    """All that can be reached from these nodes, themselves included, in the order in which they are met."""
+    """Return all nodes that can be reached from the given ones, these included, in the order of the search."""
     seen = dict.fromkeys(starts)
     todo = list(starts)
     while todo:
@@ -64,7 +66,7 @@ def reachable_nodes(out: Mapping[Node, Iterable[Node]], *starts: Node) -> dict[N
 
 
 class PebbleGame:
-    """The (3, 3) pebble game with one root that never moves, and pins that have two pebbles."""
+    """The (3, 3) pebble game with a root that never moves, and with pins that have two pebbles."""
 
     def __init__(self, bodies: Iterable[str], root: str, pins: Iterable[str]) -> None:
         self.pebbles = dict.fromkeys(bodies, FREEDOMS) | dict.fromkeys(pins, PIN_FREEDOMS)
@@ -72,7 +74,9 @@ class PebbleGame:
         self.root = root
 
     def bring(self, to: str, reserved: Mapping[str, int]) -> bool:
-        """Move one free pebble to a body along a path of dependence; `reserved` pebbles stay where they are."""
+        """Move a free pebble to a body along a path of dependence; True if one was found. `reserved` pebbles are not
+        moved.
+        """
         path = self.path(to, reserved, {to})
         if path is None:
             return False
@@ -84,7 +88,7 @@ class PebbleGame:
         return True
 
     def path(self, start: str, reserved: Mapping[str, int], seen: set[str]) -> list[str] | None:
-        """The bodies from this one to a free pebble."""
+        """Return a path of bodies from `start` to one with a free pebble, or None."""
         for target in self.out[start]:
             if target not in seen:
                 seen.add(target)
@@ -94,15 +98,15 @@ class PebbleGame:
         return None
 
     def rigid(self, a: str, b: str) -> bool:
-        """True if the conditions added so far leave two bodies no motion relative to one another."""
+        """Return True if the conditions added so far make two bodies rigid to each other."""
         while self.pebbles[a] + self.pebbles[b] <= FREEDOMS:
-            keep = {a: FREEDOMS, b: FREEDOMS}  # their own stay
+            keep = {a: FREEDOMS, b: FREEDOMS}  # their own pebbles stay
             if not ((self.pebbles[a] < FREEDOMS and self.bring(a, keep)) or self.bring(b, keep)):
                 return True
         return False
 
     def add(self, a: str, b: str) -> bool:
-        """Add one condition between a and b; False when it repeats what already holds."""
+        """Add one condition between a and b; return False if it is redundant."""
         if self.rigid(a, b):
             return False
         tail, head = (a, b) if self.pebbles[a] > 0 and a != self.root else (b, a)
@@ -111,13 +115,13 @@ class PebbleGame:
         return True
 
     def settle(self) -> None:
-        """Give the root its three pebbles back: it depends on nothing."""
+        """Return its three pebbles to the root, which depends on nothing."""
         while self.pebbles[self.root] < FREEDOMS and self.bring(self.root, {}):
             pass
 
 
 def count_freedoms(bodies: Iterable[str], root: str, ties: Iterable[Tie], pins: Iterable[str] = ()) -> PebbleCount:
-    """Play the game over all ties of the bodies and pins (names of pins are none of the bodies')."""
+    """Play the pebble game over all ties of the bodies and pins; names of pins must differ from names of bodies."""
     bodies, pins = tuple(bodies), frozenset(pins)
     game = PebbleGame(bodies, root, pins)
     redundant_pairs = []
@@ -137,9 +141,9 @@ def count_freedoms(bodies: Iterable[str], root: str, ties: Iterable[Tie], pins: 
 
 
 def rigid_sets(bodies: Iterable[str], ties: Iterable[Tie], pins: Iterable[str] = ()) -> tuple[tuple[str, ...], ...]:
-    """Sets of two bodies or more that are rigid to one another by the count.
+    """Return sets of two or more bodies that the count shows to be rigid to one another.
 
-    Bodies of such a set are joined within it, so only bodies that share a tie or a pin are compared.
+    The bodies of such a set are connected within it, so only bodies that share a tie or a pin are compared.
     """
     bodies, pins, ties = tuple(bodies), frozenset(pins), tuple(ties)
     game = PebbleGame(bodies, "", pins)
@@ -158,7 +162,7 @@ def rigid_sets(bodies: Iterable[str], ties: Iterable[Tie], pins: Iterable[str] =
 
 
 def dependence_components(depends: dict[str, tuple[str, ...]]) -> Iterator[tuple[str, ...]]:
-    """Bodies that depend on one another, part by part, each part after all that it depends on."""
+    """Yield sets of bodies that depend on one another, each after all sets that it depends on."""
     seen: set[str] = set()
 
     def visit(body: str) -> Iterator[tuple[str, ...]]:
@@ -167,7 +171,7 @@ def dependence_components(depends: dict[str, tuple[str, ...]]) -> Iterator[tuple
         for target in depends[body]:
             if target not in seen:
                 yield from visit(target)
-        if alone:  # the first of its part to be met is the last to be left
+        if alone:  # the first body of a component to be visited is the last to be left
             yield parts[body]
 
     needs = {body: reachable_nodes(depends, body) for body in depends}
@@ -177,15 +181,15 @@ def dependence_components(depends: dict[str, tuple[str, ...]]) -> Iterator[tuple
             yield from visit(body)
 
 
-# Independent contours of a chain, and how a linkage is classed by them and by its groups.
+# Independent contours of a chain, and classification of a linkage by them and by its groups.
 #
-# A contour is independent when it has a pair that no other of the list has: K = p - n of them, one for every pair that
-# is left over when a tree of pairs has reached all links. The tree is grown from the frame, nearest links first, so the
-# contours are short and run through the frame where they can.
+# A contour is independent if it contains a pair that no other contour of the list contains: K = p - n contours, one for
+# every pair that is not in a spanning tree. The tree is grown from the frame, nearest links first, so the contours are
+# short and contain the frame where possible.
 
 
 class AnyPair(Protocol):
-    """Whatever joins two links: a planar pair or a pair in space."""
+    """A pair of two links, planar or spatial."""
 
     @property
     def name(self) -> str: ...
@@ -197,32 +201,32 @@ class AnyPair(Protocol):
 
 @dataclass(frozen=True)
 class Contour:
-    """A closed contour: its links in order, from the one nearest the frame on, and the pairs between them."""
+    """A closed contour: its links in order, from the one nearest the frame, and the pairs between them."""
 
     links: tuple[str, ...]
     pairs: tuple[str, ...]
 
     @property
     def title(self) -> str:
-        """0-1-2-3-0."""
+        """Links of the contour, e.g. 0-1-2-3-0."""
         return "-".join(map(printed, (*self.links, self.links[0])))
 
 
 def find_contours(pairs: Sequence[AnyPair], links: Iterable[str]) -> tuple[Contour, ...]:
-    """Independent contours of the links that pairs join to the frame; `links` says in which order they are named."""
+    """Return the independent contours of the links that the pairs join to the frame, in the order of `links`."""
     ways = _shortest_paths(pairs)
     rank = {link: number for number, link in enumerate((FRAME, *links))}
     found = []
     for pair in pairs:
         if pair.i not in ways or pair.j not in ways or pair in (ways[pair.i][0][1], ways[pair.j][0][1]):
-            continue  # out of reach, or itself on a way
+            continue  # not connected to the frame, or in the tree
         one, other = list(ways[pair.i]), list(ways[pair.j])
         while len(one) > 1 and len(other) > 1 and one[-2][0] == other[-2][0]:
             one.pop()
             other.pop()
         if (rank[_second_link(one, other)], len(one) == 1) > (rank[_second_link(other, one)], len(other) == 1):
             one, other = other, one
-        # down the one path from the link both have in common, over the pair, back up the other
+        # from the common link down one path, over the pair, and back up the other
         names = [link for link, _ in reversed(one)] + [link for link, _ in other[:-1]]
         joints = [p.name for _, p in reversed(one[:-1]) if p] + [pair.name] + [p.name for _, p in other[:-1] if p]
         found.append(Contour(tuple(names), tuple(joints)))
@@ -230,10 +234,10 @@ def find_contours(pairs: Sequence[AnyPair], links: Iterable[str]) -> tuple[Conto
 
 
 def classify_linkage(structure: Structure) -> tuple[str, ...]:
-    """Words for a linkage: closed or open; elementary, simple or complex; groups of one type or of several.
+    """Classify a linkage: closed or open; elementary, simple or complex; groups of one type or of several.
 
-    Elementary: the driver alone; simple: one group on it; complex: two groups or more. Combined: some of its groups are
-    alike and others are not.
+    Elementary: the driver alone; simple: with one group; complex: with two or more groups. Combined: some groups are of
+    the same type, others are not.
     """
     chain = "closed" if structure.contours > 0 else "open"
     if not structure.groups:
@@ -247,24 +251,24 @@ def classify_linkage(structure: Structure) -> tuple[str, ...]:
 
 
 def is_dependent(contour: Contour, structure: Structure) -> bool:
-    """Return True if the contour repeats another one: a link or pair of it is redundant."""
+    """Return True if the contour is redundant: it contains a redundant link or pair."""
     pairs = {redundant.pair for redundant in structure.reduction.pairs if not redundant.left}
     return not structure.reduction.removed.isdisjoint(contour.links) or not pairs.isdisjoint(contour.pairs)
 
 
 def links_joined_to_frame(pairs: Sequence[AnyPair]) -> set[str]:
-    """The links that some way of pairs joins to the frame, the frame among them."""
+    """Return the links that a path of pairs joins to the frame, including the frame."""
     return set(_shortest_paths(pairs))
 
 
-PathToFrame = list[tuple[str, AnyPair | None]]  # links on the way to the frame, each with the pair that leads on
+PathToFrame = list[tuple[str, AnyPair | None]]  # links on the path to the frame, each with the next pair
 
 
 def _shortest_paths(pairs: Sequence[AnyPair]) -> dict[str, PathToFrame]:
-    """The shortest way to the frame of every link that has one."""
+    """Return the shortest path to the frame for every link that has one."""
     ways: dict[str, PathToFrame] = {FRAME: [(FRAME, None)]}
     todo = [FRAME]
-    for link in todo:  # grows while it is walked: nearest links first
+    for link in todo:  # the list grows during the loop: nearest links first
         for pair in pairs:
             if link in (pair.i, pair.j):
                 after = pair.j if link == pair.i else pair.i
@@ -275,5 +279,5 @@ def _shortest_paths(pairs: Sequence[AnyPair]) -> dict[str, PathToFrame]:
 
 
 def _second_link(path: PathToFrame, other: PathToFrame) -> str:
-    """The link after the common one, going down the path and then up the other."""
+    """Return the link after the common one, down `path` and then up `other`."""
     return path[-2][0] if len(path) > 1 else other[0][0]

@@ -1,7 +1,8 @@
-"""Class of an Assur group after I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 3.
+"""Pairs and Assur groups, the class of a group, and the reduction of redundant links and pairs.
 
-A group of two links is of class II; otherwise the class is the number of sides of its largest closed contour of inner
-pairs, or of the inner pairs of its richest link when it has no contour.
+Class after I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 3: a group of two links is of class II; otherwise
+the class is the number of sides of its largest closed contour of internal pairs, or, if it has no contour, the largest
+number of internal pairs on one link.
 """
 
 from __future__ import annotations
@@ -22,9 +23,12 @@ def group_class(
     drivers: Iterable[Driver],
     as_higher: Collection[str] = (),
 ) -> int:
-    """Class of a group after replacing: a higher pair by a link with two hinges, a driven pair by one rigid link.
+    """Return the class of a group; a higher pair counts as a link with two hinges, a driven pair as one rigid link.
 
-    Links of one body are rigid to one another; as_higher: names of lower pairs that count as higher ones.
+    Args:
+        bodies: sets of links that are rigid to one another.
+        inner, outer: internal and external pairs.
+        as_higher: names of lower pairs that count as higher ones.
     """
     one = {name: links[0] for links in bodies for name in links}
     for driver in drivers:
@@ -46,7 +50,7 @@ def group_class(
 
 
 def _largest_contour(links: list[str], inner: list[tuple[str, str]]) -> int:
-    """Sides of the largest closed contour of inner pairs (groups are small: a plain search of all simple cycles)."""
+    """Return the number of sides of the largest closed contour of internal pairs, by a search of all simple cycles."""
     joined: dict[str, list[str]] = {link: [] for link in links}
     for i, j in inner:
         joined[i].append(j)
@@ -64,16 +68,18 @@ def _largest_contour(links: list[str], inner: list[tuple[str, str]]) -> int:
     return best
 
 
-# What the structural report leaves out: redundant links and pairs; links that are rigid to one another count as one.
+# Reduction: the structural report leaves out redundant links and pairs, and counts rigid sets of links as one.
 #
-# Kinematics and forces keep all of them. The Assur groups of the report are split off from what is left, so that for
+# Kinematics and forces keep all links. The Assur groups of the report are those of the remaining links, so that for
 # each of them 3n - 2p1 - p2 = 0. I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 2, on redundant
 # constraints.
 
 
 @dataclass(frozen=True)
 class RigidSet:
-    """Links that are rigid to one another, the frame too; constraints: how many of theirs are redundant."""
+    """Links that are rigid to one another, the frame possibly included; constraints: redundant constraints within the
+    set.
+    """
 
     links: tuple[str, ...]
     constraints: int = 0
@@ -81,7 +87,7 @@ class RigidSet:
 
 @dataclass(frozen=True)
 class RedundantLink:
-    """A redundant link (or links that are rigid to one another), and the redundant constraints it adds."""
+    """A redundant link (or links rigid to one another), with the number of redundant constraints that it adds."""
 
     links: tuple[str, ...]
     constraints: int
@@ -98,9 +104,9 @@ class RedundantPair:
 
 @dataclass(frozen=True)
 class Reduction:
-    """Rigid sets, redundant links, and how many conditions of which tie (by its number in ties_of) are redundant.
+    """What the structural report leaves out: rigid sets count as one link; redundant links, and redundant conditions.
 
-    `pairs` names the pairs of those ties.
+    conditions: number of redundant conditions of each tie, by its index in list_ties. pairs: the pairs of those ties.
     """
 
     rigid: tuple[RigidSet, ...] = ()
@@ -113,7 +119,7 @@ class Reduction:
 
     @cached_property
     def removed(self) -> frozenset[str]:
-        """All redundant links."""
+        """Names of all redundant links."""
         return frozenset(name for redundant in self.links for name in redundant.links)
 
     @cached_property
@@ -122,29 +128,29 @@ class Reduction:
         return {link: first[rigid] for rigid in self.rigid for link in rigid.links}
 
     def body(self, link: str) -> str:
-        """The body that a link belongs to, by the name of its first link; a name of something else (a pin) stays."""
+        """Return the body of a link, by the name of its first link; other names (pins) are returned unchanged."""
         return self._representative.get(link, link)
 
     def members(self, body: str) -> tuple[str, ...]:
-        """The links of a body."""
+        """Return the links of a body."""
         return next((rigid.links for rigid in self.rigid if self.body(rigid.links[0]) == body), (body,))
 
     def bodies(self, links: Iterable[str]) -> tuple[str, ...]:
-        """The bodies that are left of these links."""
+        """Return the remaining bodies of these links."""
         return tuple(dict.fromkeys(self.body(link) for link in links if link not in self.removed))
 
     def within(self, ties: Sequence[Tie]) -> frozenset[int]:
-        """The numbers of the ties within rigid sets; in a compound hinge those of several links of one set."""
+        """Return the indices of the ties within rigid sets; in a compound hinge those of several links of one set."""
         ends = [(tie.name, self.body(tie.a), self.body(tie.b)) for tie in ties]
         return frozenset(k for k, (name, a, b) in enumerate(ends) if a == b or ends.count((name, a, b)) > 1)
 
     def touched(self, ties: Sequence[Tie]) -> frozenset[int]:
-        """The numbers of the ties within rigid sets and of those of redundant links."""
+        """Return the indices of the ties within rigid sets and of redundant links."""
         removed = (k for k, tie in enumerate(ties) if not self.removed.isdisjoint((tie.a, tie.b)))
         return self.within(ties) | {*removed}
 
     def ties(self, ties: Iterable[Tie]) -> Iterator[Tie]:
-        """The ties between the bodies that are left, with the conditions that are left."""
+        """Yield the ties between the remaining bodies, with their remaining conditions."""
         joined = set()
         for number, tie in enumerate(ties):
             a, b, left = self.body(tie.a), self.body(tie.b), tie.constraints - self.conditions.get(number, 0)
@@ -155,11 +161,11 @@ class Reduction:
     def reduced_pairs(
         self, linkage: Linkage, pairs: Sequence[Pair], rank: Mapping[str, int], ties: Sequence[Tie]
     ) -> Iterator[Pair]:
-        """The pairs between the bodies that are left, of `pairs` where these join the same bodies.
+        """Yield the pairs between the remaining bodies; those of `pairs` where they join the same bodies.
 
         Args:
-            rank: the number of a link's group in solving order, of the links that are left.
-            ties: what ties() gives.
+            rank: index of the group of each remaining link in solving order.
+            ties: the remaining ties, from `ties()`.
         """
         tied = {(tie.name, end) for tie in ties for end in (tie.a, tie.b)}
         for hinge in linkage.hinges:
@@ -185,7 +191,7 @@ class Reduction:
                 yield pair
 
     def pair_of(self, tie: Tie, pairs: Iterable[Pair]) -> Pair | None:
-        """The pair that a tie stands for; in a compound hinge the one that attaches its link."""
+        """Return the pair of a tie, or None; in a compound hinge the pair that attaches its link."""
         ends = {self.body(tie.a), self.body(tie.b)}
         here = (pair for pair in pairs if tie.name == (pair.name if pair.slide or pair.mesh else pair.point))
         return next((pair for pair in here if ends & {self.body(pair.i), self.body(pair.j)}), None)
@@ -200,19 +206,19 @@ ROMAN = ("0", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X")
 PAIR_CODES = {
     "R": "1в",
     "P": "1п",
-}  # K. S. Alyushin: freedoms, then the first letter of "rotational" or "translational"
-DYAD_NUMBERS = {"RRR": 1, "RRP": 2, "RPR": 3, "PRP": 4, "RPP": 5}  # types of a class II group with two links
+}  # K. S. Alyushin: number of freedoms and the first Russian letter of "rotational" or "translational"
+DYAD_NUMBERS = {"RRR": 1, "RRP": 2, "RPR": 3, "PRP": 4, "RPP": 5}  # type numbers of dyads
 LOWER_PAIR_KINDS = (
     "R",
     "P",
-)  # kinds of lower pairs, with one freedom; the others (teeth G and K, cams C) are higher, with two
+)  # kinds with one freedom; the others (gears G, racks K, cams C) are higher pairs with two
 
 
 @dataclass(frozen=True)
 class Pair:
-    """A pair of two links. `i` comes first: the frame, the carrier, or the link that is placed earlier.
+    """A kinematic pair of two links; `i` is the frame, the carrier, or the link that is solved earlier.
 
-    kind: R turning, P sliding; higher pairs: G toothed wheels, K wheel and rack, C cam and follower.
+    kind: R revolute, P prismatic; higher pairs: G gears, K gear and rack, C cam and follower.
     """
 
     name: str
@@ -225,7 +231,7 @@ class Pair:
 
     @property
     def lower(self) -> bool:
-        """Whether it leaves one freedom only."""
+        """True for a lower pair (one freedom)."""
         return self.kind in LOWER_PAIR_KINDS
 
     @property
@@ -235,20 +241,20 @@ class Pair:
 
     @property
     def pair_class(self) -> int:
-        """The class of the pair in space: 5 for a lower pair, 4 for a higher one."""
+        """Class of the pair in space: 5 for a lower pair, 4 for a higher one."""
         return 6 - self.freedoms
 
     @property
     def code(self) -> str:
-        """1в for a revolute pair, 1п for a prismatic one; empty for a higher pair, which has no code."""
+        """Code of the pair: 1в for a revolute pair, 1п for a prismatic one; empty for a higher pair."""
         return PAIR_CODES.get(self.kind, "")
 
     def other(self, link: str) -> str:
-        """The link at the other side."""
+        """Return the other link of the pair."""
         return self.j if link == self.i else self.i
 
     def rebind(self, linkage: Linkage) -> Pair:
-        """The same pair with the numbers of another linkage."""
+        """Return the same pair with the dimensions of another linkage."""
         slide = None if self.slide is None else linkage.slide(self.slide.name)
         mesh = None if self.mesh is None else next(m for m in linkage.meshes if m.name == self.mesh.name)
         return self if slide is None and mesh is None else replace(self, slide=slide, mesh=mesh)
@@ -256,11 +262,12 @@ class Pair:
 
 @dataclass(frozen=True)
 class Group:
-    """An Assur group: its links, inner and outer pairs (outer in the order of its links), class, order and type.
+    """An Assur group: links, internal and external pairs (the latter in the order of its links), class and type.
 
-    drivers: those between its own links (a swinging cylinder), which are rows of the group as its pairs are.
-    rigid: links of it that are rigid to one another and count as one. as_higher: names of lower pairs that count as
-    higher ones, because one of their two conditions is redundant.
+    Attributes:
+        drivers: drivers between two of its links (a swinging cylinder), which add equations as the pairs do.
+        rigid: sets of its links that are rigid to one another and count as one.
+        as_higher: names of lower pairs that count as higher ones, because one of their two conditions is redundant.
     """
 
     links: tuple[str, ...]
@@ -273,34 +280,34 @@ class Group:
     as_higher: tuple[str, ...] = ()
 
     def own(self, pair: Pair) -> str:
-        """The link of the group in one of its outer pairs."""
+        """Return the group's own link in one of its external pairs."""
         return pair.i if pair.i in self.links else pair.j
 
     @property
     def known(self) -> tuple[str, ...]:
-        """The links that it hangs on, pair by pair."""
+        """Links to which the external pairs attach the group, pair by pair."""
         return tuple(pair.other(self.own(pair)) for pair in self.outer)
 
     @property
     def depends_on(self) -> set[str]:
-        """All links that must be placed before the group: its neighbours, and the carriers of its gears."""
+        """All links that must be solved before the group: links of its external pairs, and carriers of its gears."""
         meshes = [pair.mesh for pair in (*self.inner, *self.outer) if pair.mesh is not None]
         others = {*self.known, *(mesh.carrier for mesh in meshes), *(driver.base for driver in self.drivers)}
         return others.difference(self.links)
 
     @property
     def order(self) -> int:
-        """The number of its external pairs."""
+        """Number of its external pairs."""
         return len(self.outer)
 
     @property
     def bodies(self) -> tuple[tuple[str, ...], ...]:
-        """Its links, those that are rigid to one another together."""
+        """Its links, with links that are rigid to one another together."""
         return tuple(dict.fromkeys(next((r for r in self.rigid if link in r), (link,)) for link in self.links))
 
     @property
     def count(self) -> tuple[int, int, int]:
-        """n, p1, p2 of 3n - 2p1 - p2, which is zero; the two links of a driven pair count as one."""
+        """Numbers n, p1, p2 with 3n - 2p1 - p2 = 0; the two links of a driven pair count as one."""
         pairs = (*self.inner, *self.outer)
         lower = sum(pair.lower and pair.name not in self.as_higher for pair in pairs)
         driven = len(self.drivers)
@@ -308,43 +315,45 @@ class Group:
 
     @property
     def mobility(self) -> int:
-        """3n - 2p1 - p2: zero for an Assur group."""
+        """Mobility 3n - 2p1 - p2: zero for an Assur group."""
         n, lower, higher = self.count
         return 3 * n - 2 * lower - higher
 
     def rebind(self, linkage: Linkage) -> Group:
-        """The same group with the numbers of another linkage."""
+        """Return the same group with the dimensions of another linkage."""
         inner, outer = (tuple(pair.rebind(linkage) for pair in pairs) for pairs in (self.inner, self.outer))
         drivers = tuple(d for own in self.drivers for d in linkage.drivers if d.link == own.link)
         return replace(self, inner=inner, outer=outer, drivers=drivers)
 
     @property
     def type_number(self) -> int | None:
-        """The number 1 to 5 of the type of a class II group of two links; None for any other group."""
+        """Number 1 to 5 of the type of a dyad; None for any other group."""
         return DYAD_NUMBERS.get(self.type)
 
     @property
     def letters(self) -> str:
-        """The type of such a group in Russian letters: ВВВ, ВВП, ВПВ, ПВП or ВПП; empty for any other group."""
+        """Type of a dyad in Russian letters: ВВВ, ВВП, ВПВ, ПВП or ВПП; empty for any other group."""
         return self.type.translate({ord("R"): "В", ord("P"): "П"}) if self.type_number else ""
 
     @property
     def roman(self) -> str:
-        """Its class as it is written; those above the tenth, which nobody has met, as the tenth."""
+        """Class in Roman numerals (at most X)."""
         return ROMAN[min(self.group_class, 10)]
 
     @property
     def title(self) -> str:
-        """II(2,3): class and links, as the formula of structure writes it."""
+        """Class and links as in the structural formula, e.g. II(2,3)."""
         return f"{self.roman}({','.join(map('+'.join, self.bodies))})"
 
 
 @dataclass(frozen=True)
 class PairRedundancy:
-    """Passive constraints in a pair: its conditions that only repeat others, by special dimensions.
+    """Redundant constraints of a pair, which repeat others because of special dimensions.
 
-    links: the two that the pair joins, the passive one (whose place follows without it) last. among: all links that are
-    held twice by each other.
+    Attributes:
+        constraints: number of redundant constraints.
+        links: the two links of the pair; the redundant one (whose position is determined without it) last.
+        among: all links that take part in the redundancy.
     """
 
     pair: str

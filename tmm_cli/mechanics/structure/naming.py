@@ -1,4 +1,4 @@
-"""What each link and the whole scheme are called, from the pairs and from what can turn all the way round; the output.
+"""Names of links and basic schemes, from the pairs and from which links rotate fully; the default output link.
 
 Six-bar chains: R. L. Norton, Design of Machinery, ch. 2; basic schemes: I. I. Artobolevsky, Theory of Mechanisms and
 Machines, ch. 2.
@@ -19,7 +19,9 @@ from tmm_cli.mechanics.structure.group import Group, Pair
 
 
 def link_roles(linkage: Linkage, turns: Callable[[str], bool]) -> dict[str, str]:
-    """The role of each moving link; `turns` tells whether a link turns through 360 degrees, and is asked only then."""
+    """Return the role of each moving link; `turns(link)` is True if it makes a full turn, and is called only where it
+    matters.
+    """
     return {name: _link_role(linkage, name, turns) for name in linkage.moving}
 
 
@@ -47,7 +49,7 @@ def _link_role(linkage: Linkage, name: str, turns: Callable[[str], bool]) -> str
 
 
 def _higher_pair_role(linkage: Linkage, name: str) -> str | None:
-    """What a link is called for its teeth or its cam; a wheel is a planet where its axis moves."""
+    """Return the role of a gear, rack, cam, follower or carrier, or None; a gear whose axis moves is a planet."""
     for mesh in linkage.meshes:
         if mesh.kind == "cam" and name in (mesh.i, mesh.j):
             return "cam" if name == mesh.i else "follower"
@@ -59,7 +61,7 @@ def _higher_pair_role(linkage: Linkage, name: str) -> str | None:
 
 
 def _cylinder_role(linkage: Linkage, name: str) -> str | None:
-    """A cylinder that swings, and the piston that is driven out of it."""
+    """Return "cylinder" or "piston" for the links of a driven swinging cylinder, or None."""
     driven = {d.joint for d in linkage.drivers if d.kind == "slide" and d.base != FRAME}
     for slide in linkage.slides:
         if slide.name in driven and name in (slide.carrier, slide.runner):
@@ -68,9 +70,9 @@ def _cylinder_role(linkage: Linkage, name: str) -> str | None:
 
 
 def output_link(linkage: Linkage, groups: tuple[Group, ...]) -> str | None:
-    """The output: named in the file, or the last link that is joined to the frame and not a driver or its cylinder.
+    """Return the output link: as named in the file, or the last link connected to the frame that is not driven.
 
-    Where constraints are redundant the groups are not known yet; then the links stand in the order of the file.
+    If constraints are redundant, the groups are not yet known; then links are taken in the order of the file.
     """
     if linkage.output is not None:
         return linkage.output.link
@@ -84,7 +86,7 @@ def output_link(linkage: Linkage, groups: tuple[Group, ...]) -> str | None:
 
 
 def link_motion(linkage: Linkage, name: str) -> str:
-    """The motion of a link relative to the frame, as far as its pairs alone show it.
+    """Return the motion of a link relative to the frame, as far as its pairs determine it.
 
     Returns:
         "rotation" (it has a revolute pair with the frame), "translation" (prismatic pairs alone connect it to the
@@ -99,9 +101,11 @@ def link_motion(linkage: Linkage, name: str) -> str:
 
 
 def is_parallelogram_coupler(linkage: Linkage, name: str) -> bool:
-    """Whether a link may be the coupler of a parallelogram: by lengths alone, so also that of an antiparallelogram.
+    """Return True if a link may be the coupler of a parallelogram, judged by lengths; also true for an
+    antiparallelogram.
 
-    Two of its points are hinged to links that turn about the frame, on equal arms and as far apart as their pivots.
+    Two of its points are hinged to links pivoted on the frame, with equal arms and at the same distance as their
+    pivots.
     """
     arms = []
     for hinge in linkage.hinges:
@@ -120,9 +124,9 @@ def is_parallelogram_coupler(linkage: Linkage, name: str) -> bool:
 
 
 def four_link_scheme(kinds: str) -> str | None:
-    """The basic scheme of a contour of four links, from its pairs in order, both of the frame at the ends.
+    """Return the basic scheme of a four-link contour, from its pairs in order, those with the frame at both ends.
 
-    It does not depend on which link drives. None for a contour without a name.
+    It does not depend on which link is the driver. None for a contour without a name.
     """
     schemes = {
         "RRRR": "hinged four-bar",
@@ -137,7 +141,7 @@ def four_link_scheme(kinds: str) -> str | None:
 
 
 def contour_scheme(contour: Contour, structure: Structure) -> str | None:
-    """The basic scheme of a contour of four links with the frame; None for any other contour."""
+    """Return the basic scheme of a four-link contour with the frame; None for any other contour."""
     if len(contour.links) != 4 or contour.links[0] != FRAME:
         return None
     kind = {pair.name: pair.kind for pair in structure.pairs}
@@ -145,7 +149,7 @@ def contour_scheme(contour: Contour, structure: Structure) -> str | None:
 
 
 def basic_schemes(structure: Structure) -> dict[str, str]:
-    """The basic schemes of all contours of four links with the frame, by title: {"0-1-2-3-0": "crank-slider"}."""
+    """Return the basic schemes of all four-link contours with the frame, by title: {"0-1-2-3-0": "crank-slider"}."""
     named = (
         (contour.title, contour_scheme(contour, structure))
         for contour in find_contours(structure.pairs, structure.links)
@@ -154,10 +158,10 @@ def basic_schemes(structure: Structure) -> dict[str, str]:
 
 
 def six_bar_schemes(structure: Structure) -> tuple[str, ...]:
-    """The names of a six-link mechanism with seven lower pairs: Watt I or II, Stephenson I, II or III.
+    """Return the names of a six-link mechanism with seven lower pairs: Watt I or II, Stephenson I, II or III.
 
-    A compound hinge of three links can be drawn in three ways, which may have different names: all of them are
-    returned. Empty for any other mechanism, and for one that has redundant links or pairs.
+    A compound hinge of three links can be drawn in three ways, which may have different names; all of them are
+    returned. Empty for any other mechanism, and for one with redundant links or pairs.
     """
     if len(structure.links) != 5 or len(structure.pairs) != 7 or structure.higher or structure.reduction:
         return ()
@@ -166,7 +170,9 @@ def six_bar_schemes(structure: Structure) -> tuple[str, ...]:
 
 
 def _attachments(pairs: Sequence[Pair]) -> Iterator[tuple[tuple[str, str], ...]]:
-    """The links of all pairs, for each choice of the link that carries the others in each compound hinge."""
+    """Yield the links of all pairs, for each choice of the link to which the others of a compound hinge are
+    attached.
+    """
     by_place: dict[str, list[tuple[str, str]]] = {}
     for pair in pairs:
         by_place.setdefault(pair.point if pair.kind == "R" else f"slide {pair.name}", []).append((pair.i, pair.j))
@@ -180,7 +186,7 @@ def _attachments(pairs: Sequence[Pair]) -> Iterator[tuple[tuple[str, str], ...]]
 
 
 def _six_bar_name(pairs: tuple[tuple[str, str], ...]) -> str | None:
-    """The name of a six-link chain with two ternary links on a frame; None for other chains."""
+    """Return the name of a six-link chain with two ternary links; None for other chains."""
     degree = {link: sum(link in pair for pair in pairs) for pair in pairs for link in pair}
     ternary = {link for link in degree if degree[link] == 3}
     if sorted(degree.values()) != [2, 2, 2, 2, 3, 3]:

@@ -1,21 +1,21 @@
-"""A planar linkage made of real parts is spatial: its redundant constraints, and pairs that take them away.
+"""Redundant constraints of a planar linkage as a spatial one, and a proposal of pairs that removes them.
 
-With all axes square to the plane, what holds a linkage falls into two halves that know nothing of each other: motion
-in the plane, and motion out of it. Out of the plane a link can rise and tilt, so it is the height
-h(x, y) = a + b x + c y over its own axes. Each pair asks for equal heights:
+With all axes perpendicular to the plane, the constraints separate into two independent parts: motion in the plane, and
+motion out of it. Out of the plane a link can translate and tilt, so it is described by the height
+h(x, y) = a + b x + c y over its own axes. Each pair requires equal heights:
 
     turning, sliding       height and both slopes      3 conditions
-    cylindrical for R      both slopes                 2   (it may rise along its axis)
+    cylindrical for R      both slopes                 2   (free along its axis)
     spherical              height at the centre        1
-    cylindrical for P      height along the guide      2   (it may turn about the guide)
-    planar for P           slope across the guide      1   (flat cheeks: it may rise and turn in the wall)
-    teeth, cams            slope along the normal      1   (they touch in a line along the axes)
-    the same, crowned      nothing                     0   (they touch in a point)
+    cylindrical for P      height along the guide      2   (free to rotate about the guide)
+    planar for P           slope across the guide      1   (flat cheeks: free to rise and to rotate in the plane)
+    teeth, cams            slope along the normal      1   (line contact parallel to the axes)
+    the same, crowned      none                        0   (point contact)
 
-A linkage with W = 1 has 3K conditions too many, K its contours. None of these replacements touches the motion in the
-plane. A proposal is good when its conditions are independent (rank) and what they leave free are local freedoms of
-single links. Points of links enter as they are, links at arbitrary angles, so no position has to be solved.
-Such replacements are the subject of L. N. Reshetov, Self-aligning mechanisms (Mir, 1982).
+A linkage with W = 1 has 3K redundant conditions, K the number of its contours. None of these replacements affects the
+motion in the plane. A proposal is accepted if its conditions are independent (by rank) and the freedoms that remain are
+local freedoms of single links. Points of links enter with their coordinates, links with arbitrary angles, so no
+position has to be solved. Such replacements are the subject of L. N. Reshetov, Self-aligning mechanisms (Mir, 1982).
 """
 
 from __future__ import annotations
@@ -41,15 +41,17 @@ PAIR_CHOICES = {
     "K": TOUCHING,
     "C": TOUCHING,
 }
-"""Kinds that a pair may have, in the order of the conditions they leave: 3, 2, 1; of higher pairs 1, 0."""
-CONDITIONS = 3  # of a link out of the plane, and of a turning or sliding pair
-GOLDEN = 2.399963229728653  # golden angle, rad: its multiples are as unlike one another as can be
+"""Kinds that may replace a pair, in the order of their conditions out of the plane: 3, 2, 1; of higher pairs 1, 0."""
+CONDITIONS = 3  # freedoms of a link out of the plane; conditions of a revolute or prismatic pair
+GOLDEN = (
+    2.399963229728653  # golden angle, rad: its multiples are well spread, so that no two links are parallel by accident
+)
 MOST_TRIES = 12
 
 
 @dataclass(frozen=True)
 class PairReplacement:
-    """A pair that is to become one with more freedoms."""
+    """A pair that is replaced by one with more freedoms."""
 
     pair: Pair
     was: str
@@ -62,7 +64,7 @@ class PairReplacement:
 
 @dataclass(frozen=True)
 class OutOfPlaneRank:
-    """Out of the plane: conditions that repeat others, freedoms that are left, and how many of these are local."""
+    """Numbers of redundant conditions out of the plane, of remaining freedoms, and of local ones among these."""
 
     redundant: int
     free: int
@@ -71,9 +73,9 @@ class OutOfPlaneRank:
 
 @dataclass(frozen=True)
 class SpatialCount:
-    """A planar linkage counted in space, as it is and as proposed.
+    """Mobility count of a planar linkage in space, as designed and as proposed.
 
-    wanted: its mobility Wo. replacements is None when no proposal was found. rank is of the proposal.
+    wanted: its mobility Wo. replacements: None if no proposal was found. rank: of the proposal.
     """
 
     chain: SpatialChain
@@ -84,22 +86,22 @@ class SpatialCount:
 
     @property
     def local(self) -> int:
-        """Wm as it is: turning and sliding pairs leave no link a freedom of its own."""
+        """Local freedoms Wm as designed: revolute and prismatic pairs leave none."""
         return 0
 
     @property
     def redundant(self) -> int:
-        """q = Wo + Wm - W as it is."""
+        """Redundant constraints q = Wo + Wm - W as designed."""
         return self.wanted + self.local - self.chain.mobility
 
     @property
     def redundant_then(self) -> int:
-        """q = Wo + Wm - W as proposed."""
+        """Redundant constraints q = Wo + Wm - W as proposed."""
         return self.wanted + self.rank.local - self.proposed.mobility
 
 
 def count_in_space(linkage: Linkage, structure: Structure) -> SpatialCount:
-    """Count the linkage in space and propose pairs without redundant constraints; wanted: one freedom a driver."""
+    """Count the mobility of the linkage in space (one freedom for each driver) and propose pairs without redundancy."""
     chain, wanted = spatial_chain(structure, {}), len(structure.drivers)
     heights = OutOfPlaneConditions(linkage)
     for pins_first in (True, False):
@@ -117,7 +119,7 @@ def count_in_space(linkage: Linkage, structure: Structure) -> SpatialCount:
 
 
 def spatial_chain(structure: Structure, kinds: Mapping[str, str]) -> SpatialChain:
-    """The linkage as a chain in space; `kinds` are those of pairs that are replaced, by name."""
+    """Return the linkage as a spatial chain; kinds: of the replaced pairs, by name."""
     named = ((p, kinds.get(p.name, PAIR_CHOICES[p.kind][0])) for p in structure.pairs)
     return SpatialChain(
         structure.links, tuple(SpatialPair(p.name, p.i, p.j, PAIR_FREEDOMS[kind], kind) for p, kind in named)
@@ -125,7 +127,7 @@ def spatial_chain(structure: Structure, kinds: Mapping[str, str]) -> SpatialChai
 
 
 def out_of_plane_rank(linkage: Linkage, structure: Structure, kinds: Mapping[str, str]) -> OutOfPlaneRank:
-    """Count conditions out of the plane by rank, with the kinds of replaced pairs given by name."""
+    """Count the conditions out of the plane by rank; kinds: of the replaced pairs, by name."""
     heights = OutOfPlaneConditions(linkage)
     rows = {
         p.name: heights.rows(p, kinds.get(p.name, PAIR_CHOICES[p.kind][0]), structure.links) for p in structure.pairs
@@ -136,7 +138,9 @@ def out_of_plane_rank(linkage: Linkage, structure: Structure, kinds: Mapping[str
 
 
 class OutOfPlaneConditions:
-    """Conditions of pairs on the heights (a, b, c) of links, each in the axes of its link, lengths over the size."""
+    """Conditions of pairs on the heights (a, b, c) of links, each in the axes of its link, lengths divided by the
+    size.
+    """
 
     def __init__(self, linkage: Linkage) -> None:
         self.linkage = linkage
@@ -146,9 +150,11 @@ class OutOfPlaneConditions:
         self.angle = _generic_angles(linkage)
 
     def rows(self, pair: Pair, kind: str, links: Sequence[str]) -> Real:
-        """Conditions that a pair of this kind puts on the given links, shape (conditions, 3 links); others lie flat."""
+        """Return the conditions of a pair of this kind on the given links, shape (conditions, 3 links); other links are
+        fixed.
+        """
         slide = pair.slide
-        if pair.mesh is not None:  # the normal of the teeth lies anywhere in the plane
+        if pair.mesh is not None:  # the normal of the teeth may have any direction in the plane
             places = dict.fromkeys((pair.i, pair.j), 0j)
             ahead = {link: cmath.exp(-1j * self.angle[link]) for link in places}
         elif slide is None:
@@ -157,7 +163,7 @@ class OutOfPlaneConditions:
         else:
             along = cmath.exp(1j * _first_value(slide.direction))
             ahead = {slide.carrier: along, slide.runner: along * cmath.exp(-1j * _first_value(slide.turned))}
-            run = GOLDEN * self.size  # anywhere: the condition holds along the whole guide or nowhere
+            run = GOLDEN * self.size  # arbitrary: the condition holds along the whole guide or nowhere
             places = {slide.carrier: _first_value(slide.through) + run * along, slide.runner: _first_value(slide.at)}
         height = {link: (1.0, place.real / self.size, place.imag / self.size) for link, place in places.items()}
         slope = {link: (0.0, e.real, e.imag) for link, e in ahead.items()}
@@ -181,12 +187,14 @@ class OutOfPlaneConditions:
 
 
 def _first_value(number: Any) -> complex:
-    """A length as one number, where it is given for many variants."""
+    """Return a length as one number: that of the first variant."""
     return complex(np.ravel(number)[0])
 
 
 def _generic_angles(linkage: Linkage) -> dict[str, float]:
-    """Angles of links in an arbitrary place; those that slides keep parallel stay so."""
+    """Return the angles of the links in a generic configuration; links joined by prismatic pairs keep their relative
+    angle.
+    """
     angle = {link: GOLDEN * number for number, link in enumerate(linkage.links)}
     fixed = {FRAME}
     for seed in linkage.links:
@@ -203,9 +211,9 @@ def _generic_angles(linkage: Linkage) -> dict[str, float]:
 
 
 def _choose_kinds(heights: OutOfPlaneConditions, structure: Structure, pins_first: bool) -> dict[str, str] | None:
-    """Kinds for the pairs of all groups, by name; None when one group has no proposal.
+    """Choose kinds for the pairs of all groups, by name; None if one group has no proposal.
 
-    pins_first: pairs of a compound hinge are the first to be cylindrical, as they share one pin.
+    pins_first: pairs of a compound hinge become cylindrical first, as they share one pin.
     """
     pins = [p.point for p in structure.pairs if p.kind == "R"]
     shared = {p.name for p in structure.pairs if p.kind == "R" and pins.count(p.point) > 1} if pins_first else set()
@@ -221,11 +229,12 @@ def _choose_kinds(heights: OutOfPlaneConditions, structure: Structure, pins_firs
 def _choose_kinds_of_group(
     heights: OutOfPlaneConditions, links: tuple[str, ...], own: tuple[Pair, ...], pins: set[str]
 ) -> dict[str, str] | None:
-    """Kinds for the pairs of one group, the links before it lying flat: fewest changes, then fewest freedoms.
+    """Choose kinds for the pairs of one group, earlier links being fixed: fewest changes, then fewest freedoms; or
+    None.
 
-    A group by itself, because a pair that served two groups could lose its grip in some position. Pairs with the
-    frame position the shafts and guides and stay. Each pair begins with its freest kind; then as many as possible are
-    given back what they were, and what is still free by then is held by cylindrical ones.
+    Each group is treated separately, because a pair that constrained two groups could become singular in some position.
+    Pairs with the frame locate shafts and guides and are not changed. Each pair starts with the kind of most freedoms;
+    then as many as possible get their original kind again, and the freedoms still left are taken by cylindrical pairs.
     """
     on_frame = {p.other(FRAME) for p in own if p.lower and FRAME in (p.i, p.j)}
     floating = tuple(link for link in links if link not in on_frame)
@@ -236,7 +245,9 @@ def _choose_kinds_of_group(
         return _stack((blocks[item] for item in kinds.items()), CONDITIONS * len(floating))
 
     def held(kinds: dict[str, str], order: Iterable[Pair], choice: int) -> dict[str, str]:
-        """The freest pairs made what CHOICES says, one after another, while that holds something that was free."""
+        """Give pairs of most freedoms the kind number `choice`, in this order, as long as the conditions stay
+        independent.
+        """
         for pair in order:
             trial = kinds | {pair.name: PAIR_CHOICES[pair.kind][choice]}
             if kinds[pair.name] == PAIR_CHOICES[pair.kind][2] and _independent(matrix(trial)):
@@ -251,7 +262,7 @@ def _choose_kinds_of_group(
         kinds = held(freest, [pairs[first], *pairs[:first], *pairs[first + 1 :]], 0)
         kinds = held(kinds, sorted(pairs, key=lambda p: p.name not in pins), 1)
         found = matrix(kinds)
-        if found.shape[1] - len(found) == _count_local_freedoms(found):  # nothing but single links is left free
+        if found.shape[1] - len(found) == _count_local_freedoms(found):  # only local freedoms of single links remain
             changed = [kind for p in pairs if (kind := kinds[p.name]) != PAIR_CHOICES[p.kind][0]]
             proposals.append(((len(changed), sum(PAIR_FREEDOMS[kind] for kind in changed)), kinds))
     return min(proposals, key=lambda proposal: proposal[0])[1] if proposals else {} if not pairs else None
@@ -270,6 +281,6 @@ def _independent(matrix: Real) -> bool:
 
 
 def _count_local_freedoms(matrix: Real) -> int:
-    """Freedoms that links have one by one, all others held."""
+    """Count the freedoms of each link with all other links fixed."""
     columns = matrix.shape[1]
     return sum(CONDITIONS - _rank(matrix[:, at : at + CONDITIONS]) for at in range(0, columns, CONDITIONS))

@@ -1,8 +1,8 @@
-"""Chains in space, given by pairs alone: mobility, contours, local freedoms, manoeuvrability.
+"""Spatial chains given by their pairs alone: mobility, contours, local freedoms, manoeuvrability.
 
-Mobility after P. I. Somov and A. P. Malyshev, W = 6n - 5 p1 - 4 p2 - 3 p3 - 2 p4 - p5, n moving links and pi pairs with
-i freedoms. It is a count: special dimensions (parallel axes, axes through one point) show as redundant constraints,
-q = Wo + Wm - W.
+Mobility after P. I. Somov and A. P. Malyshev, W = 6n - 5 p1 - 4 p2 - 3 p3 - 2 p4 - p5, with n moving links and pi pairs
+of i freedoms. It is a count: special dimensions (parallel axes, axes through one point) appear as redundant
+constraints, q = Wo + Wm - W.
 """
 
 from __future__ import annotations
@@ -16,7 +16,9 @@ from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.structure.graph import Contour, find_contours
 
 SPACE = 6  # freedoms of a free link
-PAIR_FREEDOMS: dict[str, int] = {  # of pairs, in the words of a file, by which they are translated too; their freedoms
+PAIR_FREEDOMS: dict[
+    str, int
+] = {  # freedoms of the kinds of pairs; the keys are words of problem files and are translated
     N_("turning"): 1,
     N_("sliding"): 1,
     N_("screw"): 1,
@@ -31,13 +33,16 @@ PAIR_FREEDOMS: dict[str, int] = {  # of pairs, in the words of a file, by which 
 }
 TELESCOPIC = {"sliding", "screw", "cylindrical"}
 BALL_OR_PLATE = {"spherical", "planar"}
-AXLE_FREEDOMS = {"turning": 1, "cylindrical": 2}  # of rollers, with the freedoms that a roller on it has by itself
-CONTACT_PAIRS = {"sphere in cylinder", "cylinder on plane", "sphere on plane"}  # of rollers
+AXLE_FREEDOMS = {
+    "turning": 1,
+    "cylindrical": 2,
+}  # pairs of a roller and its axle, with the local freedoms of the roller
+CONTACT_PAIRS = {"sphere in cylinder", "cylinder on plane", "sphere on plane"}  # pairs of a roller and its track
 
 
 @dataclass(frozen=True)
 class SpatialPair:
-    """A pair of two links in space with 1 to 5 freedoms; kind is one of KINDS, or empty when it is not known."""
+    """A pair of two links in space with 1 to 5 freedoms; kind: a key of PAIR_FREEDOMS, or empty if unknown."""
 
     name: str
     i: str
@@ -51,45 +56,45 @@ class SpatialPair:
         return SPACE - self.freedoms
 
     def other(self, link: str) -> str:
-        """The link at the other side."""
+        """Return the other link of the pair."""
         return self.j if link == self.i else self.i
 
 
 @dataclass(frozen=True)
 class SpatialChain:
-    """Moving links and the pairs that join them to one another and to the frame, link "0"."""
+    """Moving links, and the pairs that join them to one another and to the frame, link "0"."""
 
     links: tuple[str, ...]
     pairs: tuple[SpatialPair, ...]
 
     def p(self, freedoms: int) -> int:
-        """Number of pairs with so many freedoms."""
+        """Return the number of pairs with this number of freedoms."""
         return sum(pair.freedoms == freedoms for pair in self.pairs)
 
     @property
     def mobility(self) -> int:
-        """Somov-Malyshev's W."""
+        """Mobility W by the Somov-Malyshev formula."""
         return SPACE * len(self.links) - sum(pair.pair_class for pair in self.pairs)
 
     @property
     def count(self) -> str:
-        """The same with its numbers: 6*5 - 5*7 = -5."""
+        """Mobility formula with its numbers, e.g. 6*5 - 5*7 = -5."""
         terms = [(SPACE - i, self.p(i)) for i in range(1, SPACE)]
         parts = "".join(f" - {f'{weight}*' if weight > 1 else ''}{many}" for weight, many in terms if many)
         return f"{SPACE}*{len(self.links)}{parts} = {self.mobility}"
 
     def around(self, link: str) -> tuple[SpatialPair, ...]:
-        """The pairs of a link."""
+        """Return the pairs of a link."""
         return tuple(pair for pair in self.pairs if link in (pair.i, pair.j))
 
     def only(self, links: Iterable[str]) -> SpatialChain:
-        """The chain of some of its links."""
+        """Return the sub-chain of these links."""
         kept = tuple(links)
         ends = {FRAME, *kept}
         return SpatialChain(kept, tuple(pair for pair in self.pairs if {pair.i, pair.j} <= ends))
 
     def held(self, link: str) -> SpatialChain:
-        """The chain with one more link held: a part of the frame. Its pairs with the frame have nothing to do then."""
+        """Return the chain with this link fixed to the frame; its pairs with the frame are omitted."""
         pairs = (
             SpatialPair(p.name, FRAME if p.i == link else p.i, FRAME if p.j == link else p.j, p.freedoms, p.kind)
             for p in self.pairs
@@ -99,9 +104,9 @@ class SpatialChain:
 
 @dataclass(frozen=True)
 class LocalFreedom:
-    """Freedoms of a link, or of parts in series that slide in one another, which move nothing else.
+    """Local freedoms of a link, or of parts that slide in one another, whose motion moves no other link.
 
-    ends: the pairs that hold them.
+    ends: the pairs that connect them to other links.
     """
 
     links: tuple[str, ...]
@@ -110,16 +115,19 @@ class LocalFreedom:
 
     @property
     def kinds(self) -> set[str]:
-        """The kinds of the pairs that hold them."""
+        """Kinds of these pairs."""
         return {pair.kind for pair in self.ends}
 
 
 @dataclass(frozen=True)
 class ChainCount:
-    """What the count says of a chain.
+    """Mobility count of a spatial chain.
 
-    local: the local freedoms that follow from the kinds of pairs; given_local: those that were told instead (a
-    number). wanted: mobility that the chain is meant to have. output: the link to be held for the manoeuvrability.
+    Attributes:
+        local: local freedoms that follow from the kinds of the pairs.
+        given_local: number of local freedoms given in the file, which replaces them.
+        wanted: intended mobility.
+        output: link to be fixed for the manoeuvrability.
     """
 
     chain: SpatialChain
@@ -135,24 +143,24 @@ class ChainCount:
 
     @property
     def local_mobility(self) -> int:
-        """Wm: as given, or as found."""
+        """Local freedoms Wm: as given, or as found."""
         return sum(part.freedoms for part in self.local) if self.given_local is None else self.given_local
 
     @property
     def redundant(self) -> int | None:
-        """Redundant (passive) constraints q = Wo + Wm - W, when the wanted mobility Wo is given."""
+        """Redundant constraints q = Wo + Wm - W; None unless the intended mobility Wo is given."""
         return None if self.wanted is None else self.wanted + self.local_mobility - self.mobility
 
     @property
     def effective(self) -> int:
-        """The mobility without the local freedoms."""
+        """Mobility without the local freedoms."""
         return self.mobility - self.local_mobility
 
     @property
     def immobile(self) -> tuple[str, ...]:
-        """The links that by the count cannot move: all of them, or those in contours when only the open branches move.
+        """Links that by the count cannot move: all links, or those in contours if only the open branches move.
 
-        Empty where a wanted mobility is given: the dimensions then make constraints redundant.
+        Empty if an intended mobility is given: the dimensions then make constraints redundant.
         """
         if self.wanted is not None or not self.contours:
             return ()
@@ -164,23 +172,23 @@ class ChainCount:
 
     @property
     def manoeuvrability(self) -> int | None:
-        """Mobility with the output held, when there is one."""
+        """Mobility with the output fixed; None if no output is given."""
         return None if self.output is None else self.chain.held(self.output).mobility
 
     @property
     def idle_manoeuvrability(self) -> int:
-        """How much of the manoeuvrability is local freedoms, which help around no obstacle."""
+        """Part of the manoeuvrability that consists of local freedoms, which do not help to avoid obstacles."""
         return sum(part.freedoms for part in self.local if self.output is not None and self.output not in part.links)
 
     @property
     def branches(self) -> tuple[str, ...]:
-        """Moving links that lie in no contour."""
+        """Moving links that belong to no contour."""
         closed = {link for contour in self.contours for link in contour.links}
         return tuple(link for link in self.chain.links if link not in closed)
 
     @property
     def form(self) -> str:
-        """open, closed, or mixed: contours with open branches."""
+        """Form of the chain: open, closed, or mixed (contours with open branches)."""
         if not self.contours:
             return "open"
         return "mixed" if self.branches else "closed"
@@ -189,7 +197,7 @@ class ChainCount:
 def count_chain(
     chain: SpatialChain, output: str | None = None, given_local: int | None = None, wanted: int | None = None
 ) -> ChainCount:
-    """Everything that can be counted of a chain."""
+    """Count mobility, contours and local freedoms of a spatial chain; arguments as in ChainCount."""
     found = find_contours(chain.pairs, chain.links)
     closed = {link for contour in found for link in contour.links}
     certain = local_freedoms(chain)
@@ -205,10 +213,10 @@ def _shares_links(part: LocalFreedom, others: Iterable[LocalFreedom]) -> bool:
 
 
 def pistons_on_balls(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
-    """Links between a cylindrical pair and a ball: they rotate about the axis of the pair if the ball lies on it.
+    """Return the links between a cylindrical and a spherical pair, which may rotate about the axis of the former.
 
-    Kinds of pairs do not say where the ball lies, so these are local freedoms only of a chain that has freedoms to
-    spare.
+    They do so only if the centre of the sphere lies on the axis, which the kinds of pairs do not show. So these count
+    as local freedoms only if the chain has freedoms to spare.
     """
     return tuple(
         LocalFreedom((link,), 1, ends)
@@ -218,12 +226,12 @@ def pistons_on_balls(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
 
 
 def local_freedoms(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
-    """Local freedoms that follow from the kinds of pairs, whatever the dimensions.
+    """Return the local freedoms that follow from the kinds of pairs, whatever the dimensions.
 
-    A link between two balls turns about the line of their centres; between a ball and a plate, about the normal
-    through the centre; between two plates it slides along both. So does a strut of parts that slide in one another. A
-    roller turns about its axle on a moving link. Other links have at least the freedoms that are left when their
-    neighbours are held.
+    A link between two spherical pairs rotates about the line of their centres; between a spherical and a planar pair,
+    about the normal through the centre; between two planar pairs it slides parallel to both. The same holds for a strut
+    of parts that slide in one another. A roller rotates about its axle on a moving link. Other links have at least the
+    freedoms that remain with their neighbours fixed.
     """
     around: dict[str, list[SpatialPair]] = {link: [] for link in (FRAME, *chain.links)}
     for pair in chain.pairs:
@@ -242,7 +250,9 @@ def local_freedoms(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
 
 
 def _rollers(chain: SpatialChain) -> Iterable[LocalFreedom]:
-    """Links that touch another one and have their axle on a moving link; of two that touch one another, the later."""
+    """Return links that touch another link and have their axle on a moving one; of two in mutual contact, the later
+    one.
+    """
     contacts: dict[str, LocalFreedom] = {}
     for link in chain.links:
         ends = chain.around(link)
@@ -254,22 +264,22 @@ def _rollers(chain: SpatialChain) -> Iterable[LocalFreedom]:
 
 
 def _certain_freedoms(inner: list[SpatialPair], ends: list[SpatialPair]) -> int:
-    """Freedoms of parts in series, or of one link, with all neighbours held."""
+    """Return the freedoms of a link, or of parts in series, with all neighbours fixed."""
     if len(ends) < 2:
-        return 0  # the open end of a chain: what it does is not local
+        return 0  # an open end of a chain has no local freedom
     turns = len(ends) == 2 and {p.kind for p in ends} <= BALL_OR_PLATE
     return max(sum(p.freedoms for p in (*inner, *ends)) - SPACE * (len(ends) - 1), int(turns))
 
 
 def _struts(chain: SpatialChain, around: dict[str, list[SpatialPair]]) -> Iterable[tuple[str, ...]]:
-    """The links one by one, or together when they are parts of a strut; in the order of the chain."""
+    """Yield the links one by one, or together if they are parts of a strut; in the order of the chain."""
     part_of = {link: [link] for link in chain.links}
     for pair in chain.pairs:
         simple = FRAME not in (pair.i, pair.j) and len(around[pair.i]) == len(around[pair.j]) == 2
         if simple and pair.kind in TELESCOPIC and part_of[pair.i] is not part_of[pair.j]:
             together = sorted(part_of[pair.i] + part_of[pair.j], key=chain.links.index)
             part_of |= dict.fromkeys(together, together)
-    # only struts between two balls or plates turn as one; of others, the parts are looked at one by one
+    # only struts between two spherical or planar pairs rotate as one; the parts of others are treated one by one
     for link in chain.links:
         links = part_of[link]
         ends = [p for x in links for p in around[x] if not (p.i in links and p.j in links)]
@@ -279,12 +289,12 @@ def _struts(chain: SpatialChain, around: dict[str, list[SpatialPair]]) -> Iterab
             yield tuple(links)
 
 
-# What is found of a chain given by pairs alone: its count.
+# Results for a chain given by its pairs alone.
 
 
 @dataclass(frozen=True)
 class ChainResults:
-    """What was counted of a chain; it has no dimensions, so nothing else is computed. problem: as in Results."""
+    """Results for a chain given by its pairs: the count only, as it has no dimensions. problem: as in Results."""
 
     problem: Any
     chain: ChainCount

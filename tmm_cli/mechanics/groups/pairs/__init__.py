@@ -1,4 +1,4 @@
-"""What each kind of pair asks of its links, one file a kind. A new kind is a file and a line here."""
+"""Constraint equations by kind of pair. A new kind is a class and a line here."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""Two toothed wheels on a common carrier, fixed or turning (planetary), in outer or inner mesh."""
+"""Constraint equations of higher pairs: gears, gear and rack, cam and follower; laws of motion of followers."""
 
 from __future__ import annotations
 
@@ -24,12 +24,15 @@ from tmm_cli.mechanics.structure import Pair
 
 @dataclass(frozen=True)
 class GearConstraint(ToothConstraint):
-    """Row: angle of j from the carrier less offset and ratio times that of i.
+    """Gear pair on a common carrier, fixed or rotating (planetary), external or internal.
 
-    The teeth push at the pitch point P = (A - ratio B)/(1 - ratio) of the axes A and B of the wheels i and j, where
-    both wheels have one velocity; across the line of axes first, the part along it (`pressure`) afterwards. That pushes
-    an outer-toothed wheel towards its own axis; in an inner mesh that is the smaller one. So the force on j is from
-    axis i to axis j in an outer mesh and the other way in an inner one, whichever is the smaller.
+    Row: angle of j from the carrier, less offset and ratio times the angle of i.
+
+    The teeth act at the pitch point P = (A - ratio B)/(1 - ratio) of the axes A and B of the gears i and j, where both
+    have the same velocity; the tangential force first, the radial one (`pressure`) afterwards. The latter pushes an
+    external gear towards its own axis; in an internal pair that is the smaller gear. So the radial force on j points
+    from axis i to axis j in an external pair and in the opposite direction in an internal one, whichever gear is
+    smaller.
     """
 
     axis_i: complex  # on the carrier, m
@@ -82,19 +85,22 @@ class GearConstraint(ToothConstraint):
         return carrier.at(here), 1j * (line * carrier.z)
 
 
-# A toothed wheel that rolls on a rack; both are held by a common carrier.
+# Gear and rack.
 
 
 @dataclass(frozen=True)
 class RackConstraint(ToothConstraint):
-    """Row: run of the rack on the carrier less offset and ratio (m a radian) times the angle of the wheel from it.
+    """Gear and rack on a common carrier.
 
-    The slide may have the rack as its runner or as its carrier. The teeth push at the pitch point, where wheel and rack
-    have one velocity: the wheel's radius |ratio| away from its axis, square to the guide.
+    Row: run of the rack on the carrier, less offset and ratio (m per radian) times the angle of the gear from the
+    carrier.
+
+    The rack may be the runner or the carrier of the slide. The teeth act at the pitch point, where gear and rack have
+    the same velocity: at the distance |ratio| from the axis of the gear, perpendicular to the guide.
     """
 
     slide: Slide
-    axis: complex  # of the wheel, on the carrier, m
+    axis: complex  # of the gear, on the carrier, m
 
     kind = "K"
     away = -1j
@@ -126,23 +132,26 @@ class RackConstraint(ToothConstraint):
         return (dot(here.u, here.bend(self.slide, rates)),)
 
     def contact(self, poses: Poses) -> tuple[Vector, Vector]:
-        """The pitch point, and the direction in which the rack's run grows."""
+        """Return the pitch point, and the direction of increasing run of the rack."""
         here = GuideGeometry.at(self.slide, poses)
         forward = here.u if self.slide.runner == self.mesh.j else -here.u
         return poses[self.mesh.carrier].at(self.axis) - 1j * self.mesh.ratio * forward, forward
 
 
-# A cam and its follower, given by the follower's law of motion instead of the shape of the cam.
+# Cam and follower.
 
 
 @dataclass(frozen=True)
 class CamConstraint(HigherPairConstraint):
-    """Row: run (or angle) of the follower on the carrier less offset and the law of the cam's angle from the carrier.
+    """Cam and follower, defined by the law of motion instead of the profile of the cam.
 
-    The carrier is the frame, or a moving link with the guide of the follower: then the cam changes a length of it. The
-    law does not say where cam and follower touch. A sliding follower is taken as flat-faced: it touches the cam
-    ds/da from the cam's axis and the force is along its guide (I. I. Artobolevsky, ch. 26). A swinging one is loaded by
-    a couple and the cam by the couple of the same power.
+    Row: run (or angle) of the follower on the carrier, less offset and the law at the angle of the cam from the
+    carrier.
+
+    The carrier is the frame, or a moving link with the guide of the follower, whose length the cam then changes. The
+    law does not determine the point of contact. A translating follower is taken as flat-faced: it touches the cam at
+    ds/da from the axis of the cam, and the force is parallel to its guide (I. I. Artobolevsky, ch. 26). An oscillating
+    follower is loaded by a couple, and the cam by the couple of equal power.
     """
 
     slide: Slide | None
@@ -194,7 +203,7 @@ class CamConstraint(HigherPairConstraint):
         return (dot(here.u, here.bend(self.slide, rates)) + bend,)
 
     def contact(self, poses: Poses) -> tuple[Vector, Vector]:
-        """Where a flat-faced follower touches, and the direction in which its run grows."""
+        """Return the contact point of a flat-faced follower, and the direction of increasing run."""
         assert self.slide is not None
         here = GuideGeometry.at(self.slide, poses)
         forward = here.u if self.slide.runner == self.mesh.j else -here.u
@@ -210,7 +219,7 @@ class CamConstraint(HigherPairConstraint):
         return PairReaction(n * 0j, couple=n, at=poses[self.mesh.j].x, back=-n * self._law(poses)[1])
 
 
-# Laws of motion of a cam's follower: rise, dwell and return, piece by piece over a turn of the cam.
+# Laws of motion of a cam follower: rise, dwell and return, piece by piece over a turn of the cam.
 #
 # A piece of rise h over the angle d with x = (a - start)/d from 0 to 1 follows s = h f(x). Sources of f: I. I.
 # Artobolevsky, Theory of Mechanisms and Machines, ch. 25 (parabolic, cosine, sine); R. L. Norton, Cam Design, ch. 3
@@ -242,7 +251,7 @@ def _cosine(x: Any) -> tuple[Any, Any, Any]:
 
 def _sine(x: Any) -> tuple[Any, Any, Any]:
     whole = 2 * pi(x)
-    # 2 sin^2(pi x) is 1 - cos(2 pi x), which rounds to zero before the follower rests
+    # 2 sin^2(pi x) instead of 1 - cos(2 pi x), which rounds to zero before the follower is at rest
     return x - np.sin(whole * x) / whole, 2 * np.sin(pi(x) * x) ** 2, whole * np.sin(whole * x)
 
 
@@ -274,7 +283,7 @@ RISE_LAWS: dict[str, Rise] = {
 
 @dataclass(frozen=True)
 class CamLawPiece:
-    """A rise (m or rad, negative for a return, zero for a dwell) over an angle of the cam (rad)."""
+    """A piece of the law: rise (m or rad; negative for a return, zero for a dwell) over a cam angle (rad)."""
 
     over: float
     rise: float
@@ -283,9 +292,10 @@ class CamLawPiece:
 
 @dataclass(frozen=True)
 class CamLaw:
-    """Pieces one after another from the cam's angle `start` (rad); together a full turn, and back where they began.
+    """Law of motion of a follower: pieces in turn from the cam angle `start` (rad); they close after a full turn.
 
-    sense: in which the cam turns. Where pieces meet, the acceleration is that of the piece which then begins.
+    sense: direction of rotation of the cam. At the boundary of two pieces the acceleration is that of the following
+    one.
     """
 
     pieces: tuple[CamLawPiece, ...]
@@ -294,21 +304,21 @@ class CamLaw:
 
     @cached_property
     def _mirrored(self) -> CamLaw:
-        """The law by the angle that grows clockwise: all laws are symmetric about the middle of their piece."""
+        """Law as a function of the clockwise angle: all laws are symmetric about the middle of their piece."""
         return CamLaw(tuple(replace(p, rise=-p.rise) for p in reversed(self.pieces)), -self.start)
 
     @cached_property
     def _table(self) -> tuple[Real, Real, Real, Real]:
-        """Of each piece: where it starts (rad, from the law's start), its angle, the run there, its rise.
+        """For each piece: start (rad, from the start of the law), cam angle, run there, rise.
 
-        They are (pieces,), or (pieces, variants) where they vary.
+        Shape (pieces,), or (pieces, variants) where they vary.
         """
         both = np.broadcast_arrays(*(p.over for p in self.pieces), *(p.rise for p in self.pieces))
         over, rise = np.stack(both[: len(self.pieces)]), np.stack(both[len(self.pieces) :])
         return np.cumsum(over, axis=0) - over, over, np.cumsum(rise, axis=0) - rise, rise
 
     def jumps(self) -> tuple[float, ...]:
-        """Angles of the cam (rad, within a turn) at which one piece ends with another speed than the next begins."""
+        """Return the cam angles (rad, within a turn) at which the velocity of the follower is discontinuous."""
         slopes = [RISE_LAWS[piece.shape](np.array([0.0, 1.0]))[1] for piece in self.pieces]
         ends = [piece.rise / piece.over * slope for piece, slope in zip(self.pieces, slopes, strict=True)]
         most = max(abs(piece.rise) for piece in self.pieces)
@@ -320,13 +330,13 @@ class CamLaw:
         return tuple(sorted(found))
 
     def __call__(self, angle: Real) -> tuple[Real, Real, Real]:
-        """The follower's run at the cam's angle, and its first and second derivatives by that angle."""
+        """Return the run of the follower and its first and second derivatives with respect to the cam angle."""
         if self.sense < 0:
             value, first, second = self._mirrored(-angle)
             return value, -first, second
         turn = 2 * pi(angle)
         turned, ahead = np.mod(angle - self.start, turn), np.mod(angle - self.start + AT_EDGE_OF_CAM, turn)
-        turned = np.where(ahead < turned, 0.0, turned)  # a turn is over but for rounding
+        turned = np.where(ahead < turned, 0.0, turned)  # a full turn within rounding
         starts, overs, lows, rises = self._table
         passed = np.searchsorted(starts, ahead, side="right") if starts.ndim == 1 else np.sum(starts <= ahead, axis=0)
         number = np.clip(passed - 1, 0, len(self.pieces) - 1)
@@ -342,5 +352,5 @@ class CamLaw:
 
 
 def _select_pieces(part: Real, number: Real) -> Real:
-    """Numbers of the pieces with these numbers."""
+    """Return the values of the pieces with these numbers."""
     return part[number] if part.ndim == 1 else np.take_along_axis(part, number[None], axis=0)[0]

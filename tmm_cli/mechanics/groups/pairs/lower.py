@@ -1,9 +1,9 @@
-"""What a pair asks of its links, as equations: the common form in which groups of any class are solved.
+"""Constraint equations of pairs: the common form in which groups of any class are solved; lower pairs and drivers.
 
-A pair has rows; each is a scalar equation residual = 0 in metres or radians. A small motion of a link, its origin by
-dx and its angle by dt, changes a row by c . dx + m dt: (c, m) is the link's part of that row of the Jacobian. The same
-parts give velocities, accelerations and, transposed, the forces: a multiplier n on the row pushes the link with n c at
-its origin and n m.
+A pair has rows; each is a scalar equation residual = 0 in metres or radians. A small motion of a link, dx of its origin
+and dt of its angle, changes a row by c . dx + m dt: (c, m) is the part of the link in that row of the Jacobian. The
+same parts give velocities, accelerations and, transposed, the forces: a multiplier n of the row acts on the link with
+the force n c at its origin and the moment n m.
 Source: J. Garcia de Jalon, E. Bayo, Kinematic and Dynamic Simulation of Multibody Systems, ch. 2 and 3.
 """
 
@@ -26,7 +26,7 @@ JacobianRow = tuple[Any, Any]  # c (complex: x and y) and m (real)
 
 @dataclass(frozen=True)
 class PairConstraint(ABC):
-    """One pair (or one driver) of a group."""
+    """Constraint equations of a pair, or of a driver, of a group."""
 
     name: str
 
@@ -35,49 +35,53 @@ class PairConstraint(ABC):
     @property
     @abstractmethod
     def links(self) -> tuple[str, ...]:
-        """The links in its rows."""
+        """Links in its rows."""
 
     @property
     @abstractmethod
     def lengths(self) -> tuple[bool, ...]:
-        """For each row, whether it is in metres (else in radians)."""
+        """For each row, True if it is in metres (False: in radians)."""
 
     @abstractmethod
     def residuals(self, poses: Poses, drives: DriverStates) -> Sequence[Real]:
-        """What each row is short of zero."""
+        """Return the residual of each row."""
 
     @abstractmethod
     def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
-        """For each link its parts of the Jacobian, row by row."""
+        """Return the parts (c, m) of each link in the Jacobian, row by row."""
 
     @abstractmethod
     def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
-        """Second derivative of each row when no link accelerates."""
+        """Return the second derivative of each row with all link accelerations zero."""
 
     def turned(self, link: str, angles: Mapping[str, Any], drives: DriverStates) -> Any | None:
-        """The angle of one of its links (rad) that its first row asks for, from those of the others; None for most."""
+        """Return the angle of a link (rad) that the first row determines from those of the others; None for most
+        kinds.
+        """
         return None
 
     def asked(self, drives: DriverStates, order: int) -> Sequence[Real | float]:
-        """First or second derivative that each row must have; zero but for drivers."""
+        """Return the prescribed first or second derivative of each row; zero except for drivers."""
         return [0.0] * len(self.lengths)
 
     def pushes(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
-        """Parts of the rows for the forces, where they are not those of the motion."""
+        """Return the parts (c, m) for the forces, which differ from those of the motion for some kinds."""
         return self.jacobian_rows(poses)
 
     @abstractmethod
     def reaction(self, poses: Poses, multipliers: Sequence[Real]) -> PairReaction:
-        """The reaction on the pair's second link."""
+        """Return the reaction on the second link of the pair."""
 
     def apart(self, poses: Poses, multipliers: Sequence[Real]) -> tuple[Vector, Vector] | None:
-        """Point and force (N, on the second link) that follow from the multipliers and do no work; None for most."""
+        """Return point and force (N, on the second link) of a separating force that does no work; None for most
+        kinds.
+        """
         return None
 
 
 @dataclass(frozen=True)
 class HigherPairConstraint(PairConstraint):
-    """One row for links that touch, i and j of the mesh; their carrier gets nothing but through its hinges."""
+    """One row for links i and j in contact; their carrier is loaded only through its hinges."""
 
     mesh: Mesh
 
@@ -87,7 +91,7 @@ class HigherPairConstraint(PairConstraint):
 
     @abstractmethod
     def contact(self, poses: Poses) -> tuple[Vector, Vector]:
-        """The point (m) at which i pushes j, and the direction in which a multiplier above zero does."""
+        """Return the point (m) at which i acts on j, and the direction of the force for a positive multiplier."""
 
     def pushes(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
         point, along = self.contact(poses)
@@ -105,9 +109,11 @@ class HigherPairConstraint(PairConstraint):
 
 @dataclass(frozen=True)
 class ToothConstraint(HigherPairConstraint):
-    """They touch in the pitch point, where both links have one velocity, and push j away from the axis of i besides."""
+    """Teeth in contact at the pitch point, where both links have the same velocity; with a radial separating force on
+    j.
+    """
 
-    away: ClassVar[complex]  # where that is from the direction of contact, at a ratio above zero
+    away: ClassVar[complex]  # direction away from the axis of i relative to the contact direction, for a positive ratio
 
     def apart(self, poses: Poses, multipliers: Sequence[Real]) -> tuple[Vector, Vector]:
         point, along = self.contact(poses)
@@ -116,18 +122,18 @@ class ToothConstraint(HigherPairConstraint):
 
 
 def carrier_axis(linkage: Linkage, wheel: str, carrier: str) -> complex:
-    """Where a wheel or cam is hinged to its carrier, in the carrier's axes (m)."""
+    """Return the hinge of a gear or cam on its carrier, in the axes of the carrier (m)."""
     point = linkage.shared(carrier, wheel)
     assert point is not None
     return linkage.local(carrier, point)
 
 
-# A hinge: a point of one link stays on a point of another.
+# Revolute pair: a point of one link coincides with a point of the other.
 
 
 @dataclass(frozen=True)
 class HingeConstraint(PairConstraint):
-    """Rows: x and y of the point of j less that of i."""
+    """Revolute pair. Rows: x and y of the point of j less that of i."""
 
     i: str
     j: str
@@ -172,17 +178,17 @@ class HingeConstraint(PairConstraint):
         return PairReaction(multipliers[0] + 1j * multipliers[1])
 
 
-# A sliding pair: a point of the runner stays on a guide of the carrier, and their axes keep one angle.
+# Prismatic pair: a point of the runner stays on a guide of the carrier, and their relative angle is constant.
 
 
 @dataclass(frozen=True)
 class GuideGeometry:
-    """The geometry of a sliding pair at some poses: the guide's direction u and the running point from both origins."""
+    """Geometry of a prismatic pair at given poses: direction u of the guide, and vectors to the sliding point."""
 
     u: Vector
-    off: Vector  # from the guide's `through` point to the running point
-    on_carrier: Vector  # running point from the carrier's origin
-    on_runner: Vector
+    off: Vector  # from the `through` point of the guide to the sliding point
+    on_carrier: Vector  # from the origin of the carrier to the sliding point
+    on_runner: Vector  # from the origin of the runner to the sliding point
 
     @classmethod
     def at(cls, slide: Slide, poses: Poses) -> GuideGeometry:
@@ -192,26 +198,30 @@ class GuideGeometry:
         return cls(carrier.z * unit(slide.direction), on_carrier - slide.through * carrier.z, on_carrier, on_runner)
 
     def jacobian_rows(self, slide: Slide, along: Vector) -> Mapping[str, JacobianRow]:
-        """Of the running point's motion against the carrier, counted along a direction that the carrier carries."""
+        """Return the Jacobian parts of the motion of the sliding point relative to the carrier, along a direction fixed
+        in it.
+        """
         return {
             slide.carrier: (-along, -cross(self.on_carrier, along)),
             slide.runner: (along, cross(self.on_runner, along)),
         }
 
     def bend(self, slide: Slide, rates: Rates) -> Vector:
-        """Acceleration of the running point against the carrier when no link accelerates, without Coriolis."""
+        """Return the acceleration of the sliding point relative to the carrier with all link accelerations zero,
+        without the Coriolis part.
+        """
         bend: Vector = self.on_carrier * rates[slide.carrier].w ** 2 - self.on_runner * rates[slide.runner].w ** 2
         return bend
 
     def sliding(self, slide: Slide, rates: Rates) -> Real:
-        """Speed of the running point along the guide."""
+        """Return the speed of the sliding point along the guide."""
         speed: Real = dot(self.u, rates[slide.runner].at(self.on_runner) - rates[slide.carrier].at(self.on_carrier))
         return speed
 
 
 @dataclass(frozen=True)
 class SlideConstraint(PairConstraint):
-    """Rows: angle of the runner from the carrier, distance of the running point from the guide."""
+    """Prismatic pair. Rows: angle of the runner from the carrier, distance of the sliding point from the guide."""
 
     slide: Slide
 
@@ -258,12 +268,14 @@ class SlideConstraint(PairConstraint):
         return PairReaction(1j * here.u * multipliers[1], multipliers[0])
 
 
-# A driver between two moving links, as one more row of their group: a cylinder, or a drive in a hinge.
+# Driver between two moving links, as an additional row of their group: a cylinder, or a drive in a hinge.
 
 
 @dataclass(frozen=True)
 class DriverConstraint(PairConstraint):
-    """Row: angle of the driven link from its base, or run in their sliding pair, less the driver's place."""
+    """Driver between two moving links. Row: angle of the link from its base, or run in their pair, less the driver
+    coordinate.
+    """
 
     driver: Driver
     slide: Slide | None
@@ -272,7 +284,7 @@ class DriverConstraint(PairConstraint):
 
     @classmethod
     def of(cls, driver: Driver, linkage: Linkage) -> DriverConstraint:
-        """The row of a driver."""
+        """Return the constraint of a driver."""
         return cls(driver.link, driver, linkage.slide(driver.joint) if driver.kind == "slide" else None)
 
     @property
