@@ -223,7 +223,7 @@ def test_bounds_that_are_too_narrow_are_found_out(monkeypatch):
         found.bound["balancing", "1", ""] = np.array([np.nan])  # what is not told excuses nothing
         return values, found
 
-    monkeypatch.setattr(stability, "bounds", boasting)
+    monkeypatch.setattr(stability, "bound_values", boasting)
     found = measure_stability(["stone-over-pivot"], methods=(), reduced=True)
     assert found.lies("stone-over-pivot", PRODUCT) == 0.1
     assert "stone-over-pivot: 2 of 2 outside their bounds at 0.1" in found.failures
@@ -237,7 +237,7 @@ def test_bounds_that_are_too_wide_are_found_out(monkeypatch):
         found.bound = {key: bound * 1e4 for key, bound in found.bound.items()}
         return values, found
 
-    monkeypatch.setattr(stability, "bounds", timid)
+    monkeypatch.setattr(stability, "bound_values", timid)
     found = measure_stability(["size"], methods=(), reduced=True)
     assert found.lies("size", PRODUCT) is None
     assert len(found.failures) == 1 and "of the bounds are within 100 times the true error" in found.failures[0]
