@@ -1,4 +1,4 @@
-"""Records to rows, and rows to the terminal, CSV and JSON."""
+"""Tables of results, and their output to the terminal, to CSV and spreadsheet files and to result.json."""
 
 from tmm_cli.interfaces import lazy
 

@@ -1,4 +1,4 @@
-"""Two results of the same problem: every quantity of result.json against what is expected."""
+"""Comparison of two results of one problem: every quantity of result.json with its expected value."""
 
 from __future__ import annotations
 
@@ -29,7 +29,15 @@ DIFFERENCE_OF = {
 
 @dataclass(frozen=True)
 class ResultDifference:
-    """A quantity that is not as expected. size: relative to its largest value in the cycle; None: not a number."""
+    """A quantity that differs from its expected value.
+
+    Attributes:
+        quantity: path of the quantity in result.json.
+        position: index of the position; None if the quantity has one value.
+        expected: expected value.
+        found: value of the result that is checked.
+        size: difference relative to the largest value of the quantity in the cycle; None if it is not a number.
+    """
 
     quantity: str
     position: int | None
@@ -39,14 +47,20 @@ class ResultDifference:
 
 
 def golden_record(result: dict[str, Any]) -> dict[str, Any]:
-    """What of result.json is kept as a golden run: what is compared, to 12 digits."""
+    """Return the sections of result.json that are compared later, with numbers rounded to 12 digits."""
     kept = {key: part for key, part in result.items() if key not in IGNORED}
     whole: dict[str, Any] = json.loads(json.dumps(kept), parse_float=lambda text: float(f"{float(text):.12g}"))
     return whole
 
 
 def find_differences(expected: dict[str, Any], found: dict[str, Any], tolerance: float) -> list[ResultDifference]:
-    """The worst deviation of every quantity that is beyond the tolerance, in the order of the file."""
+    """Return the largest difference of every quantity that exceeds the tolerance, in the order of the file.
+
+    Args:
+        expected: content of result.json that is expected.
+        found: content of result.json that is checked.
+        tolerance: largest allowed difference, relative to the largest value of the quantity in the cycle.
+    """
     want, have = dict(_series_by_path(expected)), dict(_series_by_path(found))
     scales = _series_scales(want)
     out = [ResultDifference(_path_text(p), None, "there", "missing", None) for p in want if p not in have]
@@ -61,7 +75,10 @@ def find_differences(expected: dict[str, Any], found: dict[str, Any], tolerance:
 
 
 def _series_scales(series: dict[Path, list[Any]]) -> dict[Path, float]:
-    """What deviations of each series are relative to: its largest value, that of a vector for both components."""
+    """Return the reference value of each series for relative differences: its largest value.
+
+    Both components of a vector share the largest magnitude of the vector.
+    """
     peaks = {path: max((abs(v) for v in values if _is_number(v)), default=0.0) for path, values in series.items()}
     for path, values in series.items():
         across = (*path[:-1], "y")
@@ -85,7 +102,7 @@ def _series_scales(series: dict[Path, list[Any]]) -> dict[Path, float]:
 
 
 def difference_table(different: Mapping[str, Sequence[ResultDifference]]) -> Table:
-    """Differences by problem."""
+    """Return a table of the differences, problem by problem."""
     headers = (_("problem"), _("quantity"), _("position"), _("expected"), _("found"), _("relative"))
     rows = [
         (
@@ -103,7 +120,7 @@ def difference_table(different: Mapping[str, Sequence[ResultDifference]]) -> Tab
 
 
 def brief_value(value: Any) -> str:
-    """A value in a cell."""
+    """Return a value as the text of a table cell: 15 digits of a number, at most 60 letters of anything else."""
     return f"{value:.15g}" if isinstance(value, float) else str(value)[:60]
 
 
@@ -129,7 +146,7 @@ def _largest_difference(path: Path, expected: list[Any], found: list[Any], scale
 
 
 def _series_by_path(value: Any, path: Path = ()) -> Iterator[tuple[Path, list[Any]]]:
-    """Every leaf or list of leaves with its path; list items that have a name are known by it."""
+    """Yield every value or list of values with its path; an item of a list is named by its index and its name."""
     if isinstance(value, dict):
         for key, part in value.items():
             if path or key not in IGNORED:

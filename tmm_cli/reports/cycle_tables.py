@@ -1,4 +1,6 @@
-"""The cycle at a glance: a row a position, the driver, the output and what balances it."""
+"""Tables of the cycle: driver, outputs and balancing moment; motion of points and links; extremes; instantaneous
+centres.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +43,7 @@ OUTPUT_HEADERS = {
 
 
 def sign_convention(linkage: Linkage) -> str:
-    """What is positive, in a sentence for below a table."""
+    """Return the sign convention of positions, speeds and moments as a note below a table."""
     if linkage.driver.kind == "slide":
         return _(
             "A driven slider's place, speed and F_b are positive along its guide, however it moves; angles and moments "
@@ -54,7 +56,7 @@ def sign_convention(linkage: Linkage) -> str:
 
 
 def driver_columns(results: Results) -> list[Column]:
-    """Number of each position and the driver's place."""
+    """Return the columns with the number of each position and with the driver coordinate."""
     assert results.motion is not None
     name = _("phi") if results.linkage.driver.kind == "turn" else _("driver")
     return [
@@ -64,13 +66,13 @@ def driver_columns(results: Results) -> list[Column]:
 
 
 def _driver_column(results: Results, driver: Driver, name: str, q: Real) -> Column:
-    """A driver's places, within a turn where it turns round and round, or within the turns of a cycle of loads."""
+    """Return the column of a driver coordinate; of a crank that rotates fully, within one cycle of the mechanism."""
     full = driver.kind == "turn" and results.driver_range is not None and results.driver_range.full
     return Column(name, np.mod(q, 2 * results.linkage.turns * pi(q)) if full else q, coordinate_dimension(driver.kind))
 
 
 def cycle_tables(results: Results) -> Iterable[Table]:
-    """One table; positions that cannot be reached or are dead are said so in the last column."""
+    """Yield the table of the cycle; its last column says why a position has no velocities or forces."""
     motion = results.motion
     assert motion is not None
     columns = driver_columns(results)
@@ -88,7 +90,9 @@ def cycle_tables(results: Results) -> Iterable[Table]:
 
 
 def output_motion(results: Results, motion: Motion, link: str) -> Iterable[tuple[str, Real, Dimension]]:
-    """Run (or angle), speed and acceleration of an output: what it is called, its values, what they measure."""
+    """Yield header, values (positions,) and dimension of the displacement (or angle), speed and acceleration of an
+    output.
+    """
     run, first, second = output_run(motion, link)
     v = first * motion.rate
     a = second * motion.rate**2 + first * motion.acceleration
@@ -99,7 +103,10 @@ def output_motion(results: Results, motion: Motion, link: str) -> Iterable[tuple
 
 
 def _balance_columns(results: Results) -> Iterable[Column]:
-    """What balances the driver, by both ways; with several drivers each, then the sum that both ways give."""
+    """Yield the balancing moment or force by the force plan and by the Zhukovsky lever, and their difference.
+
+    With several drivers: the balancing load of each driver, and the sum reduced to the first driver by both methods.
+    """
     reactions, lever, motion = results.reactions, results.lever, results.motion
     if reactions is None or lever is None or motion is None:
         return
@@ -128,14 +135,14 @@ def _balance_columns(results: Results) -> Iterable[Column]:
 
 
 def has_flywheel(results: Results) -> bool:
-    """Whether what drives has a flywheel to speed up besides the links, and nothing else, as a brake."""
+    """Return True if a flywheel is the only difference between the driving moment and the balancing moment (no brake)."""
     if results.single is not None:
         return bool(results.single.task.flywheel) and not results.single.task.brake
     return results.steady is not None and bool(results.steady.steady.law.flywheel)
 
 
 def _flywheel_note(results: Results) -> Iterable[str]:
-    """Where a law of motion is computed, what balances the driver is not what drives the machine."""
+    """Yield a note on the difference between balancing moment and driving moment of a machine with a flywheel."""
     if results.reactions is None or not has_flywheel(results):
         return
     if results.linkage.driver.kind == "turn":
@@ -145,7 +152,7 @@ def _flywheel_note(results: Results) -> Iterable[str]:
 
 
 def position_states(results: Results) -> list[str]:
-    """What is wrong with each position, or nothing."""
+    """Return for each position why it has no velocities or forces; an empty text if it has them."""
     motion = results.motion
     assert motion is not None
     limits = np.zeros(np.shape(motion.q), dtype=bool) if motion.limits is None else motion.limits
@@ -169,9 +176,15 @@ def long_table(
     things: Sequence[Sequence[NamedValues]],
     note: str = "",
 ) -> Table:
-    """Position by position, a row for each thing. words: what tells the things apart, by header.
+    """Return a table with a row for each position and each object (point, link, pair).
 
-    things: their columns (quantities.columns), which have the same headers.
+    Args:
+        results: results with a motion.
+        name: name of the table.
+        title: its title.
+        words: columns that identify the objects: names of the objects by header.
+        things: columns of each object, see `quantity_columns`; all objects have the same headers.
+        note: note below the table.
     """
     count, number = len(results.numbers), len(things)
     head = [Column(c.header, _repeat_values(c.values, number), c.dimension) for c in driver_columns(results)]
@@ -185,7 +198,7 @@ def long_table(
 
 
 def _repeat_values(values: Any, number: int) -> Any:
-    """Each value so often in a row; words and whole numbers stay such."""
+    """Repeat each value `number` times; a list stays a list, so that texts and integers keep their type."""
     return [v for v in values for _ in range(number)] if isinstance(values, list) else np.repeat(values, number)
 
 
@@ -193,7 +206,7 @@ def _repeat_values(values: Any, number: int) -> Any:
 
 
 def kinematics_tables(results: Results) -> Iterable[Table]:
-    """points, links, slides."""
+    """Yield the tables of the motion of points and centres of mass, of links, and of prismatic pairs."""
     motion = results.motion
     assert motion is not None
     linkage, of = results.linkage, results.of
@@ -218,14 +231,16 @@ def kinematics_tables(results: Results) -> Iterable[Table]:
 
 
 def _with_rpm(table: Table) -> Table:
-    """With angular speeds in turns a minute beside them, as speeds of wheels are given."""
+    """Return the table with a column of angular speeds in revolutions per minute after those in rad/s, as usual for
+    gears.
+    """
     k = next(k for k, column in enumerate(table.columns) if column.header == "omega")
     turns = replace(table.columns[k], header=_("n"), unit="rpm")
     return replace(table, columns=(*table.columns[: k + 1], turns, *table.columns[k + 1 :]))
 
 
 def _angle_within_half_turn(turning: LinkMotion) -> LinkMotion:
-    """With the angle in -180 to 180 deg, the driver's too."""
+    """Return the rotation with its angle reduced to the range -180 to 180 deg."""
     half = pi(turning.angle)
     turns = np.ceil((turning.angle - half) / (2 * half))
     return replace(turning, angle=turning.angle - 2 * half * turns)
@@ -238,7 +253,7 @@ SEAM_OF_TURN = 1e-6  # rad: just before the end of a turn is its beginning
 
 
 def extremes_tables(results: Results) -> Iterable[Table]:
-    """A row a quantity; a link that turns fully has no extreme angles."""
+    """Yield the table of the least and largest values; a link that rotates fully has no extreme angles."""
     found = results.extremes
     if not found:
         return
@@ -284,12 +299,12 @@ NO_SPEED = 1e-9  # of the largest ratio of speeds: where an output is so slow it
 
 
 def centre_name(links: tuple[str, str]) -> str:
-    """P13 of links 1 and 3."""
+    """Return the name of an instantaneous centre: P13 of links 1 and 3."""
     return "P" + ("" if all(len(link) == 1 for link in links) else ",").join(links)
 
 
 def centres_tables(results: Results) -> Iterable[Table]:
-    """A row a centre; then what the driver's moment or force does at the outputs."""
+    """Yield the table of instantaneous centres, then that of the mechanical advantage."""
     found = [(k, centre) for k, here in (results.centres or {}).items() for centre in here]
     places = [centre.place for __, centre in found]
     away = [None if c.direction is None else float(np.angle(c.direction) % np.pi) for __, c in found]
@@ -318,7 +333,7 @@ def _centre_method(centre: InstantCentre) -> str:
 
 
 def _advantage_table(results: Results) -> Iterable[Table]:
-    """Moment or force of each output over the driver's, without weights, inertia and friction."""
+    """Yield the ratio of each output's moment or force to that of the driver, without weights, inertia and friction."""
     motion, linkage = results.motion, results.linkage
     assert motion is not None
     columns = []

@@ -1,4 +1,8 @@
-"""Every number of the tables and of result.json, by a key that says what it is, and back to its place."""
+"""Accuracy of the numbers in tables and in result.json: bounds of the rounding error and sensitivity to the input data.
+
+Each number has a key: (it is an angle, table or section, ...). The keys relate numbers of results that were computed with
+other lengths or with higher precision.
+"""
 
 from __future__ import annotations
 
@@ -44,9 +48,15 @@ Cells = Mapping[Hashable, Real]
 def collect_numbers(
     results: Results, reports: Collection[str] = ASSESSED, parts: Collection[str] | None = LARGE_SECTIONS
 ) -> tuple[Cells, Cells]:
-    """Those that have one value a position, and the others, which were searched for. Keys of angles begin with True.
+    """Return the numbers with one value per position, and the others, which are found by a search, by their keys.
 
-    parts: the large ones of result.json that are wanted; None: tables alone.
+    Args:
+        results: results with a motion.
+        reports: reports whose tables are read.
+        parts: large sections of result.json that are read; None: tables alone.
+
+    Returns:
+        Two mappings of arrays. The first item of a key is True for an angle.
     """
     count, turns = len(results.numbers), results.linkage.driver.kind == "turn"
     at_positions: dict[Hashable, Real] = {}
@@ -68,24 +78,26 @@ def collect_numbers(
 
 
 def numbers_at_positions(results: Results, shown: Collection[str] = ()) -> Cells:
-    """The numbers at positions; shown: in reports with these tables alone."""
+    """Return the numbers with one value per position by their keys; `shown`: only those of the reports with these
+    tables.
+    """
     reports = {r.name for r in REPORTS if not shown or set(r.tables) & set(shown)}
     return collect_numbers(results, reports & set(ASSESSED) - SEARCHED_REPORTS, None if shown else LARGE_SECTIONS)[0]
 
 
 def search_reader(results: Results, whole: bool = True) -> Callable[[Results], Cells]:
-    """What reads the numbers of searches out of results like these; whole: those of result.json too."""
+    """Return a function that collects the searched numbers of results; `whole`: those of result.json as well."""
     energy = () if results.friction is None else ("energy",)
     return lambda other: collect_numbers(other, ("quality", "pressure", *energy), energy if whole else None)[1]
 
 
 def computed_tables(results: Results, reports: Collection[str] = ASSESSED) -> Iterator[Table]:
-    """Tables with computed numbers, of these reports; of chosen points and links there is their motion alone."""
+    """Yield the tables of the given reports; if only some points and links were requested, the tables of their motion."""
     return tables_of(results, set(reports) & {"kinematics"} if results.of else reports)
 
 
 def row_keys(table: Table, count: int) -> list[list[Hashable]] | None:
-    """For each column the keys of its rows at one position; None when the rows are no positions."""
+    """Return for each column the keys of its rows at one position; None if the rows are not positions."""
     if not count or not table.columns or table.columns[0].header != "position" or table.rows % count:
         return None
     rows = range(table.rows // count)
@@ -93,7 +105,7 @@ def row_keys(table: Table, count: int) -> list[list[Hashable]] | None:
 
 
 def _leaves(value: Any, path: tuple[str, ...]) -> list[tuple[tuple[str, ...], Any]]:
-    """Numbers and arrays of nested content with their paths; items of lists are known by their number."""
+    """Return the numbers and arrays of nested content with their paths; an item of a list is named by its index."""
     found: list[tuple[tuple[str, ...], Any]] = []
     for name, part in _named_parts(value):
         if isinstance(part, dict | list):
@@ -108,7 +120,9 @@ def _named_parts(value: Any) -> Iterable[tuple[str, Any]]:
 
 
 def bounds_in_shape(value: Any, values: Mapping[Any, Real], path: tuple[str, ...] = ()) -> Any:
-    """The digits of nested content in its shape; what has none is left out, but for items of lists."""
+    """Return bounds in the nested shape of the content they belong to; a key without bounds is omitted, a list item is
+    {}.
+    """
     if isinstance(value, dict):
         inner = {name: bounds_in_shape(part, values, (*path, name)) for name, part in value.items()}
         return {name: part for name, part in inner.items() if part is not None} or None
@@ -123,7 +137,7 @@ def bounds_in_shape(value: Any, values: Mapping[Any, Real], path: tuple[str, ...
 
 
 def _round_up(values: Real) -> list[float]:
-    """Two figures are enough for a bound; the last one is rounded up."""
+    """Round each bound up to two significant figures."""
     with np.errstate(all="ignore"):
         unit = 10.0 ** (np.floor(np.log10(values)) - 1)
         short = np.where(values > 0, np.ceil(values / unit) * unit, values)
@@ -145,7 +159,15 @@ RATIOS = {  # columns that are something over a force: the less of it there is t
 def bounds_by_margins(
     results: Results, relative: Real, sizes: Mapping[Dimension, float], table: Table, column: Column
 ) -> Real:
-    """Bounds of a column whose rows are positions: shares (margins.relative) of the largest of its kind."""
+    """Return error bounds of a column whose rows are positions, from the bounds of the group margins.
+
+    Args:
+        results: results of the table.
+        relative: bound at each position as a fraction of the largest value of a dimension, (positions,).
+        sizes: largest value by dimension.
+        table: the table.
+        column: the column of the table.
+    """
     values = np.abs(column.array)
     own = float(np.max(values, where=np.isfinite(values), initial=0.0))
     assert column.dimension is not None
@@ -168,7 +190,7 @@ def bounds_by_margins(
 
 
 def _percent_scale(results: Results, table: str, power: float, sizes: Mapping[Dimension, float]) -> float:
-    """What all forces come to, as a share of what it is compared with."""
+    """Return the scale (%) of all forces relative to the reference of a column in per cent."""
     assert results.reactions is not None
     if table == "energy" and results.energy is not None:
         of, size = [results.energy.drivers, results.energy.rate], power
@@ -200,11 +222,17 @@ BOUND_HEADERS = {"bound": N_("± rounding"), "lengths": N_("± lengths"), "paper
 
 @dataclass(frozen=True)
 class AccuracyReport:
-    """How far the numbers of results are to be trusted: those at positions, and those that were searched for.
+    """Accuracy of the numbers of results, both at positions and found by search.
 
-    relative: bounds at all positions as shares of the largest of each kind (`sizes`). chosen: positions that were
-    judged; there: results at them; digits: of their numbers by key. full: whether sensitivities are wanted too. found
-    judges what was searched for when a table of it is shown.
+    Attributes:
+        results: the results.
+        relative: error bounds as fractions of the largest value of a dimension, (positions,).
+        sizes: largest value by dimension.
+        found: function that returns the digits of searched numbers; it is called when a table needs them.
+        chosen: indices of the positions that were examined.
+        there: results at these positions.
+        digits: digits of their numbers, by key.
+        full: True if sensitivities are requested too.
     """
 
     results: Results
@@ -217,7 +245,7 @@ class AccuracyReport:
     full: bool
 
     def with_bounds(self, tables: Iterable[Table]) -> Iterator[Table]:
-        """Tables with the bounds that were found, one after the other; with all digits last the table of the worst."""
+        """Yield the tables with their error bounds; if `full`, finally the summary of the least accurate columns."""
         worst: list[tuple[str | float, ...]] = []
         for table in map(self.table, tables):
             rows = list(_worst_columns(table)) if self.full else []
@@ -227,7 +255,7 @@ class AccuracyReport:
             yield self.summary(worst)
 
     def table(self, table: Table) -> Table:
-        """The same table, its numbers with their bounds and sensitivities."""
+        """Return the table with the error bounds and sensitivities of its numbers."""
         keys = row_keys(table, len(self.relative))
         columns = [
             replace(column, **self._parts(table, k, None if keys is None else keys[k]))
@@ -236,7 +264,9 @@ class AccuracyReport:
         return replace(table, columns=tuple(columns))
 
     def _parts(self, table: Table, k: int, keys: list[Hashable] | None) -> dict[str, Any]:
-        """The bounds of the k-th column, and its sensitivities if wanted. keys: of its rows at one position, if any."""
+        """Return the bounds of column k, and its sensitivities if `full`. keys: of its rows at one position; None: not
+        positions.
+        """
         column, single = table.columns[k], (False, table.name, k)
         if column.dimension is None or (keys is None and single not in self.found().bound):
             return {}
@@ -254,12 +284,12 @@ class AccuracyReport:
         return {part: values.ravel() for part, values in found.items()}
 
     def _judged(self, part: str, keys: list[Hashable]) -> Real:
-        """What was judged, (chosen positions, rows)."""
+        """Return the examined bounds or sensitivities, (chosen positions, rows); nan where there are none."""
         nothing = np.full(len(self.chosen), np.nan)
         return np.stack([getattr(self.digits, part).get(key, nothing) for key in keys], axis=1)
 
     def summary(self, rows: Sequence[tuple[str | float, ...]]) -> Table:
-        """Table by table and column by column: the largest bound, digits to be trusted, sensitivities."""
+        """Return the table of the largest bound, the number of true digits and the sensitivities of each column."""
         words = (_("table"), _("column"))
         figures = (
             _("bound by rounding"),
@@ -274,7 +304,9 @@ class AccuracyReport:
         return Table("digits", title, tuple(columns), notes=(_sensitivity_note(self.digits.mu),))
 
     def json(self) -> dict[str, Any] | None:
-        """The section `digits` of result.json: bounds and sensitivities in the places of their values; if wanted."""
+        """Return the section `digits` of result.json: bounds and sensitivities under the keys of their values; None
+        unless `full`.
+        """
         if not self.full:
             return None
         content = dict(computed_sections(self.there))
@@ -286,7 +318,7 @@ class AccuracyReport:
 
 
 def select_positions(record: Record, chosen: Real, count: int) -> Record:
-    """A record of arrays over so many positions with the chosen ones only; all that are in a finer one are chosen."""
+    """Return a record reduced to the chosen ones of `count` positions; the array of another length is kept."""
 
     def of_chosen(path: str, leaf: Any) -> Any:
         return leaf[..., chosen] if isinstance(leaf, np.ndarray) and leaf.shape[-1:] == (count,) else leaf
@@ -295,9 +327,12 @@ def select_positions(record: Record, chosen: Real, count: int) -> Record:
 
 
 def assess_accuracy(results: Results, full: bool = False, shown: Collection[str] = ()) -> AccuracyReport:
-    """How far all numbers of results that have a motion are to be trusted; full: each of them judged.
+    """Return the accuracy of all numbers of results that have a motion.
 
-    shown: tables that alone are shown; nothing is judged then that is in result.json only.
+    Args:
+        results: results with a motion.
+        full: examine every number, with sensitivities; else only positions at which six figures are in doubt.
+        shown: tables that are shown; if any, numbers that are in result.json only are not examined.
     """
     motion, count = results.motion, len(results.numbers)
     assert motion is not None
@@ -326,9 +361,9 @@ def assess_accuracy(results: Results, full: bool = False, shown: Collection[str]
 
 
 def _worst_columns(table: Table) -> Iterator[tuple[str, float, float, float, float]]:
-    """Of each column with digits: header, largest bound relative to its largest value, true digits, changes in %.
+    """Yield for each column with bounds: header, bound / largest value, true digits, and both changes in %.
 
-    Of a table in which every row has a unit of its own, the same of each row, beside the largest value of that unit.
+    In a table in which every row has its own unit, this is done row by row, relative to the largest value of that unit.
     """
     units = np.array(table.columns[-1].values) if table.columns[-1].header == "unit" else None
     for column in table.columns:
@@ -346,14 +381,14 @@ def _worst_columns(table: Table) -> Iterator[tuple[str, float, float, float, flo
 
 
 def _largest_by_row(values: Real) -> Real:
-    """The largest number of each row; nan where there is none."""
+    """Return the largest magnitude of each row; nan if it has no finite number."""
     values = np.abs(values)
     sound = np.isfinite(values)
     return np.where(sound.any(axis=1), np.max(values, axis=1, where=sound, initial=0.0), np.nan)
 
 
 def _accuracy_note(rows: Sequence[tuple[str, float, float, float, float]]) -> str:
-    """What to know of the worst columns of a table."""
+    """Return a note on the least accurate columns of a table."""
     bound, share, paper = (max(rows, key=lambda row: 0.0 if np.isnan(row[k]) else row[k]) for k in (1, 3, 4))
     if not share[3] > 0:
         return _("Rounding: at most {bound} of the largest value of a column.").format(bound=numeral(bound[1], ".1e"))
@@ -378,7 +413,7 @@ def _sensitivity_note(mu: float) -> str:
 
 
 def _sheet_scale(results: Results) -> float:
-    """Scale (m a mm) at which the mechanism fits on a sheet with all its trajectories."""
+    """Return the scale (m per mm) at which the mechanism fits on a sheet with the paths of all its points."""
     motion, linkage = motion_at_positions(results, results.closely(TRAJECTORY_POSITIONS), 0), results.linkage
     places = [complex(linkage.local(FRAME, h.point)) for h in linkage.hinges if FRAME in h.links]
     for name in linkage.moving:
@@ -391,7 +426,7 @@ def _sheet_scale(results: Results) -> float:
 
 
 def with_bound_columns(table: Table) -> Table:
-    """The table with bound and sensitivities of every number beside it."""
+    """Return the table with columns for the bound and the sensitivities after each column of numbers."""
     columns: list[Column] = []
     for k, column in enumerate(table.columns):
         columns.append(column)

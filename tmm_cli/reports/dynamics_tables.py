@@ -1,4 +1,4 @@
-"""Steady running: what drives the machine, its flywheel, and the law of motion at every position."""
+"""Tables of the law of motion and the flywheel, of a single run, of balancing, and of intermittent motion."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ RUN_STEPS = 25  # of a single run, that are shown
 
 
 def dynamics_tables(results: Results) -> Iterable[Table]:
-    """What was found, then the law of motion."""
+    """Yield the main quantities of steady running or of a single run, then the law of motion."""
     running = results.running
     assert running is not None
     if not isinstance(running, SteadyRunning):
@@ -110,7 +110,7 @@ def _law_table(results: Results) -> Table:
 
 
 def _run_tables(results: Results, single: SingleRun) -> Iterable[Table]:
-    """A single run: its sums, and as many of its steps as one reads."""
+    """Yield the main quantities of a single run, and its law of motion in RUN_STEPS steps."""
     run, turns = single.run, results.linkage.driver.kind == "turn"
     time = _("the time of {time} s is over before its way is gone").format(time=numeral(run.time[-1], ".6g"))
     endings = {"way": _("the way is gone"), "standstill": _("the machine stands"), "time": time}
@@ -151,7 +151,7 @@ def _run_tables(results: Results, single: SingleRun) -> Iterable[Table]:
 
 
 def balancing_tables(results: Results) -> Iterable[Table]:
-    """What was found, then what shakes at every position."""
+    """Yield the counterweights with the largest shaking force and moment, then both at every position."""
     found = results.balancing
     assert found is not None
     rows, notes = (
@@ -230,7 +230,9 @@ def _shaking_table(results: Results, found: BalancingResults) -> Table:
 
 
 def intermittent_tables(results: Results) -> Iterable[Table]:
-    """Strokes, sums over a cycle, and the course of each wheel close together."""
+    """Yield the periods of driven motion and rest, the totals of a cycle, and the motion of each wheel at close
+    positions.
+    """
     wheels = results.wheels
     assert wheels is not None
     place = coordinate_dimension(results.linkage.driver.kind)
@@ -244,7 +246,7 @@ def intermittent_tables(results: Results) -> Iterable[Table]:
 
 
 def _wheel_period_table(wheels: Iterable[IntermittentMotion], place: Dimension, *, back: bool) -> Table:
-    """A row a part of the cycle; back: the driver goes there and back."""
+    """Return a table with a row for each period of motion or rest; back: the driver moves forward and back."""
     rows = [(wheel, part, wheel.jumps[k]) for wheel in wheels for k, part in enumerate(wheel.parts)]
     parts = [part for __, part, ___ in rows]
     columns = [
@@ -270,7 +272,7 @@ def _wheel_period_table(wheels: Iterable[IntermittentMotion], place: Dimension, 
 
 
 def _setting_text(wheel: IntermittentMotion, part: WheelMotion) -> str:
-    """The parameters of the file are told by their number alone."""
+    """Return the number of a setting and its parameter values; of the file's own values the number alone."""
     values = wheel.task.settings[part.setting].values
     told = ", ".join(f"{name} = {value}" for name, value in values.items())
     return f"{part.setting + 1}: {told}" if told else str(part.setting + 1)

@@ -36,7 +36,7 @@ from tmm_cli.reports.table import Table, link_name, text_table
 
 
 def narrate_structure(results: Results) -> Iterable[str]:
-    """Whole sentences, in the order of a note."""
+    """Yield the structural analysis in whole sentences, in the order of an explanatory note."""
     structure = results.structure
     yield _mobility_sentence(structure)
     count = (len(structure.links), len(structure.pairs) - structure.higher, structure.higher)
@@ -110,13 +110,13 @@ def _mobility_sentence(structure: Structure) -> str:
 
 
 def _pair_text(pair: Pair) -> str:
-    """O 0-1 (5, 1в): a pair, its links, its class and its code; a higher pair has no code."""
+    """Return a pair as `O 0-1 (5, 1в)`: name, links, class and code; a higher pair has no code."""
     words = ", ".join(filter(None, (str(pair.pair_class), pair.code)))
     return f"{pair.name} {printed(pair.i)}-{printed(pair.j)} ({words})"
 
 
 def _external_pairs(group: Group) -> str:
-    """The pairs that join a group to what is known, and that link."""
+    """Return the external pairs of a group, each with the link outside the group."""
     known = [(pair.name, pair.i if pair.j in group.links else pair.j) for pair in group.outer]
     frame, moving = _("{pair} (frame)"), _("{pair} (link {link})")
     return ", ".join((frame if link == FRAME else moving).format(pair=pair, link=link) for pair, link in known)
@@ -136,7 +136,7 @@ def _balance_text(linkage: Linkage) -> str:
 
 
 def explain_tables(results: Results, verbose: bool = False) -> Iterable[Table]:
-    """Tables of words: the file in full, then the way of the calculation; verbose: places that each stage computes."""
+    """Yield the tables of the input data and of the steps of calculation; verbose: also the positions of each stage."""
     yield from input_data_tables(results.problem)
     yield step_table(results)
     if verbose:
@@ -150,7 +150,7 @@ StageRow = tuple[str, str, str, str, str]
 
 
 def step_table(results: Results) -> Table:
-    """The drivers and the groups, with the assembly that each of them has."""
+    """Return the table of drivers and groups in solving order, with the assembly of each group."""
     linkage = results.linkage
     drivers = " + ".join(map(results.structure.driver_title, linkage.drivers))
     given = _("the drivers: their places are given") if linkage.others else _("the driver: its place is given")
@@ -185,7 +185,6 @@ def _known_links(group: Group) -> str:
 
 
 def _assembly_text(kernel: GroupSolver | None) -> str:
-    """Which of its assemblies a group has."""
     if kernel is None:
         return _("not decided: see tmm kinematics")
     if not isinstance(kernel, ClosedFormSolver):
@@ -203,13 +202,15 @@ def _method_text(kernel: GroupSolver) -> str:
 
 
 def stage_table(results: Results) -> Table:
-    """A row a stage."""
+    """Return a table with a row for each stage of the calculation."""
     headers = (_("stage"), _("groups"), _("places"), _("of the motion"), _("note"))
     return text_table("stages", _("What each stage computes, when it is asked for"), headers, describe_stages(results))
 
 
 def describe_stages(results: Results) -> Iterable[StageRow]:
-    """Stage, groups, how many places, what of the motion, and notes; nothing but counting where nothing assembles."""
+    """Yield stage, groups, number of positions, computed quantities and a note; only the structure if nothing
+    assembles.
+    """
     driver_range, linkage, request = results.driver_range, results.linkage, results.problem.request
     yield _("structure"), "-", "-", "-", _("by counting; a crank and a rocker are told apart by the range")
     if driver_range is None:
@@ -271,7 +272,7 @@ def _group_titles(groups: Sequence[GroupSolver], every: Sequence[GroupSolver]) -
 
 
 def skipped_tables(problem: Problem) -> Iterable[Table]:
-    """What is not computed and why; no table where nothing is skipped."""
+    """Yield the table of what is not computed, with reasons; no table if everything is computed."""
     rows = list(_skipped_rows(problem))
     if rows:
         yield text_table("skipped", _("What is skipped"), (_("what"), _("why")), rows)

@@ -1,4 +1,7 @@
-"""pylinkage: JSON that its `mechanism_from_json` reads, in the place of the sketch; in mm, as it is read back."""
+"""Files for other programs: a function for each format, and an entry in EXPORTS.
+
+pylinkage: JSON for its `mechanism_from_json`, lengths in mm, at the position of the sketch.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,11 @@ from tmm_cli.problem import ProblemError
 
 
 def export_pylinkage(results: Results) -> tuple[str, list[str]]:
-    """The text, and what it does not hold. Raises ProblemError where pylinkage has no such mechanism."""
+    """Return the JSON text for pylinkage, and a list of what it cannot hold.
+
+    Raises:
+        ProblemError: pylinkage has no such mechanism.
+    """
     linkage = results.linkage
     _refuse_unsupported(linkage)
     motion = results_at(results, np.array([linkage.sketch.at])).motion

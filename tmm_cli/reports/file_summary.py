@@ -1,4 +1,4 @@
-"""What was understood of a problem before anything is computed, and what in it is probably a slip."""
+"""Summary of a problem file before the calculation, and warnings about probable slips in it."""
 
 from __future__ import annotations
 
@@ -49,7 +49,10 @@ ANGULAR_SPEEDS: tuple[Path, ...] = (  # that a file may give beside those of dri
 
 
 def summarise_file(task: Problem | TaskProblem) -> Iterable[str]:
-    """Units, driver, gravity, sizes: a sentence each. What a task has to find first is found after the first one."""
+    """Yield units, drivers, sizes and gravity, a sentence each.
+
+    The sentence on units comes first: it does not need the dimensions that a synthesis finds.
+    """
     yield describe_units(task.units)
     problem = task.whole
     if problem.source is not None and problem.source.given:
@@ -66,7 +69,7 @@ def summarise_file(task: Problem | TaskProblem) -> Iterable[str]:
 
 
 def _size_ranges(problem: Problem) -> Iterator[str]:
-    """From the least to the largest length, mass, force, moment and pressure, with the names of what has them."""
+    """Yield the least and largest length, mass, force, moment and pressure, with the names of links and loads."""
     linkage = problem.linkage
     spans = sorted((span, points) for span, points in _link_spans(problem).values())
     if spans:
@@ -91,7 +94,7 @@ def _size_ranges(problem: Problem) -> Iterator[str]:
 
 
 def _range_text(problem: Problem, values: Sequence[tuple[float, str]], dimension: Dimension) -> str:
-    """The first and the last of the values, which are sorted, with their names; all in one if there is one alone."""
+    """Return the first and last of sorted values with their names; one of them if both are equal."""
     sizes = dict.fromkeys((values[0], values[-1]))
     ends = [f"{with_unit(problem.units, size, dimension)} ({name})" for size, name in sizes]
     if len(ends) == 1 or values[0][0] == values[-1][0]:
@@ -100,7 +103,9 @@ def _range_text(problem: Problem, values: Sequence[tuple[float, str]], dimension
 
 
 def _pressures(problem: Problem) -> Iterator[tuple[Path, float]]:
-    """The largest pressure (Pa) of each load by a pressure, and of a piston that drives, with its place in the file."""
+    """Yield the largest pressure (Pa) of each load given as a pressure and of a driving piston, with its path in the
+    file.
+    """
     if problem.source is None or problem.values is None:
         return
     data = problem.source.data
@@ -115,7 +120,7 @@ def _pressures(problem: Problem) -> Iterator[tuple[Path, float]]:
 
 
 def describe_units(units: UnitSystem) -> str:
-    """What numbers without a unit mean."""
+    """Return a sentence on the units of numbers that are given without a unit."""
     names = [units.spelt(dimension) for dimension in (LENGTH, ANGLE, MASS, FORCE, MOMENT, INERTIA)]
     return _("bare numbers: {units}; a bare speed: {angular} or {linear}").format(
         units=", ".join(names), angular=units.spelt(ANGULAR_SPEED), linear=units.spelt(SPEED)
@@ -123,7 +128,7 @@ def describe_units(units: UnitSystem) -> str:
 
 
 def describe_driver_motion(driver: Driver) -> str:
-    """`70 rad/s = 668 rpm, counterclockwise`."""
+    """Return the speed of a driver: `70 rad/s = 668 rpm, counterclockwise`."""
     if driver.kind == "slide":
         text = _("{speed} m/s, along its guide") if driver.sense > 0 else _("{speed} m/s, against its guide")
         return text.format(speed=_short_number(driver.rate))
@@ -147,7 +152,7 @@ def describe_driver_motion(driver: Driver) -> str:
 
 
 def describe_interpolation(law: SpeedTable) -> str:
-    """What is between rows of a table of speeds, and where accelerations are from."""
+    """Return how speeds are interpolated between rows of a table, and where the accelerations come from."""
     if law.squares.between == "linear":
         text = _("constant acceleration from row to row")
     elif law.squares.closed:
@@ -162,7 +167,7 @@ def describe_interpolation(law: SpeedTable) -> str:
 
 
 def describe_gravity(pull: complex) -> str:
-    """Its size and direction."""
+    """Return magnitude and direction of gravity as text."""
     if not pull:
         return _("no gravity")
     if pull.real == 0 > pull.imag:
@@ -171,7 +176,7 @@ def describe_gravity(pull: complex) -> str:
 
 
 def find_slips(problem: Problem) -> Iterable[str]:
-    """What is allowed and computed, and yet is probably not what was meant."""
+    """Yield warnings about input that is allowed but probably not intended."""
     data: Mapping[str, Any] = {} if problem.source is None else problem.source.data
     if problem.source is not None:
         yield from find_unused_parameters(problem.source, [path[1] for path in problem.source.given])
@@ -198,13 +203,13 @@ def find_slips(problem: Problem) -> Iterable[str]:
 
 
 def find_unused_parameters(tree: Tree, names: Iterable[Any]) -> Iterable[str]:
-    """That parameters which are given other values beside the file change nothing."""
+    """Yield a warning for each of the parameters `names` that the file does not use."""
     for name in unused_parameters(tree, names):
         yield _("parameter {name} is used nowhere in the file, and its value changes nothing").format(name=name)
 
 
 def _bare_driver_speed(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
-    """A speed without a unit is in rad/s or m/s also where the file counts in degrees or millimetres."""
+    """Warn of a driver speed without a unit (taken in rad/s or m/s) in a file with degrees or millimetres."""
     driver, units = problem.linkage.driver, problem.units
     named = {key.replace("_", " ") for key in data.get("units", {})}
     if not problem.bare_speed or not driver.rate:
@@ -223,12 +228,12 @@ def _bare_driver_speed(problem: Problem, data: Mapping[str, Any]) -> Iterable[st
 
 
 def find_bare_speeds(data: Mapping[str, Any], values: ValueReader, drivers: Sequence[Driver] = ()) -> Iterator[str]:
-    """Speeds without a unit beside that of the first driver, in a file that counts in degrees or millimetres.
+    """Yield warnings about other speeds without a unit in a file with degrees or millimetres.
 
     Args:
-        data: the file as it is read.
-        values: how its values are read.
-        drivers: those of its linkage, if it has one.
+        data: content of the file.
+        values: reader of its values.
+        drivers: drivers of its linkage, if any; the speed of the first one is checked elsewhere.
     """
     units, named = values.units, {key.replace("_", " ") for key in data.get("units") or {}}
     slides = bool(drivers) and drivers[0].kind == "slide"
@@ -266,7 +271,7 @@ def find_bare_speeds(data: Mapping[str, Any], values: ValueReader, drivers: Sequ
 
 
 def _conflicting_speeds(problem: Problem, data: Mapping[str, Any]) -> Iterator[str]:
-    """A mean speed of the law of motion beside another speed of the driver."""
+    """Warn of a mean speed in the law of motion that differs from the driver's speed."""
     task, speed = problem.dynamics, float(to_float(problem.linkage.driver.rate))
     mean = getattr(task, "mean", None)
     if mean is None or not speed or not {"mean speed", "mean_speed"} & set(data.get("dynamics") or {}):
@@ -285,7 +290,7 @@ def _conflicting_speeds(problem: Problem, data: Mapping[str, Any]) -> Iterator[s
 
 
 def _small_fluctuation(data: Mapping[str, Any], values: ValueReader) -> Iterator[str]:
-    """A coefficient of fluctuation that is written in per cent twice over."""
+    """Warn of a coefficient of fluctuation that was probably divided by 100 twice."""
     written = (data.get("dynamics") or {}).get("delta")
     if written is None:
         return
@@ -303,7 +308,7 @@ def _small_fluctuation(data: Mapping[str, Any], values: ValueReader) -> Iterator
 
 
 def _distant_points(problem: Problem) -> Iterator[str]:
-    """Centres of mass, points of load and ends of springs farther from their link than the mechanism is long."""
+    """Warn of centres of mass, load points and spring ends that lie far from their link."""
     linkage = problem.linkage
     size, longest = max(_link_spans(problem).values(), default=(math.inf, ""))
     places: list[tuple[str, str, complex]] = [
@@ -333,7 +338,7 @@ def _distant_points(problem: Problem) -> Iterator[str]:
 
 
 def _high_pressures(problem: Problem) -> Iterator[str]:
-    """Pressures in bare pascals, which are taken as megapascals."""
+    """Warn of pressures given in pascals as bare numbers, which are read in megapascals."""
     for path, pressure in _pressures(problem):
         if pressure > HIGH_PRESSURE:
             yield _(
@@ -356,7 +361,7 @@ def _unusual_sizes(problem: Problem) -> Iterable[str]:
 
 
 def _unusual_masses(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
-    """Inertias that do not fit their links, and bodies that are put in one point."""
+    """Warn of moments of inertia that do not fit their links, and of extended bodies reduced to a point."""
     linkage, spans = problem.linkage, _link_spans(problem)
     largest = max((span for span, points in spans.values()), default=math.inf)
     wheels = {link for mesh in linkage.meshes for link in (mesh.i, mesh.j)}
@@ -395,7 +400,7 @@ def _unusual_masses(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
 
 
 def _coincident_sliders(problem: Problem) -> Iterator[str]:
-    """Two links that share a point and slide along one direction on the same link move as one body."""
+    """Warn of two links that share a point and slide in one direction on the same link: they move as one body."""
     linkage = problem.linkage
     for a, b in combinations(linkage.slides, 2):
         for base in sorted({a.carrier, a.runner} & {b.carrier, b.runner}):
@@ -416,7 +421,7 @@ def _coincident_sliders(problem: Problem) -> Iterator[str]:
 
 
 def _overshooting_tables(problem: Problem) -> Iterable[str]:
-    """A spline may swing far beyond its rows."""
+    """Warn of a spline that goes far beyond the rows of its table."""
     for load in problem.linkage.loads:
         row, share = load.table.overshoot if load.table is not None else (0, 0.0)
         if share > OVERSHOOT:
@@ -427,7 +432,7 @@ def _overshooting_tables(problem: Problem) -> Iterable[str]:
 
 
 def _several_strokes(problem: Problem) -> Iterable[str]:
-    """In a cycle of several turns there are several working strokes."""
+    """Warn that a cycle of several turns has several working strokes."""
     turns = problem.linkage.turns
     for load in problem.linkage.loads if turns > 1 else ():
         if load.working_stroke_only:
@@ -437,7 +442,9 @@ def _several_strokes(problem: Problem) -> Iterable[str]:
 
 
 def _link_spans(problem: Problem) -> dict[str, tuple[float, str]]:
-    """Of each link with several places a large distance of two points (of three points the largest), and which two."""
+    """Return for each link the largest distance (m) of two of its points (approximately, for more than three), and
+    their names.
+    """
     found = {}
     for name, link in problem.linkage.links.items():
         points = list(link.points)
@@ -456,5 +463,5 @@ def _farthest_point(link: Link, point: str) -> str:
 
 
 def _short_number(number: float) -> str:
-    """Four figures, and all those before the point of a number that people would write so."""
+    """Return a number to four figures, with all digits before the point where people write them."""
     return f"{number:.0f}" if 1000 <= number < 1e6 else numeral(number, ".4g")

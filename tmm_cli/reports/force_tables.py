@@ -1,4 +1,4 @@
-"""Loads and reactions. Long: a row a position."""
+"""Tables of forces: reactions, loads, force transmission, balancing, Zhukovsky lever, energy and friction."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ from tmm_cli.reports.table import Column, Table
 
 
 def reaction_name(by: str, on: str) -> str:
-    """R_12 acts from link 1 on link 2."""
+    """Return the name of a reaction: R_12 acts from link 1 on link 2."""
     by, on = printed(by), printed(on)
     return f"R_{by}{on}" if len(by) == len(on) == 1 else f"R_{by},{on}"
 
 
 def forces_tables(results: Results) -> Iterable[Table]:
-    """Reactions, in compound hinges link by link too, loads, and the driving link."""
+    """Yield the tables of reactions, pins of compound hinges, loads, force transmission and balancing."""
     reactions = results.reactions
     assert reactions is not None
     words = {
@@ -78,7 +78,7 @@ def forces_tables(results: Results) -> Iterable[Table]:
 
 
 def _transmission_table(results: Results) -> Iterable[Table]:
-    """Of every link that is driven in one pair: its pressure angle, the driving force and what of it is useful."""
+    """Yield the pressure angle, the driving force and its useful component for each link that is driven in one pair."""
     assert results.motion is not None and results.reactions is not None
     found = find_transmitted_forces(results.motion, results.reactions)
     if found and results.reactions.loaded:
@@ -96,7 +96,7 @@ def _transmission_table(results: Results) -> Iterable[Table]:
 
 
 def _balance_table(results: Results) -> Table:
-    """Every driver's moment or force, and what the frame does to the links that are driven from it."""
+    """Return the balancing moment or force of each driver, and the reaction of the frame on its link."""
     reactions = results.reactions
     assert reactions is not None
     found = driver_columns(results)
@@ -120,7 +120,10 @@ def _balance_table(results: Results) -> Table:
 
 
 def lever_tables(results: Results) -> Iterable[Table]:
-    """One table: forces with arms in length per unit turn of the crank, couples with the ratio of angular speeds."""
+    """Yield the table of the Zhukovsky lever: arm and moment of every force and couple at every position.
+
+    The arm of a force is in length per radian of the crank; that of a couple is a ratio of angular speeds.
+    """
     lever = results.lever
     assert lever is not None
     if not lever.items:
@@ -153,7 +156,9 @@ def _lever_columns(item: LeverItem, slider: bool) -> list[NamedValues]:
 
 
 def drawn_tables(results: Results) -> Iterable[Table]:
-    """A row for each position in detail: what both ways give on paper, and how far apart they are."""
+    """Yield the balancing load as read off the drawn force plan and lever, and its difference, in each detailed
+    position.
+    """
     motion, reactions, lever = results.motion, results.reactions, results.lever
     assert motion is not None and reactions is not None and lever is not None
     positions = [(k, balance_drawings(motion, reactions, lever, k)) for k in detailed_positions(results) if lever.items]
@@ -184,7 +189,7 @@ def drawn_tables(results: Results) -> Iterable[Table]:
 
 
 def energy_tables(results: Results) -> Iterable[Table]:
-    """The balance, and where there is friction what it takes."""
+    """Yield the power balance with reduced inertia and moment; with friction also the work of friction."""
     found = results.energy
     assert found is not None
     quantities = [quantity for quantity in ENERGY if quantity.name != "friction" or results.friction is not None]
@@ -225,7 +230,9 @@ def _friction_table(results: Results) -> Table:
 
 
 def describe_locked_ranges(results: Results) -> list[str]:
-    """Ranges of the driver in which friction locks the mechanism, with the positions in them and the pair."""
+    """Return the ranges of the driver in which friction locks the mechanism, with their positions and the decisive
+    pair.
+    """
     units, measure = results.problem.units, coordinate_dimension(results.linkage.driver.kind)
     cycle, found = 2 * np.pi * results.turns, []
     for locked in results.losses.ranges if results.losses is not None else ():

@@ -1,4 +1,6 @@
-"""Friction that locks, springs wound too far, loads that drive, tables too short or not closed, demands, the lever."""
+"""Warnings about forces: friction that locks, springs, loads and their tables, unmet demands, disagreement of the
+lever.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +38,7 @@ WORK_POSITIONS = 120  # positions a turn at which the power of a load is compare
 
 
 def locked_positions(results: Results) -> Iterable[str]:
-    """Where friction locks the mechanism, also between the positions, by the pair that rubs most."""
+    """Warn of ranges in which friction locks the mechanism, also between the positions."""
     ranges = describe_locked_ranges(results)
     if ranges:
         yield _(
@@ -46,7 +48,7 @@ def locked_positions(results: Results) -> Iterable[str]:
 
 
 def twisted_springs(results: Results) -> Iterable[str]:
-    """Torsion springs that come to half a turn from their free angle."""
+    """Warn of torsion springs that are twisted by more than half a turn from their free angle."""
     springs = [s for s in results.linkage.springs if s.turns]
     if not springs or results.reactions is None:
         return
@@ -63,7 +65,7 @@ def twisted_springs(results: Results) -> Iterable[str]:
 
 
 def springs_of_zero_length(results: Results) -> Iterable[str]:
-    """Linear springs whose ends meet within the cycle: the direction of their force reverses there."""
+    """Warn of linear springs whose ends meet within the cycle: the direction of their force reverses there."""
     springs = [s for s in results.linkage.springs if not s.turns and s.preload != s.rate * s.free]
     if not springs or results.reactions is None:
         return
@@ -87,7 +89,7 @@ def springs_of_zero_length(results: Results) -> Iterable[str]:
 
 
 def _coordinate_in_cycle(results: Results, q: float) -> str:
-    """A driver coordinate; an angle of a driver that turns fully is counted within its cycle."""
+    """Return a driver coordinate as text; the angle of a fully rotating driver is reduced to its cycle."""
     cycle = 2 * np.pi * results.turns
     return format_driver_coordinate(
         results, float(np.mod(q + SAME_DRIVER_POSITION, cycle) - SAME_DRIVER_POSITION) if cycle else q
@@ -95,7 +97,7 @@ def _coordinate_in_cycle(results: Results, q: float) -> str:
 
 
 def driving_loads(results: Results) -> Iterable[str]:
-    """Loads of the working stroke that act along the motion, or do no work, all through it."""
+    """Warn of loads of the working stroke that act along the motion, or do no work, during the whole stroke."""
     loads = [load for load in results.linkage.loads if load.working_stroke_only and not load.resists]
     if not loads or results.reactions is None:
         return
@@ -113,7 +115,7 @@ def driving_loads(results: Results) -> Iterable[str]:
 
 
 def _load_power(motion: Motion, acting: Iterable[AppliedLoad]) -> tuple[Real, Real]:
-    """Power of a load and of its opposite, and the largest that they could have at this speed; zero at rest (W)."""
+    """Return the power of the loads, and the largest power possible at this speed (W), (positions,); zero at rest."""
     crank = motion.linkage.driver.kind == "turn"
     reach = max((kernel.size for kernel in motion.kernels), default=1.0) if crank else 1.0
     power = largest = np.zeros(np.shape(motion.q))
@@ -148,7 +150,7 @@ def _driving_load_text(results: Results, load: Load) -> str:
 
 
 def _idle_load_text(results: Results, load: Load, motion: Motion, applied: AppliedLoad) -> str:
-    """What to write instead is seen at the position in which the point of the load is fastest."""
+    """Return the warning about a load without work, with the direction against the motion where its point is fastest."""
     velocity = np.where(motion.moving, motion.point(load.link, load.at).v, 0j)
     acting = motion.moving & (np.abs(applied.force) > 0)
     k = int(np.argmax(np.where(acting, np.abs(velocity), -1.0)))
@@ -173,7 +175,7 @@ def _idle_load_text(results: Results, load: Load, motion: Motion, applied: Appli
 
 
 def short_tables(results: Results) -> Iterable[str]:
-    """Tables of loads that end before the motion does."""
+    """Warn of load tables that end before the motion does."""
     for load in results.linkage.loads if results.loads else ():
         if load.table is not None and _ends_early(results, load, load.table):
             sentence = _(
@@ -187,7 +189,7 @@ def short_tables(results: Results) -> Iterable[str]:
 
 
 def long_tables(results: Results) -> Iterable[str]:
-    """Tables of loads that go on beyond the stroke."""
+    """Warn of load tables that extend beyond the stroke."""
     units = results.problem.units
     for load, last, stroke in table_lengths(results.linkage, results.strokes) if results.loads else ():
         assert load.table is not None
@@ -202,12 +204,12 @@ def long_tables(results: Results) -> Iterable[str]:
 def warn_of_load_tables(
     linkage: Linkage, units: UnitSystem, reach: Mapping[str, Sequence[tuple[float, float]]]
 ) -> Iterable[str]:
-    """Tables of loads that do not end with the stroke, among many mechanisms of one kind.
+    """Yield warnings about load tables that do not end with the stroke, for many variants of a mechanism.
 
     Args:
-        linkage: any of the mechanisms.
-        units: those of the file.
-        reach: by the name of the load, the last row of its table and the stroke of each mechanism (m or rad).
+        linkage: linkage of any variant.
+        units: units of the file.
+        reach: by name of the load: last row of its table and stroke of each variant (m or rad).
     """
     for load in linkage.loads:
         lasts, strokes = np.array(reach.get(load.name) or np.zeros((0, 2))).T
@@ -229,7 +231,7 @@ def warn_of_load_tables(
 
 
 def open_tables(results: Results) -> Iterable[str]:
-    """In steady running: tables of loads that end otherwise than they begin."""
+    """Warn of load tables that do not close over the cycle of steady running."""
     for load in results.linkage.loads if results.steady is not None else ():
         if load.table is not None and _jumps_at_cycle_end(results, load.table):
             first, last = (
@@ -243,7 +245,7 @@ def open_tables(results: Results) -> Iterable[str]:
 
 
 def loads_without_strokes(results: Results) -> Iterable[str]:
-    """Loads of a working stroke that there is not."""
+    """Warn of loads of a working stroke in a mechanism without whole strokes."""
     for load in results.linkage.loads:
         if load.working_stroke_only and always_acts(load, results.strokes):
             yield _(
@@ -253,7 +255,7 @@ def loads_without_strokes(results: Results) -> Iterable[str]:
 
 
 def _ends_early(results: Results, load: Load, table: LoadTable) -> bool:
-    """Whether a load acts beyond the first or last argument of its table."""
+    """Return True if a load acts beyond the first or last row of its table."""
     motion = results.motion
     assert motion is not None
     acting = motion.placed & is_acting(load, motion.q, results.linkage, results.strokes)
@@ -266,7 +268,7 @@ def _ends_early(results: Results, load: Load, table: LoadTable) -> bool:
 
 
 def _jumps_at_cycle_end(results: Results, table: LoadTable) -> bool:
-    """Whether a table against the crank, between whose rows one goes evenly, ends otherwise than it begins."""
+    """Return True if a linearly interpolated table against the crank ends with another value than it begins with."""
     rows, cycle = table.arguments, 2 * np.pi * results.linkage.turns
     whole = abs(float(rows[-1]) - float(rows[0]) - cycle) < SAME_DRIVER_POSITION
     jump = abs(float(table.values[-1]) - float(table.values[0]))
@@ -275,12 +277,12 @@ def _jumps_at_cycle_end(results: Results, table: LoadTable) -> bool:
 
 
 def unmet_demands(results: Results) -> Iterable[str]:
-    """What a synthesis was asked and did not do."""
+    """Warn of demands of the synthesis that are not met."""
     return unmet_demand_sentences(measure_problem(results), results.problem.units)
 
 
 def lever_disagreement(results: Results) -> Iterable[str]:
-    """A lever that does not agree with the force plan."""
+    """Warn of a Zhukovsky lever that does not agree with the force plan."""
     motion = results.motion
     if results.lever is None or results.lever_holds or motion is None:
         return
