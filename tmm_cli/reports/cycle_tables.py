@@ -135,7 +135,7 @@ def _balance_columns(results: Results) -> Iterable[Column]:
 
 
 def has_flywheel(results: Results) -> bool:
-    """Return True if a flywheel is the only difference between the driving moment and the balancing moment (no brake)."""
+    """Return True if only a flywheel makes the driving moment differ from the balancing moment (no brake)."""
     if results.single is not None:
         return bool(results.single.task.flywheel) and not results.single.task.brake
     return results.steady is not None and bool(results.steady.steady.law.flywheel)

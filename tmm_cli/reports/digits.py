@@ -1,7 +1,7 @@
 """Accuracy of the numbers in tables and in result.json: bounds of the rounding error and sensitivity to the input data.
 
-Each number has a key: (it is an angle, table or section, ...). The keys relate numbers of results that were computed with
-other lengths or with higher precision.
+Each number has a key: (True for an angle, table or section, ...). The keys relate numbers of results that were computed
+with other lengths or with higher precision.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ def search_reader(results: Results, whole: bool = True) -> Callable[[Results], C
 
 
 def computed_tables(results: Results, reports: Collection[str] = ASSESSED) -> Iterator[Table]:
-    """Yield the tables of the given reports; if only some points and links were requested, the tables of their motion."""
+    """Yield the tables of the given reports; if only some points and links are requested, those of their motion."""
     return tables_of(results, set(reports) & {"kinematics"} if results.of else reports)
 
 

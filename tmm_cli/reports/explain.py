@@ -195,7 +195,6 @@ def _assembly_text(kernel: GroupSolver | None) -> str:
 
 
 def _method_text(kernel: GroupSolver) -> str:
-    """How a group is solved."""
     if isinstance(kernel, ClosedFormSolver):
         return _("in closed form") if kernel.winding is None else _("in closed form, turns followed")
     return _("by Newton") if kernel.followed is None else _("by Newton, followed")

@@ -150,7 +150,7 @@ def _driving_load_text(results: Results, load: Load) -> str:
 
 
 def _idle_load_text(results: Results, load: Load, motion: Motion, applied: AppliedLoad) -> str:
-    """Return the warning about a load without work, with the direction against the motion where its point is fastest."""
+    """Return the warning about a load without work, with the direction opposite to the fastest motion of its point."""
     velocity = np.where(motion.moving, motion.point(load.link, load.at).v, 0j)
     acting = motion.moving & (np.abs(applied.force) > 0)
     k = int(np.argmax(np.where(acting, np.abs(velocity), -1.0)))

@@ -1,4 +1,4 @@
-"""Tables of the masses and loads that a file gives."""
+"""Tables of the masses and loads of a problem file."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ FILE_WORDS: Final = {  # that a file may say, where they are shown
 
 
 def links_with_inertia(linkage: Linkage) -> list[str]:
-    """Links that carry inertia."""
+    """Return the moving links that have a mass or a moment of inertia."""
     links = linkage.links
     return [n for n in linkage.moving if np.any(links[n].mass != 0) or np.any(links[n].inertia != 0)]
 
 
 def mass_table(problem: Problem) -> Table:
-    """Masses of links, with their centres."""
+    """Return the table of masses, moments of inertia and centres of mass."""
     links = [problem.linkage.links[name] for name in links_with_inertia(problem.linkage)]
     return text_table(
         "masses",
@@ -60,7 +60,7 @@ def mass_table(problem: Problem) -> Table:
 
 
 def load_tables(problem: Problem) -> Iterable[Table]:
-    """All loads, then the rows of those by table."""
+    """Yield the table of loads, then the rows of each load that is given by a table."""
     yield text_table(
         "loads",
         _("Loads"),
@@ -96,20 +96,20 @@ def _load_row(problem: Problem, load: Load) -> tuple[str, ...]:
 
 
 def argument_dimension(linkage: Linkage, table: LoadTable) -> Dimension:
-    """What the first column of a load's table measures."""
+    """Return the dimension of the first column of a load table."""
     if table.shares:
         return NUMBER
     return stroke_dimension(linkage, table.stroke_link) if table.against == "stroke" else ANGLE
 
 
 def _argument_name(table: LoadTable) -> str:
-    """What the first column of a table is, with the link whose stroke it is if that is not the main output."""
+    """Return the name of the first column of a load table, with the link of the stroke if it is not the main output."""
     words = _(FILE_WORDS[table.first_column])
     return words if not table.stroke_link else _("{stroke} of link {link}").format(stroke=words, link=table.stroke_link)
 
 
 def _load_table(problem: Problem, load: Load, table: LoadTable) -> Table:
-    """The rows of a load's table; of a force, its direction too."""
+    """Return the rows of a load table; for a force, with a note on its direction."""
     linkage, measure = problem.linkage, argument_dimension(problem.linkage, table)
     rows = [
         (format_value(problem, at, measure), format_value(problem, size, FORCE if load.force else MOMENT))

@@ -1,4 +1,4 @@
-"""Tables of the input data: points, pairs, drivers, gears, cams, springs, masses, loads and law of motion of a file."""
+"""Tables of the input data of a file: points, pairs, drivers, gears, cams, springs, friction, law of motion."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 
 def input_data_tables(problem: Problem) -> Iterable[Table]:
-    """The file in full."""
+    """Yield tables of everything that the problem file specifies."""
     if problem.synthesis is not None and problem.synthesis.names:
         yield parameter_table(problem.synthesis, problem.units)
     yield _point_table(problem)
@@ -124,7 +124,7 @@ def _fact_rows(problem: Problem) -> Iterable[tuple[str, str]]:
 
 
 def _wheel_text(wheel: WheelTask) -> str:
-    """What takes it along, and when."""
+    """Return which link moves an intermittent wheel, in which strokes, and its settings."""
     words = {
         "forward": _("moves with link {link} while that turns counterclockwise, and stands else"),
         "backward": _("moves with link {link} while that turns clockwise, and stands else"),
@@ -140,7 +140,7 @@ def _wheel_text(wheel: WheelTask) -> str:
 
 
 def _law_of_motion_lines(problem: Problem) -> Iterable[str]:
-    """What is computed of it."""
+    """Yield how the law of motion is determined, line by line."""
     task = problem.dynamics
     if task is None:
         yield _("given; without a block `dynamics` nothing of it is computed")
@@ -185,7 +185,7 @@ def _positions_text(problem: Problem, measure: Dimension) -> str:
 
 
 def driver_speed(driver: Driver) -> str:
-    """A driver's speed, and its acceleration where it has one."""
+    """Return the speed of a driver as text, with its acceleration if it has one."""
     if driver.law is not None:
         return _("by a table against the crank angle")
     turns = driver.kind == "turn"
@@ -196,7 +196,7 @@ def driver_speed(driver: Driver) -> str:
 
 
 def speed_table(problem: Problem, law: SpeedTable) -> Table:
-    """The rows of a table of speeds, with the accelerations that follow from them, or are given."""
+    """Return the rows of a speed table, with accelerations that are given or follow from the speeds."""
     squares = law.squares
     places = np.array([float(to_float(row)) for row in squares.arguments])
     after = squares.slope(places) / 2 * problem.linkage.driver.sense
@@ -216,7 +216,7 @@ def speed_table(problem: Problem, law: SpeedTable) -> Table:
 
 
 def component_tables(problem: Problem) -> Iterable[Table]:
-    """A table for each block that the file has of these."""
+    """Yield the tables of drivers, gears and racks, cams, springs and friction, as far as the file has them."""
     linkage = problem.linkage
     if linkage.others or linkage.driver.base != FRAME:
         yield text_table(
@@ -303,7 +303,7 @@ def _driver_row(problem: Problem, driver: Driver) -> tuple[str, ...]:
 
 
 def _gear_row(problem: Problem, mesh: Mesh) -> tuple[str, ...]:
-    """A row of two wheels, or of a wheel and a rack, with the equation of their motion."""
+    """Return the row of a gear pair, or of a gear and rack, with the equation of its motion."""
     linkage = problem.linkage
     if mesh.kind == "rack":
         kind = _("wheel and rack")
@@ -334,7 +334,7 @@ def _gear_row(problem: Problem, mesh: Mesh) -> tuple[str, ...]:
 
 
 def _cam_rows(problem: Problem, mesh: Mesh) -> Iterable[tuple[str, ...]]:
-    """The pieces of a cam's law, a row each."""
+    """Yield a row for each segment of a cam's law of motion."""
     assert mesh.law is not None
     measure = LENGTH if mesh.slide else ANGLE
     at, run = mesh.law.start, mesh.offset
@@ -377,7 +377,7 @@ Fact = tuple[str, str]
 
 
 def law_of_motion_tables(problem: Problem, task: SteadyTask | RunTask) -> Iterable[Table]:
-    """Motor and flywheel, and the rows of what drives."""
+    """Yield the table of motor and flywheel, and the rows of a driving moment that is given by a table."""
     rows = [*(_steady_rows(problem, task) if task.cyclic else _run_rows(problem, task))]
     title, note = _("Data of the law of motion"), _("Moments, inertia and speeds are reduced to the driver.")
     yield text_table("machine", title, (_("what"), _("value")), rows, (note,))
@@ -425,7 +425,7 @@ def _drive_profile(task: RunTask) -> DriveProfile | None:
 
 
 def _motor_rows(problem: Problem, motor: MotorCharacteristic, *, turns: bool) -> Iterable[Fact]:
-    """By its own numbers, as the note's formulas have them."""
+    """Yield the parameters of a motor, as they appear in the formulas of the note."""
     speed, size = (ANGULAR_SPEED, MOMENT) if turns else (SPEED, FORCE)
     match motor:
         case KlossMotor():
@@ -440,7 +440,7 @@ def _motor_rows(problem: Problem, motor: MotorCharacteristic, *, turns: bool) ->
 
 
 def _drive_table(problem: Problem, drive: DriveProfile) -> Table:
-    """Moments, or forces, that a run is driven with."""
+    """Return the rows of a driving moment or force of a single run."""
     turns = problem.linkage.driver.kind == "turn"
     place, size = (ANGLE, MOMENT) if turns else (LENGTH, FORCE)
     head, measure = (_("time, s"), NUMBER) if drive.against == "time" else (_("way of the driver"), place)

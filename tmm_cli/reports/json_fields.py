@@ -1,9 +1,9 @@
-"""How the parts of result.json look: one description gives both the content and its JSON Schema.
+"""Fields of result.json: one description gives both the content and its JSON Schema.
 
-    STROKE = record("a stroke", Field("run", NUMBER, "of the output, signed"), Field("from", NUMBER, "...", "low"))
+    STROKE = json_record("a stroke", JsonField("run", NUMBER, "signed"), JsonField("from", NUMBER, "...", "low"))
 
-A field has its key, shape, meaning, and where it is read from: an attribute (of an attribute) or a function; without
-one the attribute of the key's name.
+A field has a key, a type, a meaning and a source: a (dotted) attribute, or a function; by default the attribute with
+the name of the key.
 """
 
 from __future__ import annotations
@@ -19,7 +19,9 @@ from tmm_cli.mechanics.quantities import Quantity
 
 @dataclass(frozen=True)
 class JsonType:
-    """A JSON Schema, and what makes the content of what was found. note: how descriptions of such fields end."""
+    """A JSON Schema, and the function that turns a result into JSON content. note: end of the description of such
+    fields.
+    """
 
     schema: dict[str, Any]
     content: Callable[[Any], Any] = lambda found: found
@@ -35,18 +37,18 @@ SERIES = JsonType({"type": "array", "items": NUMBER.schema}, note=", one value a
 
 
 def list_of(item: JsonType) -> JsonType:
-    """A list of what is iterable."""
+    """Return the type of a list of items of one type."""
     return JsonType({"type": "array", "items": item.schema}, lambda found: [item.content(part) for part in found])
 
 
 def map_of(value: JsonType) -> JsonType:
-    """An object with a value for each key of a mapping."""
+    """Return the type of an object with values of one type and any keys."""
     schema = {"type": "object", "additionalProperties": value.schema}
     return JsonType(schema, lambda found: {key: value.content(part) for key, part in found.items()})
 
 
 def optional(shape: JsonType) -> JsonType:
-    """Null where there is nothing."""
+    """Return the type of a value that may be null."""
     own = shape.schema["type"]
     schema = {**shape.schema, "type": own if "null" in own else [own, "null"]}
     return replace(shape, schema=schema, content=lambda found: None if found is None else shape.content(found))
@@ -54,7 +56,15 @@ def optional(shape: JsonType) -> JsonType:
 
 @dataclass(frozen=True)
 class JsonField:
-    """A key of a record. there: whether a record has it, if not always, or what it then has that is not None."""
+    """A key of a JSON record.
+
+    Attributes:
+        key: the key.
+        shape: type of its value.
+        text: description in the schema.
+        read: source of the value, see the module.
+        there: condition for the key: a function, or an attribute that is not None. Default: always present.
+    """
 
     key: str
     shape: JsonType
@@ -78,23 +88,23 @@ class JsonField:
 
 
 def record_items(fields: Iterable[JsonField], found: Any) -> Iterator[tuple[str, Any]]:
-    """What was found, field by field; fields that it has not are left out."""
+    """Yield key and content of each field that the result has."""
     return ((field.key, field.content(found)) for field in fields if field.is_there(found))
 
 
 def field_schemas(fields: Iterable[JsonField]) -> dict[str, Any]:
-    """The schemas of fields by their keys."""
+    """Return the schemas of fields by their keys."""
     return {field.key: field.schema for field in fields}
 
 
 def attribute_fields(attribute: str, fields: Iterable[JsonField]) -> tuple[JsonField, ...]:
-    """The fields of what is an attribute of a record, as fields of that record."""
+    """Return fields that are read from an attribute of a record instead of the record itself."""
     part = attrgetter(attribute)
     return tuple(replace(f, shape=JsonType(f.shape.schema, f.content, f.shape.note), read=part) for f in fields)
 
 
 def json_record(text: str, *fields: JsonField) -> JsonType:
-    """An object with these keys. text: what it is, where it stands in a list or a map."""
+    """Return the type of an object with these fields. text: description of the object."""
     schema = {"description": text, "type": "object", "properties": field_schemas(fields)}
     return JsonType(schema, lambda found: dict(record_items(fields, found)))
 
@@ -107,7 +117,7 @@ VECTOR = replace(_AXES, schema={**_AXES.schema, "required": ["x", "y"]})
 
 
 def quantity_fields(quantities: Iterable[Quantity]) -> Iterator[JsonField]:
-    """The fields of quantities."""
+    """Yield the fields of quantities, each a series or a vector over the positions."""
     for quantity in quantities:
         shape = VECTOR if quantity.vector else SERIES
         text = f"{quantity.text}, {quantity.unit}" if quantity.unit else quantity.text

@@ -1,4 +1,4 @@
-"""The parts of result.json that come from motion and forces; all are read from Results."""
+"""Sections of result.json on motion, forces, law of motion, balancing and intermittent motion."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ BALANCING = json_record(
 
 
 def _initial_rate(results: Results, name: str) -> float:
-    """Speed or acceleration of the driver at position 0, in its sense; beside the block dynamics, as they are given."""
+    """Return speed ("rate") or acceleration of the driver at position 0, in its sense, as the file gives them."""
     driver = results.linkage.driver
     if driver.law is None:
         given: float = getattr(driver, name)
@@ -168,7 +168,7 @@ POSITIONS = json_record(
 
 
 class SlideMotion(NamedTuple):
-    """A sliding pair and how it moves."""
+    """A prismatic pair and its motion."""
 
     slide: Slide
     motion: SlidingMotion
@@ -222,7 +222,7 @@ KINEMATICS = json_record(
 
 
 def _pin_forces(results: Results) -> dict[str, dict[str, Vector]]:
-    """At a compound hinge, what the pin does to each link."""
+    """Return the force of each compound hinge's pin on each link, by point and link."""
     assert results.reactions is not None
     found: dict[str, dict[str, Vector]] = {}
     for pin in results.reactions.pins(results.linkage):
@@ -289,7 +289,7 @@ MECHANISM_ENERGY = json_record(
 
 
 def _computes_everything(results: Results) -> bool:
-    """Whether all is asked for, not some points and links only."""
+    """Return True unless only some points and links were requested."""
     return results.motion is not None and not results.of
 
 
@@ -297,7 +297,7 @@ RUN_STEPS = 49
 
 
 def _run_values(name: str, run: SingleRun) -> Vector:
-    """One of its functions of the driver's place, in even steps."""
+    """Return a function of the driver coordinate (its `name` in the run) at RUN_STEPS even steps."""
     found: Vector = getattr(run, name)(run.evenly(RUN_STEPS))
     return found
 

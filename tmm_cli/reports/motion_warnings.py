@@ -1,4 +1,6 @@
-"""Pairs that repeat conditions, slots that are left, pressure angles, cams that hit."""
+"""Warnings about motion: range of the driver, dead positions, single runs, redundant constraints, slots, pressure
+angles, cams.
+"""
 
 from __future__ import annotations
 
@@ -26,13 +28,13 @@ SKETCH_DEVIATION = 0.15  # a sketched point farther off than this share of the l
 
 
 def format_driver_coordinate(results: Results, q: float) -> str:
-    """A place of the driver."""
+    """Return a driver coordinate as text in the unit of the file."""
     units, measure = results.problem.units, coordinate_dimension(results.linkage.driver.kind)
     return f"{numeral(round(units.from_si(q, measure), 5) + 0.0, '.8g')} {units.spelt(measure)}"
 
 
 def limited_driver(results: Results) -> Iterable[str]:
-    """Where the driver does not go all the way round, what stops it, and what that does to the positions."""
+    """Warn of a driver that does not rotate fully: its range, the reason, and the effect on the positions."""
     driver_range, driver, request = results.driver_range, results.linkage.driver, results.problem.request
     assert driver_range is not None
     start, end = (
@@ -62,7 +64,7 @@ def limited_driver(results: Results) -> Iterable[str]:
 
 
 def far_from_sketch(results: Results) -> Iterable[str]:
-    """Points that are sketched far from where they are."""
+    """Warn of points whose sketched position is far from the computed one."""
     linkage = results.linkage
     there = compute_motion(linkage, results.kernels, np.array([linkage.sketch.at]), DriverMotion(0.0, 1.0, 0.0, 1), 0)
     for point, off in sketch_deviations(linkage, there.poses).items():
@@ -74,7 +76,7 @@ def far_from_sketch(results: Results) -> Iterable[str]:
 
 
 def dead_positions(results: Results) -> Iterable[str]:
-    """Dead positions and change points inside the range of the driver."""
+    """Warn of dead positions and change points within the range of the driver."""
     closed = {kernel.group.title for kernel in results.kernels if isinstance(kernel, ClosedFormSolver)}
     for dead in results.dead:
         text = (
@@ -101,7 +103,7 @@ def dead_positions(results: Results) -> Iterable[str]:
 
 
 def unreached_positions(results: Results) -> Iterable[str]:
-    """Positions that have no numbers."""
+    """Warn of positions that cannot be assembled, are dead or are change points."""
     motion, units = results.motion, results.problem.units
     assert motion is not None
     unreached = np.flatnonzero(~motion.placed | np.any([*motion.dead.values(), ~motion.placed], axis=0))
@@ -130,7 +132,7 @@ def unreached_positions(results: Results) -> Iterable[str]:
 
 
 def stopped_driver(results: Results) -> Iterable[str]:
-    """Positions that the driver does not come to, by its own law of motion."""
+    """Warn of positions that the driver does not reach by its own law of motion."""
     motion = results.motion
     assert motion is not None
     stopped = np.flatnonzero(~np.isfinite(motion.rate))
@@ -149,7 +151,7 @@ def stopped_driver(results: Results) -> Iterable[str]:
 
 
 def opposite_run(results: Results) -> Iterable[str]:
-    """A single run against the sense that the file gives for the driver."""
+    """Warn of a single run against the sense that the file gives for the driver."""
     single, driver = results.single, results.linkage.driver
     if single is None or single.sense == driver.sense:
         return
@@ -175,7 +177,7 @@ def opposite_run(results: Results) -> Iterable[str]:
 
 
 def short_drive(results: Results) -> Iterable[str]:
-    """A table of a single run's drive that begins late or ends early, so that its first or last value is held."""
+    """Warn of a driving table of a single run that begins late or ends early, so that its end value is held."""
     single = results.single
     if single is None or len(single.task.edges or single.task.way_edges) < 2:
         return
@@ -200,7 +202,7 @@ def short_drive(results: Results) -> Iterable[str]:
 
 
 def near_dead(results: Results) -> Iterable[str]:
-    """The position of each group that is nearest to a dead one, if it is near."""
+    """Warn of the position of each group that is nearest to a dead position, if its margin is small."""
     motion = results.motion
     assert motion is not None
     for kernel, at in zip(motion.kernels, motion.placements, strict=True):
@@ -213,13 +215,13 @@ def near_dead(results: Results) -> Iterable[str]:
 
 
 def unrepeated_cycle(results: Results) -> Iterable[str]:
-    """A cycle of which no end was found."""
+    """Warn of a motion for which no period was found."""
     if results.driver_range is not None and not results.driver_range.repeats:
         yield _("no number of turns was found after which all repeats: of the cycle, one turn is shown")
 
 
 def passive_pairs(results: Results) -> Iterable[str]:
-    """Pairs without which the links would be held where they are."""
+    """Warn of pairs with redundant constraints."""
     for passive in results.structure.passive:
         i, j = passive.links
         yield _(
@@ -230,7 +232,7 @@ def passive_pairs(results: Results) -> Iterable[str]:
 
 
 def left_slots(results: Results) -> Iterable[str]:
-    """Stones that leave the segment of their guide."""
+    """Warn of sliding blocks that leave their slots."""
     units, driver_range = results.problem.units, results.driver_range
     assert driver_range is not None
     cycle = driver_range.end - driver_range.start
@@ -265,7 +267,7 @@ def left_slots(results: Results) -> Iterable[str]:
 
 
 def excessive_pressure_angles(results: Results) -> Iterable[str]:
-    """Pressure angles beyond what the file allows, or what is usual where a synthesis chose them freely."""
+    """Warn of pressure angles above the limit of the file, or above the usual one if a synthesis was free to choose."""
     units, limits_set = results.problem.units, results.problem.limits_set
     chosen = results.driver_range is not None and results.driver_range.full and _chosen_freely(results)
     if not (chosen or any(limits_set)):
@@ -288,7 +290,7 @@ def excessive_pressure_angles(results: Results) -> Iterable[str]:
 
 
 def _chosen_freely(results: Results) -> bool:
-    """Whether a synthesis found the linkage, and was asked nothing about its pressure angle."""
+    """Return True if a synthesis found the linkage without a demand on its pressure angle."""
     found = results.problem.synthesis
     if found is None:
         return False
@@ -297,7 +299,7 @@ def _chosen_freely(results: Results) -> bool:
 
 
 def cam_impacts(results: Results) -> Iterable[str]:
-    """Cams whose law has jumps of the follower's speed."""
+    """Warn of cam laws with jumps of the follower's speed."""
     units = results.problem.units
     for mesh in results.linkage.meshes:
         jumps = mesh.law.jumps() if mesh.law is not None else ()

@@ -1,4 +1,4 @@
-"""Properties that a file shows: quantities by name, each as one number, beside what the file expects."""
+"""Properties requested in the block `shows`: quantities reduced to one number, with the expected values of the file."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ PROPERTY_TOLERANCE = 1e-9  # of the value, or of one in SI: rounding of what is 
 
 @dataclass(frozen=True)
 class ShownProperty:
-    """A number (SI; nan where there is none) by the words of the file, and what is expected of it, if that is told."""
+    """A property: its name in the file, its value (SI; nan if undefined), and the expected value, if any."""
 
     name: str
     value: float
@@ -63,7 +63,11 @@ class ShownProperty:
 
 
 def shown_properties(results: Results | ChainResults) -> tuple[ShownProperty, ...]:
-    """What the file shows, as far as its stages have run. Raises ProblemError."""
+    """Return the properties of the block `shows` whose stages have run.
+
+    Raises:
+        ProblemError: a property cannot be computed as the file describes it.
+    """
     problem = results.problem
     if isinstance(results, ChainResults):
         return tuple(_chain_property(name, task, results) for name, task in problem.shows.items())
@@ -100,7 +104,7 @@ def _chain_property(name: str, task: ShownKeys, results: ChainResults) -> ShownP
 
 
 def _linkage_property(name: str, task: ShownKeys, results: Results) -> ShownProperty | None:
-    """None where a stage that it needs has not run."""
+    """Return a property of a linkage; None if a stage that it needs has not run."""
     problem: Problem = results.problem
     values = problem.values
     assert values is not None
@@ -147,14 +151,16 @@ def _linkage_property(name: str, task: ShownKeys, results: Results) -> ShownProp
 
 
 def _rounding_scale(dimension: Dimension, results: Results) -> float:
-    """What an angle or a length is small against, SI; of other kinds nothing is called small."""
+    """Return the scale (SI) for rounding an angle or a length to zero; 0 for other dimensions: they are not rounded."""
     if dimension == LENGTH:
         return max(float(link_extent(results.linkage, link)) for link in results.linkage.links)
     return 1.0 if dimension == ANGLE else 0.0
 
 
 def _holds_for_file_only(task: ShownKeys, problem: Problem) -> bool:
-    """Whether parameters are set on the command line and the expected number holds only for those of the file."""
+    """Return True if parameters are set on the command line and the expected number is valid only for those of the
+    file.
+    """
     source = problem.source
     if source is None or not source.given:
         return False
@@ -170,7 +176,7 @@ def _has_run(quantity: NamedQuantity, results: Results) -> bool:
 
 
 def _with_settings(task: ShownKeys, results: Results) -> Results:
-    """The same linkage with other values of parameters, as far as the results go."""
+    """Return results of the linkage with other parameter values, up to the same stage."""
     problem: Problem = results.problem
     assert problem.source is not None
     stage: pipeline.Stage = "structure" if results.motion is None else "kinematics"
@@ -191,7 +197,7 @@ def _with_settings(task: ShownKeys, results: Results) -> Results:
 
 
 def _without_hinge(hinge: str, results: Results) -> Results:
-    """The structure without a hinge."""
+    """Return results of the structure without one hinge."""
     linkage = results.linkage
     results.problem.values.known_name(hinge, [h.point for h in linkage.hinges], ("without",), "hinge")
     left = replace(linkage, hinges=tuple(h for h in linkage.hinges if h.point != hinge))
@@ -203,7 +209,7 @@ def _without_hinge(hinge: str, results: Results) -> Results:
 def _property_value(
     quantity: NamedQuantity, task: ShownKeys, results: Results, per: NamedQuantity | None = None
 ) -> float:
-    """The number that a task asks of a quantity, or of its ratio to another one at every place."""
+    """Return the number that a property takes from a quantity; `per`: from its ratio to this quantity."""
     ways = [key for key in ("at", "between", "over") if getattr(task, key) is not None]
     if quantity.whole:
         if ways or task.within is not None:
@@ -234,14 +240,14 @@ def _property_value(
 
 
 def _read_quantity(quantity: NamedQuantity, results: Results, q: Real) -> Real:
-    """The values at places of the driver; sizes of vectors."""
+    """Return a quantity at driver coordinates q, (positions,); of a vector its magnitude."""
     there = results_at(results, q)
     found = np.asarray(quantity.read(there))
     return np.broadcast_to(np.abs(found) if quantity.vector else found, np.shape(q))
 
 
 def _read_ratio(quantity: NamedQuantity, per: NamedQuantity, results: Results, q: Real) -> Real:
-    """The ratio of two quantities at places of the driver; nan where the second one is zero."""
+    """Return the ratio of two quantities at driver coordinates q, (positions,); nan where the second one is zero."""
     value, divisor = _read_quantity(quantity, results, q), _read_quantity(per, results, q)
     found: Real = np.divide(value, divisor, out=np.full(np.shape(q), np.nan), where=divisor != 0)
     return found
@@ -255,7 +261,9 @@ def _driver_coordinate(number: int, path: Path, results: Results) -> float:
 
 
 def _extreme_over_range(read: Callable[[Real], Real], over: str, results: Results, turns: bool) -> float:
-    """The largest, the least, or their difference over the way of the driver, found between its places."""
+    """Return the largest value, the least value or their difference over the driver's travel, refined between the
+    samples.
+    """
     q = results.closely(RANGE_STEPS * max(results.turns, 1) + 1)
     values = read(q)[None, :]
     values = np.unwrap(values) if turns else values
@@ -272,7 +280,9 @@ def _extreme_over_range(read: Callable[[Real], Real], over: str, results: Result
 
 
 def _range_within(read: Callable[[Real], Real], place: float, most: float, results: Results) -> float:
-    """How far the driver goes about a place while a quantity differs from its value there by no more than so much."""
+    """Return the travel of the driver around a position in which a quantity deviates by at most `most` from its value
+    there.
+    """
     middle = read(np.array([place]))[0]
     way = abs(results.closely(2)[1] - results.closely(2)[0])
     low, high = np.min(results.closely(2)), np.max(results.closely(2))

@@ -1,4 +1,4 @@
-"""Range of the driver, strokes of the output, dead positions."""
+"""Tables of strokes and driver range, pressure angles, properties, checks, and assemblies of groups."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ ValueRow = tuple[str, Any, Dimension]
 
 
 def quality_tables(results: Results) -> Iterable[Table]:
-    """One row a fact; values keep their own dimension."""
+    """Yield the table of range, strokes, travels, efficiency and dead positions; each value has its own unit."""
     driver_range = results.driver_range
     assert driver_range is not None
     place = coordinate_dimension(results.linkage.driver.kind)
@@ -56,7 +56,7 @@ def quality_tables(results: Results) -> Iterable[Table]:
 
 
 def _stroke_rows(results: Results, strokes: Strokes, place: Dimension) -> Iterable[ValueRow]:
-    """Strokes of an output that goes there and back as the driver turns."""
+    """Yield the rows of an output that moves forward and back while the driver moves."""
     linkage = results.linkage
     link, run = strokes.link, coordinate_dimension(strokes.kind)
     point, guide = linkage.output_point(link), linkage.output_guide(link)
@@ -87,7 +87,7 @@ def _stroke_rows(results: Results, strokes: Strokes, place: Dimension) -> Iterab
 
 
 def _strokes_in_order(results: Results, strokes: Strokes) -> list[Stroke]:
-    """From position 0 on; the first of them begins before it where it is within a stroke."""
+    """Return the strokes in the order of motion from position 0 on; the first one may begin before it."""
 
     def gone(stroke: Stroke) -> float:
         way = results.linkage.driver.sense * (stroke.start - results.start)
@@ -98,7 +98,7 @@ def _strokes_in_order(results: Results, strokes: Strokes) -> list[Stroke]:
 
 
 def _stroke_names(stroke: Stroke, number: int) -> tuple[str, str, str]:
-    """What its start, its length and the dwell after it are called; number: 0 of one that is not counted."""
+    """Return the row names of start, length and dwell of a stroke; number: 0 if strokes are not numbered."""
     if number:
         names = _("stroke {number} starts at"), _("stroke {number} lasts"), _("dwell after stroke {number}")
         starts, lasts, dwell = (name.format(number=number) for name in names)
@@ -109,7 +109,7 @@ def _stroke_names(stroke: Stroke, number: int) -> tuple[str, str, str]:
 
 
 def _rotation_angle(results: Results, strokes: Strokes) -> float:
-    """By how much (rad) an output turns that does not come back."""
+    """Return the angle (rad) by which an output without return stroke rotates in a cycle."""
     curve = OutputCurve(results.linkage, results.kernels, strokes.link)
     q = results.closely(SCAN * round(strokes.cycle / (2 * np.pi)) + 1)
     if results.turns:  # not from a change point on: where two hinges coincide, a link has no angle
@@ -122,7 +122,7 @@ def _rotation_angle(results: Results, strokes: Strokes) -> float:
 
 
 def _travel_rows(linkage: Linkage, travel: OutputTravel, place: Dimension) -> Iterable[ValueRow]:
-    """How far an output goes over the positions asked."""
+    """Yield the travel of an output over the requested positions."""
     link, run = travel.link, coordinate_dimension(travel.kind)
     point, guide = linkage.output_point(link), linkage.output_guide(link)
     name, extremes = _("swing psi of link {link} over the positions asked"), _("extreme position of link {link}")
@@ -140,7 +140,7 @@ def _travel_rows(linkage: Linkage, travel: OutputTravel, place: Dimension) -> It
 
 
 def value_columns(rows: Sequence[ValueRow], results: Results) -> tuple[Column, ...]:
-    """Rows of different dimensions: the unit stands in a column of its own."""
+    """Return the columns name, value and unit of rows with different dimensions."""
     units = results.problem.units
     return (
         Column(N_("what"), [name for name, __, __ in rows]),
@@ -153,7 +153,7 @@ def value_columns(rows: Sequence[ValueRow], results: Results) -> tuple[Column, .
 
 
 def pressure_tables(results: Results) -> Iterable[Table]:
-    """A row for each driven link."""
+    """Yield the table of pressure and transmission angles, a row for each driven link."""
     found = results.pressure
     if not found:
         return
@@ -193,7 +193,7 @@ def pressure_tables(results: Results) -> Iterable[Table]:
 
 
 def properties_tables(results: Results | ChainResults) -> Iterable[Table]:
-    """A row a property; values keep their own dimension."""
+    """Yield the table of the properties of the block `shows`, each in its own unit."""
     rows, units = shown_properties(results), results.problem.units
     if not rows:
         return
@@ -212,7 +212,7 @@ def properties_tables(results: Results | ChainResults) -> Iterable[Table]:
 
 
 def checks_tables(results: Results) -> Iterable[Table]:
-    """A row a check."""
+    """Yield the table of checks, with value, limit and verdict."""
     rows = [
         (*_check_texts(check, results), _check_coordinate(check, results), _("ok") if check.holds else _("warn"))
         for check in run_checks(results)
@@ -233,7 +233,7 @@ def _check_coordinate(check: Check, results: Results) -> str:
 
 
 def _check_texts(check: Check, results: Results) -> tuple[str, str, str, str]:
-    """What is checked, of what, the number, and its limit."""
+    """Return the name of a check, the object checked, its value and its limit."""
     units = results.problem.units
     match check.kind:
         case "slot":
@@ -272,13 +272,13 @@ def _check_texts(check: Check, results: Results) -> tuple[str, str, str, str]:
 
 
 def assemblies_tables(results: Results) -> Iterable[Table]:
-    """In solving order of the groups, at each place that was asked for."""
+    """Yield a table of the real assemblies of each group, in solving order, for each requested position."""
     for stem, here, group in name_assembly_files(results.assemblies or ()):
         yield _assembly_table(stem, here, group, results)
 
 
 def describe_position(problem: Problem, q: float, number: int | None) -> str:
-    """Which position it is and where the driver stands (rad or m), which at the sketch has no number."""
+    """Return the number of a position and its driver coordinate (rad or m); number None: position of the sketch."""
     crank = problem.linkage.driver.kind == "turn"
     measure = coordinate_dimension(problem.linkage.driver.kind)
     value = problem.units.from_si(q % math.tau if crank else q, measure)
@@ -291,7 +291,7 @@ def describe_position(problem: Problem, q: float, number: int | None) -> str:
 
 
 def assembly_notes(group: GroupAssemblies) -> Iterable[str]:
-    """How sure it is that there are no others, and what is odd about these."""
+    """Yield notes on whether the list of assemblies is proved complete, and on special cases."""
     number = len(group.assemblies)
     if group.moves:
         yield _("The group moves by itself at this place: it has assemblies without end, one of them is shown.")

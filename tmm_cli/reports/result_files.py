@@ -1,4 +1,8 @@
-"""Files on disk: a file or a folder is written whole beside its place and then put there, or not at all."""
+"""Result folder of a problem: result.json, CSV files and drawings, written atomically.
+
+A file or folder is written under a temporary name in the same folder and then renamed; after an error or an
+interruption the old one is unchanged.
+"""
 
 from __future__ import annotations
 
@@ -32,16 +36,21 @@ QUERY_PROCESS = 0x1000  # of OpenProcess: no more is asked than whether a proces
 
 
 def folder_name(name: str) -> str:
-    """A problem's folder: its name with nothing in it that could lead elsewhere, and that every system takes."""
+    """Return the folder name of a problem: without path separators, and valid on every operating system."""
     safe = re.sub(r"[^\w.-]+", "_", name).encode()[:LONGEST_FOLDER_NAME].decode(errors="ignore").strip(".") or "problem"
     return f"_{safe}" if RESERVED.fullmatch(safe) else safe
 
 
 def choose_folder(out: Path, name: str, part: str) -> tuple[Path, Path | None]:
-    """The folder in `out` for results, and the one that keeps other results for that.
+    """Return the folder in `out` for results, and the folder whose results must be kept, if any.
 
-    A problem has one folder. part: what a run has made that has not made all; it does not take the place of other
-    results than its own, and goes into a folder beside theirs.
+    Args:
+        out: parent folder.
+        name: name of the problem.
+        part: name of an incomplete run; it does not replace other results and may get its own folder.
+
+    Raises:
+        FileExistsError: both folders hold other results.
     """
     usual, own = (out / folder_name(text) for text in (name, f"{name}-{part}"))
     if not part or recorded_part(usual) in (None, part):
@@ -52,7 +61,7 @@ def choose_folder(out: Path, name: str, part: str) -> tuple[Path, Path | None]:
 
 
 def refuse_unwritable(path: Path, *, folder: bool) -> None:
-    """Refuse a folder, or a file, that cannot be written, before there is any work for it. Raises OSError."""
+    """Raise OSError for a folder or file that cannot be written, before the calculation starts."""
     path = Path(os.path.realpath(path))
     if path.exists() and path.is_dir() != folder:
         number = errno.ENOTDIR if folder else errno.EISDIR
@@ -66,7 +75,7 @@ def refuse_unwritable(path: Path, *, folder: bool) -> None:
 
 
 def write_atomically(path: Path, content: bytes) -> None:
-    """Write beside and rename, so that a killed run leaves the old file or the new one."""
+    """Write a file under a temporary name and rename it, so that a killed run leaves the old file or the new one."""
     path = Path(os.path.realpath(path))
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
@@ -85,9 +94,9 @@ def write_atomically(path: Path, content: bytes) -> None:
 
 
 class StagedFolder:
-    """A folder written whole beside the one of that name, and put in its place at the end; not at all on an error.
+    """A folder that is written under a temporary name and put in place at the end, unless an error occurs.
 
-    A new result.json takes away the files that the old one lists. All other files of the old folder stay.
+    Files that the old result.json lists are deleted if there is a new one. All other files of the old folder stay.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -109,7 +118,7 @@ class StagedFolder:
         return self
 
     def write(self, name: str, content: Iterable[str | bytes]) -> None:
-        """A file of the folder, from its content piece by piece."""
+        """Write a file of the folder, piece by piece."""
         self.names.add(name)
         with (self.new / name).open("wb") as stream:
             for piece in content:
@@ -126,7 +135,7 @@ class StagedFolder:
                     self.folder.parent.rmdir()
 
     def _exchange(self) -> None:
-        """Two renames; when the second one cannot be, the first is taken back."""
+        """Put the new folder in place by two renames; if the second one fails, undo the first."""
         for name in self.names:
             if (self.folder / name).is_dir():
                 raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(self.folder / name))
@@ -148,9 +157,9 @@ class StagedFolder:
 
 
 def _move_remaining(old: Path, folder: Path) -> None:
-    """Move what stays of an old folder into the new one, and remove the rest; the record last, as it says which.
+    """Move the other files of an old folder into the new one and delete the rest; the record, which lists them, last.
 
-    Nothing is lost by a run that is killed meanwhile: the next one goes on with that.
+    If the run is killed meanwhile, the next run continues from there.
     """
     if not folder.exists():
         os.rename(old, folder)
@@ -165,12 +174,12 @@ def _move_remaining(old: Path, folder: Path) -> None:
 
 
 def _temporary_path(path: Path, kind: str) -> Path:
-    """Where this process keeps a new, or an old, form of a file or folder for a moment."""
+    """Return the path under which this process keeps a new or old version of a file or folder."""
     return path.with_name(f".{path.name}.{kind}-{os.getpid()}")
 
 
 def _abandoned_paths(path: Path, kind: str) -> Iterator[Path]:
-    """The same of processes that are no more."""
+    """Yield such paths left by processes that no longer run."""
     for other in list(path.parent.iterdir()):
         found = re.fullmatch(rf"\.{re.escape(path.name)}\.{kind}-(\d{{1,9}})", other.name)
         if found is not None and not _is_running(int(found[1])):
@@ -178,7 +187,7 @@ def _abandoned_paths(path: Path, kind: str) -> Iterator[Path]:
 
 
 def _is_running(process: int) -> bool:
-    """Whether another process of this number is running."""
+    """Return True if another process with this number is running."""
     if process == os.getpid():
         return False
     if sys.platform == "win32":  # where os.kill would end it
@@ -193,7 +202,7 @@ def _is_running(process: int) -> bool:
 
 
 def listed_files(folder: Path) -> set[str]:
-    """The files that an earlier run wrote into the folder, as the end of its result.json lists them; never a path."""
+    """Return the file names listed at the end of result.json in a folder; never a path."""
     try:
         end = _end_of_record(folder)
         names = json.loads(end[end.rindex('"files": [') + len('"files": ') :].rstrip().removesuffix("}"))
@@ -203,7 +212,7 @@ def listed_files(folder: Path) -> set[str]:
 
 
 def recorded_part(folder: Path) -> str | None:
-    """Which part of a run has made the results in the folder; none: there are no results, empty: a whole one."""
+    """Return the part of a run whose results are in the folder: None without results, "" for a complete run."""
     try:
         found = re.search(r'"part": "([^"]*)",\s*"files": \[[^\[]*\Z', _end_of_record(folder))
     except OSError:
@@ -224,7 +233,7 @@ NAMED_POSITIONS = 6  # positions that stand in the name of a folder; of more of 
 
 
 def part_name(results: Results | ChainResults, drawn: bool) -> str:
-    """What of a run is there, as its folder is named; nothing where all is."""
+    """Return the name of the part of a run that the results cover; "" for a complete run."""
     if isinstance(results, ChainResults):
         return ""
     if results.motion is None:
@@ -240,7 +249,9 @@ def part_name(results: Results | ChainResults, drawn: bool) -> str:
 
 
 class WrittenFolder(NamedTuple):
-    """The folder that was written, files of an earlier run that went, and the folder that keeps other results."""
+    """The folder that was written, deleted files of an earlier run, and the folder whose other results were kept, if
+    any.
+    """
 
     folder: Path
     removed: list[str]
@@ -255,11 +266,17 @@ def write_results(
     people: SpreadsheetKind | None = None,
     part: str = "",
 ) -> WrittenFolder:
-    """Write everything to out/<problem>/, a part of a run beside a whole one; files of an earlier run go.
+    """Write result.json, tables and drawings to out/<problem>/, and delete the files of an earlier run.
 
-    Each table is dropped when it is written. The folder takes the place of the old one when all is there: a refusal or
-    an interruption before the end leaves the old one as it was. people: tables for their spreadsheets too. part: what
-    the drawings are, where they are others than those of a whole run.
+    The old folder is replaced when everything is written; after an error or an interruption it is unchanged.
+
+    Args:
+        results: the results.
+        out: parent folder.
+        drawings: file names and contents of drawings; None: none were requested.
+        digits: accuracy of the results, for the number of digits in the tables.
+        people: kind of spreadsheet files to write too.
+        part: name of the drawings, if they are not those of a complete run.
     """
     part = "-".join(word for word in (part_name(results, drawings is not None), part) if word)
     folder, kept = choose_folder(out, results.problem.name, part)

@@ -57,7 +57,7 @@ PROBLEM = json_record(
 
 
 class LinkRole(NamedTuple):
-    """A moving link and what it is in the mechanism."""
+    """A moving link with its role in the mechanism and its kind of motion."""
 
     link: Link
     role: str
@@ -390,13 +390,13 @@ LARGE_SECTIONS = ("positions", "kinematics", "forces", "lever", "energy")
 
 
 def to_json(results: Results | ChainResults) -> dict[str, Any]:
-    """The whole content of result.json as plain data."""
+    """Return the whole content of result.json as plain data."""
     with words_of_files():
         return {key: json_value(part) for key, part in sections(results)}
 
 
 def sections(results: Results | ChainResults, digits: dict[str, Any] | None = None) -> Iterator[tuple[str, Any]]:
-    """The parts of result.json one after the other, with arrays as they are. digits: the section of that name."""
+    """Yield the sections of result.json with arrays as they are. digits: content of the section of that name."""
     yield "tmm", FORMAT_VERSION
     yield "problem", PROBLEM.content(results.problem)
     if isinstance(results, ChainResults):
@@ -413,14 +413,14 @@ def sections(results: Results | ChainResults, digits: dict[str, Any] | None = No
 
 
 def computed_sections(results: Results, parts: Collection[str] = LARGE_SECTIONS) -> Iterator[tuple[str, Any]]:
-    """What was computed, part by part, as arrays; of the large parts those named alone."""
+    """Yield the computed sections with arrays as they are; of the large ones, only those in `parts`."""
     return record_items(
         [part for part in MOTION_SECTIONS if part.key in parts or part.key not in LARGE_SECTIONS], results
     )
 
 
 def schema() -> dict[str, Any]:
-    """A JSON Schema (draft 2020-12). SI and radians throughout; forces of pairs act on link `on`."""
+    """Return the JSON Schema (draft 2020-12) of result.json: SI, radians; the reaction of a pair acts on link `on`."""
     computed = {"type": "object", "properties": field_schemas(MOTION_SECTIONS)}
     digits = json_record(
         "",

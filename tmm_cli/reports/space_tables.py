@@ -1,4 +1,4 @@
-"""A planar linkage in space: contours, redundant constraints, and pairs that would take them away."""
+"""Tables of a linkage counted in space, of spatial chains given by pairs, and of enumerated schemes and chains."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from tmm_cli.synthesis import GROUP_TYPES, KinematicChain, Scheme
 
 
 def space_tables(results: Results) -> Iterable[Table]:
-    """Three small tables."""
+    """Yield the independent contours, the redundant constraints in space, and pairs that would remove them."""
     structure = results.structure
     yield contour_table(find_contours(structure.pairs, structure.links), structure)
     found = count_in_space(results.linkage, structure)
@@ -77,7 +77,7 @@ def space_tables(results: Results) -> Iterable[Table]:
 
 
 def contour_table(found: Sequence[Contour], structure: Structure | None = None) -> Table:
-    """Contours by links and pairs; of a planar linkage with redundant links or pairs, which of them are dependent."""
+    """Return the table of contours; structure: a planar linkage, in which contours may be dependent."""
     headers, rows = [_("contour"), _("pairs")], [[contour.title, ", ".join(contour.pairs)] for contour in found]
     if structure is None or not any(is_dependent(contour, structure) for contour in found):
         return text_table("contours", _("Independent contours"), headers, rows)
@@ -88,7 +88,7 @@ def contour_table(found: Sequence[Contour], structure: Structure | None = None) 
 
 
 def redundancy_equation(wanted: int, local: int, mobility: int, redundant: int) -> str:
-    """Redundant constraints as they are counted."""
+    """Return the count of redundant constraints, q = Wo + Wm - W, with its numbers."""
     w = f"({mobility})" if mobility < 0 else str(mobility)
     return f"{wanted} + {local} - {w} = {redundant}"
 
@@ -97,7 +97,7 @@ def redundancy_equation(wanted: int, local: int, mobility: int, redundant: int) 
 
 
 def chain_tables(results: ChainResults) -> Iterable[Table]:
-    """Up to four small tables."""
+    """Yield the tables of a chain given by its pairs: mobility, pairs, contours and local freedoms."""
     found = results.chain
     yield text_table("structure", _("Structure"), (_("what"), _("value")), _chain_rows(found), _chain_notes(found))
     yield text_table(
@@ -193,7 +193,7 @@ WrittenSchemes = Sequence[tuple[Path, bool] | None]
 def schemes_table(
     found: Sequence[Scheme], links: int, mobility: int, written: WrittenSchemes | None, types: Iterable[str] = ()
 ) -> Table:
-    """Number, formula, groups, links and pairs, file. types: the types of groups that were enumerated."""
+    """Return the table of schemes: formula, groups, links and pairs, file. types: group types that were enumerated."""
     columns = [
         Column(N_("scheme"), [str(k + 1) for k in range(len(found))]),
         Column(N_("formula of structure"), [s.formula for s in found]),
@@ -212,7 +212,7 @@ def schemes_table(
 
 
 def not_enumerated(types: Iterable[str]) -> Iterable[str]:
-    """A sentence about the groups that are missing where a class higher than II was requested."""
+    """Yield a sentence on the missing groups if a class higher than II was requested."""
     if any(GROUP_TYPES[name].grade > 2 for name in types):
         yield _(
             "Not enumerated: groups of classes III and IV with six links or more (order 4 of class III is one) or with "
@@ -225,7 +225,7 @@ def _scheme_pairs(scheme: Scheme, kind: str) -> str:
 
 
 def chains_table(found: Sequence[KinematicChain], links: int, mobility: int) -> Table:
-    """How many chains there are of each assortment of links."""
+    """Return the number of kinematic chains for each assortment of links."""
     counts = _assortments(found)
     most = max((len(assortment) for assortment in counts), default=0)
     names = [_(DEGREES[k]) if k < len(DEGREES) else _("with {pairs} pairs").format(pairs=k + 2) for k in range(most)]
@@ -240,7 +240,7 @@ def chains_table(found: Sequence[KinematicChain], links: int, mobility: int) -> 
 
 
 def _assortments(found: Iterable[KinematicChain]) -> dict[tuple[int, ...], tuple[int, int]]:
-    """Chains of each assortment, and the fractionated ones among them."""
+    """Return the number of chains and of fractionated chains by assortment of links."""
     found = list(found)
     parts = Counter(chain.assortment for chain in found if chain.fractionated)
     return {key: (count, parts[key]) for key, count in Counter(chain.assortment for chain in found).items()}
@@ -249,7 +249,7 @@ def _assortments(found: Iterable[KinematicChain]) -> dict[tuple[int, ...], tuple
 def schemes_json(
     found: Sequence[Scheme], links: int, mobility: int, written: WrittenSchemes | None, types: Iterable[str] = ()
 ) -> dict[str, Any]:
-    """Everything about the schemes as plain data."""
+    """Return the schemes as plain data."""
     rows = []
     for k, scheme in enumerate(found):
         row: dict[str, Any] = {
@@ -281,7 +281,7 @@ def schemes_json(
 
 
 def chains_json(found: Sequence[KinematicChain], links: int, mobility: int) -> dict[str, Any]:
-    """Everything about the chains as plain data; links of a chain are numbered from 0."""
+    """Return the chains as plain data; the links of a chain are numbered from 0."""
     return {
         "links": links,
         "mobility": mobility,

@@ -1,7 +1,7 @@
-"""Tables for spreadsheets of people: rounded as on a terminal, in the language that is spoken.
+"""Tables for spreadsheets: rounded as on the terminal, in the current language.
 
-A workbook has a sheet a table; CSV has semicolons and decimal commas, as spreadsheets of most of Europe read it. What
-is computed with further stands in result.json and in the other CSV files, with all digits that are true.
+A workbook has a sheet for each table; local CSV has semicolons and decimal commas, as in most of Europe. For further
+calculation use result.json and the other CSV files: they have all true digits.
 """
 
 from __future__ import annotations
@@ -31,7 +31,17 @@ WORKBOOK_OPTIONS: Final = {
 def open_workbook(
     file: str, stream: BytesIO, options: Mapping[str, bool] = WORKBOOK_OPTIONS, allowed: str = INSTALL_COMMAND
 ) -> Any:
-    """One of xlsxwriter that is to be written into a stream; file: what a refusal calls it. Raises ProblemError."""
+    """Return an xlsxwriter workbook that writes into a stream.
+
+    Args:
+        file: name of the file in an error message.
+        stream: the stream.
+        options: options of xlsxwriter.
+        allowed: command that installs xlsxwriter, for the error message.
+
+    Raises:
+        ProblemError: xlsxwriter is not installed.
+    """
     try:
         from xlsxwriter import Workbook
     except ImportError:
@@ -55,7 +65,11 @@ LONGEST_NAME, FORBIDDEN = 31, re.compile(r"[\[\]:*?/\\']")  # of sheets
 
 
 def spreadsheet_files(kind: SpreadsheetKind, tables: Iterable[Table], units: UnitSystem) -> Files:
-    """By their names, piece by piece. Raises ProblemError."""
+    """Yield names and contents of the spreadsheet files, piece by piece.
+
+    Raises:
+        ProblemError: xlsxwriter is not installed.
+    """
     if kind == "xlsx":
         yield "tables.xlsx", (write_workbook(tables, units),)
         return
@@ -64,7 +78,7 @@ def spreadsheet_files(kind: SpreadsheetKind, tables: Iterable[Table], units: Uni
 
 
 def spreadsheet_cells(column: Column, units: UnitSystem) -> list[Cell]:
-    """Numbers with the figures that a terminal prints, words; None where there is nothing."""
+    """Return the cells of a column: numbers rounded as on the terminal, texts, or None for an empty cell."""
     if column.dimension is None:
         return [_word_cell(str(value)) for value in column.values]
     values = column.numbers(units).tolist()
@@ -84,7 +98,7 @@ def _number_cell(value: float, count: int) -> float | None:
 
 
 def local_csv(table: Table, units: UnitSystem) -> Iterator[str]:
-    """A table as text; the mark at its beginning says to spreadsheets that it is UTF-8."""
+    """Yield a table as CSV text; the byte order mark makes spreadsheets read it as UTF-8."""
     yield "\ufeff" + ";".join(csv_cell(typeset(typeset_unit(column.heading(units)))) for column in table.columns) + "\n"
     for row in zip(*(spreadsheet_cells(column, units) for column in table.columns), strict=True):
         yield ";".join(map(_cell_text, row)) + "\n"
@@ -97,7 +111,7 @@ def _cell_text(cell: Cell) -> str:
 
 
 def write_workbook(tables: Iterable[Table], units: UnitSystem) -> bytes:
-    """Sheets with headings that stay in sight. Texts are written as texts: nothing in it is a formula or a link."""
+    """Return a workbook with a sheet for each table. Texts stay texts: no cell becomes a formula or a link."""
     stream = io.BytesIO()
     with open_workbook("tables.xlsx", stream) as book:
         book.set_properties({"created": CREATED})
@@ -117,7 +131,7 @@ def write_workbook(tables: Iterable[Table], units: UnitSystem) -> bytes:
 
 
 def _write_sheet(sheet: Any, table: Table, units: UnitSystem, formats: Mapping[str, Any]) -> None:
-    """Title, headings, rows, notes."""
+    """Write title, headings, rows and notes of a table into a sheet."""
     heads = [typeset(typeset_unit(column.heading(units))) for column in table.columns]
     columns = [spreadsheet_cells(column, units)[:MOST_ROWS] for column in table.columns]
     for k, (head, column) in enumerate(zip(heads, columns, strict=True)):
@@ -143,7 +157,7 @@ def _write_sheet(sheet: Any, table: Table, units: UnitSystem, formats: Mapping[s
 
 
 def _column_width(head: str, column: Sequence[Cell]) -> float:
-    """Room for the longest word of the heading, which may be broken, and for every cell."""
+    """Return the column width that fits the longest word of the heading and every cell."""
     longest = max((len(_cell_text(cell)) for cell in column), default=0)
     word = max(map(len, head.split()), default=0)
     least, most = WIDTHS
@@ -151,7 +165,7 @@ def _column_width(head: str, column: Sequence[Cell]) -> float:
 
 
 def _sheet_name(title: str, taken: set[str]) -> str:
-    """A name that a sheet may have, and no other one has."""
+    """Return a valid sheet name that is not taken yet, and add it to `taken`."""
     name = " ".join(FORBIDDEN.sub(" ", title.partition(":")[0]).split())
     if len(name) > LONGEST_NAME:
         name = name[: LONGEST_NAME - 4].rpartition(" ")[0] or name[: LONGEST_NAME - 4]

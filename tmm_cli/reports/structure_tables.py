@@ -1,4 +1,4 @@
-"""Structure: mobility, links, pairs, Assur groups."""
+"""Tables of the structure: mobility, links, pairs and Assur groups."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ SCHEMES = {
 
 
 def structure_tables(results: Results) -> Iterable[Table]:
-    """Four small tables."""
+    """Yield the tables of mobility, links, pairs and Assur groups."""
     structure, linkage = results.structure, results.linkage
     yield text_table("structure", _("Structure"), (_("what"), _("value")), _structure_rows(structure))
     links, roles = [linkage.links[name] for name in structure.links], results.roles
@@ -161,7 +161,9 @@ def structure_tables(results: Results) -> Iterable[Table]:
 
 
 def mobility_with_rollers(structure: Structure) -> str:
-    """3*5 - 2*6 - 1 = 2: rollers counted as links, each hinged to its follower, and the local freedoms they add."""
+    """Return `3*5 - 2*6 - 1 = 2`: the mobility with each roller as a link hinged to its follower, and the local
+    freedoms.
+    """
     rollers = [pair.mesh.roller for pair in structure.pairs if pair.mesh is not None and pair.mesh.roller]
     n, higher = len(structure.links) + len(rollers), structure.higher
     mobility = mobility_equation((n, len(structure.pairs) - higher + len(rollers), higher))
@@ -170,7 +172,7 @@ def mobility_with_rollers(structure: Structure) -> str:
 
 
 def reduction_sentences(structure: Structure) -> Iterable[str]:
-    """What the structural report leaves out or counts as one, with the redundant constraints q that it adds."""
+    """Yield which links and pairs the structural analysis omits or merges, with their redundant constraints q."""
     for rigid in structure.reduction.rigid:
         links = ", ".join(link for link in rigid.links if link != FRAME)
         if FRAME in rigid.links:
@@ -195,7 +197,7 @@ def reduction_sentences(structure: Structure) -> Iterable[str]:
 
 
 def indeterminate_reactions(structure: Structure) -> Iterable[str]:
-    """What redundant constraints do to reactions: nothing to the balancing load."""
+    """Yield a note on reactions that redundant constraints make indeterminate; the balancing load is not affected."""
     among = dict.fromkeys(link for passive in structure.passive for link in passive.among)
     if among:
         yield _(
@@ -205,26 +207,26 @@ def indeterminate_reactions(structure: Structure) -> Iterable[str]:
 
 
 def mobility_equation(count: tuple[int, int, int]) -> str:
-    """3*3 - 2*4 = 1: Chebyshev's formula with its numbers."""
+    """Return Chebyshev's formula with its numbers: `3*3 - 2*4 = 1`. count: n, lower and higher pairs."""
     n, lower, higher = count
     held = f" - {higher}" if higher else ""
     return f"3*{n} - 2*{lower}{held} = {3 * n - 2 * lower - higher}"
 
 
 def mobility_by_classes(count: tuple[int, int, int]) -> str:
-    """3*3 - 2*4 - 0 = 1: 3n - 2 p5 - p4 with its numbers, from n, lower and higher pairs."""
+    """Return 3n - 2 p5 - p4 with its numbers: `3*3 - 2*4 - 0 = 1`. count: n, lower and higher pairs."""
     n, lower, higher = count
     return f"3*{n} - 2*{lower} - {higher} = {3 * n - 2 * lower - higher}"
 
 
 def generalised_mobility(count: tuple[int, int, int]) -> str:
-    """3*3 - 2*4 - 1*0 = 1: the generalised formula with H = 3 motions of a free link, so H - 1 = 2 and H - 2 = 1."""
+    """Return the generalised formula with H = 3 freedoms of a free link and its numbers: `3*3 - 2*4 - 1*0 = 1`."""
     n, lower, higher = count
     return f"3*{n} - 2*{lower} - 1*{higher} = {3 * n - 2 * lower - higher}"
 
 
 def mobility_with_replacements(count: tuple[int, int, int]) -> str:
-    """3*5 - 2*7 = 1: the mobility after each higher pair is replaced by a link with two revolute pairs."""
+    """Return the mobility with each higher pair replaced by a link with two revolute pairs: `3*5 - 2*7 = 1`."""
     n, lower, higher = count
     return mobility_equation((n + higher, lower + 2 * higher, 0))
 
@@ -241,7 +243,7 @@ def motion_of_link(results: Results, name: str) -> str:
 
 
 def describe_link_motion(results: Results, name: str) -> str:
-    """The motion of a link relative to the frame, with its centre or its guide."""
+    """Return the motion of a link relative to the frame as text, with its centre or its guide."""
     linkage = results.linkage
     motion = motion_of_link(results, name)
     if motion == "rotation":
@@ -253,7 +255,7 @@ def describe_link_motion(results: Results, name: str) -> str:
 
 
 def _keeps_direction(results: Results, name: str) -> bool:
-    """Whether a link has one direction at places over the driver's range, as the coupler of a parallelogram has."""
+    """Return True if a link keeps its direction over the driver's range, as the coupler of a parallelogram does."""
     reach = results.driver_range
     if reach is None:
         return False
@@ -263,7 +265,9 @@ def _keeps_direction(results: Results, name: str) -> bool:
 
 
 def describe_schemes(structure: Structure) -> str:
-    """The basic schemes of the contours of four links, and of the whole if it is a six-bar; empty without a name."""
+    """Return the basic schemes of the four-link contours, and the six-bar scheme of the whole; empty if none has a
+    name.
+    """
     names = [f"{_(SCHEMES[scheme])} {title}" for title, scheme in basic_schemes(structure).items()]
     six_bar = six_bar_schemes(structure)
     if six_bar:
@@ -272,12 +276,12 @@ def describe_schemes(structure: Structure) -> str:
 
 
 def describe_classification(structure: Structure) -> str:
-    """Return the kind of the chain and of the structure: closed, complex: the driver and several groups."""
+    """Return the kind of the chain and of the structure: `closed, complex: the driver and several groups`."""
     return ", ".join(_(CLASSIFICATIONS[word]) for word in classify_linkage(structure))
 
 
 def describe_contours(structure: Structure) -> str:
-    """Return K = p - n and how many of these contours only repeat another one."""
+    """Return the number of contours K = p - n, and how many of them are dependent."""
     dependent = sum(is_dependent(contour, structure) for contour in find_contours(structure.pairs, structure.links))
     if not dependent:
         return str(structure.contours)
@@ -285,13 +289,13 @@ def describe_contours(structure: Structure) -> str:
 
 
 def describe_primary_mechanisms(structure: Structure) -> str:
-    """Return the primary mechanisms, and their freedoms together: each driver has one."""
+    """Return the primary mechanisms, one for each driver, and their total mobility."""
     names = ", ".join(map(structure.driver_title, structure.drivers))
     return _("{names}; together W = {w}").format(names=names, w=len(structure.drivers))
 
 
 def translate_label(label: str) -> str:
-    """The file's own name of a link; a usual one in the reader's language."""
+    """Return the label of a link; a common one is translated into the current language."""
     return _(label) if label in COMMON_LABELS else label
 
 

@@ -1,6 +1,6 @@
-"""Tables and JSON of a synthesis: what was asked, what was found, what is measured on the mechanism.
+"""Tables and JSON of a synthesis: input data, solution, and values measured on the mechanism.
 
-Each is a listing (see tmm_cli.synthesis.record), of which the table and the records of result.json are written.
+Each is a listing (see tmm_cli.synthesis) that is written both as a table and as records of result.json.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ MEASURED_COLUMNS = (
 
 
 def synthesis_tables(results: Results) -> Iterable[Table]:
-    """As `tmm synthesis` has them."""
+    """Yield the tables of the synthesis that found the linkage, as `tmm synthesis` prints them."""
     synthesis = results.problem.synthesis
     if synthesis is not None and results.motion is not None:
         yield from tables_of_synthesis(synthesis, measure_problem(results), results.problem.units)
@@ -44,7 +44,7 @@ def synthesis_tables(results: Results) -> Iterable[Table]:
 def tables_of_synthesis(
     found: Synthesised, measured: Sequence[MeasuredDemand] | None, units: UnitSystem, digits: int = DIGITS
 ) -> Iterable[Table]:
-    """Asked, found, measured (None: there is no linkage)."""
+    """Yield the tables of input data, solution and measured demands. measured: None if there is no linkage."""
     outcome = found.outcome
     bounded = found.names if found.names and set(found.names) <= {v.name for v in outcome.asked} else None
     title, source = (
@@ -61,7 +61,7 @@ def tables_of_synthesis(
 
 
 def parameter_table(found: Synthesised, units: UnitSystem) -> Table:
-    """For `tmm explain`: the parameters that were found."""
+    """Return the table of parameters found by the synthesis, for `tmm explain`."""
     values = tuple(found.outcome.parameters[name] for name in found.names if name in found.outcome.parameters)
     listing, note = (
         _value_listing("", N_("Parameters found by synthesis"), values, found.names or None),
@@ -71,7 +71,7 @@ def parameter_table(found: Synthesised, units: UnitSystem) -> Table:
 
 
 def unmet_demand_sentences(measured: Sequence[MeasuredDemand], units: UnitSystem) -> Iterable[str]:
-    """What is not met, and what rounding leaves open, in words."""
+    """Yield a sentence for each demand that is not met or that rounding leaves undecided."""
     for m in measured:
         if m.open:
             yield _(
@@ -89,7 +89,7 @@ def unmet_demand_sentences(measured: Sequence[MeasuredDemand], units: UnitSystem
 def synthesis_json(
     found: Synthesised, measured: Sequence[MeasuredDemand] | None, *, long: bool = True
 ) -> dict[str, Any]:
-    """Everything in SI and radians; long: tables for files too."""
+    """Return the synthesis as plain data in SI and radians; long: with the tables that are written to files only."""
     outcome = found.outcome
     keys = {value.name: value.name for value in (*outcome.asked, *outcome.found) if value.name}
     return {
@@ -105,7 +105,7 @@ def synthesis_json(
 
 
 def _value_listing(name: str, title: str, values: Sequence[NamedValue], names: Mapping[str, str] | None) -> Listing:
-    """Quantities row by row; names: how their parameters are called; None: there are none."""
+    """Return a listing of values. names: parameter names by value name; None: without the column of parameters."""
     rows = tuple((v.text, v.value, v.kind) for v in values)
     if names is None:
         return Listing(name, title, VALUE_COLUMNS, rows)
@@ -143,7 +143,7 @@ def _listing_table(listing: Listing, units: UnitSystem, digits: int, notes: tupl
 
 
 def _listing_records(listing: Listing) -> list[dict[str, Any]]:
-    """Rows by the names of their columns, SI and radians."""
+    """Return the rows of a listing by column names, in SI and radians."""
     return [
         {
             name: json_value(float(value))
@@ -156,7 +156,7 @@ def _listing_records(listing: Listing) -> list[dict[str, Any]]:
 
 
 def _row_kinds(listing: Listing) -> list[Kind]:
-    """The kind of each row's numbers, where they are of several kinds."""
+    """Return the kind of the numbers in each row; empty where the column alone decides."""
     unit = next((k for k, (*__, kind) in enumerate(listing.columns) if kind == "unit"), None)
     return ["" if unit is None else row[unit] for row in listing.rows]
 

@@ -1,4 +1,4 @@
-"""A table before it is shown anywhere: columns of SI values with their dimension, or of words."""
+"""Tables as data: columns of SI values with their dimension, or of texts; their output as CSV and JSON."""
 
 from __future__ import annotations
 
@@ -21,11 +21,17 @@ from tmm_cli.problem import Problem, Unit, UnitSystem, parse_unit
 
 @dataclass(frozen=True)
 class Column:
-    """A column: header, values in SI (None or nan where there is none) and what they measure; words have none.
+    """A column of a table.
 
-    header: best a phrase, by which the column is known in every language; it is translated when it is shown.
-    bound: how far each value may be from the truth by rounding; lengths, paper: its change when every length changes by
-    0.1 %, by 0.5 mm on paper (SI; None where they were not asked for). unit: its own, where it is not the file's.
+    Attributes:
+        header: heading, best a Phrase: it identifies the column in every language and is translated for output.
+        values: list or array with one entry per row, in SI units; None or nan where there is none.
+        dimension: dimension of the values; None for texts.
+        digits: significant figures on a terminal.
+        bound: bound of the rounding error of each value (SI).
+        lengths: change of each value when all lengths change by 0.1 % (SI); None if not requested.
+        paper: change of each value when all coordinates are 0.5 mm off on paper (SI); None if not requested.
+        unit: unit of the column, if it is not that of the file.
     """
 
     header: str
@@ -38,28 +44,30 @@ class Column:
     unit: str = ""
 
     def heading(self, units: UnitSystem) -> str:
-        """The header with the unit."""
+        """Return the translated header with the unit."""
         if self.dimension is None or self.dimension == NUMBER:
             return translated(self.header)
         return f"{translated(self.header)}, {spelt(self.unit) if self.unit else units.spelt(self.dimension)}"
 
     def shown_in(self, units: UnitSystem) -> Unit:
-        """The unit of its numbers on paper."""
+        """Return the unit in which the values are printed."""
         assert self.dimension is not None
         return parse_unit(self.unit) if self.unit else units.unit(self.dimension)
 
     @property
     def array(self) -> Any:
-        """Its values, nan where there is none."""
+        """Values in SI as an array; nan where there is none."""
         listed = isinstance(self.values, list)
         return array([np.nan if v is None else v for v in self.values] if listed else self.values)
 
     def numbers(self, units: UnitSystem) -> Any:
-        """Its values in the units of the file, nan where there is none."""
+        """Return the values in the units of the file; nan where there is none."""
         return self.shown_in(units).from_si(self.array.astype(float))
 
     def true_figures(self, units: UnitSystem) -> Any:
-        """How many figures of each number are true, -1 where that is not known; None where it was not judged."""
+        """Return the number of true significant figures of each value, -1 if unknown; None if the column has no bounds.
+
+        """
         if self.dimension is None or self.bound is None:
             return None
         numbers, bound = self.numbers(units), np.asarray(self.bound) * self.shown_in(units).from_si(1.0)
@@ -68,29 +76,31 @@ class Column:
 
 
 def with_unit(units: UnitSystem, value: float, dimension: Dimension, digits: int = 6) -> str:
-    """A value (SI) in the unit of the file, to so many digits: `110 mm`."""
+    """Return a value (SI) in the unit of the file, rounded to `digits` figures: `110 mm`."""
     number = numeral(units.from_si(value, dimension) + 0.0, f".{digits}g")
     return typeset(f"{number} {units.spelt(dimension)}".rstrip())
 
 
 def format_value(problem: Problem, value: float, dimension: Dimension) -> str:
-    """A value with its unit, of the file where it has one for this dimension."""
+    """Return a value (SI) with the unit of the file for its dimension."""
     return with_unit(problem.units, float(np.ravel(value)[0]), dimension)
 
 
 def format_vector(problem: Problem, value: complex, dimension: Dimension = LENGTH) -> str:
-    """Both components in the unit of the file: `[120, 0]`."""
+    """Return both components of a vector in the unit of the file: `[120, 0]`."""
     value = complex(np.ravel(value)[0])
     return f"[{', '.join(f'{problem.units.from_si(v, dimension) + 0.0:.6g}' for v in (value.real, value.imag))}]"
 
 
 def link_name(link: str) -> str:
-    """The frame has no number."""
+    """Return the name of a link; the frame is a word, not a number."""
     return _("frame") if link == FRAME else link
 
 
 def true_digits(values: Any, bound: Any) -> Any:
-    """How many figures of each value are true: half a unit of the last one is not below the bound; 0: none is."""
+    """Return the number of true figures of each value: half a unit of the last one is at least the bound; 0 if none is
+    true.
+    """
     values, bound = np.abs(values), np.maximum(bound, 2.0**-54 * np.abs(values))
     with np.errstate(divide="ignore", invalid="ignore"):
         figures = np.floor(np.log10(values)) - np.ceil(np.log10(2 * bound)) + 1
@@ -99,7 +109,7 @@ def true_digits(values: Any, bound: Any) -> Any:
 
 @dataclass(frozen=True)
 class Table:
-    """A table. name: of its file, without ending; long tables are for files only, not for the terminal."""
+    """A table. name: stem of its file name; long: written to files, not printed on a terminal."""
 
     name: str
     title: str
@@ -115,7 +125,7 @@ class Table:
 def text_table(
     name: str, title: str, headers: Sequence[str], rows: Iterable[Sequence[str]], notes: Iterable[str] = ()
 ) -> Table:
-    """A table without numbers, row by row."""
+    """Return a table of texts from its rows."""
     rows = list(rows)
     columns = (Column(header, [row[k] for row in rows]) for k, header in enumerate(headers))
     return Table(name, title, tuple(columns), notes=tuple(notes))
@@ -142,7 +152,7 @@ FIGURE_FORMATS = ["%.0s0", *(f"%.{n}g" for n in range(1, 18))]  # by how many ar
 
 
 def csv_text(table: Table, units: UnitSystem) -> Iterator[str]:
-    """A table as CSV in the units of the file; a cell that a spreadsheet would run as a formula is quoted."""
+    """Yield a table as CSV in the units of the file; a cell that a spreadsheet would run as a formula is quoted."""
     yield ",".join(csv_cell(column.heading(units)) for column in table.columns) + "\n"
     columns = [_numbers_or_words(column, units) for column in table.columns]
     for start in range(0, table.rows, CHUNK_ROWS):
@@ -152,7 +162,7 @@ def csv_text(table: Table, units: UnitSystem) -> Iterator[str]:
 
 
 def _numbers_or_words(column: Column, units: UnitSystem) -> tuple[Any, Any]:
-    """Numbers in the units of the file and how many figures of each are true, or words."""
+    """Return the numbers of a column in the units of the file and their true figures, or its texts and None."""
     if column.dimension is None:
         return column.values, None
     return column.numbers(units), column.true_figures(units)
@@ -168,7 +178,7 @@ def _cells(values: Any, figures: Any) -> list[str]:
 
 @lru_cache(maxsize=1024)
 def csv_cell(text: str) -> str:
-    """A word as a cell of CSV; what a spreadsheet would run as a formula is quoted."""
+    """Return a text as a CSV cell; an apostrophe keeps a spreadsheet from running it as a formula."""
     pieces = SEPARATORS.split(text)
     safe = "".join("'" + piece if _is_formula(piece) else piece for piece in pieces)
     safe = "'" + safe if text.startswith(("\t", "\r")) else safe
@@ -177,7 +187,7 @@ def csv_cell(text: str) -> str:
 
 
 def _is_formula(piece: str) -> bool:
-    """Whether a spreadsheet would run this piece of a cell as a formula."""
+    """Return True if a spreadsheet would run this part of a cell as a formula."""
     begun = piece.lstrip(" ")
     return (
         begun.startswith(FORMULA_STARTS)
@@ -187,12 +197,12 @@ def _is_formula(piece: str) -> bool:
 
 
 def json_bytes(content: Any) -> bytes:
-    """JSON with a line for every series of numbers, so that two results can be compared line by line."""
+    """Return content as JSON with one line for each series of numbers, so that results can be compared by line."""
     return ("".join(_json_lines(content, "")) + "\n").encode()
 
 
 def json_text(parts: Iterable[tuple[str, Any]]) -> Iterator[str]:
-    """The same of a record that is given part by part; arrays become text as they are, nan and infinity null."""
+    """Yield a JSON record section by section, laid out as by `json_bytes`; nan and infinity become null."""
     yield from _json_block("{", ((_json_key(key), part) for key, part in parts), "}", "")
     yield "\n"
 
@@ -213,7 +223,7 @@ def _json_key(key: str) -> str:
 
 
 def _json_block(opening: str, parts: Iterable[tuple[str, Any]], closing: str, indent: str) -> Iterator[str]:
-    """Parts of an object or of a list, each on its own lines after its label."""
+    """Yield an object or a list, each item on its own lines after its label."""
     separator = opening
     for label, part in parts:
         yield f"{separator}\n{indent} {label}"
@@ -223,7 +233,7 @@ def _json_block(opening: str, parts: Iterable[tuple[str, Any]], closing: str, in
 
 
 def _json_array(values: Any) -> Iterator[str]:
-    """An array on one line."""
+    """Yield an array on one line."""
     yield "["
     for start in range(0, len(values), CHUNK_NUMBERS):
         yield ", " if start else ""
@@ -232,7 +242,7 @@ def _json_array(values: Any) -> Iterator[str]:
 
 
 def json_value(value: Any) -> Any:
-    """Numbers and arrays as JSON has them: no nan, no infinity."""
+    """Return plain data that JSON can hold: lists for arrays, None for nan and infinity."""
     if isinstance(value, np.ndarray):
         sound = value.dtype.kind != "f" or bool(np.all(np.isfinite(value)))
         return value.tolist() if sound else [json_value(v) for v in value.tolist()]

@@ -1,4 +1,4 @@
-"""Tables on a terminal, in the units of the file."""
+"""Tables printed on a terminal, in the units of the file."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MORE_ROWS_AS_JSON = N_("... and {rows} rows more: --json prints them all")
 
 
 def terminal_cells(column: Column, units: UnitSystem, rows: Sequence[int]) -> list[str]:
-    """Words with printed signs, numbers to six digits, a dash where there is none, 0 for what is only rounding."""
+    """Return the texts of cells: numbers to the figures of the column, a dash if missing, 0 for rounding error."""
     if column.dimension is None:
         return [typeset(str(column.values[k])) for k in rows]
     values, count = column.numbers(units), printed_figures(column, units)
@@ -31,7 +31,7 @@ def terminal_cells(column: Column, units: UnitSystem, rows: Sequence[int]) -> li
 
 
 def printed_figures(column: Column, units: UnitSystem) -> Any:
-    """How many figures of each number are worth printing: 0 of what is only rounding, -1 where there is none."""
+    """Return the figures worth printing for each number: 0 for rounding error, -1 for a missing number."""
     values, found = column.numbers(units), column.true_figures(units)
     if found is None:
         nothing = ROUNDING * np.max(np.abs(values), where=np.isfinite(values), initial=0.0)
@@ -54,9 +54,15 @@ def print_on_terminal(
     most: int | None = MOST_ROWS,
     more: str = MORE_ROWS,
 ) -> None:
-    """Print a table; of a long one, the given rows only. A table wider than the terminal is printed in parts.
+    """Print a table; one that is wider than the terminal is printed in parts.
 
-    more: the word that says how many rows beyond `most` (None: no bound) are left out, and where they all are.
+    Args:
+        table: the table.
+        units: units of the file.
+        console: the terminal.
+        rows: indices of the rows to print; None: all.
+        most: largest number of rows; None: no limit.
+        more: message with the number of rows that are left out.
     """
     chosen = [k for k in range(table.rows) if rows is None or k in rows]
     printed = chosen[:most]
@@ -79,13 +85,15 @@ def print_on_terminal(
 
 
 def _least_width(texts: Sequence[str], words: bool) -> int:
-    """The least width of a column: headings and words may be broken between words, numbers may not."""
+    """Return the least width of a column: headings and texts may be broken between words, numbers may not."""
     parts = [*texts[0].split(), *(part for text in texts[1:] for part in (text.split() if words else [text]))]
     return max(map(len, parts), default=0)
 
 
 def _column_widths(wide: list[int], least: Sequence[int], width: int) -> list[int]:
-    """Widths of columns beside each other: as their texts want, less of the widest where they do not fit."""
+    """Return the widths of columns side by side; where they do not fit, the widest ones are narrowed to their least
+    width.
+    """
     while sum(wide) > width + 1 - GAP * len(wide):
         slack = [k for k in range(len(wide)) if wide[k] > least[k]]
         if not slack:
@@ -95,7 +103,9 @@ def _column_widths(wide: list[int], least: Sequence[int], width: int) -> list[in
 
 
 def _table_parts(words: Sequence[bool], least: Sequence[int], width: int) -> list[list[int]]:
-    """Columns that fit beside each other; what tells the rows apart stands in every part."""
+    """Return the column indices of each part that fits on the terminal; the columns that identify the rows are in every
+    part.
+    """
     count = len(words)
     keys = next((k for k in range(count) if not words[k] and k != 1), count)
     wide = [w + GAP for w in least]

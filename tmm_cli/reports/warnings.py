@@ -1,4 +1,4 @@
-"""What the user should know besides the numbers. A warning is a function in a file here, and a name in WARNINGS."""
+"""Warnings about results. To add one, write a function that yields sentences, and add it to WARNINGS."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ IN_CHECKS = (
 
 
 def collect_warnings(results: Results | ChainResults, *, checked: bool = True) -> Iterable[str]:
-    """One sentence each, in the units of the file. checked: also of what the table of checks has with its number."""
+    """Yield the warnings about results, in the units of the file. checked: include those in the table of checks."""
     if isinstance(results, ChainResults) or results.motion is None or results.driver_range is None:
         return
     for warning in WARNINGS:
