@@ -215,7 +215,7 @@ def test_nine_of_ten_bounds_are_within_a_hundred_times_the_error(own):
 
 
 def test_bounds_that_are_too_narrow_are_found_out(monkeypatch):
-    honest = stability.bounds
+    honest = stability.bound_values
 
     def boasting(results):
         values, found = honest(results)
@@ -230,7 +230,7 @@ def test_bounds_that_are_too_narrow_are_found_out(monkeypatch):
 
 
 def test_bounds_that_are_too_wide_are_found_out(monkeypatch):
-    honest = stability.bounds
+    honest = stability.bound_values
 
     def timid(results):
         values, found = honest(results)
