@@ -79,3 +79,10 @@ def test_every_command_runs_and_prints_what_the_page_shows(page):
         for picture in documentation.pictures_of(text):
             same = documentation.same_picture(DOCS / picture, folder / "outputs" / picture)
             assert same, f"{picture}: run `{COMMAND} {page.name}` and look at it"
+
+
+def test_every_command_of_the_readme_is_one_that_the_program_takes():
+    text = text_of(ROOT / "README.md").replace("\\\n", " ")
+    calls = re.findall(r"\.venv/bin/(tmm [^\n`&]*)", text)
+    assert len(calls) > 4
+    assert all(parsed(call) for call in calls)
