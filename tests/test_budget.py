@@ -98,9 +98,11 @@ def test_large_sheets_of_many_positions_are_refused_before_their_long_layout(tmp
     file.write_text(text, encoding="utf-8")
     monkeypatch.setattr("tmm_cli.mechanics.analysis.pipeline.solve", lambda *_, **__: pytest.fail("this was computed"))
     for options, told in {
-        ("--positions", "all"): "error: plans of so many positions fill no sheet that is read found: 48 allowed: 24 at "
-        "most; with --positions detail: those of positions.detail",
-        ("--positions", "all", "--set", "n1=1 rpm"): "fill no sheet that is read",
+        ("--positions", "all"): (
+            "error: too many positions for motion plans on a legible sheet found: 48 allowed: at most 24; "
+            "--positions detail draws only those of positions.detail"
+        ),
+        ("--positions", "all", "--set", "n1=1 rpm"): "too many positions for motion plans",
     }.items():
         done = tmm("sheets", file, *options, "-o", tmp_path / "refused", cwd=tmp_path)
         assert done.returncode == 2 and told in " ".join(done.stderr.split()), done.stderr

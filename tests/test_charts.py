@@ -108,7 +108,7 @@ def test_a_curve_measures_what_the_scales_say():
 
 def test_positions_are_numbered_beside_degrees_and_the_strokes_named():
     texts = drawn("shaper")["diagrams"].texts()
-    assert {*map(str, range(13)), "30", "360", "working stroke", "idle stroke"} <= set(texts)
+    assert {*map(str, range(13)), "30", "360", "working stroke", "return stroke"} <= set(texts)
     assert "a of 5, m/s²" in texts and "balancing moment, N·m" in texts
 
 

@@ -119,7 +119,7 @@ def test_lengths_have_the_names_of_the_file_s_parameters():
     texts = sheet_of("crank-slider-offset")[1].texts()
     assert texts[texts.index("OA") : texts.index("OA") + 3] == ["OA", "r", "50"]
     assert texts[texts.index("AB") : texts.index("AB") + 3] == ["AB", "l", "190"]
-    assert texts[texts.index("guide x from O") :][1:3] == ["e", "40"]
+    assert texts[texts.index("distance of guide x from O") :][1:3] == ["e", "40"]
     texts = sheet_of("crank-rocker")[1].texts()
     assert texts[texts.index("OD") : texts.index("OD") + 3] == ["OD", "l4", "400"]
     texts = sheet_of("planetary-dwell-press")[1].texts()  # a wheel in a ring of five times its radius
@@ -127,7 +127,7 @@ def test_lengths_have_the_names_of_the_file_s_parameters():
     assert wheels == [["0", "125"], ["2", "25"]]
     texts = sheet_of("shaper")[1].texts()  # parameters are called like lengths
     assert texts[texts.index("CD") : texts.index("CD") + 2] == ["CD", "650"]
-    assert texts[texts.index("guide x from O") + 1] == "270"
+    assert texts[texts.index("distance of guide x from O") + 1] == "270"
 
 
 @pytest.mark.parametrize("name", ["shaper", "course-1", "course-2", "course-3", "course-4", "six-bar", "excavator"])

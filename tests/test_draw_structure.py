@@ -168,10 +168,10 @@ def test_sheets_are_legible_with_every_line_inside_and_show_every_link_pair_and_
 
 def test_the_legend_counts_mobility_after_chebyshev():
     facts = Legend(analyse_structure(load(str(ROOT / "problems" / "six-bar.yaml")).linkage)).facts
-    assert "n = 5 moving links, p₁ = 7 lower pairs (6 turning, 1 sliding), p₂ = 0 higher pairs" in facts
+    assert "moving links: n = 5; lower pairs: p₁ = 7 (revolute: 6, prismatic: 1); higher pairs: p₂ = 0" in facts
     assert "W = 3n − 2p₁ − p₂ = 3·5 − 2·7 − 0 = 1" in facts
     assert "Mechanism of class II" in facts
-    assert "Compound hinge B: a circle for every pair" in facts
+    assert "Compound hinge B: one circle for each pair" in facts
 
 
 def test_a_compound_hinge_has_a_circle_for_every_pair():
@@ -198,7 +198,7 @@ def test_what_the_formula_leaves_out_is_drawn_and_marked(name, redundant_links, 
     every = mechanism_parts(here.structure)
     whole = scheme_sheet("title", "", here).finish()
     in_one_line = " ".join(" ".join(text.split()) for text in texts(whole))
-    assert f"{mark} W of the formula of structure: 3·3 − 2·4 = 1" in in_one_line
+    assert f"{mark} W from the structural formula: 3·3 − 2·4 = 1" in in_one_line
     redundant = [part for part in every if part.redundant is not None]
     assert [part.links for part in redundant] == redundant_links
     assert not {part.colour for part in redundant} & {part.colour for part in every if part not in redundant}

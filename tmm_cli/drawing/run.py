@@ -103,19 +103,18 @@ def position_remarks(results: Results) -> Iterable[str]:
 def _default_position_note(results: Results, k: int) -> str:
     number, size = results.numbers[k], float(balancing_magnitude(results)[k])
     if size == 0:
-        return _("note: no positions.detail in the file, drawn in full is position {number}").format(number=number)
+        return _("note: the file has no positions.detail; position {number} is drawn in detail").format(number=number)
     turns = results.linkage.driver.kind == "turn"
     units, dimension = results.problem.units, MOMENT if turns else FORCE
     told = f"{numeral(units.from_si(size, dimension), '.4g')} {units.spelt(dimension)}"
     return (
         _(
-            "note: no positions.detail in the file, drawn in full is position {number}, of the largest "
-            "balancing moment: "
-            "{size}"
+            "note: the file has no positions.detail; position {number}, with the largest balancing moment, is "
+            "drawn in detail: {size}"
         )
         if turns
         else _(
-            "note: no positions.detail in the file, drawn in full is position {number}, of the largest balancing "
-            "force: {size}"
+            "note: the file has no positions.detail; position {number}, with the largest balancing force, is "
+            "drawn in detail: {size}"
         )
     ).format(number=number, size=told)

@@ -83,5 +83,5 @@ def missing_character_notes(texts: Iterable[str]) -> Iterable[str]:
     """Yield a note that names the characters of the texts that the font lacks, if there are any."""
     boxes = missing_characters("".join(texts))
     if boxes:
-        text = _("note: the font of the drawings lacks these characters, boxes stand for them: {characters}")
+        text = _("note: the font of the drawings lacks these characters; boxes replace them: {characters}")
         yield text.format(characters=" ".join(sorted(boxes)))

@@ -277,7 +277,8 @@ def arrange_as_drawn(pictures: Sequence[SheetPicture], field: PackingField) -> l
     """
     for one in pictures:
         if pack_boxes(add_gaps([one.paper], [0]), field) is None:
-            raise ProblemError(_("{name} is larger than the sheet").format(name=one.stem), allowed=_("a larger format"))
+            text = _("drawing {name} is larger than the sheet")
+            raise ProblemError(text.format(name=one.stem), allowed=_("a larger paper size"))
     return fill_pages([one.paper for one in pictures], field) or []
 
 
@@ -345,9 +346,10 @@ def parse_formats(text: str) -> list[str]:
     Raises:
         ProblemError: A format is unknown, or its library is not installed.
     """
-    wanted = parse_names(text, FORMATS, "--as", _("there is no such format of drawings"))
+    wanted = parse_names(text, FORMATS, "--as", _("unknown drawing format"))
     if "dxf" in wanted and find_spec("ezdxf") is None:
-        raise ProblemError(_("DXF is written by ezdxf, which is not installed"), allowed="pip install 'tmm-cli[cad]'")
+        text = _("DXF files need the package ezdxf, which is not installed")
+        raise ProblemError(text, allowed="pip install 'tmm-cli[cad]'")
     return wanted
 
 
@@ -359,9 +361,11 @@ def refuse_plans(count: int) -> None:
     """
     if count > MOST_PLANS:
         raise ProblemError(
-            _("plans of so many positions fill no sheet that is read"),
+            _("too many positions for motion plans on a legible sheet"),
             found=str(count),
-            allowed=_("{most} at most; with --positions detail: those of positions.detail").format(most=MOST_PLANS),
+            allowed=_("at most {most}; --positions detail draws only those of positions.detail").format(
+                most=MOST_PLANS
+            ),
         )
 
 
@@ -390,7 +394,7 @@ def large_sheet_files(
     choice = choose_positions(results, every=every)
     refuse_plans(len(choice.plans))
     if choice.moves and not choice.loaded:
-        say(_("note: nothing has a weight and no load acts, so there is no sheet of forces"))
+        say(_("note: there are no weights and no loads, so the sheet of forces is omitted"))
     sheets = dict(large_sheets(choice, paper, way))
     jobs: list[tuple[str, Callable[[], bytes]]] = []
     for name in formats:

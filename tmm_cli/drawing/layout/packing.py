@@ -247,8 +247,8 @@ def _gost_block(titles: TitleBlockTexts) -> list[Mark]:
     roles = (
         (25, _("Drawn"), texts.student),
         (20, _("Checked"), texts.teacher),
-        (15, _("Techn."), ""),
-        (5, _("Norms"), ""),
+        (15, _("Tech. check"), ""),
+        (5, _("Std. check"), ""),
         (0, _("Approved"), ""),
     )
     for low, role, name in roles:

@@ -110,7 +110,8 @@ def initial_rooms(pieces: Sequence[SheetPiece], field: PackingField, shrunk: flo
         if found is not None and share < LEAST_SHARE:
             break
     if found is None:
-        raise ProblemError(_("a drawing is larger than the sheet at its least size"), allowed=_("a larger format"))
+        text = _("a drawing does not fit on the sheet even at its smallest size")
+        raise ProblemError(text, allowed=_("a larger paper size"))
     return found
 
 

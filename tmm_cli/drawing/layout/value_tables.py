@@ -171,8 +171,8 @@ def draw_balance_table(results: Results) -> Iterator[tuple[str, Drawing]]:
     if not several:
         __, ___, dimension = columns[0]
         checked = lever.balancing if reactions.balance.kind == "moment" else lever.balancing / reactions.balance.arm
-        columns.append((_("by the lever"), checked, dimension))
-    yield "table-balance", table_over_positions(results, _("What balances the driver"), columns)
+        columns.append((_("by the Zhukovsky lever"), checked, dimension))
+    yield "table-balance", table_over_positions(results, _("Balancing load of the driver"), columns)
 
 
 def table_over_positions(results: Results, title: str, columns: Sequence[QuantityColumn]) -> Drawing:
@@ -208,13 +208,13 @@ def draw_forces_table(here: Position) -> Iterator[tuple[str, Drawing]]:
     ]
     heads = [
         _("force or moment"),
-        _("size, {unit}").format(unit=typeset_unit(units.spelt(FORCE))),
+        _("magnitude, {unit}").format(unit=typeset_unit(units.spelt(FORCE))),
         _("angle from x, °"),
         _("moment, {unit}").format(unit=typeset_unit(units.spelt(MOMENT))),
     ]
     place = driver_caption(results, float(here.motion.q[k]))
     title = _("Forces in position {number}, {place}").format(number=results.numbers[k], place=place)
-    notes = [_("R with the indices of two links: from the first one on the second")]
+    notes = [_("R with the numbers of two links: force of the first link on the second")]
     yield here.stem("table-forces"), draw_table(title, heads, rows, notes)
 
 

@@ -110,4 +110,4 @@ def _distant_centre_notes(found: Sequence[InstantCentre], near: Mapping[LinkPair
             angle = numeral(float(np.degrees(np.angle(centre.direction))) % 180, ".1f")
             yield _("{centre} is at infinity, at {angle}°").format(centre=symbol, angle=angle)
         elif centre.place is not None and centre.links not in near:
-            yield _("{centre} is beyond the sheet: see the table").format(centre=symbol)
+            yield _("{centre} lies off the sheet: see the table").format(centre=symbol)

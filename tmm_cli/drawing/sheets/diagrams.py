@@ -122,7 +122,7 @@ def reaction_plots(whole: Results, results: Results) -> list[QuantityPlot]:
         return []
     here = {r.pair.name: r for r in results.reactions.all}
     found = []
-    for words, on_frame in ((_("reactions of the frame"), True), (_("between moving links"), False)):
+    for words, on_frame in ((_("reactions of the frame"), True), (_("reactions between moving links"), False)):
         courses = [
             SampledCurve(f"{symbol.name} ({r.pair.name})", np.abs(r.force), np.abs(here[r.pair.name].force))
             for r, symbol in ((r, reaction_symbol(r.by, r.on)) for r in whole.reactions.all)
@@ -141,11 +141,11 @@ def energy_plots(whole: Results, results: Results) -> list[QuantityPlot]:
         return []
     crank = results.linkage.driver.kind == "turn"
     powers = {
-        _("drivers"): "drivers",
+        _("driving forces"): "drivers",
         _("weights"): "weights",
         _("loads"): "loads",
         _("friction"): "friction",
-        _("rate of T"): "rate",
+        _("rate of change of T"): "rate",
     }
     found = []
     for words, dimension, parts, symbol in (
@@ -195,7 +195,7 @@ def pressure_plots(results: Results, motion: Motion) -> list[QuantityPlot]:
         courses = [
             SampledCurve(text.format(link=p.link, pair=p.pair), curves[p.group, p.link, p.pair], p.angles) for p in here
         ]
-        words = _("pressure angle where links slide") if slides else _("pressure angle where links turn")
+        words = _("pressure angle of sliding links") if slides else _("pressure angle of rotating links")
         for first in range(0, len(courses), MOST_CURVES):
             allowed = np.full(np.shape(motion.q), here[0].allowed)
             limit = SampledCurve(_("allowed"), allowed, np.full(np.shape(here[0].angles), np.nan), limit=True)
@@ -251,9 +251,9 @@ def draw_diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
     first = of_outputs.pop(stems[0]) if stems else []
     cycle = _("Diagrams over the cycle; dots: computed positions")
     reactions = _("Reactions over the cycle; dots: computed positions")
-    energy = _("The mechanism reduced to its driver, and its powers; dots: computed positions")
-    pressure = _("Pressure angles over the cycle; dots: computed positions, dashed: allowed")
-    balancing = _("What shakes the frame over the cycle; dots: computed positions")
+    energy = _("Mechanism reduced to the driver, and powers; dots: computed positions")
+    pressure = _("Pressure angles over the cycle; dots: computed positions; dashed: allowable values")
+    balancing = _("Shaking force and shaking moment over the cycle; dots: computed positions")
     for caption, stem, every in (
         (cycle, "diagrams", [*first, *balancing_plots(whole, results)]),
         *((cycle, stem, every) for stem, every in of_outputs.items()),
@@ -303,7 +303,7 @@ def _strokes_from_start(results: Results) -> list[tuple[float, float, bool]]:
 def _stroke_names(results: Results, strokes: Sequence[tuple[float, float, bool]]) -> list[str]:
     """Return the names of strokes."""
     if not results.counts_strokes:
-        return [_("working stroke") if working else _("idle stroke") for __, __, working in strokes]
+        return [_("working stroke") if working else _("return stroke") for __, __, working in strokes]
     numbers = list(range(1, len(strokes) + 1))
     if len(strokes) % 2:  # position 0 is within a stroke, and this is its other part
         numbers[-1] = 1
@@ -367,10 +367,12 @@ def _driver_axis(results: Results, ends: tuple[float, float], start: float, most
     """Return the axis of the driver coordinate (deg or unit of the file) and its title."""
     if results.linkage.driver.kind == "turn":
         axis = round_axis(*ends, start, most, degrees=True)
-        return axis, (f"{_('turn of the crank from position 0, deg')};  ", *scale_words("φ", axis.mu, "deg/mm"))
+        title = _("crank angle from position 0, deg")
+        return axis, (f"{title};  ", *scale_words("φ", axis.mu, "deg/mm"))
     axis, units = round_axis(*ends, start, most), results.problem.units
     scale = scale_words("s", axis.mu * units.factor(quantities.LENGTH), "m/mm")
-    return axis, (f"{with_unit(_('driver'), quantities.LENGTH, units)};  ", *scale)
+    title = with_unit(_("driver"), quantities.LENGTH, units)
+    return axis, (f"{title};  ", *scale)
 
 
 def plot_quantities(found: QuantityPlot, units: UnitSystem, xs: Any, marks: Any, borders: Sequence[int]) -> PlotContent:

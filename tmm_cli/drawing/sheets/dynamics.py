@@ -79,7 +79,7 @@ def draw_law_curves(results: Results) -> Iterable[tuple[str, Drawing]]:
         return
     way, borders = _dense_travel(running)
     q, here = running.start + running.sense * way, running.way(results.motion.q)
-    moments = _("Reduced moments, works and energies; what drives is positive; dots: computed positions")
+    moments = _("Reduced moments, work and energy; driving moments are positive; dots: computed positions")
     yield from plot_over_driver(results, "law-moments", moments, q, borders, _load_plots(results, running, way, here))
     motion = _("Reduced inertia and the law of motion of the driver; dots: computed positions")
     yield from plot_over_driver(results, "law-motion", motion, q, borders, _motion_plots(results, running, way, here))
@@ -130,14 +130,15 @@ def _load_plots(results: Results, running: SteadyRunning, way: Real, here: Real)
 
     driver = _("constant moment") if steady.task.motor is None else _("motor")
     driving = [_sample_curve(_("loads"), machine.moment, way, here), _sample_curve(driver, law.driving, way, here)]
+    energy_names = _("links"), _("energy change of the flywheel")
     return [
         QuantityPlot(_("reduced moments of the loads"), MOMENT, loads),
         QuantityPlot(_("moments"), MOMENT, driving),
-        QuantityPlot(_("works, J"), NUMBER, _sample_curves((_("loads"), driver, _("sum")), works, way, here), "A"),
+        QuantityPlot(_("work, J"), NUMBER, _sample_curves((_("loads"), driver, _("sum")), works, way, here), "A"),
         QuantityPlot(
             _("kinetic energy, J"),
             NUMBER,
-            _sample_curves((_("links"), _("gain of the flywheel")), energies, way, here)[: 2 if law.flywheel else 1],
+            _sample_curves(energy_names, energies, way, here)[: 2 if law.flywheel else 1],
             "T",
         ),
     ]
@@ -151,7 +152,7 @@ def _motion_plots(results: Results, running: SteadyRunning, way: Real, here: Rea
         _reduced_link_inertias(results, running, way), _reduced_link_inertias(results, running, here), _("sum")
     )
     mean = SampledCurve(
-        _("mean of the largest and the least"),
+        _("mean of the largest and the smallest value"),
         np.full(np.shape(way), np.mean(steady.speeds)),
         np.full(np.shape(here), np.nan),
         limit=True,
@@ -245,7 +246,7 @@ def energy_mass_sheet(results: Results, running: SteadyRunning, way: Real) -> Dr
     assert results.motion is not None
     steady, units = running.steady, results.problem.units
     factor, unit = units.factor(MOMENT_OF_INERTIA), typeset_unit(units.spelt(MOMENT_OF_INERTIA))
-    title = _("Energy-mass diagram with tangents of the largest and the least speed; dots: computed positions")
+    title = _("Energy-mass diagram with tangents for the largest and the smallest speed; dots: computed positions")
     sheet = DrawingSheet(results.problem.title, title, paper=LANDSCAPE)
     told = sheet.ground.low + 0.5 * TEXT_ROW * 1j
     sheet.ground = OccupiedArea(sheet.ground.low + 2.4 * TEXT_ROW * 1j, sheet.ground.high)
@@ -256,15 +257,15 @@ def energy_mass_sheet(results: Results, running: SteadyRunning, way: Real) -> Dr
     whole, here = diagram(way), diagram(running.way(results.motion.q), dots=True)
     start, longest = axis_extent(sheet)
     axis = round_axis(*_axis_ends(whole.xs, _massless_width(steady) / factor), start, longest)
-    words = with_unit(_("reduced inertia of the links J"), MOMENT_OF_INERTIA, units)
+    words = with_unit(_("reduced inertia J of the links"), MOMENT_OF_INERTIA, units)
     below = (f"{words};  ", *scale_words("J", axis.mu, f"({unit})/mm"))
-    names = _("tangent of the largest speed"), _("tangent of the least speed")
+    names = _("tangent for the largest speed"), _("tangent for the smallest speed")
     lines = [
         _tangent_curve(tangent, factor, (axis.low, axis.high), name, colour)
         for tangent, name, colour in zip(steady.tangents, names, TANGENT_COLOURS, strict=True)
     ]
     work = PlotContent(
-        _("work of all moments A, J"), [whole, *lines, here], scale=lambda mu: scale_words("A", mu, "J/mm")
+        _("work A of all moments, J"), [whole, *lines, here], scale=lambda mu: scale_words("A", mu, "J/mm")
     )
     panel = draw_chart(sheet, [work], CommonAxis(axis, below))[0]
     for curve in (whole, *lines):
@@ -375,15 +376,17 @@ def draw_single_run(results: Results) -> Iterable[tuple[str, Drawing]]:
     here = single.way(results.motion.q)
     time, speed = single.run.at(here)
     sheet = DrawingSheet(
-        results.problem.title, _("Single run over the way of the driver; dots: computed positions"), paper=PORTRAIT
+        results.problem.title,
+        _("Single run against the travel of the driver; dots: computed positions"),
+        paper=PORTRAIT,
     )
     start, most = axis_extent(sheet)
     axis = round_axis(0.0, float(single.run.way[-1]) / factor, start, most, degrees=crank)
     if crank:
-        told = _("turn of the crank from the beginning of the run, deg")
+        told = _("crank angle from the start of the run, deg")
         words = f"{told};  ", *scale_words("φ", axis.mu, "deg/mm")
     else:
-        told = with_unit(_("way of the driver from the beginning of the run"), LENGTH, units)
+        told = with_unit(_("travel of the driver from the start of the run"), LENGTH, units)
         words = f"{told};  ", *scale_words("s", axis.mu * factor, "m/mm")
     reached = np.isfinite(time)
     numbers = [(float(x) / factor, str(n)) for x, n, there in zip(here, results.numbers, reached, strict=True) if there]
@@ -408,19 +411,20 @@ def _run_plots(
     time, here, there = points
     changes, at_points = single.acceleration(times, way, speed), single.acceleration(time, here, there)
     none = np.full(np.shape(here), np.nan)
+    driving = _("driving moment") if crank else _("driving force")
     moments = [
-        SampledCurve(_("what drives"), single.driving(way, speed, changes), single.driving(here, there, at_points)),
+        SampledCurve(driving, single.driving(way, speed, changes), single.driving(here, there, at_points)),
         SampledCurve(
             _("loads"), single.machine.moment(way), np.where(np.isfinite(time), single.machine.moment(here), none)
         ),
     ]
-    works = [SampledCurve(_("what drives"), driven, none), SampledCurve(_("loads"), loaded, none)]
+    works = [SampledCurve(driving, driven, none), SampledCurve(_("loads"), loaded, none)]
     if single.task.brake:
         works.append(SampledCurve(_("brake"), braked, none))
     works.append(SampledCurve(_("kinetic energy"), single.energy(way, speed), single.energy(here, there)))
     return [
         QuantityPlot(_("moments") if crank else _("forces"), MOMENT if crank else FORCE, moments),
-        QuantityPlot(_("works and kinetic energy, J"), NUMBER, works, "A"),
+        QuantityPlot(_("work and kinetic energy, J"), NUMBER, works, "A"),
         QuantityPlot(
             _("angular velocity ω") if crank else _("speed v"),
             ANGULAR_SPEED if crank else SPEED,

@@ -156,7 +156,7 @@ GROUP_EXAMPLES: tuple[GroupExample, ...] = (
 def draw_group_table() -> Iterator[tuple[str, Drawing]]:
     """Yield the sheet with the stem of its file."""
     sheet = DrawingSheet(
-        _("Assur groups of classes II to VI"), _("By class and order; leads are dotted"), paper=LANDSCAPE
+        _("Assur groups of classes II to VI"), _("By class and order; dotted: external pairs"), paper=LANDSCAPE
     )
     size, places = divide_into_cells(sheet.ground.low, sheet.ground.high, COLUMNS, ROWS, CELL_GAP)
     for example, (low, high) in zip(GROUP_EXAMPLES, places, strict=False):

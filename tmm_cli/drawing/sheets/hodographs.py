@@ -56,7 +56,7 @@ def draw_shaking_hodograph(results: Results) -> Iterable[tuple[str, Drawing]]:
         Hodograph(_("dashed: without counterweights"), found.cycle.before.force, found.before.force, LOAD_COLOUR, "--")
     ]
     if found.cycle.counterweights:
-        name = _("in full: with counterweights") if found.cycle.left > NO_FORCE else _("dot: with counterweights")
+        name = _("solid: with counterweights") if found.cycle.left > NO_FORCE else _("dot: with counterweights")
         drawn.append(Hodograph(name, found.cycle.after.force, found.after.force, REACTION_COLOUR))
     yield "shaking-force", hodograph_sheet(results, _("Hodograph of the shaking force on the frame"), drawn, "F")
 
@@ -87,13 +87,13 @@ def _turned_hodographs(
     pair, symbol = here.pair.name, reaction_symbol(here.by, here.on)
     for link in (here.by, here.on):
         if link != FRAME and np.ptp(angles := whole.motion.angle(link)) > SAME_DRIVER_POSITION:
-            title = _("Hodograph of the reaction {name} in pair {pair}, in axes that turn with link {link}")
+            title = _("Hodograph of the reaction {name} in pair {pair}, in axes rotating with link {link}")
             own = np.exp(-1j * angles), np.exp(-1j * results.motion.angle(link))
             one = Hodograph("", cycle.force * own[0], here.force * own[1], REACTION_COLOUR, leaps=leaps)
             named = title.format(name=symbol.name, pair=pair, link=link)
             yield file_safe_name(f"hodograph-{pair}-link-{link}"), hodograph_sheet(results, named, [one], "R")
     if results.turns:
-        title = _("Size of the reaction {name} in pair {pair} in polar axes, against the crank angle")
+        title = _("Magnitude of the reaction {name} in pair {pair} against the crank angle, polar diagram")
         size = np.abs(cycle.force) * np.exp(1j * whole.motion.q)
         one = Hodograph("", size, np.abs(here.force) * np.exp(1j * results.motion.q), REACTION_COLOUR, leaps=leaps)
         yield (
@@ -107,8 +107,8 @@ def _force_components(cycle: Vector, here: Vector) -> list[QuantityPlot]:
     parts = [("x", cycle.real, here.real), ("y", cycle.imag, here.imag)]
     size = SampledCurve("", np.abs(cycle), np.abs(here))
     return [
-        QuantityPlot(_("its size"), FORCE, [size], "R"),
-        QuantityPlot(_("its parts along x and y"), FORCE, [SampledCurve(*part) for part in parts], "R"),
+        QuantityPlot(_("magnitude of the reaction"), FORCE, [size], "R"),
+        QuantityPlot(_("components along x and y"), FORCE, [SampledCurve(*part) for part in parts], "R"),
     ]
 
 

@@ -40,16 +40,17 @@ def _intermittent_sheet(results: Results, wheel: IntermittentMotion) -> Drawing:
     sheet = DrawingSheet(results.problem.title, caption)
     axis = round_axis(0.0, wheel.way / factor, *axis_extent(sheet), degrees=crank)
     if crank:
-        words = (f"{_('turn of the crank, deg')};  ", *scale_words("φ", axis.mu, "deg/mm"))
+        title = _("crank angle, deg")
+        words = (f"{title};  ", *scale_words("φ", axis.mu, "deg/mm"))
     else:
-        told = with_unit(_("way of the driver there and back"), LENGTH, units)
+        told = with_unit(_("travel of the driver, forward and back"), LENGTH, units)
         words = (f"{told};  ", *scale_words("s", axis.mu * factor, "m/mm"))
     ways, angles, omegas = (
         np.concatenate([getattr(part, name) for part in wheel.parts]) for name in ("ways", "angles", "omegas")
     )
     borders = (np.cumsum([len(part.ways) for part in wheel.parts])[:-1] - 1).tolist()
     every = [
-        QuantityPlot(_("angle of the wheel"), ANGLE, [SampledCurve("", angles, np.nan)]),
+        QuantityPlot(_("angle of rotation of the wheel"), ANGLE, [SampledCurve("", angles, np.nan)]),
         QuantityPlot(_("angular speed of the wheel"), ANGULAR_SPEED, [SampledCurve("", omegas, np.nan)]),
     ]
     spans = [

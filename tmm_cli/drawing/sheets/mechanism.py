@@ -197,7 +197,7 @@ def draw_position(here: Position) -> Iterable[tuple[str, Drawing]]:
     given = () if reactions is None else LoadedPosition.at(motion, reactions, k).given()
     places = [*frame_pivots(linkage), *(scene.point(p) for p in linkage.moving_points)]
     places += [scene.place(n, complex(linkage.links[n].centre)) for n in linkage.moving]
-    figure, notes = FigureExtent(), [_("loads without scale")] if reactions is not None else []
+    figure, notes = FigureExtent(), [_("loads not to scale")] if reactions is not None else []
     figure.spots(points_to_scale(scene, [*places, *(one.at for one in given)]), POSITION_MARGIN)
     for one in given:
         if not one.couple:

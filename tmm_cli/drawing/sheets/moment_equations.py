@@ -66,9 +66,9 @@ def equation_lines(equation: MomentEquation, unit: str = "N·m") -> Iterable[Wor
     moments: tuple[EquationPart, ...] = ("Σ", Symbol("M", equation.about), f", {links}: " if equation.links else ": ")
     if found is None and sought is not None:
         text = (
-            _("{moments}nothing has a moment, so {name} goes through {point}")
+            _("{moments}no force has a moment, so {name} passes through {point}")
             if sought.arm
-            else _("{moments}nothing has a moment, so {name} = 0")
+            else _("{moments}no force has a moment, so {name} = 0")
         )
         yield filled(text, moments=moments, name=sought.symbol, point=equation.about)
         return
@@ -149,7 +149,7 @@ def forces_table(acting: Iterable[ForceOrCouple], unit: str = "N·m") -> Caption
         if one.couple:  # the equations have its sense as a sign
             way = _("ccw") if one.moment > 0 else _("cw") if one.moment < 0 else ""
         rows.append((one.symbol, f"{format_figures(one.size)} {spelt(unit if one.couple else 'N')}", way))
-    return CaptionTable((_("force"), _("size"), _("from x")), rows)
+    return CaptionTable((_("force"), _("magnitude"), _("angle")), rows)
 
 
 def arms_table(equations: Sequence[MomentEquation], units: UnitSystem | None, mu: float) -> CaptionTable:
@@ -168,7 +168,7 @@ def arms_table(equations: Sequence[MomentEquation], units: UnitSystem | None, mu
         of = (first.acting.symbol, *(word for term in others for word in (", ", term.acting.symbol)))
         size = format_figures(units.from_si(first.arm, LENGTH) if units else first.arm)
         rows.append((first.letter, of, size, f"{numeral(first.arm / mu, '.1f')} {spelt('mm')}"))
-    return CaptionTable((_("arm"), _("of"), units.spelt(LENGTH) if units else "", _("on paper")), rows)
+    return CaptionTable((_("arm"), _("force"), units.spelt(LENGTH) if units else "", _("on paper")), rows)
 
 
 def format_figures(value: float) -> str:
@@ -260,10 +260,10 @@ def _group_sheets(
     draw_arms(sheet, equations, bars)
     if extent_of(places)[0] > 0:
         sheet.note(scale_words("l", sheet.mu, "m/mm"))
-    sheet.note(_("forces without scale"))
-    sheet.note(_("moments positive counterclockwise"))
+    sheet.note(_("forces not to scale"))
+    sheet.note(_("positive moments: counterclockwise"))
     if any(e.sought is None for e in equations):
-        sheet.note(_("all reactions of the group are found at once"))
+        sheet.note(_("all reactions of the group are found simultaneously"))
     return (sheet,) if text is None else (sheet, text)
 
 
@@ -307,9 +307,9 @@ def draw_lever(here: Position) -> Iterable[tuple[str, Drawing]]:
     plan = lever_plan(here.motion, results.reactions, results.lever, here.k)
     places = [*plan.ends.values(), *(term.foot for term in plan.equation.terms)]
     title = (
-        _("Zhukovsky lever: velocity plan for 1 rad/s, turned by 90° clockwise. {caption}")
+        _("Zhukovsky lever: velocity plan for 1 rad/s, rotated by 90° clockwise. {caption}")
         if crank
-        else _("Zhukovsky lever: velocity plan for 1 m/s of the driver, turned by 90° clockwise. {caption}")
+        else _("Zhukovsky lever: velocity plan for 1 m/s of the driver, rotated by 90° clockwise. {caption}")
     )
     unit = "N·m" if crank else "N"
     pairs = [word for pair in plan.pairs for word in _couple_equation(pair)]
@@ -337,10 +337,10 @@ def draw_lever(here: Position) -> Iterable[tuple[str, Drawing]]:
     draw_plan_points(sheet, plan.ends, LEVER_POLE)
     sheet.note(scale_words("l", sheet.mu, "m/mm") if crank else scale_words("i", sheet.mu, "1/mm"))
     few = len(shown) < len(plan.acting)
-    sheet.note(_("forces without scale, below 0.1 % only in the table") if few else _("forces without scale"))
-    sheet.note(_("moments positive counterclockwise"))
+    sheet.note(_("forces not to scale; below 0.1 % only in the table") if few else _("forces not to scale"))
+    sheet.note(_("positive moments: counterclockwise"))
     if any(a.couple and not a.pair for a in plan.acting):
-        sheet.note(_("M′: M times the ratio of the link's speed to the driver's"))
+        sheet.note(_("M′: M times the speed ratio of its link to the driver"))
     for line in _several_driver_notes(here):
         sheet.note(line)
     yield here.stem("lever"), sheet.finish()
@@ -389,7 +389,7 @@ def _several_driver_notes(here: Position) -> Iterable[str]:
         yield _("{name} = {value} {unit} (force plan)").format(
             name=name, value=numeral(float(balance.generalized[k]), ".6g"), unit=spelt("N·m" if turns else "N")
         )
-    yield _("lever: {names} = {value} {unit}").format(
+    yield _("Zhukovsky lever: {names} = {value} {unit}").format(
         names=" ".join(names),
         value=numeral(float(results.lever.balancing[k]), ".6g"),
         unit=spelt("N·m" if crank else "N"),

@@ -52,7 +52,7 @@ def length_rows(results: Results) -> list[TableRow]:
     sizes = [*_link_lengths(results), *_gear_radii(results.linkage), *_frame_sizes(results)]
     units = results.problem.units
     named = any(parameter for __, parameter, *___ in sizes)
-    titles: list[Words] = [_("length"), *([_("in the file")] if named else []), units.spelt(LENGTH)]
+    titles: list[Words] = [_("length"), *([_("name in the file")] if named else []), units.spelt(LENGTH)]
     rows = [TableRow(tuple(titles), head=True)]
     for name, parameter, value, dimension in sizes:
         shown = numeral(units.from_si(value, dimension), ".6g") + (
@@ -142,11 +142,11 @@ def _frame_sizes(results: Results) -> Iterator[TableSize]:
             far = far if far > SAME_POINTS * abs(through) else 0.0
             written = _file_value(results, "guides", slide.name, "through")
             parameter = _coordinate_parameter(results, written, through, far, "") if far else ""
-            title = _("guide {name} from {point}").format(name=slide.name, point=start or "0")
+            title = _("distance of guide {name} from {point}").format(name=slide.name, point=start or "0")
             yield title, parameter, far, LENGTH
             turn = math.degrees(np.angle(along)) % 180
             if abs(turn - 90 * round(turn / 90)) > 1e-9:
-                yield _("slope of {name}").format(name=slide.name), "", math.radians(turn), ANGLE
+                yield _("slope of guide {name}").format(name=slide.name), "", math.radians(turn), ANGLE
 
 
 @dataclass(frozen=True)
@@ -474,9 +474,9 @@ def _number_points(sheet: DrawingSheet, marks: list[PositionMark]) -> None:
 
 def _position_notes(view: PositionsView, track: NumberedPath | None, marks: list[PositionMark]) -> Iterable[str]:
     """Yield notes: position in full, extreme positions, and the travel if it is not drawn."""
-    yield _("in full: position {number}").format(number=view.results.numbers[view.scene.k])
+    yield _("drawn in full: position {number}").format(number=view.results.numbers[view.scene.k])
     if view.ends:
-        yield _("ends of the output's way: {ends}").format(ends=", ".join(end.mark for end in view.ends))
+        yield _("extreme positions of the output: {ends}").format(ends=", ".join(end.mark for end in view.ends))
         if track is not None and (
             track.kind == "any" or (track.kind == "arc" and output_travel(view.results) >= LARGEST_ANGLE)
         ):

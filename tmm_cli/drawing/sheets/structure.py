@@ -155,8 +155,10 @@ class Legend:
         lower = sum(p.lower for p in structure.pairs)
         n, higher = len(structure.links), len(structure.pairs) - lower
         self.facts = [
-            _("Formula of structure: {formula}").format(formula=structure.formula.replace("->", "→")),
-            _("n = {n} moving links, p₁ = {p1} lower pairs ({r} turning, {p} sliding), p₂ = {p2} higher pairs").format(
+            _("Structural formula: {formula}").format(formula=structure.formula.replace("->", "→")),
+            _(
+                "moving links: n = {n}; lower pairs: p₁ = {p1} (revolute: {r}, prismatic: {p}); higher pairs: p₂ = {p2}"
+            ).format(
                 n=n,
                 p1=lower,
                 r=sum(p.kind == "R" for p in structure.pairs),
@@ -167,7 +169,7 @@ class Legend:
             _("Mechanism of class {roman}").format(roman=structure.roman),
         ]
         if structure.reduction:
-            formula = _("W of the formula of structure: {count}").format(
+            formula = _("W from the structural formula: {count}").format(
                 count=typeset(mobility_equation(structure.count))
             )
             self.facts[1:1] = [*reduction_sentences(structure), formula]
@@ -180,7 +182,7 @@ class Legend:
             self.facts.append(_("Dashed: the links that replace higher pairs"))
         compound = [point for point in dict.fromkeys(points) if points.count(point) > 1]
         if compound:
-            self.facts.append(_("Compound hinge {points}: a circle for every pair").format(points=", ".join(compound)))
+            self.facts.append(_("Compound hinge {points}: one circle for each pair").format(points=", ".join(compound)))
 
     def split(self, paper: float) -> tuple[float, list[str]]:
         """Return the start (mm) of the right part and its lines."""
@@ -193,7 +195,9 @@ class Legend:
     def words(self, part: MechanismPart) -> str:
         """Return the text of a part."""
         if part.redundant is not None:
-            return _("{title}: redundant, adds q = {q}").format(title=part.title, q=part.redundant.constraints)
+            return _("{title}: redundant; redundant constraints: q = {q}").format(
+                title=part.title, q=part.redundant.constraints
+            )
         if part.group is None:
             return _("{title}: primary mechanism (driver and frame)").format(title=part.title)
         group = part.group
@@ -215,7 +219,7 @@ class Legend:
             at = complex(MARGIN, top - 4 - LEGEND_ROW * row)
             sheet.line([at, at + 9], part.colour, 3.2, blocks=False)
             hidden = row == most - 1 and rows > most
-            text = _("... and {count} parts more").format(count=rows - most + 1) if hidden else self.words(part)
+            text = _("... further parts: {count}").format(count=rows - most + 1) if hidden else self.words(part)
             sheet.text(at + 12, text, 9, colour=part.colour)
         for row, line in enumerate(lines[:most]):
             sheet.text(complex(MARGIN + left + 4, top - 4 - LEGEND_ROW * row), line, 9)
@@ -271,7 +275,9 @@ def groups_sheet(
     title: str, place: str, scene: MechanismScene, every: Sequence[MechanismPart], roles: Mapping[str, str]
 ) -> DrawingSheet:
     """Draw a sheet of these parts, each in a cell with its caption below it."""
-    subject = _("Assur groups apart, {place}; dashed: what the leads are joined to").format(place=place)
+    subject = _("Assur groups drawn separately, {place}; dashed: links to which external pairs are joined").format(
+        place=place
+    )
     sheet = DrawingSheet(title, subject, paper=LANDSCAPE)
     rows = math.ceil(len(every) / GROUPS_PER_ROW)
     columns = math.ceil(len(every) / rows)
@@ -296,7 +302,7 @@ def part_caption(part: MechanismPart, pairs: Iterable[Pair], roles: Mapping[str,
     """Return the caption of a part in lines of at most `width` mm."""
     links = ", ".join(f"{n} {_(ROLES[roles[n]])}" if n in roles else n for n in part.links)
     if part.redundant is not None:
-        q = _("redundant, adds q = {q}").format(q=part.redundant.constraints)
+        q = _("redundant; redundant constraints: q = {q}").format(q=part.redundant.constraints)
         words = [q, _("links: {links}").format(links=links)]
         words.append(_("pairs: {pairs}").format(pairs=_list_pairs(external_pairs(part, pairs))))
     elif part.group is None:
@@ -313,11 +319,11 @@ def part_caption(part: MechanismPart, pairs: Iterable[Pair], roles: Mapping[str,
             _("links: {links}").format(links=links),
         ]
         if group.inner:
-            words.append(_("inner pairs: {pairs}").format(pairs=_list_pairs(group.inner)))
-        words.append(_("outer pairs: {pairs}").format(pairs=_list_pairs(group.outer)))
+            words.append(_("internal pairs: {pairs}").format(pairs=_list_pairs(group.inner)))
+        words.append(_("external pairs: {pairs}").format(pairs=_list_pairs(group.outer)))
         if group.drivers:
             drivers = ", ".join(f"I({printed(d.base)},{d.link})" for d in group.drivers)
-            words.append(_("with drivers: {drivers}").format(drivers=drivers))
+            words.append(_("drivers: {drivers}").format(drivers=drivers))
     fitting = [textwrap.wrap(text, int(width / 1.66), subsequent_indent="    ", max_lines=4) for text in words]
     return [part.title[: int(width / 2.5)], *(line for lines in fitting for line in lines)]
 

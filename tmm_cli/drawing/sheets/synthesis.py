@@ -363,7 +363,7 @@ def _write_notes(
     for k in range(0, len(values), 3):
         sheet.note(", ".join(values[k : k + 3]))
     if drawn.sizes:
-        sheet.note(_("sizes in {unit}").format(unit=units.spelt(DIMENSIONS["length"].dimension)))
+        sheet.note(_("dimensions in {unit}").format(unit=units.spelt(DIMENSIONS["length"].dimension)))
     for key in drawn.notes:
         sheet.note(translated(key).format(**letters))
 

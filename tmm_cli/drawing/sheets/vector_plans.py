@@ -112,7 +112,7 @@ def distinct_reactions(plan: ForcePlan) -> list[NamedVector]:
 
 def force_plan_rows(plan: ForcePlan, mu: float) -> list[TableRow]:
     """Return the table of a force plan: magnitude, length on paper, direction; then the total reactions."""
-    rows = [TableRow((_("vector"), spelt("N"), spelt("mm"), _("from x")), head=True)]
+    rows = [TableRow((_("vector"), spelt("N"), spelt("mm"), _("angle")), head=True)]
     least = NO_FORCE * plan.plan.size
     for vector in (*plan.plan.vectors, *plan.full):
         size = abs(vector.value) if abs(vector.value) > least else 0.0

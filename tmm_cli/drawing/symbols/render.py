@@ -173,7 +173,8 @@ def _draw_higher_pair(
     if look.measured:
         sheet.label(found.mesh.name, sheet.on(contact_point(found)), 9, MESH_COLOUR)
         if isinstance(found, CamOutline) and not found.true:
-            sheet.note(_("disk of cam {link}: not to scale, its law alone is given").format(link=found.mesh.i))
+            text = _("disk of cam {link}: not to scale; only the law of its follower is given")
+            sheet.note(text.format(link=found.mesh.i))
 
 
 def draw_slider(
