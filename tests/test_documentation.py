@@ -9,7 +9,7 @@ import documentation
 import pytest
 import yaml
 from documentation import COMMAND, REFERENCES, files_of, folder_of, pages, parsed, run, shows, steps_of
-from reference_of_format import DOCS, PROBLEMS, missing_words, slug
+from reference_of_format import DOCS, PROBLEMS, ROOT, missing_words, slug
 
 from tmm_cli import load
 
