@@ -193,8 +193,12 @@ def test_a_place_that_a_search_varies_is_an_angle() -> None:
     [
         (
             "{task: crank-slider, stroke: 120, k: 0.11, pressure: 400}",
-            "x.yaml:2:49: synthesis.k: k is the time of the working stroke over that of the idle one, the shorter"
-            "\n  found:   0.11\n  allowed: another task: no other value of it was found to help",
+            (
+                "x.yaml:2:49: synthesis.k: k must be 1 or more: it is the duration of the working stroke divided "
+                "by that of the shorter return stroke\n"
+                "  found:   0.11\n"
+                "  allowed: another task: no other value of it was found to help"
+            ),
         ),
         (
             "{task: four-bar-by-k, l3: 120, k: 1.1, psi1: 1e-14, psi2: 0}",

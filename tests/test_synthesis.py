@@ -24,41 +24,47 @@ def refusal(text):
 
 REFUSED = {
     "{task: crank-slider, stroke: 120, k: 1.5, ratio: 40}": (
-        "synthesis.k: the crank does not turn fully: k is too large for this ratio of rod and crank\n  found:   1.5"
+        "synthesis.k: the crank does not rotate fully: k is too large for this ratio L = l/r\n  found:   1.5"
     ),
     "{task: crank-slider, stroke: 120, k: 3.5, ratio: 2}": (
-        "synthesis.k: no crank-slider whose crank turns fully has k of 3 or more\n  found:   3.5\n"
+        "synthesis.k: k must be less than 3 if the crank of a crank-slider rotates fully\n  found:   3.5\n"
     ),
     "{task: crank-slider, stroke: 120, k: 0.8, ratio: 2}": (
-        "synthesis.k: k is the time of the working stroke over that of the idle one, the shorter\n  found:   0.8\n"
+        "synthesis.k: k must be 1 or more: it is the duration of the working stroke divided by that of the "
+        "shorter return stroke\n"
+        "  found:   0.8\n"
     ),
     "{task: crank-slider, stroke: 120, k: 1.1, pressure: 30}": (
-        "synthesis.pressure: no length of the rod keeps this pressure angle with this k\n  found:   30\n"
+        "synthesis.pressure: with this k the pressure angle is larger for every rod length\n  found:   30\n"
     ),
     "{task: crank-slider, stroke: 120, k: 3, pressure: 80}": (
-        "synthesis.k: no crank-slider whose crank turns fully has k of 3 or more\n  found:   3\n"
+        "synthesis.k: k must be less than 3 if the crank of a crank-slider rotates fully\n  found:   3\n"
     ),
     "{task: crank-slider, stroke: 120, nu: 0.1, pressure: 95}": (
-        "synthesis.pressure: a largest pressure angle is less than a right angle\n  found:   95\n"
+        "synthesis.pressure: the largest pressure angle must be less than 90 deg\n  found:   95\n"
     ),
     "{task: crank-slider, stroke: 120, nu: 2, ratio: 2.5}": (
-        "synthesis.nu: the crank does not turn fully: it needs l > r + e\n  found:   2\n"
+        "synthesis.nu: the crank does not rotate fully: this requires l > r + e\n  found:   2\n"
     ),
     "{task: crank-slider, stroke: 120, nu: -1, ratio: 2.5}": (
-        "synthesis.nu: the offset is a distance; turn the drawing over for the other side\n  found:   -1\n"
+        "synthesis.nu: the offset is a distance and cannot be negative; for the other side mirror the "
+        "mechanism\n"
+        "  found:   -1\n"
     ),
     "{task: crank-slider, stroke: 120, nu: 0.2, ratio: 0.5}": (
-        "synthesis.ratio: the crank turns fully only when the rod is longer than the crank\n  found:   0.5\n"
+        "synthesis.ratio: the crank rotates fully only if the rod is longer than the crank\n  found:   0.5\n"
     ),
     "{task: crank-slider, stroke: 0, nu: 0.2, ratio: 3}": (
         "synthesis.stroke: this is too small for a mechanism\n  found:   0"
     ),
     "{task: crank-slider, stroke: 50, e: 80, k: 1.5}": (
-        "synthesis.k: the crank does not turn fully: k is too large for this stroke and offset\n  found:   1.5\n"
+        "synthesis.k: the crank does not rotate fully: k is too large for this stroke and offset\n  found:   1.5\n"
     ),
-    "{task: crank-slider, stroke: 50, e: 20, k: 1}": "synthesis.k: with an offset k is more than 1\n  found:   1",
+    "{task: crank-slider, stroke: 50, e: 20, k: 1}": (
+        "synthesis.k: with an offset k must be greater than 1\n  found:   1"
+    ),
     "{task: crank-slider, stroke: 50, e: 0, k: 1}": (
-        "synthesis.e: without an offset k is 1, and the offset does not tell the lengths\n  found:   0\n"
+        "synthesis.e: without an offset k = 1, and the offset does not determine the lengths\n  found:   0\n"
     ),
     "{task: crank-slider, stroke: 20, k: 1.1}": (
         "synthesis: these keys do not determine a mechanism; missing: ratio or pressure or e\n"
@@ -166,7 +172,7 @@ def press(tmp_path_factory):
 def test_the_command_shows_what_was_asked_found_and_measured_and_draws_the_construction(press):
     done, folder = press
     assert done.returncode == 0, done.stderr
-    for part in ("Asked: crank-slider", "stroke H   120", "58.80621953", "relative difference", "Source: triangle"):
+    for part in ("Asked: crank-slider", "stroke H                     120", "58.80621953", "relative difference", "Source: triangle"):
         assert part in done.stdout
     names = {path.name for path in folder.iterdir()}
     drawings = {f"synthesis-{name}.{kind}" for name in ("construction", "extremes") for kind in ("png", "svg")}
@@ -304,7 +310,7 @@ def test_what_the_synthesis_finds_is_among_the_names_that_arithmetic_may_use():
     ],
 )
 def test_a_place_or_a_range_that_is_none_is_said_in_our_words(block):
-    with pytest.raises(ProblemError, match=r"two (coordinates|numbers) \[\w+, \w+\] are wanted"):
+    with pytest.raises(ProblemError, match=r"two (coordinates|numbers) \[\w+, \w+\]"):
         build_synthesised(read_text(f"tmm: 1\nsynthesis: {block}\n{LINKAGE.format(speed=1.0)}", "x.yaml"))
 
 

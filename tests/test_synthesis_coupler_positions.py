@@ -38,7 +38,7 @@ driver: {link: 1, speed: 1 rad/s}
 sketch: {at: phi1, C: [Cx, Cy]}
 output: 3
 """
-LEAST = "least transmission angle on the way"
+LEAST = "smallest transmission angle between the first and last position"
 MET = 1e-12
 COUNT = 250
 
@@ -287,7 +287,7 @@ def test_a_coupler_that_goes_on_a_circle_without_turning_is_that_of_any_parallel
     outcome = found.synthesis.outcome
     numbers = {name: float(v.value) for name, v in outcome.parameters.items()}
     assert (numbers["l1"], numbers["l2"]) == pytest.approx((0.1, numbers["l4"])) and numbers["l3"] == pytest.approx(0.1)
-    assert outcome.notes[0].startswith("the coupler does not turn: any parallelogram with these arms does it")
+    assert outcome.notes[0].startswith("the coupler does not rotate: any parallelogram with these arms guides it")
     assert next(v.value for v in outcome.found if v.text == LEAST) == pytest.approx(np.radians(40))
     for m in measure_demands(outcome, solve(found, "kinematics")):
         assert m.difference <= MET, m
@@ -295,57 +295,61 @@ def test_a_coupler_that_goes_on_a_circle_without_turning_is_that_of_any_parallel
 
 REFUSED = {
     f"positions: [{ON_CIRCLE}], AB_turn: 31": (
-        "synthesis.AB_turn: the coupler does not turn: both links turn as its places do on their circle\n"
+        "synthesis.AB_turn: the coupler does not rotate: both links rotate by the angle between "
+        "positions 1 and 2 on their circle\n"
         "  found:   31\n"
         "  allowed: the nearest is AB_turn: 30 deg"
     ),
     "positions: [[0, 0, 5], [10, 5, 5], [20, 10, 5], [30, 15, 5]]": (
-        "synthesis.positions: the coupler does not turn, and its places lie on a line: links would be infinitely long"
+        "synthesis.positions: the coupler does not rotate and its positions lie on a straight line: the "
+        "links would be infinitely long"
     ),
-    f"positions: {FOUR}, AB_turn: 15": "synthesis.AB_turn: no link of sensible length turns by this angle",
-    f"positions: {FOUR}, AB_turn: 15.0000001": "synthesis.AB_turn: no link of sensible length turns by this angle",
+    f"positions: {FOUR}, AB_turn: 15": "synthesis.AB_turn: no link of reasonable length rotates by this angle",
+    f"positions: {FOUR}, AB_turn: 15.0000001": "synthesis.AB_turn: no link of reasonable length rotates by this angle",
     "positions: [[0, 0, 0], [60, 40, 15], [0, 0, 360], [130, 170, 60]]": (
-        "synthesis.positions[2]: this position is there already\n  found:   position 1\n"
+        "synthesis.positions[2]: this position is given twice\n  found:   position 1\n"
     ),
     "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 30, C: [50, 0], DC: 60": (
-        "synthesis.AB: AB does not reach both places\n  found:   30\n  allowed: the nearest is AB: 36.05"
+        "synthesis.AB: link AB is too short to reach both positions\n  found:   30\n  allowed: the nearest is AB: 36.05"
     ),
     "positions: [[0, 0, 0], [50, 0, 15], [100, 0, 35]], B: [0, 0], C: [50, 0]": (
-        "synthesis.B: the three places of B lie on a line: the other end of the link is infinitely far\n"
+        "synthesis.B: the three positions of B lie on a straight line: the other end of the link would "
+        "be infinitely far away\n"
         "  found:   [0, 0]\n"
         "  allowed: the nearest is B[1]: 1 mm"
     ),
     "positions: [[0, 0, 0], [50, 0, 15], [100, 0, 35]], B: [0, 0], AB: 5, C: [50, 0]": (
-        "synthesis: these keys do not determine AB with 3 positions; too many: AB\n  found:   B, AB\n"
+        "synthesis: these keys do not determine link AB; number of positions: 3; remove: AB\n  found:   B, AB\n"
     ),
     "positions: [[0, 0, 0], [50, 0]], B: [0, 0], AB: 5, C: [50, 0]": (
-        "synthesis.positions[1]: a place and an angle [x, y, angle] are wanted\n"
+        "synthesis.positions[1]: expected a point and an angle: [x, y, angle]\n"
     ),
     "positions: [[0, 0, 0], [0, 0, 30]], B: [0, 0], AB: 5, C: [50, 0], DC: 50": (
-        "synthesis.B: B does not move between these positions, or not against the coupler: it is the pole\n"
+        "synthesis.B: B does not move between these positions, or not relative to the coupler: it is "
+        "the pole of the displacement. Choose another point\n"
         "  found:   [0, 0]\n"
         "  allowed: the nearest is B[1]: 1 mm"
     ),
     "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 70, C: [50, 0], DC: 150, DC_side: right": (
-        "synthesis.positions: branch defect: some positions are on the other assembly of the four-bar\n"
+        "synthesis.positions: branch defect: some positions belong to the other assembly of the four-bar\n"
         "  found:   a list of 2\n"
         "  allowed: the nearest is positions[1][2]: 69.3"
     ),
     "positions: [[0, 0, 0], [50, 20, 0], [100, 10, 0]], B: [0, 0], C: [0, 0]": (
-        "synthesis.C: AB and DC have a pin or a pivot in common: that is no four-bar\n"
+        "synthesis.C: AB and DC have a common pin or pivot: this is not a four-bar\n"
         "  found:   [0, 0]\n"
         "  allowed: the nearest is C[0]: 1 mm"
     ),
     "positions: [[0, 0, 0], [50, 20, 10], [100, 10, 30]], A: [0, 60], D: [0, 60]": (
-        "synthesis.D: AB and DC have a pin or a pivot in common: that is no four-bar\n"
+        "synthesis.D: AB and DC have a common pin or pivot: this is not a four-bar\n"
     ),
     "positions: [[0, 0, 0], [0, 0, 10], [0, 0, 30], [0, 0, 60]]": (
-        "synthesis.positions: Burmester's curves have no links of sensible length"
+        "synthesis.positions: Burmester's curves have no links of reasonable length"
     ),
     "positions: [[0, 0, 0], [0, 0, 0]], B: [0, 0], AB: 5, C: [50, 0], DC: 50": (
-        "synthesis.positions[1]: this position is there already\n"
+        "synthesis.positions[1]: this position is given twice\n"
         "  found:   position 1\n"
-        "  allowed: any other position, as one turned by 20 deg"
+        "  allowed: a different position, e.g. rotated by 20 deg"
     ),
 }
 
@@ -383,9 +387,9 @@ def test_a_pivot_near_a_wanted_place_is_the_nearest_of_the_curve_and_its_turn_an
         found = told(outcome)
         a = complex(found["Ax"], found["Ay"])
         away = abs(a - complex(*wanted) / 1000)
-        assert away == pytest.approx(found["distance of A from the wanted place"])
+        assert away == pytest.approx(found["distance of A from the preferred point"])
         assert away <= np.min(np.abs(pivots - complex(*wanted) / 1000)) + 1e-12
-        branch, turn = found["branch of AB"], f"{np.degrees(found['turn of AB from position 1 to 2']):.15g}"
+        branch, turn = found["solution branch of AB"], f"{np.degrees(found['rotation of AB from position 1 to 2']):.15g}"
         again = told(problem(f"{keys}, AB_turn: {turn}, AB_branch: {branch}, DC_turn: 5").synthesis.outcome)
         assert complex(again["Ax"], again["Ay"]) == pytest.approx(a, rel=1e-9)
 
@@ -395,7 +399,7 @@ def test_a_pivot_that_is_asked_for_on_the_curve_is_met():
     for row in curve.rows[10::150]:
         near = f"[{row[2] * 1000:.17g}, {row[3] * 1000:.17g}]"
         found = told(problem(f"positions: {FOUR}, D_near: {near}, AB_turn: 10, defects: keep").synthesis.outcome)
-        assert found["distance of D from the wanted place"] == pytest.approx(0, abs=1e-9)
+        assert found["distance of D from the preferred point"] == pytest.approx(0, abs=1e-9)
 
 
 def test_free_pivots_lie_in_the_box_and_the_best_of_it_is_no_better_than_the_best_of_all():
@@ -414,6 +418,9 @@ def test_free_pivots_lie_in_the_box_and_the_best_of_it_is_no_better_than_the_bes
 def test_a_box_without_a_pivot_is_refused():
     with pytest.raises(ProblemError) as caught:
         problem(f"positions: {FOUR}, AB_turn: 10, pivots_within: [[210, 290], [250, 240]]")
-    assert "no two pivots of links, frame and coupler of sensible length have room" in caught.value.message
-    with pytest.raises(ProblemError, match="a box is for pivots that are free"):
+    assert (
+        "the box contains no two pivots for which links, frame and coupler have reasonable lengths"
+        in caught.value.message
+    )
+    with pytest.raises(ProblemError, match="pivots_within applies only to pivots that are not given"):
         problem(f"positions: {FOUR}, pivots_within: [[0, 0], [9, 9]], AB_turn: 10, DC_turn: 5")

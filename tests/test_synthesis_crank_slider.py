@@ -139,11 +139,14 @@ def test_stroke_offset_and_ratio_give_the_crank_of_the_printed_formula():
     "keys, message",
     [
         ("e: 20", "missing: ratio or k\n  found:   e\n"),
-        ("e: 20, ratio: 3.7, k: 1.1", "too many: k or e or ratio\n  found:   ratio, e, k\n"),
+        ("e: 20, ratio: 3.7, k: 1.1", "remove: k or e or ratio\n  found:   ratio, e, k\n"),
         (
             "e: 112, ratio: 3.7",
-            "synthesis.e: the crank does not turn fully: it needs l > r + e\n  found:   112\n"
-            "  allowed: the nearest is e: 105.274 mm",
+            (
+                "synthesis.e: the crank does not rotate fully: this requires l > r + e\n"
+                "  found:   112\n"
+                "  allowed: the nearest is e: 105.274 mm"
+            ),
         ),
         ("e: -1, ratio: 3.7", "synthesis.e: the offset is a distance"),
     ],
@@ -279,7 +282,7 @@ def test_a_k_just_below_the_bound_is_met_and_one_just_above_is_refused(drawn):
 def test_the_approximate_nu_and_k_are_told_in_every_task(keys):
     outcome = problem({"stroke": 120, **keys}).synthesis.outcome
     told = {v.text: float(v.value) for v in (*outcome.asked, *outcome.found)}
-    printed, nu = told["nu by sqrt((h - 2)(L^2 - 1)), for small theta only"], told["nu = e/r"]
+    printed, nu = told["nu by the approximation sqrt((h - 2)(L^2 - 1)) for small theta"], told["relative offset nu = e/r"]
     approximate = math.sqrt((told["h = H/r"] - 2) * (told["L = l/r"] ** 2 - 1))
     assert printed == pytest.approx(approximate, rel=1e-12, abs=1e-7) and told["k"] >= 1
-    assert told["relative error of that"] == pytest.approx(printed / nu - 1 if nu else 0, abs=1e-12)
+    assert told["relative error of this approximation"] == pytest.approx(printed / nu - 1 if nu else 0, abs=1e-12)

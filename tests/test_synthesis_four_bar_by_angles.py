@@ -388,10 +388,12 @@ REFUSED = {
         "  allowed: the nearest is pairs[3][1]: 22.31"
     ),
     "pairs: [[30, 60], [80, 90], [120, 100]]": (
-        "synthesis: one length gives the size of the four-bar\n  found:   none\n  allowed: one of l1, l2, l3, l4"
+        "synthesis: give exactly one length: it determines the size of the four-bar\n"
+        "  found:   none\n"
+        "  allowed: one of l1, l2, l3, l4"
     ),
     "pairs: [[0, 0], [20, 15], [40, 33], [60, 55], [80, 83]], l4: 100, phi0: 10": (
-        "synthesis.phi0: 5 pairs determine zero angles too\n  found:   phi0\n  allowed: neither phi0 nor psi0"
+        "synthesis.phi0: 5 pairs also determine both zero angles\n  found:   phi0\n  allowed: neither phi0 nor psi0"
     ),
     "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, choose: 2": (
         "synthesis.choose: there is no solution of this number, or it has a defect\n  found:   2\n  allowed: 1"
@@ -403,10 +405,10 @@ REFUSED = {
         "synthesis.l4: this is too small for a mechanism\n  found:   -100\n  allowed: 0.001 mm or more"
     ),
     "function: log(x), x: [1, 2], input: [30, 120], output: [60, 120], l4: 100": (
-        "synthesis.function: this function is not known here\n  found:   'log(x)'\n"
+        "synthesis.function: unknown function\n  found:   'log(x)'\n"
     ),
     'function: "", x: [1, 2], input: [30, 120], output: [60, 120], l4: 100': (
-        "synthesis.function: this function is not known here\n  found:   ''\n  allowed: log10(x), ln(x), exp(x), "
+        "synthesis.function: unknown function\n  found:   ''\n  allowed: log10(x), ln(x), exp(x), "
     ),
     "pairs: [[0, 0], [10, 12], [20, 22], [30, 34], [40, 42], [50, 55]], psi0: 20, l4: 100": (
         "synthesis.pairs: no four-bar is the nearest to these pairs: errors get less as links grow, or as the "
@@ -417,15 +419,15 @@ REFUSED = {
         "synthesis.phi0: three pairs and two lengths determine phi0 too\n  found:   phi0\n  allowed: psi0"
     ),
     "pairs: [[20, 35], [35, 45], [50, 60]], l1: 100, l3: 80": (
-        "synthesis: one length gives the size of the four-bar\n"
+        "synthesis: give exactly one length: it determines the size of the four-bar\n"
         "  found:   l1, l3\n"
         "  allowed: one of l1, l2, l3, l4; or l4 and one of l1, l3"
     ),
     "function: ln(x), x: [-1, 2], input: [30, 120], output: [60, 120], l4: 100": (
-        "synthesis.x: the function has no values there, or the same at both ends\n  allowed: x more than 0"
+        "synthesis.x: the function is undefined in this range, or equal at both ends\n  allowed: x more than 0"
     ),
     "function: x^2, x: [-1, 1], input: [30, 120], output: [60, 120], l4: 100": (
-        "synthesis.x: the function has no values there, or the same at both ends\n"
+        "synthesis.x: the function is undefined in this range, or equal at both ends\n"
         "  allowed: two ends at which the function differs"
     ),
     "l4: 100": "synthesis: these keys do not determine a mechanism\n  found:   none\n"

@@ -300,7 +300,10 @@ REFUSED = [
     (
         "",
         {"k": 0.8},
-        ".k: k is the time of the working stroke over that of the idle one, the shorter",
+        (
+            ".k: k must be 1 or more: it is the duration of the working stroke divided by that of the shorter "
+            "return stroke"
+        ),
         "0.8",
         "the nearest is ",
     ),
@@ -355,7 +358,7 @@ REFUSED = [
     (
         ", pressure: 90 deg",
         {},
-        ".pressure: a largest pressure angle is less than a right angle",
+        ".pressure: the largest pressure angle must be less than 90 deg",
         "'90 deg'",
         "the nearest is pressure: 89.9",
     ),

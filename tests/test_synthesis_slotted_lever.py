@@ -243,7 +243,7 @@ REFUSED_LEVERS = {
     "CB: 500, k: 1.3, OC: -2": (".OC: this is too small for a mechanism\n  found:   -2"),
     "CB: 500, k: 1.3, OA: -2": (".OA: this is too small for a mechanism\n  found:   -2"),
     "CB: 500, k: 1.3, OC: 200, OA: 20": (
-        ": these keys do not determine a mechanism; too many: OA or OC\n  found:   OC, OA\n"
+        ": these keys do not determine a mechanism; remove: OA or OC\n  found:   OC, OA\n"
         "  allowed: OC; or OA; or within"
     ),
     "B1: [1, 2], B2: [1, 2], k: 1.3, OC: 20": (".B2: B1 and B2 are the same place\n  found:   [1, 2]"),
@@ -255,10 +255,10 @@ REFUSED_LEVERS = {
         "\n  found:   [300, 200]\n  allowed: the nearest is within[1]: 300.0"
     ),
     "CB: 500, B1: [1, 2], k: 1.5, OC: 200": (
-        ": these keys do not determine a mechanism; too many: B1\n  found:   B1, CB\n  allowed: B1 and B2; or CB"
+        ": these keys do not determine a mechanism; remove: B1\n  found:   B1, CB\n  allowed: B1 and B2; or CB"
     ),
     "CB: 500, k: 1.5, swing: 30, OC: 200": (
-        ": these keys do not determine a mechanism; too many: swing or k\n  found:   k, swing\n  allowed: k; or swing"
+        ": these keys do not determine a mechanism; remove: swing or k\n  found:   k, swing\n  allowed: k; or swing"
     ),
     "CB: 500, k: 1.5, C: left, OC: 200": (
         ".C: C goes with B1 and B2 only\n  found:   C without B1 and B2\n  allowed: B1 and B2, or no C"
@@ -292,7 +292,9 @@ REFUSED_SHAPERS = {
         ".pressure: the ram would turn back before the lever does: the rod is too steep\n  found:   '100 deg'"
     ),
     "stroke: 400, k: 3, frame_ratio: 0.3": (
-        ": these keys do not determine a mechanism\n  found:   none of them\n  allowed: DE; or rod_ratio; or pressure"
+        ": these keys do not determine a mechanism\n"
+        "  found:   none of these keys\n"
+        "  allowed: DE; or rod_ratio; or pressure"
     ),
 }
 

@@ -31,7 +31,7 @@ from tmm_cli.synthesis.tasks import TASKS, block_module
 
 def _check_range(found: Any) -> Any:
     if not isinstance(found, list) or len(found) != 2:
-        raise PydanticCustomError("range", "two numbers [from, to] are wanted")
+        raise PydanticCustomError("range", "expected two numbers [from, to]")
     return [checked_value(item) for item in found]
 
 
@@ -45,7 +45,7 @@ class TaskBlock(Strict):
 
     task: str = Field(description="one of: " + ", ".join(TASKS))
     names: dict[Name, Name] = Field(
-        default_factory=dict, max_length=50, description="other names for what is found, {r: OA, l: AB}"
+        default_factory=dict, max_length=50, description="other names for the parameters found, e.g. {r: OA, l: AB}"
     )
 
 
@@ -71,10 +71,10 @@ def choose_key_set(
     if missing:
         mend = _("; missing: {keys}").format(keys=_alternatives(missing))
     elif surplus:
-        mend = _("; too many: {keys}").format(keys=_alternatives(surplus))
+        mend = _("; remove: {keys}").format(keys=_alternatives(surplus))
     raise ProblemError(
         translated(refusal) + mend,
-        found=", ".join(here) or _("none of them"),
+        found=", ".join(here) or _("none of these keys"),
         allowed=_("; or ").join(_(" and ").join(one) or _("nothing") for one in sets),
         key=True,
     )

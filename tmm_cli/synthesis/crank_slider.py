@@ -83,14 +83,14 @@ def draw_construction(found: CrankSliderSolution) -> GeometricConstruction:
     arcs += [Arc(centre, radius, first, first + 2 * np.pi, "dashed"), Arc(centre, radius, start, end, "bold")]
     return replace(
         plain,
-        title=N_("Extreme positions of the slider, and the circle on which {B}1{B}2 is seen under theta"),
+        title=N_("Extreme positions of the slider, and the circle from which {B}1{B}2 is seen at the angle theta"),
         segments=(*segments, Segment(b1, b2, "thin")),
         arcs=tuple(arcs),
         angles=(Angle(o, b1, b2, "θ"), Angle(b1, b2, centre, "90° − θ"), Angle(b2, b1, centre, "90° − θ")),
         centres=(CircleCentre(centre, radius, (b1, b2)),),
         wishes=(circle_extent(o, r), (centre,), circle_extent(centre, radius)),
         values=(*plain.values, ("θ", theta, "angle")),
-        notes=(N_("red: where {O} may be, so that the crank turns fully"), N_("{M}{B}1{B}2 = {M}{B}2{B}1 = 90° − θ")),
+        notes=(N_("red: points {O} for which the crank rotates fully"), N_("{M}{B}1{B}2 = {M}{B}2{B}1 = 90° − θ")),
     )
 
 
@@ -107,21 +107,21 @@ PARAMETERS: Final = {"r": "length", "l": "length", "e": "length"}
 QUANTITIES: Final = {  # that a task may give: kind and what they are called
     "stroke": ("length", N_("stroke H")),
     "speed": ("speed", N_("mean speed of the slider")),
-    "crank_speed": ("angular speed", N_("speed of the crank")),
-    "ratio": ("number", N_("L = l/r")),
-    "nu": ("number", N_("nu = e/r")),
+    "crank_speed": ("angular speed", N_("crank speed")),
+    "ratio": ("number", N_("rod-to-crank ratio L = l/r")),
+    "nu": ("number", N_("relative offset nu = e/r")),
     "k": ("number", N_("k")),
     "pressure": ("angle", N_("largest pressure angle lambda")),
-    "e": ("length", N_("offset of the guide e")),
+    "e": ("length", N_("guide offset e")),
 }
 FOUND_QUANTITIES: Final = {
     "r": ("length", N_("crank r")),
     "l": ("length", N_("connecting rod l")),
     "e": QUANTITIES["e"],
-    "h": ("number", N_("h = H/r")),
-    "theta": ("angle", N_("theta, between the extreme cranks")),
-    "printed": ("number", N_("nu by sqrt((h - 2)(L^2 - 1)), for small theta only")),
-    "error": ("number", N_("relative error of that")),
+    "h": ("number", N_("stroke-to-crank ratio h = H/r")),
+    "theta": ("angle", N_("angle theta between the crank's extreme positions")),
+    "printed": ("number", N_("nu by the approximation sqrt((h - 2)(L^2 - 1)) for small theta")),
+    "error": ("number", N_("relative error of this approximation")),
 }
 
 
@@ -295,41 +295,51 @@ def refuse(task: CrankSliderTask) -> None:
     """Raise Infeasible, with the reason, if no such crank-slider exists."""
     ratio, nu, pressure, e = task.ratio, task.nu, task.pressure, task.e
     if nu is not None and not nu >= 0:
-        raise Infeasible("nu", _("the offset is a distance; turn the drawing over for the other side"))
+        raise Infeasible(
+            "nu", _("the offset is a distance and cannot be negative; for the other side mirror the mechanism")
+        )
     if e is not None and ratio is None and not e > 0:
-        raise Infeasible("e", _("without an offset k is 1, and the offset does not tell the lengths"))
+        raise Infeasible("e", _("without an offset k = 1, and the offset does not determine the lengths"))
     if e is not None and not e >= 0:
-        raise Infeasible("e", _("the offset is a distance; turn the drawing over for the other side"))
+        raise Infeasible(
+            "e", _("the offset is a distance and cannot be negative; for the other side mirror the mechanism")
+        )
     if ratio is not None and not ratio > 1:
-        raise Infeasible("ratio", _("the crank turns fully only when the rod is longer than the crank"))
+        raise Infeasible("ratio", _("the crank rotates fully only if the rod is longer than the crank"))
     if ratio is not None and nu is not None and not nu < ratio - 1:
-        raise Infeasible("nu", _("the crank does not turn fully: it needs l > r + e"))
+        raise Infeasible("nu", _("the crank does not rotate fully: this requires l > r + e"))
     if ratio is not None and e is not None and not 2 * np.sqrt(ratio) * e < (ratio - 1) * _stroke_length(task):
-        raise Infeasible("e", _("the crank does not turn fully: it needs l > r + e"))
+        raise Infeasible("e", _("the crank does not rotate fully: this requires l > r + e"))
     theta = 0.0 if task.k is None else _refuse_k(task)
     if pressure is not None and not pressure < np.pi / 2:
-        raise Infeasible("pressure", _("a largest pressure angle is less than a right angle"))
+        raise Infeasible("pressure", _("the largest pressure angle must be less than 90 deg"))
     if pressure is not None and pressure < smallest_pressure(theta):
-        raise Infeasible("pressure", _("no length of the rod keeps this pressure angle with this k"))
+        raise Infeasible("pressure", _("with this k the pressure angle is larger for every rod length"))
 
 
 def _refuse_k(task: CrankSliderTask) -> float:
     """Return theta (rad). Raises Infeasible if it exceeds the limit set by the other quantities."""
     theta, limit = float(theta_of(task.k)), np.pi / 2
     if not task.k >= 1:
-        raise Infeasible("k", _("k is the time of the working stroke over that of the idle one, the shorter"))
+        raise Infeasible(
+            "k",
+            _(
+                "k must be 1 or more: it is the duration of the working stroke divided by that of the shorter "
+                "return stroke"
+            ),
+        )
     if task.e is not None and theta == 0:
-        raise Infeasible("k", _("with an offset k is more than 1"))
+        raise Infeasible("k", _("with an offset k must be greater than 1"))
     if task.ratio is not None:
         limit = float(largest_theta(task.ratio))
     elif task.e is not None:  # the pivot O is on the circle between B2 and the place over it: e < H cot(theta)
         limit = float(np.arctan2(_stroke_length(task), task.e))
     if theta >= np.pi / 2:
-        raise Infeasible("k", _("no crank-slider whose crank turns fully has k of 3 or more"))
+        raise Infeasible("k", _("k must be less than 3 if the crank of a crank-slider rotates fully"))
     if theta >= limit and task.ratio is not None:
-        raise Infeasible("k", _("the crank does not turn fully: k is too large for this ratio of rod and crank"))
+        raise Infeasible("k", _("the crank does not rotate fully: k is too large for this ratio L = l/r"))
     if theta >= limit:
-        raise Infeasible("k", _("the crank does not turn fully: k is too large for this stroke and offset"))
+        raise Infeasible("k", _("the crank does not rotate fully: k is too large for this stroke and offset"))
     return theta
 
 
@@ -343,7 +353,7 @@ def solve(task: CrankSliderTask) -> SynthesisOutcome:
         NamedValue("", getattr(found, name), *(QUANTITIES | FOUND_QUANTITIES)[name])
         for name in ("h", *rest, "theta", "printed", "error")
     )
-    demands = [Demand(N_("crank turns fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False)]
+    demands = [Demand(N_("crank rotates fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False)]
     if task.speed is not None:
         demands.append(Demand(N_("mean speed of the slider"), float(task.speed), "speed", mean_output_speed))
     for name, measure in (("stroke", output_stroke), ("k", time_ratio), ("pressure", largest_pressure_angle)):
@@ -354,8 +364,9 @@ def solve(task: CrankSliderTask) -> SynthesisOutcome:
         given_values(task, QUANTITIES),
         lengths + more,
         N_(
-            "triangle of the crank's pivot and the slider's extreme positions: sides l + r, l - r, angle theta = "
-            "pi (k - 1)/(k + 1), H opposite, e its height; sin(lambda) = (r + e)/l"
+            "triangle formed by the crank pivot and the extreme positions of the slider: sides l + r and l - "
+            "r, between them the angle theta = pi (k - 1)/(k + 1), opposite it H with the height e; "
+            "sin(lambda) = (r + e)/l"
         ),
         tuple(demands),
         (draw_construction(found),),
@@ -376,14 +387,19 @@ class CrankSliderBlock(TaskBlock):
     task: Literal["crank-slider"]
     stroke: FileValue | None = Field(default=None, description="stroke H of the slider")
     speed: FileValue | None = Field(default=None, description="mean speed of the slider, instead of the stroke")
-    crank_speed: FileValue | None = Field(default=None, description="of the crank, with the mean speed: 300 rpm")
-    ratio: FileValue | None = Field(default=None, description="L = l/r, rod over crank")
-    nu: FileValue | None = Field(default=None, description="nu = e/r, offset of the guide over crank")
-    k: FileValue | None = Field(default=None, description="coefficient of change of mean speed, 1 or more")
-    pressure: FileValue | None = Field(
-        default=None, description="largest pressure angle allowed: the shortest rod that keeps it is found"
+    crank_speed: FileValue | None = Field(
+        default=None, description="crank speed, given together with the mean speed, e.g. 300 rpm"
     )
-    e: FileValue | None = Field(default=None, description="offset of the guide from the crank's axis")
+    ratio: FileValue | None = Field(default=None, description="L = l/r, ratio of rod to crank")
+    nu: FileValue | None = Field(default=None, description="nu = e/r, ratio of guide offset to crank")
+    k: FileValue | None = Field(
+        default=None,
+        description="time ratio (coefficient of change of mean speed) k = (180° + θ)/(180° - θ), 1 or more",
+    )
+    pressure: FileValue | None = Field(
+        default=None, description="largest admissible pressure angle; the shortest rod that satisfies it is found"
+    )
+    e: FileValue | None = Field(default=None, description="offset of the guide from the crank pivot")
 
 
 BLOCK = CrankSliderBlock

@@ -168,7 +168,7 @@ def solve(task: ShaperTask) -> SynthesisOutcome:
         NamedValue("", f.lever / (1 + np.sin(f.theta / 2)), "length", N_("longest OC that leaves the stone on CD")),
     )
     demands = (
-        Demand(N_("crank turns fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
+        Demand(N_("crank rotates fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
         Demand(N_("stroke H of the ram"), float(task.stroke), "length", output_stroke),
         Demand(N_("k"), float(task.k), "number", time_ratio),
         Demand(text, float(f.pressure), kind, largest_pressure_angle, task.pressure is not None, of="pressure"),

@@ -244,7 +244,7 @@ def solve(task: SlottedLeverTask) -> SynthesisOutcome:
     refuse(task)
     f = find_slotted_lever(task)
     demands = (
-        Demand(N_("crank turns fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
+        Demand(N_("crank rotates fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
         Demand(N_("k"), float(k_of(f.theta)), "number", time_ratio, task.k is not None),
         Demand(N_("swing of the lever"), float(f.theta), "angle", output_stroke, task.swing is not None),
         *(

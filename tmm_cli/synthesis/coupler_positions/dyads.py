@@ -209,20 +209,25 @@ FAR: Final = 100.0  # over that size: beyond it the ends of a given turn are ref
 SURE: Final = 1e-6  # rad of transmission: a search comes so near to a change point, where no four-bar passes
 ROOM: Final = 0.9  # of the box, for the frame of a parallelogram
 DEFECTS: Final = (  # by their numbers in Marks
-    N_("none: all positions on one assembly, reached in order"),
-    N_("branch defect: some positions are on the other assembly of the four-bar"),
-    N_("order defect: AB does not reach the positions in order by turning one way"),
-    N_("circuit defect: AB locks on the way between the positions"),
+    N_("none: all positions belong to one assembly and are reached in order"),
+    N_("branch defect: some positions belong to the other assembly of the four-bar"),
+    N_("order defect: AB does not reach the positions in order while rotating in one direction"),
+    N_("circuit defect: AB locks between the positions"),
 )
-POLE_REASON: Final = N_("{point} does not move between these positions, or not against the coupler: it is the pole")
-NO_LINKS: Final = N_("Burmester's curves have no links of sensible length (0.15 to 2 times the size of the task)")
+POLE_REASON: Final = N_(
+    "{point} does not move between these positions, or not relative to the coupler: it is the pole of "
+    "the displacement. Choose another point"
+)
+NO_LINKS: Final = N_(
+    "Burmester's curves have no links of reasonable length (0.15 to 2 times the largest distance between the positions)"
+)
 
 
 def find_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads, GuidanceQuality]:
     """Return the dyads AB and DC and their quality. Raises Infeasible."""
     one, other = solve_both_dyads(task)
     if not min(abs(one.pivot - other.pivot), abs(one.pin - other.pin)) > SAME_POINTS * task.size:
-        raise Infeasible(_given_key(task, "DC"), _("AB and DC have a pin or a pivot in common: that is no four-bar"))
+        raise Infeasible(_given_key(task, "DC"), _("AB and DC have a common pin or pivot: this is not a four-bar"))
     mark = rate_guidance(task.poses, one, other)
     if mark.defect and not task.keep:
         raise Infeasible("positions", DEFECTS[int(mark.defect)], search=_search_is_quick(task))
@@ -263,11 +268,14 @@ def solve_dyad(task: CouplerPositionsTask, name: str) -> Dyads:
     if len(places) == 3:
         found = circle_centre(places)
         if not np.isfinite(found) or abs(found - places[0]) > task.size / SAME_POINTS:
-            reason = _("the three places of {point} lie on a line: the other end of the link is infinitely far")
+            reason = _(
+                "the three positions of {point} lie on a straight line: the other end of the link would be "
+                "infinitely far away"
+            )
             raise Infeasible(point, reason.format(point=point))
     else:
         if not side.length > abs(places[1] - places[0]) / 2:
-            raise Infeasible(name, _("{name} does not reach both places").format(name=name))
+            raise Infeasible(name, _("link {name} is too short to reach both positions").format(name=name))
         found = point_at_distance(places, side.length, SIDES[side.side])
     fixed = np.asarray(given, np.clongdouble)
     return Dyads(found, fixed) if pin_given else Dyads(fixed, found)
@@ -287,8 +295,8 @@ def given_dyads(task: CouplerPositionsTask) -> dict[str, Dyads]:
     for name, own in found.items():
         if not are_sensible(task, own):
             reason = _(
-                "no link of sensible length turns by this angle from the first position to the second: near the turn "
-                "of the coupler itself links grow beyond all bounds"
+                "no link of reasonable length rotates by this angle from position 1 to 2: near the rotation angle "
+                "of the coupler the links become infinitely long"
             )
             raise Infeasible(f"{name}_turn", reason, search=_search_is_quick(task))
     return found
@@ -342,7 +350,9 @@ def best_dyads(task: CouplerPositionsTask, given: dict[str, Dyads]) -> tuple[Dya
         if bounds.shortest <= min(frame, coupler) and frame <= bounds.frame and coupler <= bounds.coupler:
             return found[:2]
     if task.within is not None:
-        reason = _("no two pivots of links, frame and coupler of sensible length have room in this box")
+        reason = _(
+            "the box contains no two pivots for which links, frame and coupler have reasonable lengths; enlarge the box"
+        )
         raise Infeasible("pivots_within", reason, search=False)
     raise Infeasible("positions", NO_LINKS, search=_search_is_quick(task))
 
@@ -359,18 +369,22 @@ def parallelogram_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
     arms = places - middle
     radius = abs(arms[0])
     if not (np.isfinite(radius) and radius < FAR * task.size):
-        reason = _("the coupler does not turn, and its places lie on a line: links would be infinitely long")
+        reason = _(
+            "the coupler does not rotate and its positions lie on a straight line: the links would be infinitely long"
+        )
         raise Infeasible("positions", reason, search=False)
     if np.max(np.abs(np.abs(arms) - radius)) > SAME_POINTS * radius:
         reason = _(
-            "the coupler does not turn: all its points go on equal circles, and the fourth place is not on that "
-            "through the others"
+            "the coupler does not rotate, so all its points move on equal circles, but position 4 is not on "
+            "the circle through positions 1 to 3"
         )
         raise Infeasible(("positions", 3), reason, search=False)
     turn = float(np.angle(complex(arms[1] / arms[0])))
     for name, side in task.sides.items():
         if side.turn is not None and abs(np.exp(1j * (float(side.turn) - turn)) - 1) > SAME_POINTS:
-            reason = _("the coupler does not turn: both links turn as its places do on their circle")
+            reason = _(
+                "the coupler does not rotate: both links rotate by the angle between positions 1 and 2 on their circle"
+            )
             raise Infeasible(f"{name}_turn", reason, (turn, "angle", 0))
     steps = np.mod(np.angle(np.asarray(arms[1:] / arms[:-1], complex)), 2 * np.pi)
     way = min(float(steps.sum()), float((steps - 2 * np.pi).sum()), key=abs)

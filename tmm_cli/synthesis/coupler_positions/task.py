@@ -41,12 +41,15 @@ from tmm_cli.synthesis.record import Demand, Listing, NamedValue, SynthesisOutco
 
 CURVES: Final[tuple[tuple[Style, str], ...]] = (("bold", "m"), ("dashed", "k1"))  # centre points, circle points
 TITLES: Final = (  # by how many pivots were given
-    N_("Pivots on the bisectors of the places of the pins"),
-    N_("Pivot on the bisectors of the places of its pin; pin on those of its pivot, seen from the coupler"),
-    N_("Pins on the bisectors of the places of the pivots, seen from the coupler in position 1"),
+    N_("Pivots on the perpendicular bisectors of the pin positions"),
+    N_(
+        "One pivot on the bisectors of its pin positions; one pin on the bisectors of its pivot positions "
+        "relative to the coupler"
+    ),
+    N_("Pins on the bisectors of the pivot positions relative to the coupler in position 1"),
 )
-BY_PIN: Final = N_("dashed: bisectors of the places of the pin")
-BY_PIVOT: Final = N_("dashed: bisectors of the pivot and its places ′, turned back with the coupler to position 1")
+BY_PIN: Final = N_("dashed: perpendicular bisectors of the pin positions")
+BY_PIVOT: Final = N_("dashed: bisectors of the pivot and its positions ′, rotated with the coupler back to position 1")
 
 
 def draw_construction(
@@ -109,7 +112,7 @@ def draw_construction(
         )
     found = burmester_lines(poses, [s.at for s in spots])
     curves = tuple(ConstructionCurve(line, *kind) for kind, row in zip(CURVES, found, strict=True) for line in row)
-    note = N_("red: centre points m (pivots); dashed: circle points k1 (pins), in position 1")
+    note = N_("red: centre-point curve m (pivots); dashed: circle-point curve k1 (pins), in position 1")
     near = GeometricConstruction(
         N_("Four positions: pivots on the centre-point curve, pins on the circle-point curve"),
         tuple(segments),
@@ -145,49 +148,49 @@ def draw_construction(
 
 
 NAMES: Final = {
-    "Ax": N_("pivot A: x"),
-    "Ay": N_("pivot A: y"),
-    "Dx": N_("pivot D: x"),
-    "Dy": N_("pivot D: y"),
+    "Ax": N_("pivot A, x"),
+    "Ay": N_("pivot A, y"),
+    "Dx": N_("pivot D, x"),
+    "Dy": N_("pivot D, y"),
     "l1": N_("driver l1 = AB"),
     "l2": N_("coupler l2 = BC"),
     "l3": N_("follower l3 = DC"),
     "l4": N_("frame l4 = AD"),
-    "Px": N_("P of the coupler, from B: x"),
-    "Py": N_("P of the coupler, from B: y"),
-    "Cx": N_("pin C in position 1: x"),
-    "Cy": N_("pin C in position 1: y"),
+    "Px": N_("point P in coupler axes (origin B), x"),
+    "Py": N_("point P in coupler axes (origin B), y"),
+    "Cx": N_("pin C in position 1, x"),
+    "Cy": N_("pin C in position 1, y"),
     "phi1": N_("angle of AB in position 1"),
 }
 PARAMETERS: Final = {name: "angle" if name == "phi1" else "length" for name in NAMES}
 GIVEN: Final[dict[str, dict[str, Any]]] = {  # what may be given of a dyad, by the fields of Side; places as x and y
     "AB": {
-        "pin": (N_("B in the coupler: x"), N_("B in the coupler: y")),
+        "pin": (N_("B in coupler axes, x"), N_("B in coupler axes, y")),
         "pivot": (NAMES["Ax"], NAMES["Ay"]),
-        "length": N_("length AB"),
-        "turn": N_("turn of AB from position 1 to 2"),
-        "near": (N_("A near to x"), N_("A near to y")),
+        "length": N_("length of AB"),
+        "turn": N_("rotation of AB from position 1 to 2"),
+        "near": (N_("A: preferred x"), N_("A: preferred y")),
     },
     "DC": {
-        "pin": (N_("C in the coupler: x"), N_("C in the coupler: y")),
+        "pin": (N_("C in coupler axes, x"), N_("C in coupler axes, y")),
         "pivot": (NAMES["Dx"], NAMES["Dy"]),
-        "length": N_("length DC"),
-        "turn": N_("turn of DC from position 1 to 2"),
-        "near": (N_("D near to x"), N_("D near to y")),
+        "length": N_("length of DC"),
+        "turn": N_("rotation of DC from position 1 to 2"),
+        "near": (N_("D: preferred x"), N_("D: preferred y")),
     },
 }
-BRANCH: Final = {"AB": N_("branch of AB"), "DC": N_("branch of DC")}
-AWAY: Final = {"AB": N_("distance of A from the wanted place"), "DC": N_("distance of D from the wanted place")}
+BRANCH: Final = {"AB": N_("solution branch of AB"), "DC": N_("solution branch of DC")}
+AWAY: Final = {"AB": N_("distance of A from the preferred point"), "DC": N_("distance of D from the preferred point")}
 SOURCES: Final = {  # by the count of positions; 1: four of one angle
-    1: N_("all points of a coupler that does not turn go on equal circles: A and D are their centres"),
-    2: N_("pivots on the bisector of the two places of a pin, at the link's length"),
+    1: N_("all points of a coupler that does not rotate move on equal circles; A and D are centres of such circles"),
+    2: N_("each pivot lies on the perpendicular bisector of the two pin positions, at the distance of the link length"),
     3: N_(
-        "pivots in the centre of the circle through the three places of a pin; pins for given pivots likewise, the "
-        "coupler held (inversion)"
+        "each pivot is the centre of the circle through the three pin positions; for a given pivot the pin "
+        "is found in the same way with the coupler fixed (inversion)"
     ),
     4: N_(
-        "pins on the circle-point curve and pivots on the centre-point curve of four positions (Burmester), by "
-        "W (e^(i beta) - 1) + Z (e^(i alpha) - 1) = P - P1"
+        "pins on the circle-point curve and pivots on the centre-point curve of four positions "
+        "(Burmester): W (e^(i beta) - 1) + Z (e^(i alpha) - 1) = P - P1"
     ),
 }
 LISTED: Final = 360  # turns that are listed of each branch of Burmester's curves
@@ -204,8 +207,10 @@ def solve(task: CouplerPositionsTask) -> SynthesisOutcome:
     numbers = _parameter_values(task, one, other)
     values = [NamedValue(name, float(numbers[name]), kind, NAMES[name]) for name, kind in PARAMETERS.items()]
     values += [
-        NamedValue("", float(mark.least), "angle", N_("least transmission angle on the way")),
-        NamedValue("", float(mark.turn), "angle", N_("turn of AB from the first to the last position")),
+        NamedValue(
+            "", float(mark.least), "angle", N_("smallest transmission angle between the first and last position")
+        ),
+        NamedValue("", float(mark.turn), "angle", N_("rotation of AB from the first to the last position")),
         NamedValue("", DEFECTS[int(mark.defect)], "word", N_("defects")),
     ]
     count = len(task.places)
@@ -213,8 +218,8 @@ def solve(task: CouplerPositionsTask) -> SynthesisOutcome:
     if task.still:
         notes.append(
             N_(
-                "the coupler does not turn: any parallelogram with these arms does it; AD is free in length and "
-                "direction, taken across the arms in the middle of their way"
+                "the coupler does not rotate: any parallelogram with these arms guides it; length and direction of "
+                "AD are free, AD was taken perpendicular to the arms in the middle of their range"
             )
         )
     elif count == 4:
@@ -259,11 +264,11 @@ def _tabulate_curve(task: CouplerPositionsTask) -> Listing:
     """Tabulate pivots and pins of Burmester's curves by the rotation of the link and the branch."""
     columns = (
         ("branch", N_("branch"), "name"),
-        ("turn", N_("turn from 1 to 2"), "angle"),
+        ("turn", N_("rotation from position 1 to 2"), "angle"),
         ("pivot_x", N_("pivot, x"), "length"),
         ("pivot_y", N_("pivot, y"), "length"),
-        ("pin_x", N_("pin in the coupler, x"), "length"),
-        ("pin_y", N_("pin in the coupler, y"), "length"),
+        ("pin_x", N_("pin in coupler axes, x"), "length"),
+        ("pin_y", N_("pin in coupler axes, y"), "length"),
         ("first_x", N_("pin in position 1, x"), "length"),
         ("first_y", N_("pin in position 1, y"), "length"),
         ("length", N_("length of the link"), "length"),
@@ -277,15 +282,15 @@ def _tabulate_curve(task: CouplerPositionsTask) -> Listing:
             a, b, b1 = (complex(x[k]) for x in (found.pivot, found.pin, first))
             places = (a.real, a.imag, b.real, b.imag, b1.real, b1.imag)
             rows.append((str(branch + 1), float(turns[k]), *places, abs(b1 - a)))
-    title = N_("Burmester's curves: pivots on the frame and their pins")
+    title = N_("Burmester's curves: pivots and pins")
     return Listing("curve", title, columns, tuple(rows), long=True)
 
 
 def _position_names(k: int) -> tuple[str, str, str]:
     """Return the descriptions of x, y and angle of a position."""
     return (
-        Phrase("position {number}: x of P", number=k + 1),
-        Phrase("position {number}: y of P", number=k + 1),
+        Phrase("position {number}: P, x", number=k + 1),
+        Phrase("position {number}: P, y", number=k + 1),
         Phrase("position {number}: angle of the coupler", number=k + 1),
     )
 
@@ -302,7 +307,7 @@ def _demands(task: CouplerPositionsTask, one: Dyads, other: Dyads, mark: Guidanc
         yield Demand(y, complex(place).imag, "length", partial(_measured_pose, "y", at), at=task.size)
         yield Demand(turned, float(angle), "angle", partial(_measured_pose, "angle", at), at=1.0)
     measure = partial(four_bar.transmission_angle, float(mark.worst))
-    name = N_("least transmission angle on the way")
+    name = N_("smallest transmission angle between the first and last position")
     yield Demand(name, float(mark.least), "angle", measure, asked=False, at=1.0)
 
 
@@ -332,8 +337,12 @@ def _given_values(task: CouplerPositionsTask) -> Iterator[NamedValue]:
             elif value is not None:
                 yield NamedValue("", value, "length" if part == "length" else "angle", texts[part])
     if task.within is not None:
-        yield from _coordinate_values(task.within[0], N_("pivots within, x"), N_("pivots within, y"))
-        yield from _coordinate_values(task.within[1], N_("pivots within, to x"), N_("pivots within, to y"))
+        yield from _coordinate_values(
+            task.within[0], N_("box for free pivots: first corner, x"), N_("box for free pivots: first corner, y")
+        )
+        yield from _coordinate_values(
+            task.within[1], N_("box for free pivots: opposite corner, x"), N_("box for free pivots: opposite corner, y")
+        )
 
 
 def _coordinate_values(place: Any, x: str, y: str) -> tuple[NamedValue, NamedValue]:
@@ -342,7 +351,7 @@ def _coordinate_values(place: Any, x: str, y: str) -> tuple[NamedValue, NamedVal
 
 def _check_position(found: Any) -> Any:
     if not isinstance(found, list) or len(found) != 3 or any(isinstance(x, list | dict | bool) for x in found):
-        raise PydanticCustomError("position", "a place and an angle [x, y, angle] are wanted")
+        raise PydanticCustomError("position", "expected a point and an angle: [x, y, angle]")
     return found
 
 
@@ -356,28 +365,46 @@ class CouplerPositionsBlock(TaskBlock):
 
     task: Literal["coupler-positions"]
     positions: list[Position] = Field(
-        min_length=2, max_length=4, description="[x, y, angle] of the coupler's axes, 2 to 4, in order"
+        min_length=2, max_length=4, description="[x, y, angle] of the coupler axes, 2 to 4 positions, in order"
     )
-    B: Vector | None = Field(default=None, description="pin of AB in the coupler's axes; or its pivot A")
-    C: Vector | None = Field(default=None, description="pin of DC in the coupler's axes; or its pivot D")
-    A: Vector | None = Field(default=None, description="pivot of AB on the frame")
-    D: Vector | None = Field(default=None, description="pivot of DC on the frame")
-    AB: Value | None = Field(default=None, description="length, with two positions")
-    DC: Value | None = Field(default=None, description="length, with two positions")
-    AB_side: SideName = Field(default="left", description="of the way from place 1 to 2, with two positions")
+    B: Vector | None = Field(default=None, description="pin B of link AB in coupler axes; or give pivot A")
+    C: Vector | None = Field(default=None, description="pin C of link DC in coupler axes; or give pivot D")
+    A: Vector | None = Field(default=None, description="pivot A of link AB on the frame")
+    D: Vector | None = Field(default=None, description="pivot D of link DC on the frame")
+    AB: Value | None = Field(default=None, description="length (two positions only)")
+    DC: Value | None = Field(default=None, description="length (two positions only)")
+    AB_side: SideName = Field(
+        default="left",
+        description="side of the segment from position 1 to 2 on which the other end lies (two positions only)",
+    )
     DC_side: SideName = "left"
-    AB_turn: Value | None = Field(default=None, description="turn of AB from 1 to 2, with four; best transmission")
-    DC_turn: Value | None = Field(default=None, description="turn of DC from 1 to 2, with four; best transmission")
+    AB_turn: Value | None = Field(
+        default=None,
+        description="rotation of AB from position 1 to 2 (four positions only); default: the best transmission angle",
+    )
+    DC_turn: Value | None = Field(
+        default=None,
+        description="rotation of DC from position 1 to 2 (four positions only); default: the best transmission angle",
+    )
     A_near: Vector | None = Field(
-        default=None, description="or, with four, a place: the pivot of the curve nearest to it"
+        default=None,
+        description="or a point (four positions only): pivot A is the point of the centre-point curve nearest to it",
     )
-    D_near: Vector | None = Field(default=None, description="the same of D")
+    D_near: Vector | None = Field(
+        default=None,
+        description="or a point (four positions only): pivot D is the point of the centre-point curve nearest to it",
+    )
     pivots_within: list[Vector] | None = Field(
-        default=None, min_length=2, max_length=2, description="with four, opposite corners of a box for free pivots"
+        default=None,
+        min_length=2,
+        max_length=2,
+        description="four positions only: opposite corners of the box in which pivots that are not given may lie",
     )
-    AB_branch: Literal[1, 2] = Field(default=1, description="which of the two links of that turn")
+    AB_branch: Literal[1, 2] = Field(default=1, description="which of the two links with this rotation: 1 or 2")
     DC_branch: Literal[1, 2] = 1
-    defects: Literal["refuse", "keep"] = Field(default="refuse", description="branch, order and circuit defects")
+    defects: Literal["refuse", "keep"] = Field(
+        default="refuse", description="solutions with branch, order or circuit defects: refuse or keep"
+    )
 
 
 BLOCK = CouplerPositionsBlock
@@ -397,10 +424,10 @@ def read(shape: CouplerPositionsBlock, values: ValueReader) -> CouplerPositionsT
         same = [m for m in range(k) if poses[m][0] == place and abs(sin((poses[m][1] - angle) / 2)) < SAME_POSITION]
         if same:
             raise ProblemError(
-                _("this position is there already"),
+                _("this position is given twice"),
                 path=("positions", k),
                 found=_("position {number}").format(number=same[0] + 1),
-                allowed=_("any other position, as one turned by 20 deg"),
+                allowed=_("a different position, e.g. rotated by 20 deg"),
             )
     sides = {name: side for name in DYADS if (side := _read_dyad(shape, values, name, count)) is not None}
     places, angles = zip(*poses, strict=True)
@@ -416,12 +443,12 @@ def _read_box(
     if shape.pivots_within is None:
         return None
     if count != 4 or len(sides) == 2:
-        why = _("{count} positions").format(count=count) if count != 4 else _("both links are given")
+        why = _("number of positions: {count}").format(count=count) if count != 4 else _("both links are given")
         raise ProblemError(
-            _("a box is for pivots that are free"),
+            _("pivots_within applies only to pivots that are not given"),
             path=("pivots_within",),
             found=why,
-            allowed=_("four positions, and AB or DC free"),
+            allowed=_("four positions, with AB or DC not given"),
             key=True,
         )
     one, other = (values.vector(v, LENGTH, ("pivots_within", k)) for k, v in enumerate(shape.pivots_within))
@@ -432,7 +459,7 @@ def _read_dyad(shape: CouplerPositionsBlock, values: ValueReader, name: str, cou
     """Read the data of a dyad, which must be exactly those that the number of positions requires."""
     pivot, pin, turn, near = name[0], name[1], f"{name}_turn", f"{name[0]}_near"
     sets = {2: ((pin, name), (pivot, name)), 3: ((pin,), (pivot,)), 4: ((turn,), (near,), ())}[count]
-    refusal = _("these keys do not determine {link} with {count} positions").format(link=name, count=count)
+    refusal = _("these keys do not determine link {link}; number of positions: {count}").format(link=name, count=count)
     given = choose_key_set(shape, sets, (pivot, pin, name, turn, near), refusal)
     if not given:
         return None

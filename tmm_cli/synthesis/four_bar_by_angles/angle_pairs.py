@@ -78,14 +78,14 @@ class GeneratedFunction:
 
 
 LENGTHS: Final = {  # that a task may give, as its ZEROS: kind and what they are called
-    "l1": ("length", N_("input l1 = AB")),
+    "l1": ("length", N_("input link l1 = AB")),
     "l2": ("length", N_("coupler l2 = BC")),
-    "l3": ("length", N_("output l3 = DC")),
+    "l3": ("length", N_("output link l3 = DC")),
     "l4": ("length", N_("frame l4 = AD")),
 }
 ZEROS: Final = {
-    "phi0": ("angle", N_("phi0, zero of the input angle, from AD")),
-    "psi0": ("angle", N_("psi0, zero of the output angle, from AD")),
+    "phi0": ("angle", N_("zero angle phi0 of the input link, from AD")),
+    "psi0": ("angle", N_("zero angle psi0 of the output link, from AD")),
 }
 
 
@@ -298,28 +298,46 @@ class FourBarByAnglesBlock(TaskBlock):
         default=None,
         min_length=2,
         max_length=MOST,
-        description="[input, output] angles from AD, in order; over 5: least squares",
+        description="[input, output] angles from AD, in order; with more than 5 pairs a least-squares fit",
     )
-    l1: Value | None = Field(default=None, description="one length gives the size; l1 input, l2 coupler, l3 output")
+    l1: Value | None = Field(
+        default=None, description="one length determines the size; l1 input link, l2 coupler, l3 output link"
+    )
     l2: Value | None = None
     l3: Value | None = None
     l4: Value | None = Field(
-        default=None, description="frame; two of l1, l3, l4 with two pairs, l4 and l1 or l3 with three"
+        default=None,
+        description="frame; with two pairs two of l1, l3, l4 may be given, with three pairs l4 and one of l1, l3",
     )
-    phi0: Value | None = Field(default=None, description="zero of input angles, from AD; 0; 4 and more pairs find it")
-    psi0: Value | None = Field(default=None, description="zero of output angles, from AD; 0; 5 and more pairs find it")
+    phi0: Value | None = Field(
+        default=None, description="zero angle of the input link, from AD; default 0; with 4 or more pairs it is found"
+    )
+    psi0: Value | None = Field(
+        default=None, description="zero angle of the output link, from AD; default 0; with 5 or more pairs it is found"
+    )
     function: str | None = Field(default=None, max_length=40, description="y: " + ", ".join(FUNCTIONS))
-    table: list[Vector] | None = Field(default=None, min_length=2, max_length=10_000, description="or rows [x, y]")
-    x: Range | None = Field(default=None, description="[from, to], with a function")
-    input: Range | None = Field(default=None, description="[from, to]: input angles for x")
-    output: Range | None = Field(default=None, description="[from, to]: output angles for y")
+    table: list[Vector] | None = Field(
+        default=None, min_length=2, max_length=10_000, description="y as a table: rows [x, y], instead of function"
+    )
+    x: Range | None = Field(default=None, description="range of x, [from, to], for a function")
+    input: Range | None = Field(default=None, description="[from, to]: input angles at both ends of the range of x")
+    output: Range | None = Field(default=None, description="[from, to]: output angles at both ends of the range of x")
     points: int | None = Field(
-        default=None, ge=2, le=MOST, description="with Chebyshev's spacing; 3; over 5: least squares"
+        default=None,
+        ge=2,
+        le=MOST,
+        description="number of precision points (Chebyshev spacing); default 3; with more than 5 a least-squares fit",
     )
     choose: Literal["transmission", "crank", 1, 2, 3] = Field(
-        default="transmission", description="of several solutions: best transmission, a crank if there is one, a number"
+        default="transmission",
+        description=(
+            "which of several solutions: `transmission` (best transmission angle), `crank` (one with a crank), "
+            "or its number"
+        ),
     )
-    defects: Literal["refuse", "keep"] = Field(default="refuse", description="branch and order defects")
+    defects: Literal["refuse", "keep"] = Field(
+        default="refuse", description="solutions with branch or order defects: refuse or keep"
+    )
 
 
 BLOCK = FourBarByAnglesBlock
@@ -336,7 +354,10 @@ def read(shape: FourBarByAnglesBlock, values: ValueReader) -> AnglePairsTask:
     else:
         if extra := [key for key in OF_FUNCTION if getattr(shape, key) is not None]:
             raise ProblemError(
-                _("pairs and a function are two tasks"), path=(extra[0],), allowed=_("one of the two"), key=True
+                _("pairs and a function cannot be given together"),
+                path=(extra[0],),
+                allowed=_("one of the two"),
+                key=True,
             )
         pairs = [
             (values.number(a, ANGLE, ("pairs", k, 0)), values.number(b, ANGLE, ("pairs", k, 1)))
@@ -356,7 +377,7 @@ def _check_lengths(lengths: dict[str, float], count: int) -> None:
     other = {2: "; or two of l1, l3, l4", 3: "; or l4 and one of l1, l3"}.get(count, "")
     if len(lengths) != 1 and not two:
         raise ProblemError(
-            _("one length gives the size of the four-bar"),
+            _("give exactly one length: it determines the size of the four-bar"),
             found=", ".join(lengths) or _("none"),
             allowed=_("one of {ways}").format(ways="l1, l2, l3, l4") + other,
             key=True,
@@ -382,10 +403,10 @@ def _complete_zero_angles(zeros: dict[str, Any], count: int, lengths: dict[str, 
         zeros[other] = zeros[other] or 0.0
     elif count == 5 and len(given) == 1:
         raise ProblemError(
-            _("5 pairs determine zero angles too"),
+            _("5 pairs also determine both zero angles"),
             path=(given[0],),
             found=given[0],
-            allowed=_("neither phi0 nor psi0; or both, for the least squares of errors"),
+            allowed=_("neither phi0 nor psi0; or both, for a least-squares fit"),
             key=True,
         )
     elif count < 4:
@@ -407,7 +428,7 @@ def _read_function(shape: FourBarByAnglesBlock, values: ValueReader) -> Generate
     name = (shape.function or "").replace(" ", "")
     if shape.function is not None and name not in FUNCTIONS:
         raise ProblemError(
-            _("this function is not known here"),
+            _("unknown function"),
             path=("function",),
             found=quote(shape.function),
             allowed=_("{functions}; or table: [[x, y], ...]").format(functions=", ".join(FUNCTIONS)),
@@ -423,7 +444,7 @@ def _read_function(shape: FourBarByAnglesBlock, values: ValueReader) -> Generate
         for k, (a, b) in enumerate(shape.table or ())
     )
     if rows and any(b[0] <= a[0] for a, b in pairwise(rows)):
-        raise ProblemError(_("x must grow from row to row"), path=("table",), allowed=_("rows in the order of x"))
+        raise ProblemError(_("x must increase from row to row"), path=("table",), allowed=_("rows sorted by x"))
     if shape.x is not None:
         x = tuple(values.number(v, of_x, ("x", k)) for k, v in enumerate(shape.x))
     elif rows:
@@ -440,11 +461,13 @@ def _check_function(function: GeneratedFunction) -> None:
         y = function.value(np.linspace(*function.x, 101))
     if function.x[0] == function.x[1] or function.phi[0] == function.phi[1]:
         key = "x" if function.x[0] == function.x[1] else "input"
-        raise ProblemError(_("this range is empty"), path=(key,), allowed=_("two different ends"))
+        raise ProblemError(
+            _("this range is empty: both ends are equal"), path=(key,), allowed=_("two different values [from, to]")
+        )
     if not np.all(np.isfinite(y)) or y[0] == y[-1]:
         other = "two ends at which the function differs"
         raise ProblemError(
-            _("the function has no values there, or the same at both ends"),
+            _("the function is undefined in this range, or equal at both ends"),
             path=("x",),
             allowed=other if np.all(np.isfinite(y)) else DOMAINS.get(function.name, "another range"),
         )

@@ -316,7 +316,13 @@ def refuse(task: FourBarByKTask) -> None:
 
 def _refuse_numbers(task: FourBarByKTask) -> None:
     if not task.k >= 1:
-        raise Infeasible("k", _("k is the time of the working stroke over that of the idle one, the shorter"))
+        raise Infeasible(
+            "k",
+            _(
+                "k must be 1 or more: it is the duration of the working stroke divided by that of the shorter "
+                "return stroke"
+            ),
+        )
     theta, half, way = float(task.theta), float(task.swing) / 2, -1 if task.psi2 < task.psi1 else 1
     against = task.sense == -way  # in the slow stroke the crank turns against the rocker: only beyond C1C2
     if not SMALLEST <= task.swing <= np.pi - 2 * SHORTEST_ARC:
@@ -336,7 +342,7 @@ def _refuse_numbers(task: FourBarByKTask) -> None:
             "cw" if task.sense > 0 else "ccw",
         )
     if task.pressure is not None and not 0 < task.pressure < np.pi / 2:
-        raise Infeasible("pressure", _("a largest pressure angle is less than a right angle"))
+        raise Infeasible("pressure", _("the largest pressure angle must be less than 90 deg"))
     if theta == 0 and task.choose == "best":
         raise Infeasible(
             "k", _("with k = 1 no pivot is the best: the pressure angle falls towards psi/2 the farther A is")
@@ -349,7 +355,7 @@ def solve(task: FourBarByKTask) -> SynthesisOutcome:
     """Solve the task of one file. Raises Infeasible."""
     f = choose_pivot(task)
     demands = [
-        Demand(N_("crank turns fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
+        Demand(N_("crank rotates fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
         Demand(N_("k"), float(task.k), "number", time_ratio),
         Demand(N_("swing psi of the rocker"), float(task.swing), "angle", output_stroke),
         *(
@@ -447,7 +453,9 @@ class FourBarByKBlock(TaskBlock):
     l3: Value = Field(description="rocker DC")
     psi1: Value = Field(description="angle of DC where the crank lies over the coupler")
     psi2: Value = Field(description="angle of DC where the crank is in line with the coupler")
-    k: Value = Field(description="coefficient of change of mean speed, 1 or more")
+    k: Value = Field(
+        description="time ratio (coefficient of change of mean speed) k = (180° + θ)/(180° - θ), 1 or more"
+    )
     support: Vector = Field(default=(0, 0), description="D; [0, 0]")
     choose: Literal["best transmission", "supports level"] | None = Field(
         default=None, description="how A is chosen; best transmission"
