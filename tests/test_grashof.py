@@ -198,11 +198,15 @@ def test_conditions_of_crank_slider_and_slotted_lever_by_name():
 
 REFUSED = {
     "{task: grashof, l1: 10, l2: 2, l3: 3, l4: 4}": (
-        "synthesis.l1: the links do not close: l1 is as long as the others together, or longer\n  found:   10\n"
+        "synthesis.l1: the links do not form a closed loop: l1 is as long as the other three together, or "
+        "longer. Shorten it\n"
+        "  found:   10\n"
     ),
     "{task: grashof, l1: 10, l2: 0, l3: 3, l4: 4}": "synthesis.l2: this is too small for a mechanism\n  found:   0",
     "{task: grashof, l1: 1, l2: 2, l3: 3, l4: 3, frame: l1, driver: l3}": (
-        "synthesis.driver: the driver is hinged to the frame\n  found:   'l3' opposite the frame l1\n  allowed: l2, l4"
+        "synthesis.driver: the driver must be hinged to the frame\n"
+        "  found:   'l3', which lies opposite the frame l1\n"
+        "  allowed: l2, l4"
     ),
     "{task: grashof, l1: 1, l2: 2, l3: 3}": (
         "synthesis: these keys do not determine a mechanism\n"
@@ -234,6 +238,6 @@ def test_the_command_names_the_type_and_measures_the_driver(tmp_path):
     file.write_text(f"{head}{block}{FOUR_BAR}sketch: {{at: 60 deg, B: [80, 70]}}\n", encoding="utf-8")
     done = tmm("synthesis", file)
     assert done.returncode == 0, done.stderr
-    assert "GCRR: crank-rocker-rocker (crank-rocker)" in done.stdout and "driver turns fully" in done.stdout
+    assert "GCRR: crank-rocker-rocker (crank-rocker)" in done.stdout and "driver rotates fully" in done.stdout
     result = json.loads(tmm("synthesis", file, "--json").stdout)
     assert result["met"] and [m["measured"] for m in result["measured"]] == [1.0]

@@ -202,8 +202,12 @@ def test_a_place_that_a_search_varies_is_an_angle() -> None:
         ),
         (
             "{task: four-bar-by-k, l3: 120, k: 1.1, psi1: 1e-14, psi2: 0}",
-            "x.yaml:2:70: synthesis.psi2: a rocker swings by more than zero and less than 180 deg"
-            "\n  found:   0\n  allowed: the nearest is psi2: 5.72987e-05 deg",
+            (
+                "x.yaml:2:70: synthesis.psi2: the swing angle of the rocker must be greater than 0 and less than "
+                "180 deg\n"
+                "  found:   0\n"
+                "  allowed: the nearest is psi2: 5.72987e-05 deg"
+            ),
         ),
     ],
 )

@@ -172,7 +172,13 @@ def press(tmp_path_factory):
 def test_the_command_shows_what_was_asked_found_and_measured_and_draws_the_construction(press):
     done, folder = press
     assert done.returncode == 0, done.stderr
-    for part in ("Asked: crank-slider", "stroke H                     120", "58.80621953", "relative difference", "Source: triangle"):
+    for part in (
+        "Asked: crank-slider",
+        "stroke H                     120",
+        "58.80621953",
+        "relative difference",
+        "Source: triangle",
+    ):
         assert part in done.stdout
     names = {path.name for path in folder.iterdir()}
     drawings = {f"synthesis-{name}.{kind}" for name in ("construction", "extremes") for kind in ("png", "svg")}

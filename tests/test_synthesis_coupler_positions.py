@@ -389,7 +389,10 @@ def test_a_pivot_near_a_wanted_place_is_the_nearest_of_the_curve_and_its_turn_an
         away = abs(a - complex(*wanted) / 1000)
         assert away == pytest.approx(found["distance of A from the preferred point"])
         assert away <= np.min(np.abs(pivots - complex(*wanted) / 1000)) + 1e-12
-        branch, turn = found["solution branch of AB"], f"{np.degrees(found['rotation of AB from position 1 to 2']):.15g}"
+        branch, turn = (
+            found["solution branch of AB"],
+            f"{np.degrees(found['rotation of AB from position 1 to 2']):.15g}",
+        )
         again = told(problem(f"{keys}, AB_turn: {turn}, AB_branch: {branch}, DC_turn: 5").synthesis.outcome)
         assert complex(again["Ax"], again["Ay"]) == pytest.approx(a, rel=1e-9)
 

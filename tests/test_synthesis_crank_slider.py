@@ -282,7 +282,10 @@ def test_a_k_just_below_the_bound_is_met_and_one_just_above_is_refused(drawn):
 def test_the_approximate_nu_and_k_are_told_in_every_task(keys):
     outcome = problem({"stroke": 120, **keys}).synthesis.outcome
     told = {v.text: float(v.value) for v in (*outcome.asked, *outcome.found)}
-    printed, nu = told["nu by the approximation sqrt((h - 2)(L^2 - 1)) for small theta"], told["relative offset nu = e/r"]
-    approximate = math.sqrt((told["h = H/r"] - 2) * (told["L = l/r"] ** 2 - 1))
+    printed, nu = (
+        told["nu by the approximation sqrt((h - 2)(L^2 - 1)) for small theta"],
+        told["relative offset nu = e/r"],
+    )
+    approximate = math.sqrt((told["stroke-to-crank ratio h = H/r"] - 2) * (told["rod-to-crank ratio L = l/r"] ** 2 - 1))
     assert printed == pytest.approx(approximate, rel=1e-12, abs=1e-7) and told["k"] >= 1
     assert told["relative error of this approximation"] == pytest.approx(printed / nu - 1 if nu else 0, abs=1e-12)

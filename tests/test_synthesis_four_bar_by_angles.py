@@ -372,18 +372,18 @@ def test_the_precision_points_are_chebyshevs_and_the_error_vanishes_there():
 
 REFUSED = {
     "pairs: [[30, 60], [80, 90], [70, 100]], l4: 100": (
-        "synthesis.pairs[2][0]: the input turns back: pair 3 cannot be reached after pair 2 in order\n"
+        "synthesis.pairs[2][0]: the input link reverses: pair of angles 3 cannot be reached after 2\n"
         "  found:   70\n"
         "  allowed: the nearest is pairs[2][0]: "
     ),
     "pairs: [[30, 60], [80, 60], [120, 100]], l4: 100": (
-        "synthesis.pairs[2]: branch defect: every four-bar through these pairs has some of them on its other "
-        "assembly\n"
+        "synthesis.pairs[2]: branch defect: every four-bar through these pairs reaches some of them only "
+        "in its other assembly\n"
         "  found:   [120, 100]\n"
         "  allowed: the nearest is pairs[2][1]: 82.7"
     ),
     "pairs: [[30, 60], [80, 100], [120, 60], [150, 80]], l4: 100": (
-        "synthesis.pairs[3]: no four-bar passes through these pairs\n"
+        "synthesis.pairs[3]: no four-bar passes through these pairs of angles\n"
         "  found:   [150, 80]\n"
         "  allowed: the nearest is pairs[3][1]: 22.31"
     ),
@@ -396,10 +396,10 @@ REFUSED = {
         "synthesis.phi0: 5 pairs also determine both zero angles\n  found:   phi0\n  allowed: neither phi0 nor psi0"
     ),
     "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, choose: 2": (
-        "synthesis.choose: there is no solution of this number, or it has a defect\n  found:   2\n  allowed: 1"
+        "synthesis.choose: there is no solution with this number, or it has a defect\n  found:   2\n  allowed: 1"
     ),
     "pairs: [[0, 0], [20, 15], [40, 33], [60, 55]], l4: 100, choose: 2": (
-        "synthesis.choose: there is no solution of this number, or it has a defect\n  found:   2\n  allowed: 1"
+        "synthesis.choose: there is no solution with this number, or it has a defect\n  found:   2\n  allowed: 1"
     ),
     "pairs: [[20, 35], [35, 45], [50, 60]], l4: -100": (
         "synthesis.l4: this is too small for a mechanism\n  found:   -100\n  allowed: 0.001 mm or more"
@@ -411,8 +411,8 @@ REFUSED = {
         "synthesis.function: unknown function\n  found:   ''\n  allowed: log10(x), ln(x), exp(x), "
     ),
     "pairs: [[0, 0], [10, 12], [20, 22], [30, 34], [40, 42], [50, 55]], psi0: 20, l4: 100": (
-        "synthesis.pairs: no four-bar is the nearest to these pairs: errors get less as links grow, or as the "
-        "input locks on the way\n"
+        "synthesis.pairs: no four-bar has the smallest error for these pairs: it keeps decreasing as the "
+        "links become longer, or as the input link comes closer to locking\n"
         "  found:   a list of 6"
     ),
     "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, l3: 80, phi0: 5": (
@@ -504,7 +504,7 @@ def test_every_solution_has_the_number_by_which_it_is_chosen():
 
 def test_two_pairs_and_one_length_tell_the_free_ratio_and_the_family_of_it():
     outcome = problem("pairs: [[30, 60], [80, 90]], l4: 100").synthesis.outcome
-    free = next(v.value for v in outcome.found if v.text == "l4/l1, free with two pairs")
+    free = next(v.value for v in outcome.found if v.text == "l4/l1, free with two pairs of angles")
     assert free == pytest.approx(float(outcome.parameters["l4"].value / outcome.parameters["l1"].value))
     assert any("an end has the best transmission" in note for note in outcome.notes)  # l4 = 10 l1
     (family,) = outcome.listings

@@ -285,15 +285,17 @@ REFUSED = [
     (
         ", near: [-300, -40]",
         {},
-        ".near: the nearest place of the admissible arcs is an end of them, where the rocker is dead",
+        (".near: the nearest point of the admissible arcs is their end, where the rocker reaches a dead position"),
         "[-300, -40]",
         "the nearest is near[0]: ",
     ),
     (
         "",
         {"k": 5},
-        ".k: k is too large for this swing: on the whole circle the rocker would pass its dead position, "
-        "or stand all but in it",
+        (
+            ".k: k is too large for this swing angle: for every pivot A on the circle the rocker would pass "
+            "through a dead position or nearly reach it"
+        ),
         "5",
         "the nearest is ",
     ),
@@ -310,48 +312,69 @@ REFUSED = [
     (
         "",
         {"k": 1},
-        ".k: with k = 1 no pivot is the best: the pressure angle falls towards psi/2 the farther A is",
+        (
+            ".k: with k = 1 there is no best pivot: the farther away A is, the closer the largest pressure "
+            "angle comes to psi/2"
+        ),
         "1",
         "the nearest is ",
     ),
     (
         "",
         {"psi2": "50 deg"},
-        ".psi2: a rocker swings by more than zero and less than 180 deg",
+        ".psi2: the swing angle of the rocker must be greater than 0 and less than 180 deg",
         "'psi2'",
         "the nearest is ",
     ),
-    (", l4: 900", {}, ".l4: no pivot of the admissible arcs meets this", "900", "the nearest is "),
-    (", l4: 100", {}, ".l4: no pivot of the admissible arcs meets this", "100", "the nearest is "),
+    (", l4: 900", {}, ".l4: no pivot A on the admissible arcs meets this condition", "900", "the nearest is "),
+    (", l4: 100", {}, ".l4: no pivot A on the admissible arcs meets this condition", "100", "the nearest is "),
     (", l4: -3", {}, ".l4: this is too small for a mechanism", "-3", "0.001 mm or more"),
-    (", l4: 900, turns: ccw", {}, ".l4: no pivot of the admissible arcs meets this", "900", "the nearest is "),
+    (
+        ", l4: 900, turns: ccw",
+        {},
+        ".l4: no pivot A on the admissible arcs meets this condition",
+        "900",
+        "the nearest is ",
+    ),
     (
         ", turns: cw",
         {"k": 2.6},
-        ".turns: with this sense of the crank the slow stroke leads from psi2 to psi1",
+        ".turns: with this sense of rotation of the crank the slow stroke goes from psi2 to psi1",
         "'cw'",
         "ccw",
     ),
     (
         ", choose: supports level",
         {"psi1": "80 deg", "psi2": "85 deg"},
-        ".choose: no pivot of the admissible arcs meets this",
+        ".choose: no pivot A on the admissible arcs meets this condition",
         "'supports level'",
         "best transmission",
     ),
-    (", yA: 500", {}, ".yA: no pivot of the admissible arcs meets this", "500", "the nearest is yA: 495.295 mm"),
-    (", xA: -90", {}, ".xA: no pivot of the admissible arcs meets this", "-90", "the nearest is xA: 144.727 mm"),
+    (
+        ", yA: 500",
+        {},
+        ".yA: no pivot A on the admissible arcs meets this condition",
+        "500",
+        "the nearest is yA: 495.295 mm",
+    ),
+    (
+        ", xA: -90",
+        {},
+        ".xA: no pivot A on the admissible arcs meets this condition",
+        "-90",
+        "the nearest is xA: 144.727 mm",
+    ),
     (
         ", l4: 300, choose: supports level",
         {},
-        ": the pivot A is chosen in one way",
+        ": give only one condition for the pivot A",
         "choose and l4",
         "one of choose, pressure, l1, l2, l4, near, xA, yA",
     ),
     (
         ", pressure: 35 deg",
         {},
-        ".pressure: no pivot of the admissible arcs has this largest pressure angle",
+        ".pressure: no pivot A on the admissible arcs gives this largest pressure angle",
         "'35 deg'",
         "the nearest is pressure: 48.168 deg",
     ),
@@ -362,16 +385,16 @@ REFUSED = [
         "'90 deg'",
         "the nearest is pressure: 89.9",
     ),
-    (", l1: 95", {}, ".l1: no pivot of the admissible arcs meets this", "95", "the nearest is "),
+    (", l1: 95", {}, ".l1: no pivot A on the admissible arcs meets this condition", "95", "the nearest is "),
     (
         ", l1: 70",
         {"k": 1},
-        ".l1: with k = 1 every crank is half of C1C2",
+        ".l1: with k = 1 the crank length is always half of C1C2",
         "70",
         "another task: no other value of it was found to help",
     ),
-    (", l2: 60", {}, ".l2: no pivot of the admissible arcs meets this", "60", "the nearest is "),
-    (", l2: 60", {"k": 1}, ".l2: no pivot of the admissible arcs meets this", "60", "the nearest is "),
+    (", l2: 60", {}, ".l2: no pivot A on the admissible arcs meets this condition", "60", "the nearest is "),
+    (", l2: 60", {"k": 1}, ".l2: no pivot A on the admissible arcs meets this condition", "60", "the nearest is "),
 ]
 
 
@@ -457,12 +480,12 @@ def test_a_wished_pressure_angle_is_met_by_the_smaller_of_all_mechanisms_that_ha
 def test_with_k_of_1_the_family_is_a_line_and_any_longer_frame_is_there():
     found = problem(", l4: 400", k=1)
     outcome = found.synthesis.outcome
-    assert outcome.notes == ("with k = 1 the circle is the line C1C2: A is any place of it beyond C1",)
+    assert outcome.notes == ("with k = 1 the circle becomes the line C1C2: A may be any of its points beyond C1",)
     for m in measure_demands(outcome, solve(found, "kinematics")):
         assert m.difference <= MET, m
     at_height = problem(", yA: 130", k=1).synthesis.outcome.parameters
     assert at_height["yA"].value == pytest.approx(0.13, rel=1e-14)
-    assert refusal(", l4: 190", k=1).startswith(".l4: no pivot of the admissible arcs meets this")
+    assert refusal(", l4: 190", k=1).startswith(".l4: no pivot A on the admissible arcs meets this condition")
 
 
 def test_the_family_is_drawn_with_the_choice_on_it():

@@ -180,7 +180,7 @@ def pressure_tables(results: Results) -> Iterable[Table]:
             Column(N_("driver there at"), places, coordinate_dimension(driver.kind)),
             Column(N_("other extreme"), [p.other for p in found], ANGLE),
             Column(N_("driver then at"), others, coordinate_dimension(driver.kind)),
-            Column(N_("least transmission angle"), [p.transmission for p in found], ANGLE),
+            Column(N_("smallest transmission angle"), [p.transmission for p in found], ANGLE),
             Column(N_("force increase"), [p.gain for p in found], NUMBER),
             Column(N_("allowed"), [p.allowed for p in found], ANGLE),
             Column(N_("verdict"), [_("within") if p.holds else _("exceeds") for p in found]),

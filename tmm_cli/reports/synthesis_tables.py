@@ -25,7 +25,7 @@ VALUE_COLUMNS = (("quantity", N_("quantity"), "word"), ("value", N_("value"), "m
 MEASURED_COLUMNS = (
     ("quantity", N_("quantity"), "word"),
     ("asked", N_("by"), "by"),
-    ("wanted", N_("wanted"), "mixed"),
+    ("wanted", N_("required"), "mixed"),
     ("measured", N_("measured"), "mixed"),
     ("kind", N_("unit"), "unit"),
     ("difference", N_("relative difference"), "share"),

@@ -31,30 +31,30 @@ LINKS: Final = {  # that a task may give: kind and what they are called
 FOUR_BAR_TITLES: Final = {
     "GCCC": N_("GCCC: crank-crank-crank (double crank, drag link)"),
     "GCRR": N_("GCRR: crank-rocker-rocker (crank-rocker)"),
-    "GRCR": N_("GRCR: rocker-crank-rocker (double rocker whose coupler turns fully)"),
+    "GRCR": N_("GRCR: rocker-crank-rocker (double rocker whose coupler rotates fully)"),
     "GRRC": N_("GRRC: rocker-rocker-crank (rocker-crank)"),
-    "RRR1": N_("RRR1: triple rocker, the frame longest"),
-    "RRR2": N_("RRR2: triple rocker, the input longest"),
-    "RRR3": N_("RRR3: triple rocker, the coupler longest"),
-    "RRR4": N_("RRR4: triple rocker, the output longest"),
+    "RRR1": N_("RRR1: triple rocker, longest link is the frame"),
+    "RRR2": N_("RRR2: triple rocker, longest link is the input link"),
+    "RRR3": N_("RRR3: triple rocker, longest link is the coupler"),
+    "RRR4": N_("RRR4: triple rocker, longest link is the output link"),
     "SCCC": N_("SCCC: crank-crank-crank with change points"),
     "SCRR": N_("SCRR: crank-rocker-rocker with change points"),
     "SRCR": N_("SRCR: rocker-crank-rocker with change points"),
     "SRRC": N_("SRRC: rocker-rocker-crank with change points"),
-    "S2X": N_("S2X: two pairs of equal links (parallelogram or deltoid), change points"),
-    "S3X": N_("S3X: four equal links (rhombus), change points"),
+    "S2X": N_("S2X: two pairs of equal links (parallelogram or kite), with change points"),
+    "S3X": N_("S3X: four equal links (rhombus), with change points"),
 }
 CRANK_SLIDER_TYPES: Final = {  # by the number of the kind
-    "crank": N_("the crank turns fully"),
-    "rod": N_("the crank rocks, the rod turns fully"),
-    "none": N_("neither crank nor rod turns fully"),
-    "change": N_("change point: the slider may leave its side"),
+    "crank": N_("the crank rotates fully"),
+    "rod": N_("the crank rocks, the rod rotates fully"),
+    "none": N_("neither the crank nor the rod rotates fully"),
+    "change": N_("change point: the slider may move to the other side"),
 }
 SLOTTED_LEVER_TYPES: Final = {
-    "swings": N_("the crank turns fully, the slotted link swings"),
-    "turns": N_("the crank turns fully, and the slotted link with it"),
-    "none": N_("the crank does not turn fully"),
-    "change": N_("change point: the stone may pass the hinge of the slotted link"),
+    "swings": N_("the crank rotates fully, the slotted link swings"),
+    "turns": N_("both the crank and the slotted link rotate fully"),
+    "none": N_("the crank does not rotate fully"),
+    "change": N_("change point: the sliding block may pass the hinge of the slotted link"),
 }
 
 
@@ -121,7 +121,12 @@ def refuse(task: CrankConditionTask) -> None:
     """Raise Infeasible if the links do not close."""
     if isinstance(task, FourBarLinks) and classify_four_bar(task).kind < 0:
         longest = max(("l1", "l2", "l3", "l4"), key=lambda name: float(getattr(task, name)))
-        reason = _("the links do not close: {link} is as long as the others together, or longer")
+        reason = _(
+            (
+                "the links do not form a closed loop: {link} is as long as the other three together, or longer. "
+                "Shorten it"
+            )
+        )
         raise Infeasible(longest, reason.format(link=longest))
 
 
@@ -132,10 +137,10 @@ def solve(task: CrankConditionTask) -> SynthesisOutcome:
         return _solve_four_bar(task)
     if isinstance(task, CrankSlider):
         found, kinds, margin = classify_crank_slider(task), CRANK_SLIDER_TYPES, N_("l - (r + e)")
-        source = N_("the limit of Grashof's condition for a rocker of infinite length: l >= r + e")
+        source = N_("Grashof's condition in the limit of an infinitely long rocker: l >= r + e")
     else:
         found, kinds, margin = classify_slotted_lever(task), SLOTTED_LEVER_TYPES, N_("|OC - OA| - e")
-        source = N_("the stone never comes nearer to C than the slot's line: |OC - OA| >= e")
+        source = N_("the sliding block cannot come closer to C than the centre line of the slot: |OC - OA| >= e")
     name = list(kinds)[int(found.kind)]
     values = (NamedValue("", kinds[name], "word", N_("type")), NamedValue("", found.margin, "length", margin))
     return SynthesisOutcome(
@@ -150,8 +155,8 @@ def _solve_four_bar(task: FourBarLinks) -> SynthesisOutcome:
     found = classify_four_bar(task)
     change = int(found.kind) >= FIRST_CHANGE_POINT
     at_change, fully, rocks = (
-        N_("turns fully or rocks: decided in the change positions"),
-        N_("turns fully"),
+        N_("rotates fully or rocks, depending on the motion through the change points"),
+        N_("rotates fully"),
         N_("rocks"),
     )
     asked = (
@@ -166,15 +171,17 @@ def _solve_four_bar(task: FourBarLinks) -> SynthesisOutcome:
     for role, turns in zip((N_("input link"), N_("coupler"), N_("output link")), found.turns, strict=True):
         values.append(NamedValue("", (at_change if change else fully) if turns else rocks, "word", role))
     source = N_(
-        "F. Grashof: s + l against p + q; types after C. R. Barker, A complete classification of planar "
-        "four-bar linkages, Mechanism and Machine Theory 20 (1985)"
+        (
+            "F. Grashof: compare s + l with p + q; types after C. R. Barker, A complete classification of "
+            "planar four-bar linkages, Mechanism and Machine Theory 20 (1985)"
+        )
     )
     return SynthesisOutcome(asked, tuple(values), source, _rotation_demands(bool(found.turns[0]), change))
 
 
 def _rotation_demands(turns: bool, change: bool) -> tuple[Demand, ...]:
     """Return the predicted rotation of the driver, to be measured; none with change points."""
-    words = N_("driver turns fully (1: yes, 0: no)")
+    words = N_("driver rotates fully (1: yes, 0: no)")
     return () if change else (Demand(words, float(turns), "number", driver_completes_range, asked=False),)
 
 
@@ -195,17 +202,19 @@ class GrashofBlock(TaskBlock):
     """Crank conditions of a four-bar (l1 to l4), a crank-slider (r, l, e) or a slotted lever (OA, OC, e)."""
 
     task: Literal["grashof"]
-    l1: FileValue | None = Field(default=None, description="links of a four-bar as they are joined round")
+    l1: FileValue | None = Field(default=None, description="links of a four-bar, l1 to l4, in the order of connection")
     l2: FileValue | None = None
     l3: FileValue | None = None
     l4: FileValue | None = None
-    frame: LinkName | None = Field(default=None, description="which of them is the frame; l4")
-    driver: LinkName | None = Field(default=None, description="which of its two neighbours drives; the next one round")
+    frame: LinkName | None = Field(default=None, description="which link is the frame; default l4")
+    driver: LinkName | None = Field(
+        default=None, description="which link adjacent to the frame is the driver; default: the next one in order"
+    )
     r: FileValue | None = Field(default=None, description="crank of a crank-slider")
-    l: FileValue | None = Field(default=None, description="its rod")  # noqa: E741
-    e: FileValue | None = Field(default=None, description="offset of the guide, or of the slot; 0")
+    l: FileValue | None = Field(default=None, description="rod of a crank-slider")  # noqa: E741
+    e: FileValue | None = Field(default=None, description="offset of the guide, or of the slot; default 0")
     OA: FileValue | None = Field(default=None, description="crank of a slotted lever")
-    OC: FileValue | None = Field(default=None, description="distance of its fixed hinges")
+    OC: FileValue | None = Field(default=None, description="distance between the fixed hinges of a slotted lever")
 
 
 BLOCK = GrashofBlock
@@ -230,9 +239,9 @@ def read(shape: GrashofBlock, values: ValueReader) -> CrankConditionTask:
         if (driver - frame) % 2 == 0:
             allowed = ", ".join(f"l{(frame - 1 + step) % 4 + 1}" for step in (1, -1))
             raise ProblemError(
-                _("the driver is hinged to the frame"),
+                _("the driver must be hinged to the frame"),
                 path=("driver",),
-                found=_("'l{driver}' opposite the frame l{frame}").format(driver=driver, frame=frame),
+                found=_("'l{driver}', which lies opposite the frame l{frame}").format(driver=driver, frame=frame),
                 allowed=allowed,
             )
         found |= {"frame": frame, "driver": driver}

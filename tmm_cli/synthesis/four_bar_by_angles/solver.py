@@ -81,11 +81,11 @@ def draw_reached(one: FourBarRatios, task: AnglePairsTask) -> Diagram:
     order = np.argsort(at_pairs)
     lines = (
         DiagramLine(N_("reached"), phi, output_angles(one, phi, np.interp(phi, at_pairs[order], psi[order]), side)),
-        DiagramLine(N_("wanted"), at_pairs, psi, dots=True),
+        DiagramLine(N_("required"), at_pairs, psi, dots=True),
     )
     return Diagram(
         "pairs",
-        N_("Output angles at the pairs"),
+        N_("Output angle over the input angle, and the required pairs"),
         (N_("input angle phi"), "angle"),
         (N_("output angle psi"), "angle"),
         lines,
@@ -153,9 +153,14 @@ def draw_construction(one: FourBarRatios, given_phi: Any, given_psi: Any, size: 
     lengths = (("l1", float(abs(b[0]))), ("l2", float(abs(c[0] - b[0]))), ("l3", float(abs(c[0] - d))), ("l4", size))
     values = tuple((name, value, "length") for name, value in lengths)
     title = N_(
-        "Pairs turned back about {A} to the first input: {B}1 is the centre of the circle through {C}1, {C}2′ ..."
+        (
+            "Positions rotated back about {A} to the first input angle: {B}1 is the centre of the circle "
+            "through {C}1, {C}2′, ..."
+        )
     )
-    note = N_("dashed: bisectors, and arcs {C}{C}′ about {A} by the input's turn back")
+    note = N_(
+        ("dashed: perpendicular bisectors, and arcs {C}{C}′ about {A} for the reverse rotation of the input link")
+    )
     return GeometricConstruction(
         title, tuple(segments), tuple(arcs), tuple(spots), (note,), chain="four-bar", values=values
     )
@@ -176,24 +181,29 @@ FOUND: Final = {
 }
 PARAMETERS: Final = {name: kind for name, (kind, __) in FOUND.items()}
 DEFECTS: Final = {
-    "": N_("none: all pairs on one assembly, reached in order"),
-    "branch": N_("branch: some pairs are on the other assembly"),
-    "locks": N_("order: the input locks on the way"),
+    "": N_("none: all pairs belong to one assembly and are reached in order"),
+    "branch": N_("branch defect: some pairs belong to the other assembly"),
+    "locks": N_("order defect: the input link locks between the pairs"),
 }
 MEAN: Final = N_("root mean square error of the output angle")
 SHORT_DEFECTS: Final = {"": N_("none"), "branch": N_("branch"), "locks": N_("order")}
-NO_FOUR_BAR: Final = N_("no four-bar passes through these pairs")
+NO_FOUR_BAR: Final = N_("no four-bar passes through these pairs of angles")
 NONE_NEAR: Final = N_(
-    "no four-bar is the nearest to these pairs: errors get less as links grow, or as the input locks on the way"
+    (
+        "no four-bar has the smallest error for these pairs: it keeps decreasing as the links become "
+        "longer, or as the input link comes closer to locking"
+    )
 )
 DEFECTS_OF_ALL: Final = {
-    "branch": N_("branch defect: every four-bar through these pairs has some of them on its other assembly"),
-    "locks": N_("order defect: the input of every four-bar through these pairs locks on the way"),
-    "branch and locks": N_("every four-bar through these pairs has a branch defect, or its input locks on the way"),
+    "branch": N_("branch defect: every four-bar through these pairs reaches some of them only in its other assembly"),
+    "locks": N_("order defect: the input link of every four-bar through these pairs locks between them"),
+    "branch and locks": N_(
+        "every four-bar through these pairs has a branch defect, or its input link locks between them"
+    ),
 }
 COLUMNS: Final = (
     *((name, name, PARAMETERS[name]) for name in ("l1", "l2", "l3", "l4", "phi0", "psi0")),
-    ("transmission", N_("least transmission angle"), "angle"),
+    ("transmission", N_("smallest transmission angle"), "angle"),
 )
 SHOWN: Final = 40  # pairs in a table
 FAMILY: Final = 121  # four-bars through two pairs that are listed, of each sense of the crank
@@ -207,7 +217,13 @@ def solve(task: AnglePairsTask) -> SynthesisOutcome:
     values, demands = _found_values(task, one, mark), _demands(task, one, mark)
     if not any_one:  # it has change points
         demands.append(
-            Demand(N_("input turns fully (1: yes)"), float(mark.crank), "number", driver_completes_range, asked=False)
+            Demand(
+                N_("input link rotates fully (1: yes)"),
+                float(mark.crank),
+                "number",
+                driver_completes_range,
+                asked=False,
+            )
         )
     drawings: list[Any] = []
     if not task.approximate:
@@ -216,10 +232,10 @@ def solve(task: AnglePairsTask) -> SynthesisOutcome:
         drawings.append(draw_reached(one, task))
     listings = [_tabulate_pairs(task, one)] if task.approximate else []
     if found.size > 1:
-        values.append(NamedValue("", f"{at + 1} / {found.size}", "word", N_("solution, of those below")))
+        values.append(NamedValue("", f"{at + 1} / {found.size}", "word", N_("number of the solution, of those below")))
         listings.append(_tabulate_solutions(task, found, at))
     if task.free:
-        values.append(NamedValue("", 1 / float(one.l1), "number", N_("l4/l1, free with two pairs")))
+        values.append(NamedValue("", 1 / float(one.l1), "number", N_("l4/l1, free with two pairs of angles")))
         listings.append(_tabulate_family(task))
     if task.function and not mark.defect:
         curve, error = draw_structural_error(one, task)
@@ -249,7 +265,7 @@ def choose_solution(task: AnglePairsTask) -> tuple[FourBarRatios, int]:
         key = ("output",) if task.function else ("pairs", len(task.psi) - 1)
         raise Infeasible(key, NO_FOUR_BAR if not found.size else DEFECTS_OF_ALL[" and ".join(sorted(set(defects)))])
     if task.choose.isdigit() and task.choose not in fair:
-        reason = _("there is no solution of this number, or it has a defect")
+        reason = _("there is no solution with this number, or it has a defect")
         raise Infeasible("choose", reason, ", ".join(fair))
     return found, choose_four_bar(task, found)
 
@@ -264,11 +280,11 @@ def _refuse_inputs(task: AnglePairsTask) -> None:
     steps = np.diff(np.asarray(task.phi, dtype=float))
     back = np.flatnonzero(steps * (np.sign(steps[0]) or 1.0) <= 0) + 1
     if back.size and not task.function:
-        reason = _("the input turns back: pair {this} cannot be reached after pair {last} in order")
+        reason = _("the input link reverses: pair of angles {this} cannot be reached after {last}")
         raise Infeasible(("pairs", int(back[0]), 0), reason.format(this=back[0] + 1, last=back[0]))
     if back.size or abs(task.span[1] - task.span[0]) >= 2 * np.pi:
         key = ("input", 1) if task.function else ("pairs", len(task.phi) - 1, 0)
-        raise Infeasible(key, _("the input has come round before the last pair"))
+        raise Infeasible(key, _("the input link completes a full revolution before the last pair of angles"))
 
 
 def _frame_length(task: AnglePairsTask, one: FourBarRatios) -> Any:
@@ -285,7 +301,7 @@ def _found_values(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality
     numbers |= {key: zero_within_rounding(angle, np.pi) for key, angle in angles.items()}
     return [
         *(NamedValue(key, float(numbers[key]), *what) for key, what in FOUND.items()),
-        NamedValue("", mark.least, "angle", N_("least transmission angle over the range")),
+        NamedValue("", mark.least, "angle", N_("smallest transmission angle over the range")),
         NamedValue("", DEFECTS[str(mark.defect)], "word", N_("defects")),
         *([NamedValue("", _mean_error(one, task), "angle", MEAN)] if task.approximate else []),
     ]
@@ -301,7 +317,7 @@ def _demands(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality) -> 
             for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True))
         ]
     name, measure = (
-        N_("least transmission angle over the range"),
+        N_("smallest transmission angle over the range"),
         partial(four_bar.transmission_angle, float(mark.worst)),
     )
     return [*demands, Demand(name, float(mark.least), "angle", measure, asked=False, at=1.0)]
@@ -344,26 +360,35 @@ def _measured_largest_error(one: FourBarRatios, task: AnglePairsTask, results: A
 def _notes(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality, any_one: bool) -> Iterable[str]:
     if task.approximate and not any_one:
         yield N_(
-            "more pairs than a four-bar can pass: the sum of squares of the errors of the output angle is the least"
+            (
+                "there are more pairs than a four-bar can reach exactly: the sum of the squared errors of the "
+                "output angle is minimised"
+            )
         )
     if any_one and len(task.lengths) == 1:
         yield N_(
-            "these angles stay equal: every parallelogram l1 = l3, l2 = l4 passes the pairs, and its transmission "
-            "angle is that of DC with AD; l1/l4 is free, 1/2 is taken"
+            (
+                "the angles stay equal: every parallelogram l1 = l3, l2 = l4 passes through the pairs, and its "
+                "transmission angle is the angle between DC and AD; l1/l4 is free, 1/2 was taken"
+            )
         )
     if mark.reversed:
-        yield N_("a zero angle is half a turn from the given one: in the given sense there is no such link")
+        yield N_("a zero angle differs from the given one by 180 deg: with the given direction no such link exists")
     if task.choose == "crank" and not mark.crank:
-        yield N_("no solution without defects has an input that turns fully: another was taken")
+        yield N_("no solution without defects has an input link that rotates fully: another solution was taken")
     if task.free and abs(abs(np.log(abs(float(one.l1)))) - np.log(LONGEST)) < 1e-9:
         yield N_(
-            "two pairs leave l1/l4 free: of 0.1 to 10 an end has the best transmission, and was taken; give two of "
-            "l1, l3, l4 to take another"
+            (
+                "two pairs leave l4/l1 free: of 0.1 to 10 one end of the range has the best transmission angle and "
+                "was taken; for another value give two of l1, l3, l4"
+            )
         )
     elif task.free:
         yield N_(
-            "two pairs leave l1/l4 free: that with the best transmission of 0.1 to 10 was taken; give two of l1, l3, "
-            "l4 to take another"
+            (
+                "two pairs leave l4/l1 free: of 0.1 to 10 the value with the best transmission angle was taken; "
+                "for another value give two of l1, l3, l4"
+            )
         )
 
 
@@ -373,7 +398,7 @@ def _tabulate_solutions(task: AnglePairsTask, found: FourBarRatios, at: int) -> 
         ("number_of", N_("choose"), "name"),
         ("taken", N_("taken"), "word"),
         *COLUMNS,
-        ("crank", N_("input turns fully"), "word"),
+        ("crank", N_("input link rotates fully"), "word"),
         ("defect", N_("defects"), "word"),
     )
     rows = []
@@ -383,27 +408,33 @@ def _tabulate_solutions(task: AnglePairsTask, found: FourBarRatios, at: int) -> 
         rows.append(
             (str(k + 1), taken, *_solution_row(task, found.at(k), mark), crank, SHORT_DEFECTS[str(mark.defect)])
         )
-    return Listing("solutions", N_("Solutions; another is taken by choose: its number"), columns, tuple(rows))
+    return Listing(
+        "solutions", N_("Solutions. To take another one, write choose: and its number"), columns, tuple(rows)
+    )
 
 
 def _tabulate_pairs(task: AnglePairsTask, one: FourBarRatios) -> Listing:
     """Tabulate the pairs and the errors of the output angle."""
     columns = (
         ("phi", N_("input angle"), "angle"),
-        ("psi", N_("output angle, wanted"), "angle"),
+        ("psi", N_("required output angle"), "angle"),
         ("reached", N_("reached"), "angle"),
         ("error", N_("error"), "angle"),
     )
     error = output_errors(one, task)
     rows = [(float(a), float(b), float(b + e), float(e)) for a, b, e in zip(task.phi, task.psi, error, strict=True)]
     return Listing(
-        "pairs", N_("Pairs, and by how much the output is off"), columns, tuple(rows), long=len(rows) > SHOWN
+        "pairs", N_("Pairs of angles, and errors of the output angle"), columns, tuple(rows), long=len(rows) > SHOWN
     )
 
 
 def _tabulate_family(task: AnglePairsTask) -> Listing:
     """Tabulate the four-bars through two pairs over the free ratio l4/l1."""
-    columns = (("free", N_("l4/l1, free with two pairs"), "number"), *COLUMNS, ("defect", N_("defects"), "word"))
+    columns = (
+        ("free", N_("l4/l1, free with two pairs of angles"), "number"),
+        *COLUMNS,
+        ("defect", N_("defects"), "word"),
+    )
     ratios = np.geomspace(1 / LONGEST, LONGEST, FAMILY)
     ratios = np.concatenate([ratios, -ratios])
     found = four_bars_of_ratios(task, ratios)
@@ -411,7 +442,7 @@ def _tabulate_family(task: AnglePairsTask) -> Listing:
     for k in np.flatnonzero(are_real(found)):
         mark = rate_four_bars(found.at(k), task)
         rows.append((abs(float(ratios[k])), *_solution_row(task, found.at(k), mark), SHORT_DEFECTS[str(mark.defect)]))
-    return Listing("family", N_("Four-bars through both pairs"), columns, tuple(rows), long=True)
+    return Listing("family", N_("Four-bars through both pairs of angles"), columns, tuple(rows), long=True)
 
 
 def _solution_row(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality) -> tuple[float, ...]:
@@ -423,17 +454,17 @@ def _solution_row(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality
 def _given_values(task: AnglePairsTask) -> tuple[NamedValue, ...]:
     values = [NamedValue(name, value, *LENGTHS[name]) for name, value in task.lengths.items()]
     if task.function:
-        text = task.function.name.replace("x^1.5", "x^(3/2)") or N_("table, straight between its rows")
+        text = task.function.name.replace("x^1.5", "x^(3/2)") or N_("table with linear interpolation")
         of_x = "angle" if task.function.name in ANGLES else "number"
         (x0, x1), (phi0, phi1), (psi0, psi1) = task.function.x, task.function.phi, task.function.psi
         values += [
-            NamedValue("", text, "word", N_("y")),
-            NamedValue("", x0, of_x, N_("x, from")),
-            NamedValue("", x1, of_x, N_("x, to")),
-            NamedValue("", phi0, "angle", N_("input angle, from")),
-            NamedValue("", phi1, "angle", N_("input angle, to")),
-            NamedValue("", psi0, "angle", N_("output angle, from")),
-            NamedValue("", psi1, "angle", N_("output angle, to")),
+            NamedValue("", text, "word", N_("y(x)")),
+            NamedValue("", x0, of_x, N_("x, start of range")),
+            NamedValue("", x1, of_x, N_("x, end of range")),
+            NamedValue("", phi0, "angle", N_("input angle, start of range")),
+            NamedValue("", phi1, "angle", N_("input angle, end of range")),
+            NamedValue("", psi0, "angle", N_("output angle, start of range")),
+            NamedValue("", psi1, "angle", N_("output angle, end of range")),
         ]
     for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True) if not task.approximate else ()):
         name = Phrase("input angle {number}", number=k + 1)

@@ -99,11 +99,11 @@ def draw_construction(
     values = [(name, float(getattr(task if name == "l3" else found, name)), "length") for name in LINKS]
     values += [("ψ", float(task.swing), "angle"), ("θ", theta, "angle")]
     curves = [ConstructionCurve(tuple(complex(z) for z in f.a), "bold") for f in family]
-    notes = [N_("red: where {A} may be, so that the crank turns fully")]
+    notes = [N_("red: points {A} for which the crank rotates fully")]
     if theta > 0:
         notes.append(N_("{M}{C}1{C}2 = {M}{C}2{C}1 = |90° − θ|"))
     return GeometricConstruction(
-        N_("Extreme positions of the rocker, and the circles on which {C}1{C}2 is seen under theta"),
+        N_("Extreme positions of the rocker, and the circles from which {C}1{C}2 is seen at the angle theta"),
         tuple(segments),
         tuple(arcs),
         tuple(spots),
@@ -127,11 +127,11 @@ def draw_diagrams(
     pressures, lengths = [], []
     for f in family:
         if task.k == 1:
-            angle, frame = N_("A on the line C2C1 beyond C1"), N_("frame l4")
+            angle, frame = N_("A on the line C2C1, beyond C1"), N_("frame l4")
         elif int(f.side) > 0:
-            angle, frame = N_("A beyond C1C2"), N_("frame l4, A beyond C1C2")
+            angle, frame = N_("A on the other side of C1C2 than D"), N_("frame l4, A on the other side of C1C2 than D")
         else:
-            angle, frame = N_("A on D's side of C1C2"), N_("frame l4, A on D's side of C1C2")
+            angle, frame = N_("A on the same side of C1C2 as D"), N_("frame l4, A on the same side of C1C2 as D")
         x = np.asarray(f.l2)
         kept = x <= most
         pressures.append(DiagramLine(angle, x[kept], np.asarray(f.pressure)[kept]))
@@ -153,14 +153,14 @@ def tabulate_family(family: Sequence[FourBarByKSolution]) -> Listing:
     """Tabulate the four-bars along every arc, including its ends, where the rocker is in a dead position."""
     columns = (
         ("side", N_("arc"), "word"),
-        ("beta", N_("place on the arc, angle AC2C1"), "angle"),
-        ("xA", N_("pivot A of the crank, x"), "length"),
-        ("yA", N_("pivot A of the crank, y"), "length"),
+        ("beta", N_("position on the arc, angle AC2C1"), "angle"),
+        ("xA", N_("crank pivot A, x"), "length"),
+        ("yA", N_("crank pivot A, y"), "length"),
         ("l1", N_("crank l1"), "length"),
         ("l2", N_("coupler l2"), "length"),
         ("l4", N_("frame l4"), "length"),
         ("pressure", N_("largest pressure angle"), "angle"),
-        ("transmission", N_("least transmission angle"), "angle"),
+        ("transmission", N_("smallest transmission angle"), "angle"),
     )
     rows: list[tuple[Any, ...]] = []
     for f in family:
@@ -168,13 +168,13 @@ def tabulate_family(family: Sequence[FourBarByKSolution]) -> Listing:
         values = np.stack([np.broadcast_to(np.asarray(x, dtype=float), np.shape(f.w)) for x in across], axis=-1)
         rows += [(side_name(f), *row) for row in values.tolist()]
     return Listing(
-        "family", N_("All pivots A of the admissible arcs, from end to end"), columns, tuple(rows), long=True
+        "family", N_("Four-bars with the pivot A along the admissible arcs"), columns, tuple(rows), long=True
     )
 
 
 def side_name(found: FourBarByKSolution) -> str:
     """Return the name of the arc on which the pivot lies."""
-    return N_("beyond C1C2") if int(found.side) > 0 else N_("on D's side of C1C2")
+    return N_("on the other side of C1C2 than D") if int(found.side) > 0 else N_("on the same side of C1C2 as D")
 
 
 # Four-bar by k and both extreme positions of its rocker: the choice of the pivot A on its arcs.
@@ -183,14 +183,14 @@ def side_name(found: FourBarByKSolution) -> str:
 PARAMETERS: Final = {**dict.fromkeys(("l1", "l2", "l4", "xA", "yA"), "length"), "phi2": "angle"}
 QUANTITIES: Final = {  # that a task may give: kind and what they are called
     "l3": ("length", N_("rocker l3")),
-    "psi1": ("angle", N_("rocker at C1 (crank over the coupler) psi1")),
-    "psi2": ("angle", N_("rocker at C2 (crank in line with the coupler) psi2")),
+    "psi1": ("angle", N_("rocker angle psi1 at C1 (crank and coupler overlap)")),
+    "psi2": ("angle", N_("rocker angle psi2 at C2 (crank and coupler in line)")),
     "k": ("number", N_("k")),
     "l1": ("length", N_("crank l1")),
     "l2": ("length", N_("coupler l2")),
     "l4": ("length", N_("frame l4")),
-    "xA": ("length", N_("pivot A of the crank, x")),
-    "yA": ("length", N_("pivot A of the crank, y")),
+    "xA": ("length", N_("crank pivot A, x")),
+    "yA": ("length", N_("crank pivot A, y")),
     "pressure": ("angle", N_("largest pressure angle")),
 }
 ON_LINE: Final = ("level", "xA", "yA")
@@ -289,12 +289,12 @@ def choose_pivot(task: FourBarByKTask) -> FourBarByKSolution:
         raise _pressure_refusal(centred)
     if not found:
         level = task.choose == "level"
-        reason = _("no pivot of the admissible arcs meets this")
+        reason = _("no pivot A on the admissible arcs meets this condition")
         raise Infeasible("choose" if level else task.choose, reason, "best transmission" if level else None)
     goal = _extent if task.choose == "pressure" else OBJECTIVES.get(task.choose, _pressure_of)
     w, side = min(found, key=lambda one: float(goal(four_bar_at(centred, *one), centred)))
     if task.choose == "near" and w in sample_arc(centred, side)[[0, -1]]:
-        reason = _("the nearest place of the admissible arcs is an end of them, where the rocker is dead")
+        reason = _("the nearest point of the admissible arcs is their end, where the rocker reaches a dead position")
         raise Infeasible("near", reason)
     f = four_bar_at(centred, w, side)
     return replace(f, a=zero_within_rounding(task.support + f.a, f.l4 + np.abs(task.support)))
@@ -305,7 +305,7 @@ def _pressure_refusal(task: FourBarByKTask) -> Infeasible:
     least = min(
         float(four_bar_at(task, _find_minimum(task, side, "best"), side).pressure) for side in admissible_arcs(task)
     )
-    reason = _("no pivot of the admissible arcs has this largest pressure angle")
+    reason = _("no pivot A on the admissible arcs gives this largest pressure angle")
     return Infeasible("pressure", reason, (least, "angle", 1) if task.pressure < least else None)
 
 
@@ -326,29 +326,37 @@ def _refuse_numbers(task: FourBarByKTask) -> None:
     theta, half, way = float(task.theta), float(task.swing) / 2, -1 if task.psi2 < task.psi1 else 1
     against = task.sense == -way  # in the slow stroke the crank turns against the rocker: only beyond C1C2
     if not SMALLEST <= task.swing <= np.pi - 2 * SHORTEST_ARC:
-        raise Infeasible("psi2", _("a rocker swings by more than zero and less than 180 deg"))
+        raise Infeasible("psi2", _("the swing angle of the rocker must be greater than 0 and less than 180 deg"))
     if theta > np.pi / 2 + half - SHORTEST_ARC:  # the largest theta of the arc on D's side
         raise Infeasible(
             "k",
             _(
-                "k is too large for this swing: on the whole circle the rocker would pass its dead "
-                "position, or stand all but in it"
+                (
+                    "k is too large for this swing angle: for every pivot A on the circle the rocker would pass "
+                    "through a dead position or nearly reach it"
+                )
             ),
         )
     if against and theta > np.pi / 2 - half - SHORTEST_ARC:  # of the other one
         raise Infeasible(
             "turns",
-            _("with this sense of the crank the slow stroke leads from psi2 to psi1"),
+            _("with this sense of rotation of the crank the slow stroke goes from psi2 to psi1"),
             "cw" if task.sense > 0 else "ccw",
         )
     if task.pressure is not None and not 0 < task.pressure < np.pi / 2:
         raise Infeasible("pressure", _("the largest pressure angle must be less than 90 deg"))
     if theta == 0 and task.choose == "best":
         raise Infeasible(
-            "k", _("with k = 1 no pivot is the best: the pressure angle falls towards psi/2 the farther A is")
+            "k",
+            _(
+                (
+                    "with k = 1 there is no best pivot: the farther away A is, the closer the largest pressure angle "
+                    "comes to psi/2"
+                )
+            ),
         )
     if theta == 0 and task.choose == "l1":
-        raise Infeasible("l1", _("with k = 1 every crank is half of C1C2"))
+        raise Infeasible("l1", _("with k = 1 the crank length is always half of C1C2"))
 
 
 def solve(task: FourBarByKTask) -> SynthesisOutcome:
@@ -357,7 +365,7 @@ def solve(task: FourBarByKTask) -> SynthesisOutcome:
     demands = [
         Demand(N_("crank rotates fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
         Demand(N_("k"), float(task.k), "number", time_ratio),
-        Demand(N_("swing psi of the rocker"), float(task.swing), "angle", output_stroke),
+        Demand(N_("swing angle psi of the rocker"), float(task.swing), "angle", output_stroke),
         *(
             Demand(QUANTITIES[n][1], float(v), "angle", partial(stroke_end_angle, near=float(v)), at=1.0)
             for n, v in (("psi1", task.psi1), ("psi2", task.psi2))
@@ -373,10 +381,14 @@ def solve(task: FourBarByKTask) -> SynthesisOutcome:
     ]
     family = [four_bar_at(task, sample_whole_arc(task, side), side) for side in admissible_arcs(task)]
     source = N_(
-        "circle through C1 and C2 on which C1C2 is seen under theta = pi (k - 1)/(k + 1); l1 = (AC2 - AC1)/2, "
-        "l2 = AC2 - l1, l4 = AD; C1 and C2 on one side of AD"
+        (
+            "circle through C1 and C2 from which C1C2 is seen at the angle theta = pi (k - 1)/(k + 1); l1 = "
+            "(AC2 - AC1)/2, l2 = AC2 - l1, l4 = AD; C1 and C2 on one side of AD"
+        )
     )
-    notes = () if task.k > 1 else (N_("with k = 1 the circle is the line C1C2: A is any place of it beyond C1"),)
+    notes = (
+        () if task.k > 1 else (N_("with k = 1 the circle becomes the line C1C2: A may be any of its points beyond C1"),)
+    )
     return SynthesisOutcome(
         _given_values(task),
         _found_values(task, f),
@@ -391,15 +403,15 @@ def solve(task: FourBarByKTask) -> SynthesisOutcome:
 
 def _given_values(task: FourBarByKTask) -> tuple[NamedValue, ...]:
     choice = {
-        "best": N_("best transmission: the least largest pressure angle"),
-        "level": N_("supports level: A as high as D"),
-        "pressure": N_("by the largest pressure angle: the smaller mechanism that has it"),
+        "best": N_("best transmission: the smallest value of the largest pressure angle"),
+        "level": N_("pivots level: A at the height of D"),
+        "pressure": N_("by the largest pressure angle: the smaller of the mechanisms that have it"),
         "l1": N_("by the length of the crank"),
         "l2": N_("by the length of the coupler"),
         "l4": N_("by the length of the frame"),
-        "near": N_("nearest to a given place"),
-        "xA": N_("by its x"),
-        "yA": N_("by its height"),
+        "near": N_("nearest to a given point"),
+        "xA": N_("by its coordinate x"),
+        "yA": N_("by its coordinate y"),
     }[task.choose]
     return *given_values(task, QUANTITIES), NamedValue("", choice, "word", N_("choice of A"))
 
@@ -413,31 +425,31 @@ def _found_values(task: FourBarByKTask, f: FourBarByKSolution) -> tuple[NamedVal
         NamedValue("l4", f.l4, *QUANTITIES["l4"]),
         NamedValue("xA", np.real(f.a), *QUANTITIES["xA"]),
         NamedValue("yA", np.imag(f.a), *QUANTITIES["yA"]),
-        NamedValue("phi2", np.arctan2(at_c2.imag, at_c2.real), "angle", N_("crank at C2, in line with the coupler")),
+        NamedValue(
+            "phi2", np.arctan2(at_c2.imag, at_c2.real), "angle", N_("crank angle at C2, crank and coupler in line")
+        ),
         NamedValue("", task.theta, "angle", N_("theta = C1AC2")),
         NamedValue("", f.pressure, "angle", N_("largest pressure angle")),
     ]
     if task.choose == "near":
-        found.append(
-            NamedValue("", np.abs(f.a - task.near), "length", N_("distance of A from the place that was wanted"))
-        )
+        found.append(NamedValue("", np.abs(f.a - task.near), "length", N_("distance of A from the required point")))
     if task.k == 1:
         return tuple(found)
     turns = N_("counterclockwise") if f.sense > 0 else N_("clockwise")
     found += [
-        NamedValue("", f.beta, "angle", N_("place on the arc, angle AC2C1")),
+        NamedValue("", f.beta, "angle", N_("position on the arc, angle AC2C1")),
         NamedValue("", side_name(f), "word", N_("arc")),
-        NamedValue("", turns, "word", N_("crank for a slow stroke from psi1 to psi2")),
+        NamedValue("", turns, "word", N_("sense of rotation of the crank for a slow stroke from psi1 to psi2")),
     ]
     for side in admissible_arcs(task):
         beyond, inside = (
-            N_("admissible arc beyond C1C2: angle AC2C1 from 0 to"),
-            N_("admissible arc on D's side: angle AC2C1 from 0 to"),
+            N_("admissible arc on the other side of C1C2 than D: angle AC2C1 from 0 to"),
+            N_("admissible arc on the same side of C1C2 as D: angle AC2C1 from 0 to"),
         )
         last = four_bar_at(task, sample_arc(task, side)[-1], side)
         found += [
             NamedValue("", largest_beta(task, side), "angle", beyond if side > 0 else inside),
-            NamedValue("", last.l4, "length", N_("l4 at that end (l3 at the other)")),
+            NamedValue("", last.l4, "length", N_("l4 at that end of the arc (l3 at the other end)")),
         ]
     return tuple(found)
 
@@ -451,26 +463,29 @@ class FourBarByKBlock(TaskBlock):
 
     task: Literal["four-bar-by-k"]
     l3: Value = Field(description="rocker DC")
-    psi1: Value = Field(description="angle of DC where the crank lies over the coupler")
-    psi2: Value = Field(description="angle of DC where the crank is in line with the coupler")
+    psi1: Value = Field(description="angle of the rocker DC when crank and coupler overlap")
+    psi2: Value = Field(description="angle of the rocker DC when crank and coupler are in line")
     k: Value = Field(
         description="time ratio (coefficient of change of mean speed) k = (180° + θ)/(180° - θ), 1 or more"
     )
-    support: Vector = Field(default=(0, 0), description="D; [0, 0]")
+    support: Vector = Field(default=(0, 0), description="pivot D of the rocker; default [0, 0]")
     choose: Literal["best transmission", "supports level"] | None = Field(
-        default=None, description="how A is chosen; best transmission"
+        default=None, description="condition for the crank pivot A; default: best transmission angle"
     )
     pressure: Value | None = Field(
-        default=None, description="or: the largest pressure angle; of two pivots the one of the smaller mechanism"
+        default=None,
+        description="condition for A: the largest pressure angle; of two possible pivots that of the smaller mechanism",
     )
-    l1: Value | None = Field(default=None, description="or: the crank AB")
-    l2: Value | None = Field(default=None, description="or: the coupler BC")
-    l4: Value | None = Field(default=None, description="or: the frame AD")
-    near: Vector | None = Field(default=None, description="or: a place; A is the nearest pivot to it")
-    xA: Value | None = Field(default=None, description="or: x of A")  # noqa: N815  as the parameter is called
-    yA: Value | None = Field(default=None, description="or: the height of A, its y")  # noqa: N815
+    l1: Value | None = Field(default=None, description="condition for A: length of the crank AB")
+    l2: Value | None = Field(default=None, description="condition for A: length of the coupler BC")
+    l4: Value | None = Field(default=None, description="condition for A: length of the frame AD")
+    near: Vector | None = Field(
+        default=None, description="condition for A: a point; A is the admissible pivot nearest to it"
+    )
+    xA: Value | None = Field(default=None, description="condition for A: its coordinate x")  # noqa: N815  as the parameter is called
+    yA: Value | None = Field(default=None, description="condition for A: its coordinate y")  # noqa: N815
     turns: Literal["ccw", "cw"] | None = Field(
-        default=None, description="sense of the crank whose slow stroke leads from psi1 to psi2; any"
+        default=None, description="sense of rotation of the crank in the slow stroke psi1 -> psi2; default: any"
     )
 
 
@@ -482,7 +497,7 @@ def read(shape: FourBarByKBlock, values: ValueReader) -> FourBarByKTask:
     ways = [name for name in CHOICE_KEYS if getattr(shape, name) is not None]
     if len(ways) > 1:
         raise ProblemError(
-            _("the pivot A is chosen in one way"),
+            _("give only one condition for the pivot A"),
             found=_(" and ").join(ways),
             allowed=_("one of {ways}").format(ways=", ".join(CHOICE_KEYS)),
             key=True,

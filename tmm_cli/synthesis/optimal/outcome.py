@@ -106,14 +106,14 @@ def _compare_law(candidates: Candidates, n: int, quantity: MechanismQuantity, re
     place = "angle" if candidates.linkage.driver.kind == "turn" else "length"
     columns = (
         ("at", N_("driver at"), place),
-        ("wanted", N_("wanted"), kind),
+        ("wanted", N_("required"), kind),
         ("reached", N_("reached"), kind),
         ("off", N_("deviation"), kind),
     )
     rows = tuple(zip(quantity.places, wanted.tolist(), there.tolist(), (there - wanted).tolist(), strict=True))
     lines = (
         DiagramLine(N_("found mechanism"), q, run),
-        DiagramLine(N_("wanted"), at, wanted, dots=True),
+        DiagramLine(N_("required"), at, wanted, dots=True),
         DiagramLine(N_("reached"), at, there, dots=True),
     )
     up = (N_("angle of the link") if swings else N_("run of the link"), kind)
@@ -142,7 +142,7 @@ def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, r
     )
     columns: tuple[tuple[str, str, str], ...] = (
         ("x", N_("x"), "length"),
-        ("y", N_("y"), "length"),
+        ("y", N_("y(x)"), "length"),
         ("x_reached", N_("x reached"), "length"),
         ("y_reached", N_("y reached"), "length"),
         ("off", N_("deviation"), "length"),
@@ -152,14 +152,14 @@ def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, r
         columns = (("at", N_("driver at"), "angle" if candidates.linkage.driver.kind == "turn" else "length"), *columns)
     lines = (
         DiagramLine(N_("path"), path.real, path.imag),
-        DiagramLine(N_("wanted"), wanted.real, wanted.imag, dots=True),
+        DiagramLine(N_("required"), wanted.real, wanted.imag, dots=True),
         DiagramLine(N_("reached"), there.real, there.imag, dots=True),
     )
     drawn = Diagram(
         _table_name(candidates, n),
         N_("Path of the point over the whole way of the driver"),
         (N_("x"), "length"),
-        (N_("y"), "length"),
+        (N_("y(x)"), "length"),
         lines,
         equal=True,
     )
