@@ -101,13 +101,19 @@ def test_ranges_of_the_command_take_the_place_of_those_of_the_file(vary, texts):
         ("OA", "--vary OA: a name, two bounds and perhaps a step are wanted\n  allowed: --vary OA=80..140:5"),
         (
             "OA=90..80:5",
-            "--vary OA=90..80:5: variants.OA: the lower bound comes first\n  found:   90 and 80\n"
-            "  allowed: [low, high]",
+            (
+                "--vary OA=90..80:5: variants.OA: the first bound must be smaller than the second\n"
+                "  found:   90 and 80\n"
+                "  allowed: [low, high]"
+            ),
         ),
         (
             "OA=80..90:0",
-            "--vary OA=80..90:0: variants.OA.step: 1 to 9999 steps must lie between the bounds\n  found:   0\n"
-            "  allowed: another step; or bounds without steps, [low, high]",
+            (
+                "--vary OA=80..90:0: variants.OA.step: the number of steps between the bounds must be 1 to 9999\n"
+                "  found:   0\n"
+                "  allowed: another step; or bounds without a step: [low, high]"
+            ),
         ),
         (
             "oa=80..90",

@@ -217,9 +217,9 @@ REFUSED = {
         "synthesis.frame: this word is not known here\n  found:   'l5'\n  allowed: l1, l2, l3, l4"
     ),
     "{task: grashof, l1: 1, l2: 2, l3: 3, l4: 3, names: {r: OA}}": (
-        "synthesis.names.r: the synthesis grashof finds nothing of that name\n"
+        "synthesis.names.r: the synthesis grashof has no result with this name\n"
         "  found:   'r'\n"
-        "  allowed: it finds no parameters"
+        "  allowed: this synthesis finds no parameters"
     ),
 }
 

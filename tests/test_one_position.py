@@ -13,7 +13,7 @@ from test_commands import tmm
 from tmm_cli.problem import read_text
 
 SAMPLE = ("boom-lift", "crank-rocker")  # a cylinder, and a crank that rotates fully
-REFUSED = {"lifting-boom": "how far the driver goes is wanted"}  # a single run has no single position
+REFUSED = {"lifting-boom": "the range of the driver is missing"}  # a single run has no single position
 COMMANDS = (
     ("run", "--digits", "--tables", "csv-local"),
     ("note",),

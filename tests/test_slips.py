@@ -197,7 +197,7 @@ def test_a_place_that_a_search_varies_is_an_angle() -> None:
                 "x.yaml:2:49: synthesis.k: k must be 1 or more: it is the duration of the working stroke divided "
                 "by that of the shorter return stroke\n"
                 "  found:   0.11\n"
-                "  allowed: another task: no other value of it was found to help"
+                "  allowed: other given values: changing this one alone does not help"
             ),
         ),
         (
@@ -206,7 +206,7 @@ def test_a_place_that_a_search_varies_is_an_angle() -> None:
                 "x.yaml:2:70: synthesis.psi2: the swing angle of the rocker must be greater than 0 and less than "
                 "180 deg\n"
                 "  found:   0\n"
-                "  allowed: the nearest is psi2: 5.72987e-05 deg"
+                "  allowed: nearest feasible value: psi2: 5.72987e-05 deg"
             ),
         ),
     ],

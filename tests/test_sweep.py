@@ -222,7 +222,11 @@ def test_an_output_that_turns_back_more_often_is_still_told():
         ),
         (
             ["OA=90..80"],
-            "--over OA=90..80: the lower bound comes first\n  found:   'OA=90..80'\n  allowed: --over OA=80..120:41",
+            (
+                "--over OA=90..80: the first bound must be smaller than the second\n"
+                "  found:   'OA=90..80'\n"
+                "  allowed: --over OA=80..120:41"
+            ),
         ),
         (
             ["OA=80..90:1"],

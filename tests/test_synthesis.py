@@ -86,13 +86,15 @@ REFUSED = {
         "  allowed: a length, e.g. 110 mm or 0.11 m"
     ),
     "{task: crank-slider, stroke: 20, k: 1.1, ratio: 3, names: {R: OA}}": (
-        "synthesis.names.R: the synthesis crank-slider finds nothing of that name\n"
+        "synthesis.names.R: the synthesis crank-slider has no result with this name\n"
         "  found:   'R'\n"
         "  allowed: r, l, e\n"
         "  did you mean 'r'?"
     ),
     "{task: crank-slider, stroke: 20, k: 1.1, ratio: 3, names: {r: l}}": (
-        "synthesis.names: r and l of the synthesis have the same name\n  found:   'l'\n  allowed: different names"
+        "synthesis.names: the results r and l of the synthesis have the same name\n"
+        "  found:   'l'\n"
+        "  allowed: different names"
     ),
     "{task: crank-slider, stroke: 20, k: 1.1, ratio: 3, names: {r: 2a}}": (
         "synthesis.names.r: this cannot be the name of a parameter\n"
@@ -100,12 +102,14 @@ REFUSED = {
         "  allowed: letters, figures and _, a letter first"
     ),
     "{task: crank-slider, stroke: 120, k: 1.2, ratio: 3}\nparameters: {e: 3}": (
-        "parameters.e: the parameter e is given by hand, and the synthesis crank-slider finds it (its e)\n"
+        "parameters.e: parameter e is given, although the synthesis crank-slider computes it (as e)\n"
         "  found:   3\n"
-        "  allowed: one of the two; another name: synthesis: {names: {e: ...}}"
+        "  allowed: only one of the two; or another name: synthesis: {names: {e: ...}}"
     ),
     "{task: crank-slider, stroke: H, k: 1.2, ratio: 3}\nparameters: {H: 2*OA, OA: r}": (
-        "synthesis.stroke: this rests on what the synthesis finds\n  found:   'H'\n  allowed: parameters that do not"
+        "synthesis.stroke: the task depends on parameters that the synthesis itself finds\n"
+        "  found:   'H'\n"
+        "  allowed: parameters that do not"
     ),
 }
 
@@ -207,7 +211,7 @@ def test_a_file_without_a_linkage_is_for_the_synthesis_alone(tmp_path):
     assert done.returncode == 0 and json.loads(done.stdout)["parameters"]["r"] == pytest.approx(0.05)
     assert json.loads(done.stdout)["measured"] is None
     done = tmm("run", file)
-    assert done.returncode == 2 and "there is no linkage that could use what is found" in done.stderr
+    assert done.returncode == 2 and "the file has no linkage that could use the synthesised dimensions" in done.stderr
     done = tmm("synthesis", ROOT / "problems" / "shaper.yaml")
     assert done.returncode == 2 and "this file has no synthesis" in done.stderr
 

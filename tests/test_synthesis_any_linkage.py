@@ -151,17 +151,17 @@ def test_a_stroke_has_no_k():
         build_synthesised(
             read_text(text_of("cylinder", *edits, (r"points: \{", block("{AB: [240, 270]}", "k", ""))), "x.yaml")
         )
-    assert "this belongs to a driver that turns on and on" in str(caught.value)
+    assert "this quantity requires a continuously rotating driver" in str(caught.value)
     law = "{of: law, link: 3, at: [0, 130], values: [10, 50]}"
     with pytest.raises(ProblemError) as caught:
         build_synthesised(
             read_text(text_of("cylinder", *edits, (r"points: \{", block("{AB: [240, 270]}", law, ""))), "x.yaml")
         )
-    assert "the driver does not go there" in str(caught.value) and "0 to 120 mm" in str(caught.value)
+    assert "the driver does not reach this position" in str(caught.value) and "0 to 120 mm" in str(caught.value)
     for over, said, allowed in (
-        ("cycle", "the driver has no cycle", "stroke, positions, [from, to]"),
-        ("[10, 130]", "the driver does not go there", "places of its way, 0 to 120 mm"),
-        ("[30, 20]", "the lower end comes first, the other one at most a turn after it", "[from, to]"),
+        ("cycle", "this driver has no range cycle", "stroke, positions, [from, to]"),
+        ("[10, 130]", "the driver does not reach this position", "positions in its range, 0 to 120 mm"),
+        ("[30, 20]", "the first value must be smaller than the second, and by at most one revolution", "[from, to]"),
     ):
         with pytest.raises(ProblemError) as caught:
             text = text_of(
@@ -177,7 +177,7 @@ def test_a_stroke_has_no_k():
             (r"points: \{", block("{AB: [240, 270]}", "mass", "")),
         )
         build_synthesised(read_text(text, "x.yaml"))
-    assert "how far the driver goes is wanted" in str(caught.value)
+    assert "the range of the driver is missing" in str(caught.value)
 
 
 def test_a_ratio_of_wheels_that_is_written_with_what_varies_may_stay_the_same():
@@ -186,7 +186,9 @@ def test_a_ratio_of_wheels_that_is_written_with_what_varies_may_stay_the_same():
     assert Candidates(read_task(read_text(text, "x.yaml"))).closed
     with pytest.raises(ProblemError) as caught:
         build_synthesised(read_text(text.replace("3*OA/2, OA/2", "OA + 50 mm, 50 mm"), "x.yaml"))
-    assert caught.value.message == "after how many turns all comes round again rests on this parameter"
+    assert caught.value.message == (
+        "the number of revolutions in a cycle depends on this parameter; it must be the same for all candidates"
+    )
 
 
 def refused(name, edits, *task):
@@ -209,7 +211,7 @@ def test_forces_of_a_driver_that_stops_on_its_way_are_refused(objective):
     assert error.path == (
         ("synthesis", "objective") if objective == "moment" else ("synthesis", "constraints", 0, "most")
     )
-    assert error.message.startswith("the driver does not come to all places of its way")
+    assert error.message.startswith("with this acceleration the driver does not reach all positions")
     assert error.found == ("'moment'" if objective == "moment" else "'5 kN'")
 
 
@@ -218,7 +220,9 @@ def test_a_cycle_that_rests_on_what_varies_is_none_to_search_over():
     edits = (("link: 1, speed: 60 rpm", "link: 1, speed: n"),)
     error = refused("five-bar", edits, "{n: [50 rpm, 70 rpm]}", "moment", "")
     assert error.path == ("synthesis", "vary", "n")
-    assert error.message == "after how many turns all comes round again rests on this parameter"
+    assert error.message == (
+        "the number of revolutions in a cycle depends on this parameter; it must be the same for all candidates"
+    )
     both = (*edits, ("speed: 120 rpm", "speed: 2*n"))
     text = text_of("five-bar", *both, (r"points: \{", block("{n: [50 rpm, 70 rpm]}", "moment", "")))
     assert Candidates(read_task(read_text(text, "x.yaml"))).closed

@@ -298,7 +298,7 @@ REFUSED = {
         "synthesis.AB_turn: the coupler does not rotate: both links rotate by the angle between "
         "positions 1 and 2 on their circle\n"
         "  found:   31\n"
-        "  allowed: the nearest is AB_turn: 30 deg"
+        "  allowed: nearest feasible value: AB_turn: 30 deg"
     ),
     "positions: [[0, 0, 5], [10, 5, 5], [20, 10, 5], [30, 15, 5]]": (
         "synthesis.positions: the coupler does not rotate and its positions lie on a straight line: the "
@@ -310,13 +310,14 @@ REFUSED = {
         "synthesis.positions[2]: this position is given twice\n  found:   position 1\n"
     ),
     "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 30, C: [50, 0], DC: 60": (
-        "synthesis.AB: link AB is too short to reach both positions\n  found:   30\n  allowed: the nearest is AB: 36.05"
+        "synthesis.AB: link AB is too short to reach both positions\n  found:   30\n  allowed: nearest "
+        "feasible value: AB: 36.05"
     ),
     "positions: [[0, 0, 0], [50, 0, 15], [100, 0, 35]], B: [0, 0], C: [50, 0]": (
         "synthesis.B: the three positions of B lie on a straight line: the other end of the link would "
         "be infinitely far away\n"
         "  found:   [0, 0]\n"
-        "  allowed: the nearest is B[1]: 1 mm"
+        "  allowed: nearest feasible value: B[1]: 1 mm"
     ),
     "positions: [[0, 0, 0], [50, 0, 15], [100, 0, 35]], B: [0, 0], AB: 5, C: [50, 0]": (
         "synthesis: these keys do not determine link AB; number of positions: 3; remove: AB\n  found:   B, AB\n"
@@ -328,17 +329,17 @@ REFUSED = {
         "synthesis.B: B does not move between these positions, or not relative to the coupler: it is "
         "the pole of the displacement. Choose another point\n"
         "  found:   [0, 0]\n"
-        "  allowed: the nearest is B[1]: 1 mm"
+        "  allowed: nearest feasible value: B[1]: 1 mm"
     ),
     "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 70, C: [50, 0], DC: 150, DC_side: right": (
         "synthesis.positions: branch defect: some positions belong to the other assembly of the four-bar\n"
         "  found:   a list of 2\n"
-        "  allowed: the nearest is positions[1][2]: 69.3"
+        "  allowed: nearest feasible value: positions[1][2]: 69.3"
     ),
     "positions: [[0, 0, 0], [50, 20, 0], [100, 10, 0]], B: [0, 0], C: [0, 0]": (
         "synthesis.C: AB and DC have a common pin or pivot: this is not a four-bar\n"
         "  found:   [0, 0]\n"
-        "  allowed: the nearest is C[0]: 1 mm"
+        "  allowed: nearest feasible value: C[0]: 1 mm"
     ),
     "positions: [[0, 0, 0], [50, 20, 10], [100, 10, 30]], A: [0, 60], D: [0, 60]": (
         "synthesis.D: AB and DC have a common pin or pivot: this is not a four-bar\n"

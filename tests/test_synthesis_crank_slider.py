@@ -145,7 +145,7 @@ def test_stroke_offset_and_ratio_give_the_crank_of_the_printed_formula():
             (
                 "synthesis.e: the crank does not rotate fully: this requires l > r + e\n"
                 "  found:   112\n"
-                "  allowed: the nearest is e: 105.274 mm"
+                "  allowed: nearest feasible value: e: 105.274 mm"
             ),
         ),
         ("e: -1, ratio: 3.7", "synthesis.e: the offset is a distance"),

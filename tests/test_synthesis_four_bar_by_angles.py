@@ -219,7 +219,7 @@ def test_the_four_bar_of_three_or_four_near_pairs_is_found(free):
 def test_equal_angles_are_those_of_any_parallelogram(block):
     found = problem(f"pairs: {block}, l4: 100")
     outcome = found.synthesis.outcome
-    assert any("every parallelogram l1 = l3, l2 = l4 passes the pairs" in note for note in outcome.notes)
+    assert any("every parallelogram l1 = l3, l2 = l4 passes through the pairs" in note for note in outcome.notes)
     l1, l2, l3, l4 = (outcome.parameters[name].value for name in ("l1", "l2", "l3", "l4"))
     assert (l1, l2) == (l3, l4)
     for m in measure_demands(outcome, solve(found, "kinematics")):
@@ -374,18 +374,18 @@ REFUSED = {
     "pairs: [[30, 60], [80, 90], [70, 100]], l4: 100": (
         "synthesis.pairs[2][0]: the input link reverses: pair of angles 3 cannot be reached after 2\n"
         "  found:   70\n"
-        "  allowed: the nearest is pairs[2][0]: "
+        "  allowed: nearest feasible value: pairs[2][0]: "
     ),
     "pairs: [[30, 60], [80, 60], [120, 100]], l4: 100": (
         "synthesis.pairs[2]: branch defect: every four-bar through these pairs reaches some of them only "
         "in its other assembly\n"
         "  found:   [120, 100]\n"
-        "  allowed: the nearest is pairs[2][1]: 82.7"
+        "  allowed: nearest feasible value: pairs[2][1]: 82.7"
     ),
     "pairs: [[30, 60], [80, 100], [120, 60], [150, 80]], l4: 100": (
         "synthesis.pairs[3]: no four-bar passes through these pairs of angles\n"
         "  found:   [150, 80]\n"
-        "  allowed: the nearest is pairs[3][1]: 22.31"
+        "  allowed: nearest feasible value: pairs[3][1]: 22.31"
     ),
     "pairs: [[30, 60], [80, 90], [120, 100]]": (
         "synthesis: give exactly one length: it determines the size of the four-bar\n"
@@ -483,9 +483,11 @@ def test_what_was_asked_of_a_function_is_told_with_its_ranges_and_angles_as_angl
             f"function: sin(x), x: {x}, input: [0, 90], output: [0, 60], points: 5, l4: 1"
         ).synthesis.outcome
         asked = {v.text: v for v in outcome.asked}
-        assert asked["x, to"].kind == "angle"
+        assert asked["x, end of range"].kind == "angle"
         names = ("x", "input angle", "output angle")
-        ranges[x] = [float(asked[f"{name}, {end}"].value) for name in names for end in ("from", "to")]
+        ranges[x] = [
+            float(asked[f"{name}, {end}"].value) for name in names for end in ("start of range", "end of range")
+        ]
     assert ranges["[0, 90]"] == pytest.approx(np.radians([0, 90, 0, 90, 0, 60]), rel=1e-14)
     assert ranges["[0, pi/2]"] == pytest.approx(ranges["[0, 90]"], rel=1e-14)
 
@@ -506,7 +508,7 @@ def test_two_pairs_and_one_length_tell_the_free_ratio_and_the_family_of_it():
     outcome = problem("pairs: [[30, 60], [80, 90]], l4: 100").synthesis.outcome
     free = next(v.value for v in outcome.found if v.text == "l4/l1, free with two pairs of angles")
     assert free == pytest.approx(float(outcome.parameters["l4"].value / outcome.parameters["l1"].value))
-    assert any("an end has the best transmission" in note for note in outcome.notes)  # l4 = 10 l1
+    assert any("one end of the range has the best transmission angle" in note for note in outcome.notes)  # l4 = 10 l1
     (family,) = outcome.listings
     for ratio, l1, l2, l3, l4, phi0, psi0, *_ in family.rows[::20]:
         assert l4 / l1 == pytest.approx(ratio, rel=1e-12)

@@ -287,7 +287,7 @@ REFUSED = [
         {},
         (".near: the nearest point of the admissible arcs is their end, where the rocker reaches a dead position"),
         "[-300, -40]",
-        "the nearest is near[0]: ",
+        "nearest feasible value: near[0]: ",
     ),
     (
         "",
@@ -297,7 +297,7 @@ REFUSED = [
             "through a dead position or nearly reach it"
         ),
         "5",
-        "the nearest is ",
+        "nearest feasible value: ",
     ),
     (
         "",
@@ -307,7 +307,7 @@ REFUSED = [
             "return stroke"
         ),
         "0.8",
-        "the nearest is ",
+        "nearest feasible value: ",
     ),
     (
         "",
@@ -317,24 +317,24 @@ REFUSED = [
             "angle comes to psi/2"
         ),
         "1",
-        "the nearest is ",
+        "nearest feasible value: ",
     ),
     (
         "",
         {"psi2": "50 deg"},
         ".psi2: the swing angle of the rocker must be greater than 0 and less than 180 deg",
         "'psi2'",
-        "the nearest is ",
+        "nearest feasible value: ",
     ),
-    (", l4: 900", {}, ".l4: no pivot A on the admissible arcs meets this condition", "900", "the nearest is "),
-    (", l4: 100", {}, ".l4: no pivot A on the admissible arcs meets this condition", "100", "the nearest is "),
+    (", l4: 900", {}, ".l4: no pivot A on the admissible arcs meets this condition", "900", "nearest feasible value: "),
+    (", l4: 100", {}, ".l4: no pivot A on the admissible arcs meets this condition", "100", "nearest feasible value: "),
     (", l4: -3", {}, ".l4: this is too small for a mechanism", "-3", "0.001 mm or more"),
     (
         ", l4: 900, turns: ccw",
         {},
         ".l4: no pivot A on the admissible arcs meets this condition",
         "900",
-        "the nearest is ",
+        "nearest feasible value: ",
     ),
     (
         ", turns: cw",
@@ -355,14 +355,14 @@ REFUSED = [
         {},
         ".yA: no pivot A on the admissible arcs meets this condition",
         "500",
-        "the nearest is yA: 495.295 mm",
+        "nearest feasible value: yA: 495.295 mm",
     ),
     (
         ", xA: -90",
         {},
         ".xA: no pivot A on the admissible arcs meets this condition",
         "-90",
-        "the nearest is xA: 144.727 mm",
+        "nearest feasible value: xA: 144.727 mm",
     ),
     (
         ", l4: 300, choose: supports level",
@@ -376,25 +376,31 @@ REFUSED = [
         {},
         ".pressure: no pivot A on the admissible arcs gives this largest pressure angle",
         "'35 deg'",
-        "the nearest is pressure: 48.168 deg",
+        "nearest feasible value: pressure: 48.168 deg",
     ),
     (
         ", pressure: 90 deg",
         {},
         ".pressure: the largest pressure angle must be less than 90 deg",
         "'90 deg'",
-        "the nearest is pressure: 89.9",
+        "nearest feasible value: pressure: 89.9",
     ),
-    (", l1: 95", {}, ".l1: no pivot A on the admissible arcs meets this condition", "95", "the nearest is "),
+    (", l1: 95", {}, ".l1: no pivot A on the admissible arcs meets this condition", "95", "nearest feasible value: "),
     (
         ", l1: 70",
         {"k": 1},
         ".l1: with k = 1 the crank length is always half of C1C2",
         "70",
-        "another task: no other value of it was found to help",
+        "other given values: changing this one alone does not help",
     ),
-    (", l2: 60", {}, ".l2: no pivot A on the admissible arcs meets this condition", "60", "the nearest is "),
-    (", l2: 60", {"k": 1}, ".l2: no pivot A on the admissible arcs meets this condition", "60", "the nearest is "),
+    (", l2: 60", {}, ".l2: no pivot A on the admissible arcs meets this condition", "60", "nearest feasible value: "),
+    (
+        ", l2: 60",
+        {"k": 1},
+        ".l2: no pivot A on the admissible arcs meets this condition",
+        "60",
+        "nearest feasible value: ",
+    ),
 ]
 
 

@@ -24,7 +24,7 @@ from tmm_cli.synthesis import (
 
 SEEDS = range(2)
 FARTHER = 2e-4  # relative: beyond the limit
-TOLD = r"^the nearest is (\w+)((?:\[\d\])*): (\S+(?: mm| deg)?)$"
+TOLD = r"^nearest feasible value: (\w+)((?:\[\d\])*): (\S+(?: mm| deg)?)$"
 
 
 def flow(value):
@@ -222,7 +222,9 @@ def test_of_angles_and_places_one_is_told_that_is_solved(block, path):
     ],
 )
 def test_where_no_value_of_the_number_helps_that_is_said(block):
-    assert refused(block(np.random.default_rng(0))).allowed == "another task: no other value of it was found to help"
+    assert (
+        refused(block(np.random.default_rng(0))).allowed == "other given values: changing this one alone does not help"
+    )
 
 
 ROCKER = """

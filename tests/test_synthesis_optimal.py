@@ -76,7 +76,7 @@ def test_everything_that_was_asked_is_met_on_the_mechanism_and_margins_are_told(
     rows = {row[0]: row for row in table.rows}
     *__, bound, value, margin, unit, state = rows["largest pressure angle"]
     assert state == "active" and margin == 0 and value == pytest.approx(bound, abs=1e-9) and unit == "angle"
-    assert rows["k, the longer stroke over the shorter"][-1] == "equality, met"
+    assert rows["k, duration of the longer stroke divided by that of the shorter"][-1] == "equality, met"
     assert rows["sum of link lengths"][-1] == "objective"
 
 
@@ -177,7 +177,7 @@ def test_what_is_found_is_assembled_though_the_sketch_is_far_from_it():
     text = SLIDER.replace("[OA/2 + AB, -e]", "[270, -20]").replace("OPTIONS", "  objective: box\n  generations: 40")
     problem = build_synthesised(read_text(text, "x.yaml"))
     (note,) = problem.synthesis.outcome.notes
-    assert note.startswith("the file's sketch does not show the mechanism that was found")
+    assert note.startswith("the sketch of the file does not show the mechanism found")
     assert all(m.met for m in measure_demands(problem.synthesis.outcome, solve(problem, "kinematics")))
 
 
@@ -186,7 +186,7 @@ def test_the_nearest_value_that_is_told_can_be_met():
     task = "  objective: box\n  constraints: [{of: pressure, most: VALUE}, {of: stroke, equal: 170}]\n"
     with pytest.raises(ProblemError) as caught:
         slider(task.replace("VALUE", "10 deg"))
-    nearest = str(caught.value).partition("the nearest is constraints[0].most: ")[2]
+    nearest = str(caught.value).partition("nearest feasible value: constraints[0].most: ")[2]
     assert float(nearest.split()[0]) == pytest.approx(np.degrees(np.arcsin(86 / 400)), rel=1e-5)
     problem = slider(task.replace("VALUE", nearest))
     assert all(m.met for m in measure_demands(problem.synthesis.outcome, solve(problem, "kinematics")))
@@ -209,7 +209,7 @@ def test_constraints_that_contradict_one_another_are_refused_with_the_nearest_va
     with pytest.raises(ProblemError) as caught:
         with_constraints(*file, task.format("5 deg", "300 mm"))
     assert caught.value.path == ("synthesis", "constraints", 0, "most")
-    told = re.fullmatch(r"the nearest is constraints\[0\].most: (\S+ deg)", caught.value.allowed)[1]
+    told = re.fullmatch(r"nearest feasible value: constraints\[0\].most: (\S+ deg)", caught.value.allowed)[1]
     assert float(told.split()[0]) == pytest.approx(11.537, rel=1e-5)
     assert with_constraints(*file, task.format(told, "300 mm")).found
     with pytest.raises(ProblemError) as caught:
@@ -222,21 +222,21 @@ def test_a_quantity_that_is_the_same_for_all_is_told_exactly():
     file = ("whitworth", ("OC: 60, ", ""), "{OC: [43, 77]}")
     with pytest.raises(ProblemError) as caught:
         with_constraints(*file, "{of: stroke, equal: 239.7}")
-    assert caught.value.allowed == "the nearest is constraints[0].equal: 240 mm"
+    assert caught.value.allowed == "nearest feasible value: constraints[0].equal: 240 mm"
     assert with_constraints(*file, "{of: stroke, equal: 240}").found
 
 
 REFUSED = {
     "  objective: pressure\n  constraints: [{of: stroke, equal: 10}]\n  generations: 20": (
-        "no mechanism within the bounds was found that meets this"
+        "no mechanism was found within the bounds that satisfies this"
     ),
     "  objective: presure": "this word is not known here",
     "  objective: {of: reaction, pair: X}": "there is no pair of that name",
     "  objective: {of: path, point: A}": "the key `through` is missing",
-    "  objective: {of: law, link: 3, at: [1, 2], values: [3]}": "as many angles as values are wanted",
-    "  objective: {of: mass, pair: A}": "mass has no pair",
-    "  objective: mass\n  constraints: [{of: k}]": "a constraint has a bound",
-    "  objective: mass\n  constraints: [{of: k, least: 2, most: 1}]": "the least is more than the most",
+    "  objective: {of: law, link: 3, at: [1, 2], values: [3]}": "the keys at and values must have the same number of values",
+    "  objective: {of: mass, pair: A}": "the quantity mass has no key pair",
+    "  objective: mass\n  constraints: [{of: k}]": "a constraint needs a bound",
+    "  objective: mass\n  constraints: [{of: k, least: 2, most: 1}]": "the lower bound exceeds the upper bound",
     "  objective: mass\n  constraints: [{of: k, least: 2 mm}]": "a number is wanted here",
 }
 
@@ -251,10 +251,10 @@ def test_what_cannot_be_asked_is_refused(options):
 @pytest.mark.parametrize(
     ("vary", "words"),
     [
-        ("{OA: [90, 30]}", "the lower bound comes first"),
+        ("{OA: [90, 30]}", "the first bound must be smaller than the second"),
         ("{OA: [-90, 30]}", "a length cannot be negative"),
         ("{OA: [30]}", "2 are wanted here"),
-        ("{n1: [30, 40]}", "is given by hand"),
+        ("{n1: [30, 40]}", "is given, although"),
     ],
 )
 def test_bounds_that_cannot_be_are_refused(vary, words):

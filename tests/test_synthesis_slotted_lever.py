@@ -199,7 +199,9 @@ def test_the_ordinary_stages_measure_what_was_asked_of_a_lever(keys, sense):
     asks_left = "left" in keys
     (slow,) = results.strokes.working
     ends = {v.demand.text: v.value for v in measure_demands(found.synthesis.outcome, results)}
-    run = math.remainder(ends["angle of CB2"] - ends["angle of CB1"], math.tau)
+    run = math.remainder(
+        ends["angle of the lever in position CB2"] - ends["angle of the lever in position CB1"], math.tau
+    )
     told = (sense == "ccw") == asks_left  # the crank turns as told for a slow stroke from B1 to B2
     assert slow.run == pytest.approx(run if told else -run, rel=1e-12)
 
@@ -221,24 +223,27 @@ def test_the_ordinary_stages_measure_what_was_asked_of_a_shaper(keys):
 
 def test_a_stone_that_passes_the_end_is_told():
     outcome = lever("CB: 300, k: 1.5, OC: 280").synthesis.outcome
-    assert outcome.notes == ("the stone passes B: the slot goes on beyond it",)
+    assert outcome.notes == ("the sliding block passes the lever's end B: the slot must extend beyond B",)
     assert lever("CB: 300, k: 1.5, OC: 180").synthesis.outcome.notes == ()
 
 
 REFUSED_LEVERS = {
     "CB: 500, k: 1e11, OC: 200": (
-        ".k: the lever of a crank that turns fully swings by less than 180 deg\n  found:   1e11"
+        ".k: with a fully rotating crank the swing angle of the lever must be less than 180 deg\n  found:   1e11"
     ),
     "CB: 500, k: 1, OC: 200": (
-        ".k: a lever that swings goes back faster: k is the time of the slow stroke over that of the quick one"
-        "\n  found:   1"
+        ".k: k must be greater than 1: a swinging lever returns faster, and k is the duration of the slow "
+        "stroke divided by that of the fast one\n"
+        "  found:   1"
     ),
     "CB: 500, k: 0.8, OC: 200": (
-        ".k: a lever that swings goes back faster: k is the time of the slow stroke over that of the quick one"
-        "\n  found:   0.8"
+        ".k: k must be greater than 1: a swinging lever returns faster, and k is the duration of the slow "
+        "stroke divided by that of the fast one\n"
+        "  found:   0.8"
     ),
     "CB: 500, swing: 190 deg, OC: 200": (
-        ".swing: the lever of a crank that turns fully swings by less than 180 deg\n  found:   '190 deg'"
+        ".swing: with a fully rotating crank the swing angle of the lever must be less than 180 deg\n"
+        "  found:   '190 deg'"
     ),
     "CB: 500, k: 1.3, OC: -2": (".OC: this is too small for a mechanism\n  found:   -2"),
     "CB: 500, k: 1.3, OA: -2": (".OA: this is too small for a mechanism\n  found:   -2"),
@@ -246,13 +251,14 @@ REFUSED_LEVERS = {
         ": these keys do not determine a mechanism; remove: OA or OC\n  found:   OC, OA\n"
         "  allowed: OC; or OA; or within"
     ),
-    "B1: [1, 2], B2: [1, 2], k: 1.3, OC: 20": (".B2: B1 and B2 are the same place\n  found:   [1, 2]"),
+    "B1: [1, 2], B2: [1, 2], k: 1.3, OC: 20": (".B2: B1 and B2 are the same point\n  found:   [1, 2]"),
     "CB: 500, k: 1.5, within: [450, 600]": (
-        ".within[0]: within these bounds the stone always passes B\n  found:   450"
+        ".within[0]: within these bounds the sliding block always passes the lever's end B\n  found:   450"
     ),
     "CB: 500, k: 1.5, within: [300, 200]": (
-        ".within: these are no bounds of a distance, the smaller one first"
-        "\n  found:   [300, 200]\n  allowed: the nearest is within[1]: 300.0"
+        ".within: expected two positive bounds of OC, the smaller one first\n"
+        "  found:   [300, 200]\n"
+        "  allowed: nearest feasible value: within[1]: 300.0"
     ),
     "CB: 500, B1: [1, 2], k: 1.5, OC: 200": (
         ": these keys do not determine a mechanism; remove: B1\n  found:   B1, CB\n  allowed: B1 and B2; or CB"
@@ -261,35 +267,42 @@ REFUSED_LEVERS = {
         ": these keys do not determine a mechanism; remove: swing or k\n  found:   k, swing\n  allowed: k; or swing"
     ),
     "CB: 500, k: 1.5, C: left, OC: 200": (
-        ".C: C goes with B1 and B2 only\n  found:   C without B1 and B2\n  allowed: B1 and B2, or no C"
+        ".C: C can only be given together with B1 and B2\n  found:   C without B1 and "
+        "B2\n  allowed: add B1 and B2, or remove C"
     ),
     "CB: 500, k: 1.5, OC: 200, choose: shortest": (
-        ".choose: choose goes with within only\n  found:   choose without within\n  allowed: within, or no choose"
+        ".choose: choose can only be given together with within\n  found:   choose without "
+        "within\n  allowed: add within, or remove choose"
     ),
 }
 REFUSED_SHAPERS = {
     "stroke: 400, k: 1, OC: 350, DE: 200": (
-        ".k: a lever that swings goes back faster: k is the time of the slow stroke over that of the quick one"
-        "\n  found:   1"
+        ".k: k must be greater than 1: a swinging lever returns faster, and k is the duration of the slow "
+        "stroke divided by that of the fast one\n"
+        "  found:   1"
     ),
     "stroke: -400, k: 1.5, OC: 350, DE: 200": (".stroke: this is too small for a mechanism\n  found:   -400"),
-    "stroke: 400, k: 1.5, OC: 500, DE: 200": (".OC: the stone would pass the hinge D of the rod\n  found:   500"),
-    "stroke: 400, k: 1.5, OA: 155, DE: 200": (".OA: the stone would pass the hinge D of the rod\n  found:   155"),
+    "stroke: 400, k: 1.5, OC: 500, DE: 200": (
+        ".OC: the sliding block would pass the hinge D of the connecting rod\n  found:   500"
+    ),
+    "stroke: 400, k: 1.5, OA: 155, DE: 200": (
+        ".OA: the sliding block would pass the hinge D of the connecting rod\n  found:   155"
+    ),
     "stroke: 400, k: 1.5, OA: 0, DE: 200": (".OA: this is too small for a mechanism\n  found:   0"),
     "stroke: 400, k: 1.5, frame_ratio: 0.8, DE: 200": (
-        ".frame_ratio: the stone would pass the hinge D of the rod\n  found:   0.8"
+        ".frame_ratio: the sliding block would pass the hinge D of the connecting rod\n  found:   0.8"
     ),
     "stroke: 400, k: 3, frame_ratio: 0.3, DE: 40": (
-        ".DE: the ram would turn back before the lever does: the rod is too steep\n  found:   40"
+        ".DE: the ram would reverse before the lever: the connecting rod is too steep\n  found:   40"
     ),
     "stroke: 400, k: 3, frame_ratio: 0.3, rod_ratio: 0.1": (
-        ".rod_ratio: the ram would turn back before the lever does: the rod is too steep\n  found:   0.1"
+        ".rod_ratio: the ram would reverse before the lever: the connecting rod is too steep\n  found:   0.1"
     ),
     "stroke: 400, k: 3, frame_ratio: 0.3, pressure: 60 deg": (
-        ".pressure: the ram would turn back before the lever does: the rod is too steep\n  found:   '60 deg'"
+        ".pressure: the ram would reverse before the lever: the connecting rod is too steep\n  found:   '60 deg'"
     ),
     "stroke: 400, k: 3, frame_ratio: 0.3, pressure: 100 deg": (
-        ".pressure: the ram would turn back before the lever does: the rod is too steep\n  found:   '100 deg'"
+        ".pressure: the ram would reverse before the lever: the connecting rod is too steep\n  found:   '100 deg'"
     ),
     "stroke: 400, k: 3, frame_ratio: 0.3": (
         ": these keys do not determine a mechanism\n"

@@ -106,22 +106,37 @@ def test_the_longest_of_many_strokes_may_lie_between_neither_of_the_extremes():
 
 FREE = "n2: [60 rpm, 180 rpm]"
 MESSAGES = {
-    "any ratio": (FREE, "after how many turns all comes round again rests on this parameter"),
+    "any ratio": (
+        FREE,
+        ("the number of revolutions in a cycle depends on this parameter; it must be the same for all candidates"),
+    ),
     "some ratios": (  # over two turns, three and one
         "n2: {among: [90 rpm, 80 rpm, 120 rpm]}",
-        "after how many turns all comes round again rests on this",
+        "the number of revolutions in a cycle depends on this",
     ),
     "no step": ("n2: {from: 60 rpm, to: 80 rpm}", "vary.n2: [low, high], {from, to, step} or {among: [...]} is wanted"),
     "both": ("n2: {from: 60 rpm, among: [2 rpm, 3 rpm]}", "[low, high], {from, to, step} or {among: [...]} is wanted"),
-    "one value": ("n2: {among: [60 rpm]}", "with one value nothing varies", "found:   '60 rpm'"),
+    "one value": ("n2: {among: [60 rpm]}", "with a single value the parameter does not vary", "found:   '60 rpm'"),
     "no value": ("n2: {among: []}", "vary.n2.among: there is nothing here", "the values themselves"),
     "misspelt": ("n2: {amogn: [60 rpm]}", "unknown key", "did you mean 'among'?"),
     "three bounds": ("n2: [1, 2, 3]", "these are not two bounds", "values to choose from: {among: [...]}"),
     "a number": ("n2: 3", "[low, high], {from, to, step} or {among: [...]} is wanted", "found:   3"),
-    "too many": ("l: {from: 1, to: 3e9, step: 1}", "1 to 9999 steps must lie between the bounds", "found:   1"),
-    "endless": ("l: {from: 1, to: 1e15, step: 1e-9}", "1 to 9999 steps must lie", "found:   1e-9"),
-    "too large a step": ("l: {from: 1, to: 3, step: 5}", "1 to 9999 steps must lie between", "found:   5"),
-    "the wrong way": ("l: {from: 9, to: 3, step: 5}", "the lower bound comes first", "found:   9 and 3"),
+    "too many": (
+        "l: {from: 1, to: 3e9, step: 1}",
+        "the number of steps between the bounds must be 1 to 9999",
+        "found:   1",
+    ),
+    "endless": ("l: {from: 1, to: 1e15, step: 1e-9}", "between the bounds must be 1 to 9999", "found:   1e-9"),
+    "too large a step": (
+        "l: {from: 1, to: 3, step: 5}",
+        "the number of steps between the bounds must be 1 to 9999",
+        "found:   5",
+    ),
+    "the wrong way": (
+        "l: {from: 9, to: 3, step: 5}",
+        "the first bound must be smaller than the second",
+        "found:   9 and 3",
+    ),
     "refused by the file": ("l: {among: [0, 180, 200]}", "with l = 0 mm, n2 = "),
 }
 
@@ -160,11 +175,11 @@ def test_of_few_values_none_is_better_though_peaks_lie_between_the_places_of_the
     _, results = best_of(text)
     assert goal(results) <= goal(other) * (1 + 1e-12)
     outcome = results.problem.synthesis.outcome
-    assert outcome.source == "all candidates, one after another"
+    assert outcome.source == "evaluation of all candidates"
     assert {line.text for line in outcome.drawings[-1].lines} == {
         "candidate at the positions of the search",
-        "best so far that keeps the constraints",
-        "the best of them, looked at closely",
+        "best so far that satisfies the constraints",
+        "the best of them, after exact evaluation",
     }
 
 
@@ -190,7 +205,7 @@ def test_where_few_values_do_the_nearest_stroke_that_is_told_does_it(limit, key,
         f"vary: {{r: {{from: 50, to: 70, step: 4}}}}\n  objective: length\n  constraints: [{{of: stroke, {limit}}}]",
     )
     said = refusal_of(text)
-    assert f"the nearest is constraints[0].{key}: {value}" in said
+    assert f"nearest feasible value: constraints[0].{key}: {value}" in said
     old = limit if key == "equal" else next(part for part in limit.split(", ") if key in part)
     found, _ = best_of(text.replace(old, f"{key}: {value}"))
     assert 2 * found["r"] == pytest.approx(float(value.split()[0]) / 1000, abs=3e-6)
@@ -201,7 +216,7 @@ def test_where_few_values_do_the_nearest_stroke_that_is_told_does_it(limit, key,
     [
         ("z: {among: [25, 25.5, 26]}", "a number of teeth is whole"),
         ("z: {from: -25, to: 25, step: 1}", "a number cannot be zero"),
-        ("z: {among: [25, 25.5, 26, 27]}", "with z = 25.5 the file is refused: a number of teeth is whole"),
+        ("z: {among: [25, 25.5, 26, 27]}", "with z = 25.5 the problem file is invalid: a number of teeth is whole"),
     ],
 )
 def test_numbers_that_the_file_refuses_are_told(varies, said):
@@ -230,7 +245,8 @@ def test_a_parameter_that_spoils_the_dimensions_of_a_passive_link_is_refused():
             read_text(text_of("parallel-couplers", (("parameters: {DE: 300}", "parameters: {}"),), task), "x.yaml")
         )
     assert str(caught.value) == (
-        "x.yaml:12:9: synthesis.vary: with values in the middle of these bounds link 1 cannot be driven: pairs or "
+        "x.yaml:12:9: synthesis.vary: with every parameter in the middle of its bounds, link 1 cannot "
+        "be driven: pairs or "
         "other drivers hold it already\n"
         "  found:   W = 3*4 - 2*6 = 0; over-held: links 0, 1, 2, 3, 4\n"
         "  allowed: W = 1"
@@ -262,4 +278,4 @@ def test_the_choice_is_not_settled_before_what_is_free_is_polished():
 def test_where_steps_hold_no_mechanism_that_is_said():
     edits, task = (("r: 60, ", ""), ("l: 220, ", "")), "vary: {{r: {}, l: {}}}\n  objective: moment"
     told = refusal_of(text_of("crank-slider", edits, task.format("{from: 80, to: 90, step: 5}", "{among: [40, 50]}")))
-    assert "can go the whole way of its driver" in told or "can be assembled as it is sketched" in told
+    assert "completes the range of its driver" in told or "can be assembled as the sketch shows" in told

@@ -418,7 +418,11 @@ def _step_texts(
     """Values from low to high, in the unit of the first one."""
     low, high = sizes[:2]
     if not low < high:
-        raise ProblemError(_("the lower bound comes first"), found=bounds_text(*values[:2]), allowed=_("[low, high]"))
+        raise ProblemError(
+            _("the first bound must be smaller than the second"),
+            found=bounds_text(*values[:2]),
+            allowed=_("[low, high]"),
+        )
     written = NUMBER_WITH_UNIT.fullmatch(first)
     unit = written[2] if written else task.units.symbol(dimension) if dimension else ""
     scale = task.number(task.value(f"1 {unit}"), dimension)
@@ -426,10 +430,10 @@ def _step_texts(
     count = (high - low) / step + STEP_TOLERANCE if step > 0 else math.inf
     if not 1 <= count < MOST_VALUES:
         raise ProblemError(
-            _("1 to {most} steps must lie between the bounds").format(most=MOST_VALUES - 1),
+            _("the number of steps between the bounds must be 1 to {most}").format(most=MOST_VALUES - 1),
             path=("step",),
             found=quote(values[2]),
-            allowed=_("another step; or bounds without steps, [low, high]"),
+            allowed=_("another step; or bounds without a step: [low, high]"),
         )
     return [f"{(low + step * k) / scale:.12g} {unit}".strip() for k in range(int(count) + 1)]
 

@@ -34,7 +34,7 @@ MEANINGS = {  # of what is asked, by the name before ` of ` or `_`
     "p1": N_("number of pairs of one freedom"),
     "p2": N_("number of pairs of two freedoms"),
     "passive": N_("number of passive constraints"),
-    "H": N_("stroke of the output"),
+    "H": N_("stroke of the output link"),
     "strokes": N_("number of strokes of the output in a cycle"),
     "psi": N_("swing of the output"),
     "k": N_("time of the working stroke over that of the idle one"),

@@ -237,7 +237,7 @@ def coordinate_dimension(kind: str) -> Dimension:
 PER_UNIT: Final = "SI, per unit of the driver's motion"
 
 POINT: Final = (
-    Quantity("x", "place", "m", LENGTH, (N_("x"), N_("y(x)")), vector=True, leading=True),
+    Quantity("x", "place", "m", LENGTH, (N_("x"), N_("y")), vector=True, leading=True),
     Quantity("v", "velocity", "m/s", SPEED, (N_("vx"), N_("vy"), N_("v")), vector=True, leading=True),
     Quantity("a", "acceleration", "m/s^2", ACCELERATION, (N_("ax"), N_("ay"), N_("a")), vector=True, leading=True),
     Quantity(

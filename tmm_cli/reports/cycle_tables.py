@@ -312,7 +312,7 @@ def centres_tables(results: Results) -> Iterable[Table]:
         Column(N_("position"), [str(results.numbers[k]) for k, __ in found]),
         Column(N_("centre"), [centre_name(centre.links) for __, centre in found]),
         Column(N_("x"), [None if p is None else p.real for p in places], LENGTH),
-        Column(N_("y(x)"), [None if p is None else p.imag for p in places], LENGTH),
+        Column(N_("y"), [None if p is None else p.imag for p in places], LENGTH),
         Column(N_("at infinity, at an angle of"), away, ANGLE),
         Column(N_("found by"), [_centre_method(centre) for __, centre in found]),
     )

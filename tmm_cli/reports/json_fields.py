@@ -111,7 +111,7 @@ def json_record(text: str, *fields: JsonField) -> JsonType:
 
 NAMES = list_of(TEXT)
 _AXES = json_record(
-    "a vector", JsonField("x", SERIES, "x component", "real"), JsonField("y(x)", SERIES, "y component", "imag")
+    "a vector", JsonField("x", SERIES, "x component", "real"), JsonField("y", SERIES, "y component", "imag")
 )
 VECTOR = replace(_AXES, schema={**_AXES.schema, "required": ["x", "y"]})
 

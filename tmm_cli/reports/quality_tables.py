@@ -218,7 +218,7 @@ def checks_tables(results: Results) -> Iterable[Table]:
         for check in run_checks(results)
     ]
     if rows:
-        headers = (_("check"), _("of"), _("found"), _("limit"), _("driver at"), _("verdict"))
+        headers = (_("check"), _("of"), _("found"), _("limit"), _("at driver position"), _("verdict"))
         yield text_table("checks", _("Checks"), headers, rows)
 
 

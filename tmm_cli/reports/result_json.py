@@ -213,7 +213,7 @@ PROPOSED = json_record(
 SPACE = json_record(
     "the planar linkage counted in space",
     *attribute_fields("chain", CHAIN),
-    JsonField("required", NUMBER, "mobility Wo"),
+    JsonField("wanted", NUMBER, "mobility Wo"),
     JsonField("local", NUMBER, "local mobility Wm"),
     JsonField("redundant", NUMBER, "redundant constraints q = Wo + Wm - W"),
     JsonField(
@@ -256,13 +256,13 @@ SPATIAL = json_record(
     JsonField("pairs", list_of(CHAIN_PAIR), "pairs", "chain.pairs"),
     JsonField("local_freedoms", list_of(LOCAL_FREEDOM), "found from the kinds of pairs", "local"),
     JsonField("local", NUMBER, "local mobility Wm, as given or as found", "local_mobility"),
-    JsonField("required", NUMBER, "mobility Wo, as given"),
+    JsonField("wanted", NUMBER, "mobility Wo, as given"),
     JsonField("redundant", NUMBER, "q = Wo + Wm - W"),
     JsonField("output", optional(TEXT), "link held"),
     JsonField("manoeuvrability", NUMBER, "mobility with the output held"),
 )
 
-PLACE = json_record("m", JsonField("x", NUMBER, "x", "real"), JsonField("y(x)", NUMBER, "y(x)", "imag"))
+PLACE = json_record("m", JsonField("x", NUMBER, "x", "real"), JsonField("y", NUMBER, "y", "imag"))
 ASSEMBLY = json_record(
     "an assembly",
     JsonField("angles", map_of(NUMBER), "of the group's links, rad"),
@@ -340,7 +340,7 @@ CENTRE = json_record(
     "of two links",
     JsonField("links", NAMES, "the two"),
     JsonField("x", optional(NUMBER), "m; null at infinity", lambda c: None if c.place is None else c.place.real),
-    JsonField("y(x)", optional(NUMBER), "m", lambda c: None if c.place is None else c.place.imag),
+    JsonField("y", optional(NUMBER), "m", lambda c: None if c.place is None else c.place.imag),
     JsonField(
         "direction",
         optional(NUMBER),

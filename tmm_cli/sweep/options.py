@@ -80,7 +80,7 @@ def _read_axis(task: Task, text: str, usual: int) -> SweepAxis:
         raise ProblemError(_("{want} is wanted here").format(want=own), found=quote(text), allowed=own.example)
     low, high = (float(NUMBER_WITH_UNIT.fullmatch(end)[1]) for end in ends)  # type: ignore[index]
     if not low < high:
-        raise ProblemError(_("the lower bound comes first"), found=quote(text), allowed=EXAMPLE)
+        raise ProblemError(_("the first bound must be smaller than the second"), found=quote(text), allowed=EXAMPLE)
     steps = usual if count is None else int(count) if count.isascii() and count.isdigit() and len(count) < 9 else 0
     if not 2 <= steps <= MOST_VALUES:
         raise ProblemError(

@@ -125,16 +125,16 @@ def check_block(tree: Tree) -> TaskBlock:
     return found
 
 
-# Values of a task of synthesis within what a mechanism can have: beyond, numbers overflow and answers mean nothing.
+# Limits of the values of a task: beyond them numbers overflow and solutions are meaningless.
 
 
 LARGEST_VALUES: Final = {LENGTH: 1e6, NUMBER: 1e6, SPEED: 1e6, ANGULAR_SPEED: 1e6, ANGLE: 1e3}  # SI, rad
-# what has a size is SMALLEST or more: coordinates, offsets and angles may be as near to zero as they like
-# k is refused by its task, which knows the bounds of it
+# sizes must be at least SMALLEST; coordinates, offsets and angles may be arbitrarily close to zero
+# k is checked by its task, which knows its limits
 SIZE_DIMENSIONS: Final = (LENGTH, SPEED, ANGULAR_SPEED)
 RATIO_KEYS: Final = ("ratio", "frame_ratio", "rod_ratio", "pressure")
 COORDINATE_KEYS: Final = ("e", "xA", "yA")
-FUNCTION_KEYS: Final = ("table", "x")  # of a function: they are no measures of a mechanism
+FUNCTION_KEYS: Final = ("table", "x")  # values of a function, not of a mechanism
 
 
 class BoundedReader(ValueReader):

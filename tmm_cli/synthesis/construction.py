@@ -14,9 +14,7 @@ import numpy as np
 Style = Literal["link", "link2", "thin", "dashed", "axis", "bold"]
 Mark = Literal["hinge", "support", "slider", "stone", "dot", "none"]
 Chain = Literal["", "four-bar", "crank-slider", "slotted-lever", "shaper"]
-CHAIN_LETTERS: Final[
-    Mapping[Chain, str]
-] = {  # of the joints along the chain from the driver's pivot, as constructions say
+CHAIN_LETTERS: Final[Mapping[Chain, str]] = {  # letters of the joints from the driver's pivot, as in constructions
     "four-bar": "ABCD",
     "crank-slider": "OAB",
     "slotted-lever": "OACB",
@@ -135,8 +133,8 @@ class GeometricConstruction:
     centres: tuple[CircleCentre, ...] = ()
     wishes: tuple[tuple[complex, ...], ...] = ()
     chain: Chain = ""
-    values: tuple[tuple[str, float, str], ...] = ()  # name, value in SI, kind: for the corner
-    around: tuple[complex, ...] = ()  # what the sheet must hold besides
+    values: tuple[tuple[str, float, str], ...] = ()  # name, value in SI, kind
+    around: tuple[complex, ...] = ()  # further points that the sheet must hold
 
     def places(self) -> list[complex]:
         """Return the points that the sheet must hold."""

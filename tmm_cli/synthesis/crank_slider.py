@@ -34,7 +34,7 @@ from tmm_cli.synthesis.measures import (
 )
 from tmm_cli.synthesis.record import Demand, Infeasible, NamedValue, SynthesisOutcome, given_values
 
-SMALLEST_DRAWN_THETA: Final = 0.01  # rad: the least theta that shows on a drawing
+SMALLEST_DRAWN_THETA: Final = 0.01  # rad: smallest theta visible in a drawing
 
 
 def draw_construction(found: CrankSliderSolution) -> GeometricConstruction:
@@ -100,11 +100,11 @@ def draw_construction(found: CrankSliderSolution) -> GeometricConstruction:
 # height nu on h, and the angle theta at A:
 #     h = sqrt((L + 1)^2 - nu^2) - sqrt((L - 1)^2 - nu^2) = 2 sqrt(1 + (L^2 - 1) sin^2(theta/2)),
 #     nu = (L^2 - 1) sin(theta) / h,   sin(lambda_max) = (1 + nu)/L.
-# All functions take floats or arrays. Differences of near numbers are nowhere taken.
+# All functions take floats or arrays, and avoid differences of nearly equal numbers.
 
 
 PARAMETERS: Final = {"r": "length", "l": "length", "e": "length"}
-QUANTITIES: Final = {  # that a task may give: kind and what they are called
+QUANTITIES: Final = {  # quantities that a task may give: kind and description
     "stroke": ("length", N_("stroke H")),
     "speed": ("speed", N_("mean speed of the slider")),
     "crank_speed": ("angular speed", N_("crank speed")),
@@ -267,7 +267,9 @@ def find_crank_slider(task: CrankSliderTask) -> CrankSliderSolution:
     r = height / h
     if task.e is not None:
         nu = task.e / r
-    scale = h / np.sqrt(h + 2) / np.cos(theta / 2)  # of sqrt((h - 2)(L^2 - 1)) to nu, without taking 2 from h
+    scale = (
+        h / np.sqrt(h + 2) / np.cos(theta / 2)
+    )  # ratio of sqrt((h - 2)(L^2 - 1)) to nu, without the difference h - 2
     return CrankSliderSolution(
         r,
         length * r,
@@ -332,7 +334,7 @@ def _refuse_k(task: CrankSliderTask) -> float:
         raise Infeasible("k", _("with an offset k must be greater than 1"))
     if task.ratio is not None:
         limit = float(largest_theta(task.ratio))
-    elif task.e is not None:  # the pivot O is on the circle between B2 and the place over it: e < H cot(theta)
+    elif task.e is not None:  # O lies on the circle between B2 and the point above it: e < H cot(theta)
         limit = float(np.arctan2(_stroke_length(task), task.e))
     if theta >= np.pi / 2:
         raise Infeasible("k", _("k must be less than 3 if the crank of a crank-slider rotates fully"))
@@ -374,7 +376,7 @@ def solve(task: CrankSliderTask) -> SynthesisOutcome:
     )
 
 
-# Crank-slider by its stroke: keys of the task.
+# Keys of the task.
 
 
 STROKE_KEYS = (("stroke",), ("speed", "crank_speed"))

@@ -21,7 +21,7 @@ from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.numerics import SAME_RATIO
 
-# In the order frame, input, coupler, output: by the shortest link, the longest, the shortest again.
+# Links in the order frame, input, coupler, output. Indexed by the shortest link, then the longest, then the shortest.
 FOUR_BAR_TYPES: Final = (
     "GCCC",
     "GCRR",
@@ -39,7 +39,7 @@ FOUR_BAR_TYPES: Final = (
     "S3X",
 )
 FIRST_CHANGE_POINT: Final = 8  # the first type with change points
-POSITIONS_ONLY: Final = DriverMotion(0.0, 1.0, 0.0, 1)  # only places are asked for
+POSITIONS_ONLY: Final = DriverMotion(0.0, 1.0, 0.0, 1)  # only positions are required
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ def classify_four_bar(links: FourBarLinks) -> FourBarType:
     shortest, longest = order[..., 0], order[..., 3]
     equal = np.abs(np.diff(ranked, axis=-1)) <= same[..., None]
     change = np.abs(excess) <= same
-    pairs = equal[..., 0] & equal[..., 2]  # at a change point one pair of equal links brings the other
+    pairs = equal[..., 0] & equal[..., 2]  # at a change point one pair of equal links implies the other
     kind = np.where(excess > 0, shortest, 4 + longest)
     kind = np.where(change, np.where(pairs, np.where(equal[..., 1], 13, 12), FIRST_CHANGE_POINT + shortest), kind)
     kind = np.where(2 * ranked[..., 3] >= total - same, -1, kind)
@@ -100,8 +100,8 @@ def classify_four_bar(links: FourBarLinks) -> FourBarType:
         x, y, z, w = (lengths[..., (k + i) % 4] for i in range(4))
         joints.append((x + y <= z + w + same) & (np.abs(x - y) >= np.abs(z - w) - same) & (kind >= 0))
     a, b, c, d = joints
-    # full turns in both joints on the way from the frame to the coupler take each other away
-    excess = np.where(change, 0.0, excess)[()]  # zero but for rounding
+    # full rotations in both joints between frame and coupler cancel each other
+    excess = np.where(change, 0.0, excess)[()]  # differs from zero by rounding only
     return FourBarType(kind, excess, np.stack(joints, -1), np.stack([a, (a ^ b) | (c ^ d), d], -1))
 
 
@@ -119,7 +119,7 @@ def extreme_cosine(lengths: tuple[Any, Any, Any, Any], low: Any, high: Any) -> t
     on_frame = np.pi * (np.ceil(low / np.pi) + np.arange(2))
     places = np.concatenate([low, high, np.where(on_frame <= high, on_frame, low)], axis=-1)
     sizes = np.abs(cosine_bcd(l2, l3, l1 * l1 + l4 * l4 - 2 * l1 * l4 * np.cos(places)))
-    worst = np.argmax(sizes, axis=-1)[..., None]  # what is no number is the worst
+    worst = np.argmax(sizes, axis=-1)[..., None]  # nan counts as the worst
     size, place = (np.take_along_axis(x, worst, axis=-1)[..., 0] for x in (sizes, places))
     return size, place
 

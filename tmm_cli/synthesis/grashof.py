@@ -17,7 +17,7 @@ from tmm_cli.synthesis.measures import driver_completes_range
 from tmm_cli.synthesis.record import Demand, Infeasible, NamedValue, SynthesisOutcome, given_values
 
 PARAMETERS: Final[dict[str, str]] = {}
-LINKS: Final = {  # that a task may give: kind and what they are called
+LINKS: Final = {  # quantities that a task may give: kind and description
     "l1": ("length", N_("link 1")),
     "l2": ("length", N_("link 2")),
     "l3": ("length", N_("link 3")),
@@ -44,7 +44,7 @@ FOUR_BAR_TITLES: Final = {
     "S2X": N_("S2X: two pairs of equal links (parallelogram or kite), with change points"),
     "S3X": N_("S3X: four equal links (rhombus), with change points"),
 }
-CRANK_SLIDER_TYPES: Final = {  # by the number of the kind
+CRANK_SLIDER_TYPES: Final = {  # by index of the kind
     "crank": N_("the crank rotates fully"),
     "rod": N_("the crank rocks, the rod rotates fully"),
     "none": N_("neither the crank nor the rod rotates fully"),
@@ -185,13 +185,11 @@ def _rotation_demands(turns: bool, change: bool) -> tuple[Demand, ...]:
     return () if change else (Demand(words, float(turns), "number", driver_completes_range, asked=False),)
 
 
-# Which links turn fully: keys of the task.
+# Keys of the task.
 
 
 LinkName = Literal["l1", "l2", "l3", "l4"]
-KEY_SETS: tuple[
-    tuple[Any, tuple[str, ...], tuple[str, ...]], ...
-] = (  # record, keys that it needs, keys that it may have
+KEY_SETS: tuple[tuple[Any, tuple[str, ...], tuple[str, ...]], ...] = (  # record, required keys, optional keys
     (FourBarLinks, ("l1", "l2", "l3", "l4"), ("frame", "driver")),
     (CrankSlider, ("r", "l"), ("e",)),
     (SlottedLever, ("OA", "OC"), ("e",)),

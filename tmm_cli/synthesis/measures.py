@@ -64,12 +64,12 @@ def _stroke_ends(slope: Callable[[Real], Real], low: Real, step: float, before: 
     return bisect(lambda shares: np.sign(slope(shares)) == before, low, low + step)[0]
 
 
-# What is measured on an analysed mechanism (pipeline.Results); nan where it has no such quantity.
+# Quantities measured on an analysed mechanism (pipeline.Results); nan if it has no such quantity.
 
 
 NO_VALUE = math.nan
 
-DriverEnds = tuple[float, float] | None  # of the driver's way (rad or m), where it is no cycle
+DriverEnds = tuple[float, float] | None  # ends of the driver range (rad or m); None: a cycle
 
 
 def output_stroke(results: Results, ends: DriverEnds = None) -> float:
@@ -107,9 +107,11 @@ def time_ratio_uncertainty(results: Results) -> float:
     around = ends[0] + strokes.cycle * np.arange(64) / 64
     every = np.abs(output_slope(motion_at_positions(results, np.append(places, around)), strokes.link))
     speed = every[:-64].reshape(places.shape)
-    dwells = np.any(speed[:, :, -1:] == 0, axis=1)  # which begin and end to the last digit
+    dwells = np.any(speed[:, :, -1:] == 0, axis=1)  # their ends are exact
     sure = np.all(speed > SURE_SIGN * np.nanmax(every), axis=1) | dwells
-    doubtful = np.sum(np.logical_or.accumulate(~sure[:, ::-1], axis=1), axis=1)  # so many steps, and all nearer ones
+    doubtful = np.sum(
+        np.logical_or.accumulate(~sure[:, ::-1], axis=1), axis=1
+    )  # number of steps, with all smaller ones
     blur = float(np.sum(away[np.minimum(doubtful, len(away) - 1)]))
     return blur * (1 / float(lengths[works].sum()) + 1 / float(lengths[~works].sum()))
 
@@ -167,7 +169,7 @@ def stroke_end_angle(results: Results, near: float) -> float:
     return near + min((math.remainder(away, math.tau) for away in ends), key=abs)
 
 
-# What was asked for, measured on the analysed mechanism.
+# Demands of a synthesis, measured on the analysed mechanism.
 
 
 @dataclass(frozen=True)
@@ -215,7 +217,7 @@ def synthesised_link(outcome: SynthesisOutcome, results: Results) -> str | None:
     on_frame = {"slide": linkage.slides_on_frame, "swing": linkage.hinged_to_frame}.get(outcome.output)
     if on_frame is None:
         return output
-    away = {FRAME: 0} | {driver.link: 0 for driver in linkage.drivers}  # groups from the driver to a link
+    away = {FRAME: 0} | {driver.link: 0 for driver in linkage.drivers}  # number of groups between the driver and a link
     for group in results.structure.all_groups:
         away |= dict.fromkeys(group.links, 1 + max(away[link] for link in group.known))
     links = [link for group in results.structure.all_groups for link in group.links if on_frame(link)]

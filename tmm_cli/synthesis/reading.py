@@ -49,16 +49,16 @@ from tmm_cli.synthesis.tasks import block_module, solver_module
 
 DIGITS: Final = 6
 GROWING: Final = np.geomspace(1e-3, 1e4, 40)
-STEPS: Final = np.concatenate([GROWING, -GROWING])  # changes that are tried, over the given value
+STEPS: Final = np.concatenate([GROWING, -GROWING])  # relative changes to try
 SHARES: Final = np.concatenate([np.geomspace(1e-6, 1, 24), -np.geomspace(1e-6, 1, 24)])
 SPECIAL_VALUES: Final = {
     NUMBER: (0.0, 1.0),
     ANGLE: (0.0, np.pi / 2),
-}  # and places near these, over the distance from them
+}  # values near which to try, by relative distance
 HALVINGS: Final = 30
-INWARDS: Final = 5e-5  # relative: so far from the limit a mechanism is not dead but for rounding
+INWARDS: Final = 5e-5  # relative: at this distance from the limit the mechanism is reliably not in a dead position
 ALONE: Final = 1e-3
-NO_NEAREST: Final = N_("another task: no other value of it was found to help")
+NO_NEAREST: Final = N_("other given values: changing this one alone does not help")
 
 
 def refusal_error(error: Infeasible, given: Any, units: UnitSystem, searched: str | None = None) -> ProblemError:
@@ -97,7 +97,7 @@ def describe_nearest(
 
 def _nearest_message(path: Path, number: float, want: Dimension, units: UnitSystem) -> str:
     value = f"{number:.15g} {units.symbol(want)}".rstrip()
-    return _("the nearest is {name}: {value}").format(name=format_path(path), value=value)
+    return _("nearest feasible value: {name}: {value}").format(name=format_path(path), value=value)
 
 
 def _find_nearest(value: float, want: Dimension, solved: Callable[[float], bool]) -> float | None:
@@ -110,7 +110,7 @@ def _find_nearest(value: float, want: Dimension, solved: Callable[[float], bool]
         side = 1.0 if place > value else -1.0
         if abs(place - value) <= reach and solved(place):
             edge = float(bisect(lambda x: np.asarray(solved(float(x))), np.array(place), last[side], HALVINGS)[0])
-            if abs(edge - value) < ALONE * abs(place - value):  # all but the given value itself is good
+            if abs(edge - value) < ALONE * abs(place - value):  # only the given value itself is infeasible
                 return float(place)
             inside = edge + side * INWARDS * min(abs(edge), abs(edge - value))
             return inside if solved(inside) else edge
@@ -130,26 +130,26 @@ def round_to_side(units: UnitSystem, value: float, dimension: Dimension, side: i
     return float(number)
 
 
-# The block `synthesis:` of a problem file: checked when the file is loaded, solved when something needs its answer.
+# The block `synthesis:` of a problem file: checked when the file is loaded, solved when its solution is needed.
 
 
 Parameters = dict[str, PhysicalValue]
-GOLDEN_RATIO = (math.sqrt(5) - 1) / 2  # its multiples are in no simple ratio
+GOLDEN_RATIO = (math.sqrt(5) - 1) / 2  # fractional parts of its multiples are in no simple ratio
 
 
 def read(tree: Tree) -> TaskProblem:
     """Read a file with a task and a linkage: the whole block is checked, nothing is solved. Raises ProblemError."""
     if "links" not in tree.data:
         raise ProblemError(
-            _("there is no linkage that could use what is found"),
+            _("the file has no linkage that could use the synthesised dimensions"),
             path=("synthesis",),
-            allowed=_("tmm synthesis, or links and a driver"),
+            allowed=_("the command tmm synthesis; or links and driver in the file"),
             key=True,
         ).located(tree.file, tree)
     file = TaskFile(tree)
     with locate_errors_in(tree):
         if not file.searches:
-            file.task  # noqa: B018  refuses what is wrong in it
+            file.task  # noqa: B018  raises its errors
     shape, name = file.shape, tree.name
     return TaskProblem(
         name,
@@ -215,8 +215,8 @@ class TaskFile:
         for name, other in own.items():
             path = ("synthesis", "names", name)
             if name not in self.kinds:
-                nothing = _("the synthesis {task} finds nothing of that name").format(task=task)
-                none = None if self.kinds else _("it finds no parameters")
+                nothing = _("the synthesis {task} has no result with this name").format(task=task)
+                none = None if self.kinds else _("this synthesis finds no parameters")
                 raise unknown_name_error(name, self.kinds, nothing, none, path=path, key=True)
             check_parameter(other, path, key=False)
         names = {name: own.get(name, name) for name in self.kinds}
@@ -224,20 +224,24 @@ class TaskFile:
             first = next(one for one in names if names[one] == other)
             if first != name:
                 raise ProblemError(
-                    _("{first} and {second} of the synthesis have the same name").format(first=first, second=name),
+                    _("the results {first} and {second} of the synthesis have the same name").format(
+                        first=first, second=name
+                    ),
                     path=("synthesis", "names"),
                     found=quote(other),
                     allowed=_("different names"),
                 )
             if other in raw:
                 raise ProblemError(
-                    _("the parameter {name} is given by hand, and the synthesis {task} finds it (its {own})").format(
+                    _("parameter {name} is given, although the synthesis {task} computes it (as {own})").format(
                         name=other, task=task, own=name
                     ),
                     path=("parameters", other),
                     found=quote(raw[other]),
                     key=True,
-                    allowed=_("one of the two; another name: synthesis: {{names: {{{name}: ...}}}}").format(name=name),
+                    allowed=_("only one of the two; or another name: synthesis: {{names: {{{name}: ...}}}}").format(
+                        name=name
+                    ),
                 )
         return names
 
@@ -274,10 +278,10 @@ class TaskFile:
             used = Parser(plain_text(text[:200]), known, self.units).names()
             if path[0] not in ("task", "names") and used:
                 raise ProblemError(
-                    _("this rests on what the synthesis finds"),
+                    _("the task depends on parameters that the synthesis itself finds"),
                     path=("synthesis", *path),
                     found=", ".join(map(quote, used)),
-                    allowed=_("parameters that do not"),
+                    allowed=_("parameters that do not depend on its results"),
                 )
 
     @cached_property
@@ -290,7 +294,7 @@ class TaskFile:
                     return read(self.block, BoundedReader(self.independent, self.units))
                 if "links" not in self.tree.data:
                     raise ProblemError(
-                        _("there is no linkage whose parameters could vary"), allowed=_("links and a driver")
+                        _("the file has no linkage whose parameters could be varied"), allowed=_("links and a driver")
                     )
                 return read(self.block, ValueReader(self.independent, self.units), self.try_values)
         except Infeasible as error:
@@ -316,7 +320,7 @@ class TaskFile:
         """Solve the task. Raises ProblemError."""
         task = self.task
         try:
-            with prefix_errors("synthesis"), np.errstate(all="ignore"):  # what has no value is refused by `sound`
+            with prefix_errors("synthesis"), np.errstate(all="ignore"):  # `refuse_nonfinite` handles undefined values
                 outcome = refuse_nonfinite(solver_module(self.block.task).solve(task))
         except Infeasible as error:
             searched = error.nearest is None and error.search and not self.searches

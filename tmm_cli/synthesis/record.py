@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from tmm_cli.synthesis.construction import Diagram, GeometricConstruction
 
 
-SMALLEST: Final = 1e-6  # SI, of what has a size: less is no mechanism's
-Kind = str  # a dimension by its name: length, angle, number, speed, ...; `word` for what is no number
+SMALLEST: Final = 1e-6  # SI: smallest length or ratio of a mechanism
+Kind = str  # name of a dimension: length, angle, number, speed, ...; `word`: a text
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ def given_values(task: Any, quantities: Mapping[str, tuple[Kind, str]]) -> tuple
     return tuple(NamedValue(name, value, *quantities[name]) for name, value in numbers if value is not None)
 
 
-class Infeasible(Exception):  # noqa: N818  said of a task, as it is said
+class Infeasible(Exception):  # noqa: N818
     """No mechanism meets the task.
 
     Attributes:
@@ -143,5 +143,7 @@ def refuse_nonfinite(outcome: SynthesisOutcome) -> SynthesisOutcome:
     solution."""
     for value in outcome.found:
         if value.kind != "word" and not bool(np.all(np.isfinite(np.asarray(value.value, dtype=float)))):
-            raise Infeasible((), _("no mechanism was found: it has no {name}").format(name=value.text))
+            raise Infeasible(
+                (), _("no mechanism was found: this quantity has no finite value: {name}").format(name=value.text)
+            )
     return outcome

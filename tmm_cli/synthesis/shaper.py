@@ -45,7 +45,7 @@ def draw_construction(f: ShaperSolution) -> GeometricConstruction:
         Segment(complex(ends[0] - 0.12 * stroke, e1.imag), complex(ends[1] + 0.12 * stroke, e1.imag), "axis"),
     ]
     spots += [LetteredPoint("E1", e1, "slider"), LetteredPoint("E2", e2, "slider")]
-    top = complex(0, float(f.lever) - float(f.frame))  # of D's arc
+    top = complex(0, float(f.lever) - float(f.frame))  # top of D's arc
     sizes = (DimensionLine(e1, e2, "H", 1 + 0j), DimensionLine(lever.o, e2, "y", 1j))
     lengths = {"OA": f.crank, "OC": f.frame, "CD": f.lever, "DE": f.rod}
     return GeometricConstruction(
@@ -62,24 +62,24 @@ def draw_construction(f: ShaperSolution) -> GeometricConstruction:
     )
 
 
-# Crank shaper (six-bar: crank, stone, slotted lever CD, rod DE, ram) from its stroke and k.
+# Crank shaper (six-bar: crank, sliding block, slotted lever CD, rod DE, ram) from its stroke and k.
 #
-# D is equally high in both extreme positions of the lever, so the ram's stroke is the chord of D's arc whatever DE is:
+# D has the same height in both extreme positions of the lever, so the stroke is the chord of D's arc for any DE:
 #     CD = H/(2 sin(theta/2)),  OA = OC sin(theta/2),  theta = pi (k - 1)/(k + 1).
-# D's arc is CD (1 - cos(theta/2)) = 2 CD sin^2(theta/4) high. A guide at half of it has the least pressure angle:
+# The height of D's arc is CD (1 - cos(theta/2)) = 2 CD sin^2(theta/4). A guide at half of it has the smallest angle:
 #     sin(lambda) = CD sin^2(theta/4)/DE.
 
 
 PARAMETERS: Final = dict.fromkeys(("OA", "OC", "CD", "DE", "y"), "length")
-QUANTITIES: Final = {  # that a task may give: kind and what they are called
+QUANTITIES: Final = {  # quantities that a task may give: kind and description
     "stroke": ("length", N_("stroke H of the ram")),
     "k": ("number", N_("k")),
     "OC": ("length", N_("frame OC")),
-    "frame_ratio": ("number", N_("OC/CD")),
+    "frame_ratio": ("number", N_("ratio OC/CD")),
     "OA": ("length", N_("crank OA")),
-    "DE": ("length", N_("rod DE")),
-    "rod_ratio": ("number", N_("DE/CD")),
-    "pressure": ("angle", N_("largest pressure angle of the ram")),
+    "DE": ("length", N_("connecting rod DE")),
+    "rod_ratio": ("number", N_("ratio DE/CD")),
+    "pressure": ("angle", N_("largest pressure angle on the ram")),
 }
 FRAME_KEYS: Final = ("OC", "frame_ratio", "OA")
 ROD_KEYS: Final = ("DE", "rod_ratio", "pressure")
@@ -141,10 +141,12 @@ def refuse(task: ShaperTask) -> None:
         raise Infeasible("k", HALF_A_TURN)
     f = find_shaper(task)
     if not f.frame < f.lever / (1 + np.sin(half)):
-        raise Infeasible(_given_key(task, FRAME_KEYS), _("the stone would pass the hinge D of the rod"))
+        raise Infeasible(
+            _given_key(task, FRAME_KEYS), _("the sliding block would pass the hinge D of the connecting rod")
+        )
     steepest = f.pressure if task.pressure is None else task.pressure
-    if not steepest < np.pi / 2 - half:  # where the lever turns back, half its swing from the middle
-        reason = _("the ram would turn back before the lever does: the rod is too steep")
+    if not steepest < np.pi / 2 - half:  # where the lever reverses, half its swing from the middle
+        reason = _("the ram would reverse before the lever: the connecting rod is too steep")
         raise Infeasible(_given_key(task, ROD_KEYS), reason)
 
 
@@ -161,11 +163,11 @@ def solve(task: ShaperTask) -> SynthesisOutcome:
         NamedValue("OA", f.crank, "length", N_("crank OA")),
         NamedValue("OC", f.frame, "length", N_("frame OC, C below O")),
         NamedValue("CD", f.lever, "length", N_("slotted lever CD")),
-        NamedValue("DE", f.rod, "length", N_("rod DE")),
-        NamedValue("y", f.level, "length", N_("guide of the ram above O, y")),
+        NamedValue("DE", f.rod, "length", N_("connecting rod DE")),
+        NamedValue("y", f.level, "length", N_("height of the ram's guide above O, y")),
         NamedValue("", f.theta, "angle", N_("theta = D1CD2")),
         *((NamedValue("", f.pressure, kind, text),) if task.pressure is None else ()),
-        NamedValue("", f.lever / (1 + np.sin(f.theta / 2)), "length", N_("longest OC that leaves the stone on CD")),
+        NamedValue("", f.lever / (1 + np.sin(f.theta / 2)), "length", N_("longest OC with the sliding block on CD")),
     )
     demands = (
         Demand(N_("crank rotates fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
@@ -174,15 +176,17 @@ def solve(task: ShaperTask) -> SynthesisOutcome:
         Demand(text, float(f.pressure), kind, largest_pressure_angle, task.pressure is not None, of="pressure"),
     )
     source = N_(
-        "D is equally high in the lever's extreme positions: CD = H/(2 sin(theta/2)), theta = pi (k - 1)/"
-        "(k + 1), OA = OC sin(theta/2); the guide midway in the height of D's arc"
+        (
+            "D has the same height in both extreme positions of the lever: CD = H/(2 sin(theta/2)), theta = pi "
+            "(k - 1)/(k + 1), OA = OC sin(theta/2); the guide is at half the height of D's arc"
+        )
     )
     return SynthesisOutcome(
         given_values(task, QUANTITIES), found, source, demands, (draw_construction(f),), output="slide"
     )
 
 
-# Crank shaper by its stroke and k: keys of the task.
+# Keys of the task.
 
 
 class ShaperBlock(TaskBlock):
@@ -190,14 +194,19 @@ class ShaperBlock(TaskBlock):
 
     task: Literal["shaper"]
     stroke: FileValue = Field(description="stroke H of the ram")
-    k: FileValue = Field(description="coefficient of change of mean speed, more than 1")
-    OC: FileValue | None = Field(default=None, description="distance of the fixed hinges")
-    frame_ratio: FileValue | None = Field(default=None, description="or OC/CD")
-    OA: FileValue | None = Field(default=None, description="or the crank")
-    DE: FileValue | None = Field(default=None, description="rod")
-    rod_ratio: FileValue | None = Field(default=None, description="or DE/CD")
+    k: FileValue = Field(
+        description="time ratio (coefficient of change of mean speed) k = (180° + θ)/(180° - θ), more than 1"
+    )
+    OC: FileValue | None = Field(default=None, description="distance OC between the fixed hinges")
+    frame_ratio: FileValue | None = Field(default=None, description="ratio OC/CD, instead of OC")
+    OA: FileValue | None = Field(default=None, description="crank OA, instead of OC")
+    DE: FileValue | None = Field(default=None, description="connecting rod DE")
+    rod_ratio: FileValue | None = Field(default=None, description="ratio DE/CD, instead of DE")
     pressure: FileValue | None = Field(
-        default=None, description="or the largest pressure angle of the ram: the shortest rod that keeps it is found"
+        default=None,
+        description=(
+            "largest admissible pressure angle on the ram, instead of DE; the shortest rod that satisfies it is found"
+        ),
     )
 
 

@@ -35,7 +35,7 @@ from tmm_cli.synthesis.measures import (
 )
 from tmm_cli.synthesis.record import Demand, Infeasible, Listing, NamedValue, SynthesisOutcome, given_values
 
-FAMILY_SIZE: Final = 61  # lengths of OC within bounds that are listed
+FAMILY_SIZE: Final = 61  # tabulated lengths OC
 
 
 def lever_elements(
@@ -105,43 +105,47 @@ def tabulate_family(task: SlottedLeverTask, f: SlottedLeverSolution) -> tuple[Di
     crank = frame * float(np.sin(f.theta / 2))
     rows = (
         ("OA", N_("crank OA"), crank),
-        ("nearest", N_("stone from C, at least"), frame - crank),
-        ("farthest", N_("stone from C, at most"), frame + crank),
+        ("nearest", N_("distance of the sliding block from C, smallest"), frame - crank),
+        ("farthest", N_("distance of the sliding block from C, largest"), frame + crank),
     )
     own = np.array([f.crank, f.frame - f.crank, f.frame + f.crank], dtype=float)
     lines = (
         *(DiagramLine(text, frame, values) for __, text, values in rows),
-        DiagramLine(N_("lever CB"), frame, np.full(FAMILY_SIZE, float(f.lever))),
+        DiagramLine(N_("slotted lever CB"), frame, np.full(FAMILY_SIZE, float(f.lever))),
         DiagramLine(N_("chosen"), np.full(3, float(f.frame)), own, dots=True),
     )
-    title = N_("Crank OA and distance of the stone from C, over OC within its bounds")
+    title = N_("Crank OA and distance of the sliding block from C over OC")
     drawn = Diagram("family-lengths", title, (N_("frame OC"), "length"), (N_("length"), "length"), lines)
     columns = (("OC", N_("frame OC"), "length"), *((name, text, "length") for name, text, __ in rows))
     values = np.stack((frame, *(values for *__, values in rows)), axis=-1).tolist()
-    title = N_("Slotted levers for OC within its bounds")
+    title = N_("Slotted-lever mechanisms for OC within its bounds")
     return drawn, Listing("family", title, columns, tuple(map(tuple, values)), long=True)
 
 
-# Slotted lever by k and the extreme positions of its end B: the crank's pin touches both from O on their bisector.
+# Slotted lever by k and the extreme positions of its end B: the crank circle touches both, O is on their bisector.
 #
-# In an extreme position OA is square to CB, so that the lever swings by theta = pi (k - 1)/(k + 1) = B1CB2, and
+# In an extreme position OA is perpendicular to CB, so the lever swings by theta = pi (k - 1)/(k + 1) = B1CB2, and
 #     CB = B1B2/(2 sin(theta/2)),  OA = OC sin(theta/2);
-# the stone moves between OC - OA and OC + OA from C. OC is free. The force on the stone is the lever's moment over its
-# distance from C, so the longest OC that leaves the stone on CB gives the least force: OC (1 + sin(theta/2)) = CB.
+# the sliding block moves between OC - OA and OC + OA from C. OC is free. The force on the
+# block is the lever's moment over its distance from C, so the longest OC with the block on CB gives the smallest force:
+# OC (1 + sin(theta/2)) = CB.
 
 
 PARAMETERS: Final = {**dict.fromkeys(("OA", "OC", "CB", "xO", "yO", "xC", "yC"), "length"), "phi": "angle"}
-QUANTITIES: Final = {  # that a task may give: kind and what they are called
-    "CB": ("length", N_("lever CB")),
+QUANTITIES: Final = {  # quantities that a task may give: kind and description
+    "CB": ("length", N_("slotted lever CB")),
     "k": ("number", N_("k")),
-    "swing": ("angle", N_("swing of the lever")),
+    "swing": ("angle", N_("swing angle of the lever")),
     "OC": ("length", N_("frame OC")),
     "OA": ("length", N_("crank OA")),
 }
 QUICK_RETURN: Final = N_(
-    "a lever that swings goes back faster: k is the time of the slow stroke over that of the quick one"
+    (
+        "k must be greater than 1: a swinging lever returns faster, and k is the duration of the slow "
+        "stroke divided by that of the fast one"
+    )
 )
-HALF_A_TURN: Final = N_("the lever of a crank that turns fully swings by less than 180 deg")
+HALF_A_TURN: Final = N_("with a fully rotating crank the swing angle of the lever must be less than 180 deg")
 
 
 @dataclass(frozen=True)
@@ -228,15 +232,15 @@ def refuse(task: SlottedLeverTask) -> None:
     if task.k is not None and not task.k > 1:
         raise Infeasible("k", QUICK_RETURN)
     if task.swing is not None and not task.swing > 0:
-        raise Infeasible("swing", _("a lever that does not swing has no strokes"))
+        raise Infeasible("swing", _("the swing angle must be greater than 0"))
     if not np.pi - task.theta > DEAD_SWING:
         raise Infeasible("k" if task.swing is None else "swing", HALF_A_TURN)
     if task.CB is None and abs(task.b2 - task.b1) == 0:
-        raise Infeasible("B2", _("B1 and B2 are the same place"), search=False)
+        raise Infeasible("B2", _("B1 and B2 are the same point"), search=False)
     if task.within is not None and not 0 < task.within[0] <= task.within[1]:
-        raise Infeasible("within", _("these are no bounds of a distance, the smaller one first"))
+        raise Infeasible("within", _("expected two positive bounds of OC, the smaller one first"))
     if task.within is not None and task.within[0] > find_slotted_lever(task).longest:
-        raise Infeasible(("within", 0), _("within these bounds the stone always passes B"))
+        raise Infeasible(("within", 0), _("within these bounds the sliding block always passes the lever's end B"))
 
 
 def solve(task: SlottedLeverTask) -> SynthesisOutcome:
@@ -246,18 +250,27 @@ def solve(task: SlottedLeverTask) -> SynthesisOutcome:
     demands = (
         Demand(N_("crank rotates fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
         Demand(N_("k"), float(k_of(f.theta)), "number", time_ratio, task.k is not None),
-        Demand(N_("swing of the lever"), float(f.theta), "angle", output_stroke, task.swing is not None),
+        Demand(N_("swing angle of the lever"), float(f.theta), "angle", output_stroke, task.swing is not None),
         *(
             Demand(text, float(v), "angle", partial(stroke_end_angle, near=float(v)), at=1.0)
-            for text, v in ((N_("angle of CB1"), f.psi1), (N_("angle of CB2"), f.psi2))
+            for text, v in (
+                (N_("angle of the lever in position CB1"), f.psi1),
+                (N_("angle of the lever in position CB2"), f.psi2),
+            )
         ),
     )
-    notes = (N_("the stone passes B: the slot goes on beyond it"),) if f.frame > f.longest * (1 + 1e-12) else ()
+    notes = (
+        (N_("the sliding block passes the lever's end B: the slot must extend beyond B"),)
+        if f.frame > f.longest * (1 + 1e-12)
+        else ()
+    )
     free = tabulate_family(task, f) if task.within is not None and task.within[0] < task.within[1] else None
     drawings, listings = ((draw_construction(f), free[0]), (free[1],)) if free else ((draw_construction(f),), ())
     source = N_(
-        "OA is square to the lever in its extreme positions: B1CB2 = theta = pi (k - 1)/(k + 1), CB1 = CB2, O "
-        "on the bisector, OA = OC sin(theta/2)"
+        (
+            "in the extreme positions OA is perpendicular to the lever: B1CB2 = theta = pi (k - 1)/(k + 1), "
+            "CB1 = CB2, O on the bisector, OA = OC sin(theta/2)"
+        )
     )
     return SynthesisOutcome(
         _given_values(task), _found_values(task, f), source, demands, drawings, notes, listings, output="swing"
@@ -271,11 +284,11 @@ def _given_values(task: SlottedLeverTask) -> tuple[NamedValue, ...]:
             values += [NamedValue("", np.real(place), "length", x), NamedValue("", np.imag(place), "length", y)]
     values += given_values(task, QUANTITIES)
     if task.within is not None:
-        force = N_("least force: the longest that leaves the stone on CB")
+        force = N_("least force: the longest OC with the sliding block on CB")
         values += [
-            NamedValue("", task.within[0], "length", N_("frame OC, at least")),
-            NamedValue("", task.within[1], "length", N_("frame OC, at most")),
-            NamedValue("", force if task.choose == "force" else N_("the shortest"), "word", N_("choice of OC")),
+            NamedValue("", task.within[0], "length", N_("frame OC, lower bound")),
+            NamedValue("", task.within[1], "length", N_("frame OC, upper bound")),
+            NamedValue("", force if task.choose == "force" else N_("the shortest OC"), "word", N_("choice of OC")),
         ]
     return tuple(values)
 
@@ -286,31 +299,31 @@ def _found_values(task: SlottedLeverTask, f: SlottedLeverSolution) -> tuple[Name
         NamedValue("OA", f.crank, *QUANTITIES["OA"]),
         NamedValue("OC", f.frame, *QUANTITIES["OC"]),
         NamedValue("CB", f.lever, *QUANTITIES["CB"]),
-        NamedValue("xO", np.real(f.o), "length", N_("hinge O of the crank, x")),
-        NamedValue("yO", np.imag(f.o), "length", N_("hinge O of the crank, y")),
-        NamedValue("xC", np.real(f.c), "length", N_("hinge C of the lever, x")),
-        NamedValue("yC", np.imag(f.c), "length", N_("hinge C of the lever, y")),
+        NamedValue("xO", np.real(f.o), "length", N_("crank pivot O, x")),
+        NamedValue("yO", np.imag(f.o), "length", N_("crank pivot O, y")),
+        NamedValue("xC", np.real(f.c), "length", N_("pivot C of the slotted lever, x")),
+        NamedValue("yC", np.imag(f.c), "length", N_("pivot C of the slotted lever, y")),
         NamedValue(
             "phi",
             np.arctan2(np.imag(away), np.real(away)),
             "angle",
-            N_("direction from C to O, of crank and lever when they are in line"),
+            N_("direction from C to O, also of crank and lever when they are in line"),
         ),
         NamedValue("", f.theta, "angle", N_("theta = B1CB2")),
-        NamedValue("", f.frame - f.crank, "length", N_("stone from C, at least")),
-        NamedValue("", f.frame + f.crank, "length", N_("stone from C, at most")),
-        NamedValue("", f.longest, "length", N_("longest OC that leaves the stone on CB")),
-        # in the slow stroke the crank turns as the lever does
+        NamedValue("", f.frame - f.crank, "length", N_("distance of the sliding block from C, smallest")),
+        NamedValue("", f.frame + f.crank, "length", N_("distance of the sliding block from C, largest")),
+        NamedValue("", f.longest, "length", N_("longest OC with the sliding block on CB")),
+        # in the slow stroke crank and lever rotate in the same sense
         NamedValue(
             "",
             N_("counterclockwise") if task.side > 0 else N_("clockwise"),
             "word",
-            N_("crank for a slow stroke from B1 to B2"),
+            N_("sense of rotation of the crank for a slow stroke from B1 to B2"),
         ),
     )
 
 
-# Slotted lever by k and its extreme positions: keys of the task.
+# Keys of the task.
 
 
 END_KEYS = (("B1", "B2"), ("CB",))
@@ -322,22 +335,25 @@ class SlottedLeverBlock(TaskBlock):
     """A slotted lever by the extreme positions of its end B (or its length) and k (or its swing angle)."""
 
     task: Literal["slotted-lever"]
-    B1: Vector | None = Field(default=None, description="extreme place of the lever's end B")
-    B2: Vector | None = Field(default=None, description="the other one")
+    B1: Vector | None = Field(default=None, description="one extreme position of the lever's end B")
+    B2: Vector | None = Field(default=None, description="other extreme position of the lever's end B")
     C: Literal["left", "right"] | None = Field(
-        default=None, description="on which side of the way from B1 to B2 the lever's hinge lies; right"
+        default=None, description="side of the line from B1 to B2 on which the lever's pivot C lies; default right"
     )
-    CB: FileValue | None = Field(default=None, description="length of the lever, instead of its places")
-    support: Vector | None = Field(default=None, description="with CB, the hinge C; [0, 0]")
-    axis: FileValue | None = Field(default=None, description="with CB, direction from C to O; 90 deg")
-    k: FileValue | None = Field(default=None, description="coefficient of change of mean speed, more than 1")
-    swing: FileValue | None = Field(default=None, description="swing of the lever, instead of k")
-    OC: FileValue | None = Field(default=None, description="distance of the fixed hinges")
-    OA: FileValue | None = Field(default=None, description="or the crank")
-    within: Range | None = Field(default=None, description="or bounds of OC")
+    CB: FileValue | None = Field(default=None, description="length of the lever, instead of its extreme positions")
+    support: Vector | None = Field(default=None, description="pivot C of the lever, only with CB; default [0, 0]")
+    axis: FileValue | None = Field(default=None, description="direction from C to O, only with CB; default 90 deg")
+    k: FileValue | None = Field(
+        default=None,
+        description="time ratio (coefficient of change of mean speed) k = (180° + θ)/(180° - θ), more than 1",
+    )
+    swing: FileValue | None = Field(default=None, description="swing angle of the lever, instead of k")
+    OC: FileValue | None = Field(default=None, description="distance OC between the fixed hinges")
+    OA: FileValue | None = Field(default=None, description="crank OA, instead of OC")
+    within: Range | None = Field(default=None, description="bounds of OC, [from, to], instead of OC")
     choose: Literal["least force", "shortest"] | None = Field(
         default=None,
-        description="OC within its bounds: the longest that leaves the stone on CB (least force), or the shortest",
+        description="OC within its bounds: the longest with the sliding block on CB (least force), or the shortest",
     )
 
 
@@ -366,9 +382,9 @@ def _check_companions(shape: SlottedLeverBlock, needs: dict[str, tuple[str, ...]
         lacking = [other for other in others if getattr(shape, other) is None]
         if getattr(shape, key) is not None and lacking:
             raise ProblemError(
-                _("{key} goes with {others} only").format(key=key, others=_(" and ").join(others)),
+                _("{key} can only be given together with {others}").format(key=key, others=_(" and ").join(others)),
                 path=(key,),
                 found=_("{key} without {lacking}").format(key=key, lacking=_(" and ").join(lacking)),
-                allowed=_("{others}, or no {key}").format(others=_(" and ").join(others), key=key),
+                allowed=_("add {others}, or remove {key}").format(others=_(" and ").join(others), key=key),
                 key=True,
             )

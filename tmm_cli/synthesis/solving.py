@@ -62,7 +62,7 @@ def structure_of(problem: Problem | TaskProblem) -> Results:
         try:
             return pipeline.solve(replace(inputs_of(draft), sized=False), "structure", problem=draft)
         except LinkageError:
-            pass  # perhaps for the numbers of the draft: with lengths it may move
+            pass  # the placeholder lengths may be the cause: solve with the real ones
     return solve(problem, "structure")
 
 

@@ -150,7 +150,9 @@ def rate_guidance(poses: CouplerPoses, first: Dyads, second: Dyads) -> GuidanceQ
         phi = np.angle((b - a) / (d - a))
         steps = np.mod(np.diff(phi, axis=-1), 2 * np.pi)
         side = np.sign(((c - b) * np.conj(c - d)).imag)
-        dead = 1 - DEAD_COSINE * (l1**2 + l2**2 + l3**2 + l4**2) / (2 * l2 * l3)  # as with pin C on pivot A: a kite
+        dead = 1 - DEAD_COSINE * (l1**2 + l2**2 + l3**2 + l4**2) / (
+            2 * l2 * l3
+        )  # dead position, as for a kite with pin C on pivot A
     branch = np.any(side != side[..., :1], axis=-1)
     found = []
     for turn in (steps.sum(-1), (steps - 2 * np.pi).sum(-1)):
@@ -166,7 +168,7 @@ def rate_guidance(poses: CouplerPoses, first: Dyads, second: Dyads) -> GuidanceQ
     return GuidanceQuality(*(np.where(better, x, y) for x, y in zip(one, other, strict=True)))
 
 
-# What is asked of a four-bar whose coupler takes given positions.
+# The task.
 
 
 SIDES: Final = {"left": 1.0, "right": -1.0}

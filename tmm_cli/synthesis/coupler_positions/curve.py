@@ -26,9 +26,9 @@ from tmm_cli.synthesis.coupler_positions.burmester import (
     unit_vector,
 )
 
-APART: Final = 0.03  # of the size: places of a loop that are farther apart are looked at between
-FIRST, ROUNDS = 512, 9  # places of a loop that are looked at first, then rounds between those that are far apart
-HALVINGS: Final = 60  # to the ends of its parts
+APART: Final = 0.03  # relative distance of neighbours above which midpoints are inserted
+FIRST, ROUNDS = 512, 9  # initial steps of a loop, and rounds of inserting midpoints
+HALVINGS: Final = 60  # bisections for the ends of a part
 HALF: Final = np.longdouble("1.57079632679489661923132169163975144")  # a right angle
 FULL: Final = 4 * HALF
 
@@ -214,19 +214,19 @@ def _relative_gaps(dyads: Dyads, size: float) -> Any:
         return (np.abs(np.diff(dyads.pivot)) + np.abs(np.diff(dyads.pin))) / size
 
 
-# Burmester's curves as lines to be drawn: along their smooth parameter, dense where they bend, and their frame.
+# Burmester's curves as lines for drawings, dense where they bend, and the extent of their sheet.
 
 
-FIRST_STEPS: Final = 720  # steps of a loop that are looked at first;
-BENDING_ROUNDS: Final = 24  # then between those that are far apart, or where the curve bends between them
-DRAWN_APART: Final = 0.01  # of the size of the mechanism, or of how far off the place is
-BEND: Final = 0.05  # rad: a corner that is seen
-SHORT: Final = 2e-4  # of the size: corners that are not seen
-CLOSE: Final = 1e-15  # of a turn: parameters that cannot be told apart
-BREAK: Final = 0.1  # of the size: neighbours that are still so far apart lie on both sides of infinity
-FAR: Final = 4.0  # sizes of the mechanism in which curves are followed: more than its sheet holds
-AROUND: Final = 0.3  # how far beyond the four-bar the drawing of the curves goes, in its size
-RETURN: Final = 1.5  # in the same: a curve that comes back from no farther off is shown whole
+FIRST_STEPS: Final = 720  # initial steps of a loop
+BENDING_ROUNDS: Final = 24  # rounds of inserting midpoints in long steps and bends
+DRAWN_APART: Final = 0.01  # relative to the size of the mechanism, or to the distance from it
+BEND: Final = 0.05  # rad: smallest visible corner
+SHORT: Final = 2e-4  # relative: corners between shorter steps are not visible
+CLOSE: Final = 1e-15  # of a revolution: smallest difference of parameters
+BREAK: Final = 0.1  # relative: neighbours further apart lie on both sides of infinity
+FAR: Final = 4.0  # sizes of the mechanism: curves are followed to this distance, beyond the sheet
+AROUND: Final = 0.3  # sizes of the four-bar: margin of the curves' sheet
+RETURN: Final = 1.5  # sizes of the four-bar: a curve that returns from within this distance is shown whole
 
 Places = tuple[complex, ...]
 
@@ -261,7 +261,7 @@ def _split_pieces(found: DyadCurve, at: Callable[[int, Any], Any]) -> Iterator[A
             broken = ~(np.abs(np.diff(places)) < BREAK * np.maximum(1, np.abs(places[1:])))
             broken |= ~(_is_near(places[1:]) | _is_near(places[:-1]))
         parts = [part for part in np.split(places, np.flatnonzero(broken) + 1) if len(part) > 1]
-        if len(parts) > 1 and not (broken[0] or broken[-1]):  # the loop starts in the middle of a piece
+        if len(parts) > 1 and not (broken[0] or broken[-1]):  # the loop starts inside a piece
             parts = [np.concatenate([parts[-1], parts[0][1:]]), *parts[1:-1]]
         yield from parts
 

@@ -42,10 +42,10 @@ from tmm_cli.synthesis.coupler_positions.curve import (
 from tmm_cli.synthesis.four_bar import extreme_cosine
 from tmm_cli.synthesis.record import Infeasible
 
-COUNT: Final = 400  # places on a curve, about
-STARTS, ROUNDS = 160, 24  # pairs of places that are improved together, and for how many rounds
-LAST: Final = 5  # the best of them, improved alone
-APART, REACH = 0.05, 2.0  # steps between places: what differs; how far from them the best is looked for then
+COUNT: Final = 400  # approximate number of samples on a curve
+STARTS, ROUNDS = 160, 24  # pairs that are improved together, and rounds
+LAST: Final = 5  # best pairs, refined separately
+APART, REACH = 0.05, 2.0  # in samples: distance of distinct pairs; search interval around each
 
 
 @dataclass(frozen=True)
@@ -200,15 +200,15 @@ def _search_interval(rows: CurveSamples, at: Any) -> tuple[Any, Any]:
     return np.maximum(at - REACH, rows.low[here]), np.minimum(at + REACH, rows.high[here])
 
 
-# Dyads AB and DC of a four-bar whose coupler takes 2, 3 or 4 positions: from what is given, or the best of a curve.
+# Dyads AB and DC of a four-bar for 2, 3 or 4 coupler positions: from given data, or the best on a curve.
 
 
-FINE: Final = 1440  # turns among which the pivot nearest to a place is sought
-SHORTEST, LONGEST = 0.15, 2.0  # links that are compared, over the size of the task
-FAR: Final = 100.0  # over that size: beyond it the ends of a given turn are refused
-SURE: Final = 1e-6  # rad of transmission: a search comes so near to a change point, where no four-bar passes
-ROOM: Final = 0.9  # of the box, for the frame of a parallelogram
-DEFECTS: Final = (  # by their numbers in Marks
+FINE: Final = 1440  # rotations scanned for the pivot nearest to a point
+SHORTEST, LONGEST = 0.15, 2.0  # lengths of the links considered, over the size of the task
+FAR: Final = 100.0  # over the size: dyads for a given rotation must not extend further
+SURE: Final = 1e-6  # rad: a smaller transmission angle is a change point, which no four-bar passes
+ROOM: Final = 0.9  # of the box size: frame of a parallelogram
+DEFECTS: Final = (  # by their numbers in GuidanceQuality
     N_("none: all positions belong to one assembly and are reached in order"),
     N_("branch defect: some positions belong to the other assembly of the four-bar"),
     N_("order defect: AB does not reach the positions in order while rotating in one direction"),
@@ -341,7 +341,7 @@ def best_dyads(task: CouplerPositionsTask, given: dict[str, Dyads]) -> tuple[Dya
     coupler = max((float(abs(one.pin)) for one in given.values()), default=0.0)
     box = None if task.within is None else task.outside
     bounds = LinkLimits(SHORTEST * size, LONGEST * size, LONGEST * size + frame, LONGEST * size + coupler, box)
-    for loose in (False, True):  # at last one whose branches are not the same
+    for loose in (False, True):  # loose: accept positions on different assemblies as a last resort
         found = best_on_curves(task.poses, size, bounds, given, loose)
         if found is None or found[2] > SURE:
             break

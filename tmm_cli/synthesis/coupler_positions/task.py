@@ -40,7 +40,7 @@ from tmm_cli.synthesis.coupler_positions.dyads import DEFECTS, are_sensible, fin
 from tmm_cli.synthesis.record import Demand, Listing, NamedValue, SynthesisOutcome
 
 CURVES: Final[tuple[tuple[Style, str], ...]] = (("bold", "m"), ("dashed", "k1"))  # centre points, circle points
-TITLES: Final = (  # by how many pivots were given
+TITLES: Final = (  # by the number of given pivots
     N_("Pivots on the perpendicular bisectors of the pin positions"),
     N_(
         "One pivot on the bisectors of its pin positions; one pin on the bisectors of its pivot positions "
@@ -141,10 +141,10 @@ def draw_construction(
 
 # Four-bar whose coupler takes 2, 3 or 4 given positions; AB drives, DC follows.
 #
-# 2 and 3 positions: the pin (B, C: in the coupler's axes) or the pivot (A, D) of each of both dyads is given; with 2
-# also its length. 4 positions: dyads on Burmester's curves, by the turn of AB and DC from position 1 to 2, by the
-# nearness of a pivot, or those of best transmission. Positions must be on one assembly, reached in order by turning
-# AB one way.
+# 2 and 3 positions: the pin (B, C: in coupler axes) or the pivot (A, D) of each dyad is given; with 2 positions
+# also its length. 4 positions: dyads on Burmester's curves, given by the rotation of AB and DC from position 1 to 2,
+# by a point near a pivot, or those with the best transmission angle. All positions must belong to one assembly and be
+# reached in order while AB rotates in one direction.
 
 
 NAMES: Final = {
@@ -163,7 +163,9 @@ NAMES: Final = {
     "phi1": N_("angle of AB in position 1"),
 }
 PARAMETERS: Final = {name: "angle" if name == "phi1" else "length" for name in NAMES}
-GIVEN: Final[dict[str, dict[str, Any]]] = {  # what may be given of a dyad, by the fields of Side; places as x and y
+GIVEN: Final[
+    dict[str, dict[str, Any]]
+] = {  # descriptions of the data of a dyad, by fields of DyadData; points have x and y
     "AB": {
         "pin": (N_("B in coupler axes, x"), N_("B in coupler axes, y")),
         "pivot": (NAMES["Ax"], NAMES["Ay"]),
@@ -181,7 +183,7 @@ GIVEN: Final[dict[str, dict[str, Any]]] = {  # what may be given of a dyad, by t
 }
 BRANCH: Final = {"AB": N_("solution branch of AB"), "DC": N_("solution branch of DC")}
 AWAY: Final = {"AB": N_("distance of A from the preferred point"), "DC": N_("distance of D from the preferred point")}
-SOURCES: Final = {  # by the count of positions; 1: four of one angle
+SOURCES: Final = {  # by the number of positions; 1: four with equal angles
     1: N_("all points of a coupler that does not rotate move on equal circles; A and D are centres of such circles"),
     2: N_("each pivot lies on the perpendicular bisector of the two pin positions, at the distance of the link length"),
     3: N_(
@@ -193,7 +195,7 @@ SOURCES: Final = {  # by the count of positions; 1: four of one angle
         "(Burmester): W (e^(i beta) - 1) + Z (e^(i alpha) - 1) = P - P1"
     ),
 }
-LISTED: Final = 360  # turns that are listed of each branch of Burmester's curves
+LISTED: Final = 360  # tabulated rotations for each branch of Burmester's curves
 
 
 def refuse(task: CouplerPositionsTask) -> None:

@@ -32,7 +32,7 @@ FUNCTIONS: Final[Mapping[str, Callable[[Any], Any]]] = {
     "cos(x)": np.cos,
     "tan(x)": np.tan,
 }
-ANGLES: Final = ("sin(x)", "cos(x)", "tan(x)")  # their x is an angle
+ANGLES: Final = ("sin(x)", "cos(x)", "tan(x)")  # functions of an angle
 
 
 @dataclass(frozen=True)
@@ -74,10 +74,10 @@ class GeneratedFunction:
         return phi, self.required_output(phi)
 
 
-# Keys of lengths and zero angles.
+# Lengths and zero angles of a task.
 
 
-LENGTHS: Final = {  # that a task may give, as its ZEROS: kind and what they are called
+LENGTHS: Final = {  # lengths that a task may give (zero angles: ZEROS): kind and description
     "l1": ("length", N_("input link l1 = AB")),
     "l2": ("length", N_("coupler l2 = BC")),
     "l3": ("length", N_("output link l3 = DC")),
@@ -89,14 +89,14 @@ ZEROS: Final = {
 }
 
 
-# Four-bars by pairs of angles, what each is worth, and which of them is taken.
+# Four-bars through pairs of angles: solution, quality, choice.
 
 
-SCAN: Final = 1500  # four-bars through two pairs that are compared, and
-LONGEST: Final = 10.0  # the largest l1/l4 or l4/l1 of them
+SCAN: Final = 1500  # four-bars through two pairs that are compared
+LONGEST: Final = 10.0  # largest l1/l4 or l4/l1
 _POSITIVE: Final = np.geomspace(1 / LONGEST, LONGEST, SCAN // 2)
-RATIOS: Final = np.concatenate([-_POSITIVE[::-1], _POSITIVE])  # their l4/l1, negative for a crank the other way
-SHORT, LONG = 1e-6, 1e6  # lengths over l4 that still make a four-bar
+RATIOS: Final = np.concatenate([-_POSITIVE[::-1], _POSITIVE])  # l4/l1, negative for a crank in the opposite direction
+SHORT, LONG = 1e-6, 1e6  # limits of lengths over l4
 
 
 @dataclass(frozen=True)
@@ -163,7 +163,9 @@ def rate_four_bars(found: FourBarRatios, task: AnglePairsTask) -> FourBarQuality
         terms = (l2 * l2 + l3 * l3 + 1 + l1 * l1) / (2 * l2 * l3)
         b, c = found.at((..., None)).pins(np.asarray(task.phi, EXACT), np.asarray(task.psi, EXACT))
         sides = np.sign(np.asarray(((c - b) * np.conj(c - 1)).imag, dtype=float))
-        branch = np.any(sides != sides[..., :1], axis=-1) & (not task.approximate)  # they are compared with one only
+        branch = np.any(sides != sides[..., :1], axis=-1) & (
+            not task.approximate
+        )  # an approximate fit uses one assembly only
         turned = np.zeros(np.shape(branch), dtype=bool)
         for given, zero in ((task.phi0, found.phi0), (task.psi0, found.psi0)):
             if given is not None:

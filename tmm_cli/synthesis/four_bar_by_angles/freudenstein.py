@@ -19,10 +19,10 @@ from tmm_cli.mechanics.numerics import PI, DoubleDouble, unit
 
 EXACT: Final = np.longdouble
 NEWTON_STEPS: Final = 4
-SINGULAR: Final = 1e-15  # of the largest singular value: what is less is rounding
+SINGULAR: Final = 1e-15  # relative to the largest singular value: rounding
 REFINEMENTS: Final = 6
-ENDLESS: Final = 1e-6  # l1/l4 of what is rounding
-REAL: Final = 5e-7  # rad: so near to a real angle a root is one
+ENDLESS: Final = 1e-6  # l1/l4 below which a length is rounding
+REAL: Final = 5e-7  # rad: a root this close to a real angle is real
 
 
 class FourBarRatios(NamedTuple):
@@ -106,9 +106,12 @@ def zero_angles_of_four(phi: Any, psi: Any, free: str) -> tuple[Any, Any]:
     turn = phi - psi
     angle, sign = (phi, -1) if free == "phi0" else (psi, 1)
     still = np.cos(psi if free == "phi0" else phi)
-    over_cos, over_sin = (np.cos(angle), np.cos(turn)), (-np.sin(angle), sign * np.sin(turn))  # columns that turn
+    over_cos, over_sin = (
+        (np.cos(angle), np.cos(turn)),
+        (-np.sin(angle), sign * np.sin(turn)),
+    )  # columns that depend on the zero angle
 
-    def form(one: Any, other: Any) -> Any:  # the column of ones leaves differences of the rows
+    def form(one: Any, other: Any) -> Any:  # the column of ones reduces the determinant to row differences
         (a, b, c), (d, e, f), (g, h, i) = (np.moveaxis(x[..., 1:] - x[..., :1], -1, 0) for x in (still, one, other))
         return a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g)
 
@@ -138,7 +141,7 @@ def zero_angles_of_five(phi: Any, psi: Any) -> tuple[Any, Any]:
     with np.errstate(all="ignore"):
         cosines, sines = np.cos(angles), np.sin(angles)
         side, delta = (x[:, :1] * cosines + x[:, 1:] * sines for x in (a, turn))
-        endless = np.abs(delta) <= ENDLESS * np.abs(side)  # l1 is nothing beside the frame
+        endless = np.abs(delta) <= ENDLESS * np.abs(side)  # l1 vanishes relative to the frame
         psi0 = np.where(endless, np.nan, -np.angle(side))
         return psi0 + np.angle(delta), psi0
 
@@ -155,7 +158,7 @@ def roots_of_cubic_forms(forms: Any) -> Any:
     for k in np.flatnonzero(np.isfinite(size) & (size > 0)):
         tangents = np.roots(np.asarray(forms[k] / size[k], dtype=float))
         real = tangents.real[np.abs(tangents.imag) < REAL * (1 + np.abs(tangents) ** 2)]
-        angles = np.sort([*np.arctan(real), *[np.pi / 2] * (3 - len(tangents))])  # as its first terms are zero
+        angles = np.sort([*np.arctan(real), *[np.pi / 2] * (3 - len(tangents))])  # leading coefficients of zero
         found[k, : len(angles)] = angles
     return found
 
@@ -175,7 +178,7 @@ def refine_by_newton(values: Any, phi: Any, psi: Any, free: tuple[str, ...]) -> 
         step = (pseudo_inverse(equation_slopes(p, q, one, other)[..., columns]) * rest.astype(float)[..., None, :]).sum(
             -1
         )
-        step = np.where(np.isfinite(step), step, 0.0)  # slopes of a double root are singular
+        step = np.where(np.isfinite(step), step, 0.0)  # derivatives are singular at a double root
         values[:, columns] = values[:, columns] - step
     return values.hi.astype(EXACT) + values.lo
 
@@ -252,15 +255,15 @@ def _wrap_angle(angle: Any) -> Any:
     return angle - full * np.round(np.asarray(angle / full, dtype=float))
 
 
-# Pairs of equal angles: every parallelogram l1 = l3, l2 = l4 passes them, and l1/l4 is free.
+# Pairs of equal angles: every parallelogram l1 = l3, l2 = l4 passes through them, and l1/l4 is free.
 #
-# Freudenstein's equation has p = q and s = 1 then, whatever p is. In a parallelogram the transmission angle is the
-# angle of DC from AD itself, so that no choice of l1/l4 is better than another; with both zero angles free DC stands
-# across AD in the middle of its swing.
+# Freudenstein's equation then has p = q and s = 1 for every p. In a parallelogram the transmission angle is the
+# angle of DC from AD, so no choice of l1/l4 is better than another; with both zero angles free, DC is perpendicular
+# to AD in the middle of its swing.
 
 
-SAME: Final = 1e-11  # rad: angles that are equal but for rounding
-SHARE: Final = 0.5  # l1/l4 of the parallelogram that is taken
+SAME: Final = 1e-11  # rad: angles that differ by rounding only
+SHARE: Final = 0.5  # l1/l4 of the parallelogram
 
 
 def find_parallelogram(phi: Any, psi: Any, phi0: Any, psi0: Any) -> FourBarRatios | None:
@@ -286,20 +289,20 @@ def find_parallelogram(phi: Any, psi: Any, phi0: Any, psi0: Any) -> FourBarRatio
     return FourBarRatios(SHARE, 1.0, SHARE, phi0, psi0)
 
 
-# Four-bars by more pairs of angles than they can pass: least squares of the errors of the output angle.
+# More pairs of angles than a four-bar can reach exactly: least squares of the errors of the output angle.
 #
-# Freudenstein's equation is linear in p, q, s, and its least squares start the search, from zero angles all round where
-# they are to be found. Its residual is not the error of the angle (functions by 15 points were left with up to three
-# times as large a one), so damped Gauss-Newton steps go on to the least squares of the angles themselves.
+# Freudenstein's equation is linear in p, q, s; its least squares give starting points, on a grid of zero angles where
+# these are to be found. Its residual is not the error of the angle (functions with 15 points were left with up to three
+# times the error), so damped Gauss-Newton steps then minimise the squared errors of the angles.
 
 
-GRID: Final = 324  # zero angles of half a turn that are tried
-STARTS: Final = 12  # the best of them, from which steps go on
+GRID: Final = 324  # grid of zero angles over half a revolution
+STARTS: Final = 12  # best grid points, from which the descent starts
 STEPS: Final = 100
-ENDLESS_LINK: Final = 1e-3  # l4 over a link that only grows: errors get less and less
+ENDLESS_LINK: Final = 1e-3  # l4 over a link length that grows without limit
 FIRST, LARGEST = 1e-3, 1e12  # damping
 ROUNDING: Final = 1e-28  # rad^2: rounding
-GAIN: Final = 1e-15  # of the sum of squares: what a step must bring
+GAIN: Final = 1e-15  # relative decrease of the sum of squares that a step must bring
 
 
 def fit_least_squares(phi: Any, psi: Any, phi0: Any, psi0: Any) -> tuple[FourBarRatios, Any]:
@@ -336,7 +339,7 @@ def fitted_lengths(values: Any) -> FourBarRatios:
 def _squared_errors(x: Any, phi: Any, psi: Any, side: float) -> tuple[Any, float]:
     """Return the errors of the output angle (rad) and their sum of squares, inf if the four-bar does not close."""
     p, q, s, phi0, psi0 = x
-    with np.errstate(all="ignore"):  # outputs take a link drawn the other way as one of negative length
+    with np.errstate(all="ignore"):  # a link in the opposite direction has a negative length here
         l2 = np.sqrt(1 + 1 / p**2 + 1 / q**2 - 2 * s / (p * q))
         off = output_angles(FourBarRatios(1 / p, l2, 1 / q, phi0, psi0), phi, psi, side, np.nan) - psi
     total = float(off @ off)
@@ -350,9 +353,11 @@ def _descend(x: Any, phi: Any, psi: Any, free: list[int]) -> tuple[Any, float] |
     for _ in range(STEPS):
         rows = equation_slopes(x[0], x[1], phi + x[3], psi + off + x[4])
         with np.errstate(all="ignore"):
-            rows = (-rows / rows[:, 4:])[:, free]  # of the error: as the equation holds at the angle that is reached
+            rows = (-rows / rows[:, 4:])[
+                :, free
+            ]  # derivatives of the error, as the equation holds at the angle reached
         sizes = np.linalg.norm(rows, axis=0)
-        if not np.all(np.isfinite(sizes) & (sizes > 0)):  # a pair stands in a dead position
+        if not np.all(np.isfinite(sizes) & (sizes > 0)):  # a pair lies in a dead position
             return None
         damped = np.concatenate([rows / sizes, np.sqrt(damping) * np.eye(len(free))])
         step = np.linalg.lstsq(damped, np.concatenate([-off, np.zeros(len(free))]), rcond=None)[0] / sizes

@@ -38,8 +38,8 @@ from tmm_cli.synthesis.four_bar_by_angles.freudenstein import FourBarRatios, fin
 from tmm_cli.synthesis.measures import driver_completes_range
 from tmm_cli.synthesis.record import Demand, Infeasible, Listing, NamedValue, SynthesisOutcome, given_values
 
-ERRORS: Final = 721  # places of the curve
-NEAR: Final = 0.9  # of the largest: peaks that are looked at closely
+ERRORS: Final = 721  # points of the curve
+NEAR: Final = 0.9  # relative height of peaks that are refined
 
 
 def _scan_angles(function: GeneratedFunction) -> Any:
@@ -115,7 +115,7 @@ def draw_structural_error(one: FourBarRatios, task: AnglePairsTask) -> tuple[Dia
     return Diagram("error", N_("Structural error over the range"), *axes, lines), largest
 
 
-# The construction of a four-bar by pairs of angles: all positions turned back to the first input.
+# Construction of a four-bar by pairs of angles: all positions rotated back to the first input angle.
 
 
 def draw_construction(one: FourBarRatios, given_phi: Any, given_psi: Any, size: float) -> GeometricConstruction:
@@ -169,8 +169,8 @@ def draw_construction(one: FourBarRatios, given_phi: Any, given_psi: Any, size: 
 # Four-bar by pairs of angles of its input AB and output DC, given or taken from a function.
 #
 # l1 = AB, l2 = BC, l3 = DC, l4 = AD; angles from AD, counterclockwise, without the zero angles phi0 and psi0. Of all
-# real solutions those without defects are kept: all pairs on one assembly, no place between them where the input
-# locks. More pairs than a four-bar can pass are met with the least squares of errors.
+# real solutions those without defects are kept: all pairs on one assembly, no position between them where the input
+# link locks. More pairs than a four-bar can reach exactly are fitted by least squares.
 
 
 FOUND: Final = {
@@ -205,8 +205,8 @@ COLUMNS: Final = (
     *((name, name, PARAMETERS[name]) for name in ("l1", "l2", "l3", "l4", "phi0", "psi0")),
     ("transmission", N_("smallest transmission angle"), "angle"),
 )
-SHOWN: Final = 40  # pairs in a table
-FAMILY: Final = 121  # four-bars through two pairs that are listed, of each sense of the crank
+SHOWN: Final = 40  # largest number of pairs in a table that is printed
+FAMILY: Final = 121  # tabulated four-bars through two pairs, for each direction of the crank
 
 
 def solve(task: AnglePairsTask) -> SynthesisOutcome:
@@ -215,7 +215,7 @@ def solve(task: AnglePairsTask) -> SynthesisOutcome:
     one, mark = found.at(at), rate_four_bars(found.at(at), task)
     any_one = find_parallelogram(task.phi, task.psi, task.phi0, task.psi0) is not None
     values, demands = _found_values(task, one, mark), _demands(task, one, mark)
-    if not any_one:  # it has change points
+    if not any_one:  # a parallelogram has change points
         demands.append(
             Demand(
                 N_("input link rotates fully (1: yes)"),

@@ -24,12 +24,14 @@ from tmm_cli.synthesis.four_bar import cosine_bcd as cosine_of
 from tmm_cli.synthesis.measures import theta_of
 
 SIDES: Final = (-1, 1)  # the arc on D's side of C1C2, the arc beyond
-END_MARGIN: Final = 1e-9  # of an arc: how near its ends a pivot is looked for
-SHORTEST_ARC: Final = 2e-3  # rad: a shorter arc has the rocker so nearly dead that k is not determined to 1e-9
-SLACK: Final = 1 - 1e-9  # of that, for rounding
-LINE: Final = 50.0  # l2 over half C1C2 to which the straight line of k = 1 is told
-STRAIGHT: Final = 1e-9  # rad of theta: places along an arc are told by w alone
-FARTHEST: Final = 1e6  # l2 over half C1C2 where the arc is a straight line
+END_MARGIN: Final = 1e-9  # fraction of an arc: distance from its ends at which the search starts
+SHORTEST_ARC: Final = (
+    2e-3  # rad: on a shorter arc the rocker is so close to a dead position that k is not determined to 1e-9
+)
+SLACK: Final = 1 - 1e-9  # relative, for rounding
+LINE: Final = 50.0  # l2 over half C1C2: how far the straight line of k = 1 is tabulated
+STRAIGHT: Final = 1e-9  # rad: for a smaller theta, pivots are spaced by w alone
+FARTHEST: Final = 1e6  # l2 over half C1C2: limit for a straight arc
 
 
 @dataclass(frozen=True)
@@ -107,8 +109,8 @@ def four_bar_at(task: FourBarByKTask, w: Any, side: Any) -> FourBarByKSolution:
     sine = w * s
     cosine = np.sqrt((1 - sine) * (1 + sine))
     l1, l2 = h * cosine / c, h * w
-    turn = c * cosine + s * sine + 1j * side * s * (w * c - cosine)  # e^(i beta), of the side
-    local = l3 * np.cos(half) + 1j * h - 1j * (l1 + l2) * turn  # D at 0, the middle of the swing along x, C1 below
+    turn = c * cosine + s * sine + 1j * side * s * (w * c - cosine)  # e^(i beta), with the sign of the side
+    local = l3 * np.cos(half) + 1j * h - 1j * (l1 + l2) * turn  # D at 0, bisector of the swing along x, C1 below
     slope = -1j * (cosine + 1j * side * sine) ** 2 * h / (c * cosine)
     l4 = np.abs(local)
     sines = [np.abs(cosine_of(l2, l3, (l4 + sign * l1) ** 2)) for sign in (-1, 1)]  # where A, B and D are in line
@@ -179,7 +181,7 @@ def pivots_on_line(task: FourBarByKTask) -> list[Any]:
     sine, cosine = np.sin(task.theta), np.cos(task.theta)
     way, height = unit(middle) * (1j if task.choose == "xA" else 1), line_offset(task)
     both, apart = 2 * l3 * np.cos(half) * way, 2j * l3 * np.sin(half) * way  # C1 + C2, C2 - C1
-    real = l3 * l3 * np.cos(2 * half) + height * (height - both.imag)  # of z where t = 0
+    real = l3 * l3 * np.cos(2 * half) + height * (height - both.imag)  # real and imaginary part of z at t = 0
     imag = l3 * l3 * np.sin(2 * half) + height * apart.real
     found = []
     for sign in (-1, 1):

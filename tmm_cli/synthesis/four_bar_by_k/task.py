@@ -50,8 +50,8 @@ from tmm_cli.synthesis.measures import (
 from tmm_cli.synthesis.record import SMALLEST, Demand, Infeasible, Listing, NamedValue, SynthesisOutcome, given_values
 
 LINKS: Final = ("l1", "l2", "l3", "l4")
-LONGEST: Final = 20.0  # the whole family is on the diagrams when no rod is longer than this many of the chosen one
-CUT: Final = 4.0  # (and of the rocker); else rods up to this many of that
+LONGEST: Final = 20.0  # times the chosen rod: diagrams show the whole family if no rod is longer
+CUT: Final = 4.0  # times the longer of rod and rocker: longest rod shown otherwise
 
 
 def draw_construction(
@@ -181,7 +181,7 @@ def side_name(found: FourBarByKSolution) -> str:
 
 
 PARAMETERS: Final = {**dict.fromkeys(("l1", "l2", "l4", "xA", "yA"), "length"), "phi2": "angle"}
-QUANTITIES: Final = {  # that a task may give: kind and what they are called
+QUANTITIES: Final = {  # quantities that a task may give: kind and description
     "l3": ("length", N_("rocker l3")),
     "psi1": ("angle", N_("rocker angle psi1 at C1 (crank and coupler overlap)")),
     "psi2": ("angle", N_("rocker angle psi2 at C2 (crank and coupler in line)")),
@@ -194,7 +194,7 @@ QUANTITIES: Final = {  # that a task may give: kind and what they are called
     "pressure": ("angle", N_("largest pressure angle")),
 }
 ON_LINE: Final = ("level", "xA", "yA")
-SAME: Final = 1e-6  # of the sizes: a pivot of one arc is that near to itself, and to none of the other
+SAME: Final = 1e-6  # relative: tells a pivot of this arc from one of the other arc
 
 
 def _pressure_of(found: FourBarByKSolution, __: FourBarByKTask) -> Any:
@@ -225,7 +225,7 @@ def _pressure_slope(f: FourBarByKSolution, task: FourBarByKTask) -> Any:
     return np.where(near > far, near_rise, far_rise)[()]
 
 
-# what is least at the pivot that is asked for, and what vanishes there
+# Functions that the required pivot minimises, and functions that vanish there.
 OBJECTIVES: Final[Mapping[str, Callable[[FourBarByKSolution, FourBarByKTask], Any]]] = {
     "best": _pressure_of,
     "near": _distance_to_near,
@@ -324,7 +324,7 @@ def _refuse_numbers(task: FourBarByKTask) -> None:
             ),
         )
     theta, half, way = float(task.theta), float(task.swing) / 2, -1 if task.psi2 < task.psi1 else 1
-    against = task.sense == -way  # in the slow stroke the crank turns against the rocker: only beyond C1C2
+    against = task.sense == -way  # crank and rocker rotate in opposite senses in the slow stroke: only beyond C1C2
     if not SMALLEST <= task.swing <= np.pi - 2 * SHORTEST_ARC:
         raise Infeasible("psi2", _("the swing angle of the rocker must be greater than 0 and less than 180 deg"))
     if theta > np.pi / 2 + half - SHORTEST_ARC:  # the largest theta of the arc on D's side
@@ -337,7 +337,7 @@ def _refuse_numbers(task: FourBarByKTask) -> None:
                 )
             ),
         )
-    if against and theta > np.pi / 2 - half - SHORTEST_ARC:  # of the other one
+    if against and theta > np.pi / 2 - half - SHORTEST_ARC:  # of the other arc
         raise Infeasible(
             "turns",
             _("with this sense of rotation of the crank the slow stroke goes from psi2 to psi1"),

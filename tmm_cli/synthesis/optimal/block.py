@@ -38,9 +38,9 @@ from tmm_cli.synthesis.optimal.quantities.base import MechanismQuantity
 from tmm_cli.synthesis.optimal.ranges import FileWith, read_over, read_position, read_ranges, with_driver_range
 from tmm_cli.synthesis.optimal.task import OptimalTask, Parameter, nearest_allowed
 
-SEARCH = True  # it wants the linkage for other parameters, and takes long
+SEARCH = True  # it evaluates the linkage for other parameters, and takes long
 MOST_PARAMETERS = 20  # parameters
-DriverTargets = tuple[tuple[Any, ...], tuple[Any, ...]]  # places of the driver, and what is wanted of a link there
+DriverTargets = tuple[tuple[Any, ...], tuple[Any, ...]]  # driver coordinates, and the values required there
 if TYPE_CHECKING:
     QuantityName = str
 else:
@@ -51,27 +51,36 @@ class QuantityKeys(Strict):
     """A quantity of the mechanism over its cycle."""
 
     of: QuantityName = Field(
-        description="length: sum of link lengths; box: width + height; margin: from dead positions"
+        description=(
+            "quantity; length: sum of link lengths; box: width + height of the area of motion; margin: "
+            "distance from dead positions"
+        )
     )
-    pair: Name | None = Field(default=None, description="whose reaction")
-    point: Name | None = Field(default=None, description="whose path")
-    link: Name | None = Field(default=None, description="whose law of motion")
-    links: list[Name] = Field(default_factory=list, max_length=100, description="of length: of these alone")
-    through: list[Vector] = Field(default_factory=list, max_length=200, description="wanted points of the path")
+    pair: Name | None = Field(default=None, description="pair whose reaction is meant")
+    point: Name | None = Field(default=None, description="point whose path is meant")
+    link: Name | None = Field(default=None, description="link whose law of motion is meant")
+    links: list[Name] = Field(
+        default_factory=list, max_length=100, description="for length: only these links; default: all"
+    )
+    through: list[Vector] = Field(default_factory=list, max_length=200, description="required points of the path")
     values: list[Value] = Field(
-        default_factory=list, max_length=200, description="wanted angles or runs of the link, varied ones too"
+        default_factory=list,
+        max_length=200,
+        description="required angles or displacements of the link; may depend on varied parameters",
     )
     at: list[Value] = Field(
-        default_factory=list, max_length=200, description="angles of the crank for them, varied ones too"
+        default_factory=list,
+        max_length=200,
+        description="driver coordinates for these values; may depend on varied parameters",
     )
-    relative: bool = Field(default=False, description="law: from the first value on")
+    relative: bool = Field(default=False, description="for law: values count from the first one")
     norm: Literal["least squares", "largest"] = "least squares"
 
 
 class ObjectiveKeys(QuantityKeys):
     """Objective: the quantity to be minimised (a margin: maximised), or brought near to a target."""
 
-    target: Value | None = Field(default=None, description="come near to this instead")
+    target: Value | None = Field(default=None, description="value to approach, instead of the smallest one")
 
 
 class ConstraintKeys(QuantityKeys):
@@ -93,20 +102,32 @@ class OptimalBlock(TaskBlock):
     vary: dict[Name, Range] = Field(
         min_length=1,
         max_length=MOST_PARAMETERS,
-        description="by name of the parameter: [low, high]; {from, to, step}; {among: [...]}; bare numbers are lengths "
-        "where the file takes them for such",
+        description=(
+            "by name of the parameter: [low, high]; {from, to, step}; {among: [...]}; numbers without a unit "
+            "are lengths where the file uses them as lengths"
+        ),
     )
     objective: Annotated[ObjectiveKeys, BeforeValidator(_expand_short)]
     constraints: list[ConstraintKeys] = Field(default_factory=list, max_length=30)
     over: Literal["cycle", "stroke", "positions"] | Two | None = Field(
         default=None,
-        description="the driver's way: cycle, stroke (its own), positions (through the file's), [from, to]",
+        description="range of the driver: cycle, stroke (driver stroke), positions (those of the file), or [from, to]",
     )
     positions: int = Field(
-        default=72, ge=12, le=720, description="round the cycle, in the search; no fewer than 24 in each of many turns"
+        default=72,
+        ge=12,
+        le=720,
+        description="positions in a cycle during the search; at least 24 per revolution if the cycle has several",
     )
-    population: int = Field(default=0, ge=0, le=2000, description="in a generation; 0: 20 a parameter")
-    generations: int = Field(default=0, ge=0, le=20_000, description="25 times the square of the number of parameters")
+    population: int = Field(
+        default=0, ge=0, le=2000, description="candidates in a generation; 0: 20 for each parameter"
+    )
+    generations: int = Field(
+        default=0,
+        ge=0,
+        le=20_000,
+        description="number of generations; 0: 25 times the square of the number of parameters",
+    )
     seed: int = Field(default=1, ge=0, le=2**32 - 1)
 
 
@@ -208,7 +229,7 @@ class _FileVariants:
                 value, dimension = getattr(number, "value", number), DIMENSIONS[p.kind].dimension
                 shown = f"{self.units.from_si(float(value), dimension):.6g} {self.units.symbol(dimension)}"
                 told.append(f"{p.name} = {shown.rstrip()}")
-            refused.message = _("with {numbers} the file is refused: {reason}").format(
+            refused.message = _("with {numbers} the problem file is invalid: {reason}").format(
                 numbers=", ".join(told), reason=refused.message
             )
             raise TriedFileError(refused) from None
@@ -231,7 +252,7 @@ def _check_mobility(variant: Variant) -> None:
     except MobilityError as refusal:
         told = mobility_error(refusal.structure)
         raise ProblemError(
-            _("with values in the middle of these bounds {reason}").format(reason=told.message),
+            _("with every parameter in the middle of its bounds, {reason}").format(reason=told.message),
             path=("vary",),
             found=told.found,
             allowed=told.allowed,
@@ -251,11 +272,13 @@ def _read_constraint(
     }
     if not sides or ("equal" in sides and len(sides) > 1):
         raise ProblemError(
-            _("a constraint has a bound"), path=path, allowed=_("least, most or both; or equal"), key=True
+            _("a constraint needs a bound"), path=path, allowed=_("least, most or both; or equal"), key=True
         )
     least, most = (sides.get(key, sides.get("equal")) for key in ("least", "most"))
     if least is not None and most is not None and least > most:
-        raise ProblemError(_("the least is more than the most"), path=path, found=bounds_text(given.least, given.most))
+        raise ProblemError(
+            _("the lower bound exceeds the upper bound"), path=path, found=bounds_text(given.least, given.most)
+        )
     return task.QuantityConstraint(quantity, least, most, (*path, list(sides)[-1]))
 
 
@@ -271,7 +294,7 @@ def _read_quantity(
     others = {key for other in QUANTITIES.values() for key in other.keys} - {*kind.keys}
     for key in given.model_fields_set & others:
         raise ProblemError(
-            _("{quantity} has no {key}").format(quantity=given.of, key=key),
+            _("the quantity {quantity} has no key {key}").format(quantity=given.of, key=key),
             path=(*path, key),
             allowed=", ".join(sorted(kind.keys)) or "of",
             key=True,
@@ -293,7 +316,7 @@ def _read_quantity(
     wanted = list(values) if given.values else wanted
     if len(places) != len(wanted) and (places or given.values):
         raise ProblemError(
-            _("as many angles as {key} are wanted").format(key=kind.given),
+            _("the keys at and {key} must have the same number of values").format(key=kind.given),
             path=(*path, "at"),
             found=quote(len(places)),
             allowed=str(len(wanted)),

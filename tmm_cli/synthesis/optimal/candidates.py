@@ -35,16 +35,19 @@ from tmm_cli.synthesis.optimal.task import (
     nearest_allowed,
 )
 
-ROOM = 1e-6  # of the size of a group: it can be assembled in all positions with so much to spare
-EACH = 24  # positions of the search in each turn of a cycle of many, at least
-SCAN, SCAN_EACH = 720, 240  # places where peaks are looked for before the polish; in each turn of many, at least
-BLOCK, FOLLOWED = 125, 500  # candidates at once; where groups are followed, which takes many calls a block
-POPULATION, LEAST_POPULATION = 20, 80  # a parameter, at least
-GENERATIONS, LEAST_GENERATIONS = 25, 200  # a parameter squared, at least: what problems of 3 to 9 parameters need
-FEW, FEW_GENERATIONS = 8, 15  # a parameter, where candidates are moved one by one, which takes 5 to 100 ms each
-FEWEST = 8  # candidates that evolve
-NONE = 1e6  # violation where nothing can be told
-LOST = 10.0  # violation of what cannot be assembled, above all others
+ROOM = 1e-6  # relative to the size of a group: reserve of its assembly in all positions
+EACH = 24  # positions per revolution during the search, at least
+SCAN, SCAN_EACH = 720, 240  # positions scanned for peaks before the refinement; per revolution, at least
+BLOCK, FOLLOWED = 125, 500  # candidates in a block; with continuation, which makes many calls for each block
+POPULATION, LEAST_POPULATION = 20, 80  # for each parameter; at least
+GENERATIONS, LEAST_GENERATIONS = (
+    25,
+    200,
+)  # times the squared number of parameters; at least: enough for 3 to 9 parameters
+FEW, FEW_GENERATIONS = 8, 15  # for each parameter, if candidates are evaluated one by one, in 5 to 100 ms each
+FEWEST = 8  # smallest population
+NONE = 1e6  # violation if it is undefined
+LOST = 10.0  # violation of linkages that cannot be assembled, above all others
 
 
 class Candidates:
@@ -88,7 +91,9 @@ class Candidates:
         self.turns = max(1, round(self.cycle / (2 * np.pi))) if self.closed else 1
         self.count, self.scan = max(self.task.positions, EACH * self.turns), max(SCAN, SCAN_EACH * self.turns)
         rough = bool(self.linkage.friction) or self.linkage.by_strokes
-        self.jumps = self.closed and self.variant.accelerated  # forces at the end of the cycle are not those before it
+        self.jumps = (
+            self.closed and self.variant.accelerated
+        )  # forces at the end of the cycle differ from those at its start
         self.overs = tuple(
             QuantityRange(
                 self.linkage,

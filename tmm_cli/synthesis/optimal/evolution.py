@@ -18,8 +18,14 @@ from tmm_cli.mechanics.numerics import Real
 from tmm_cli.synthesis.optimal.candidates import Candidates
 
 Evaluate = Callable[[Real], tuple[Real, Real]]  # (variants, n) in 0..1 -> objective, violation (0: none)
-GATHERED = 1e-5  # a population whose objectives differ by no more of them makes room for a new one
-TOLERANCES = (1.0, 0.3, 0.1, 0.03, 0.01)  # of what the first candidates violate, one after another, for equalities
+GATHERED = 1e-5  # relative spread of objectives at which a population is replaced
+TOLERANCES = (
+    1.0,
+    0.3,
+    0.1,
+    0.03,
+    0.01,
+)  # successive tolerances of equalities, relative to the violation of the first candidates
 FORBIDDEN = 1e30  # times a violation: above every objective
 
 
@@ -52,7 +58,7 @@ class _Generations:
         self.kept: list[tuple[Real, Real, Real]] = []
         self.history: list[tuple[float, float]] = []
         self.tolerance = 0.0
-        self.leading = np.inf  # of the present population
+        self.leading = np.inf  # of the current population
 
     @property
     def left(self) -> int:
@@ -102,7 +108,9 @@ def evolve(
     try:
         while watched.left > 0:
             square = chance.permuted(np.tile(np.arange(population), (size, 1)), axis=1).T
-            x = (square + chance.random(square.shape)) / population  # a Latin square: every coordinate evenly spread
+            x = (
+                square + chance.random(square.shape)
+            ) / population  # Latin hypercube: every coordinate is evenly spread
             for share in TOLERANCES if equalities else (0.0,):
                 if watched.left <= 0:
                     break
@@ -138,15 +146,15 @@ def evolve(
     return EvolutionResult(x[order], f[order], v[order], np.array(watched.history), stopped)
 
 
-# Parameters that have some values only: the best of each choice is kept; where these are few, all are tried.
+# Discrete parameters: the best candidate of each combination is kept; few combinations are all evaluated.
 
 
-MOST, MOST_ONE_BY_ONE = 50_000, 3000  # candidates of which all are tried
-CLOSER = 720  # positions round the cycle then, and the errors that they leave
+MOST, MOST_ONE_BY_ONE = 50_000, 3000  # number of candidates up to which all are evaluated
+CLOSER = 720  # positions in the cycle then, and their error
 ERROR = 5e-4
-BLOCK = 500  # between two reports of progress
-POLISHED, FEW = 24, 6  # choices that are looked at closely: where candidates move by their tape, and where slower
-NEAR = 0.3  # a violation that the polish may take away
+BLOCK = 500  # candidates between two progress reports
+POLISHED, FEW = 24, 6  # combinations that are refined: with traced evaluation, and without
+NEAR = 0.3  # violation that refinement may remove
 
 
 class DiscreteChoices:

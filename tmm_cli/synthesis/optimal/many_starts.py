@@ -18,13 +18,13 @@ from tmm_cli.mechanics.numerics import Real, solve
 from tmm_cli.synthesis.optimal.candidates import LOST, Candidates, quantity_reader
 from tmm_cli.synthesis.optimal.quantities.deviation import Deviation, nearest_corners
 
-STEP = 1e-6  # of a difference, in shares of the ranges
-WEIGHT = 1e3  # of what is broken beside the residuals
-PASSES = 6  # until the broken ones are known
-DAMPINGS = (0.03, 1.0, 30.0)  # times the last one, tried at once
+STEP = 1e-6  # difference step, as a fraction of the ranges
+WEIGHT = 1e3  # weight of violated constraints relative to residuals
+PASSES = 6  # passes to find the violated constraints
+DAMPINGS = (0.03, 1.0, 30.0)  # times the last damping, tried together
 FIRST, LEAST, LARGEST = 1e-3, 1e-12, 1e8  # damping
-AHEAD = 0.1  # of a step: where it is seen how residuals bend
-GAIN = 1e-14  # of the sum of squares: what a step must bring
+AHEAD = 0.1  # of a step: point at which the second derivative is estimated
+GAIN = 1e-14  # relative decrease of the sum of squares that a step must bring
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class ResidualRows:
         return np.where(np.isfinite(total), total, np.inf)
 
 
-Evaluate = Callable[[Real, int], ResidualRows]  # variants (v, n) in 0..1, in sets of so many: the first leads
+Evaluate = Callable[[Real, int], ResidualRows]  # variants (v, n) in 0..1, and variants per set, led by the first
 
 
 def minimize_squares(evaluate: Evaluate, x: Real, steps: int) -> tuple[Real, Real]:
@@ -111,7 +111,7 @@ def damped_step(rows: ResidualRows, slopes: ResidualRows, x: Real, damping: Any)
         pulled, held = (slopes.least * (weight * broken)).mT, weight * beyond
         pull = down - pulled @ rows.least[..., None] + held * edge
         step = solve(square + pulled @ slopes.least + np.eye(n) * held, pull[..., 0])[..., None]
-        step = np.where(np.isfinite(step), step, 0.0)  # what is lost beside the weights takes no step here
+        step = np.where(np.isfinite(step), step, 0.0)  # parameters without influence take no step
         before, edge = (broken, beyond), np.clip(step, -x[..., None], 1 - x[..., None])
         broken, beyond = slopes.least @ step < -rows.least[..., None], edge != step
         if all(map(np.array_equal, before, (broken, beyond))):
@@ -119,18 +119,18 @@ def damped_step(rows: ResidualRows, slopes: ResidualRows, x: Real, damping: Any)
     return step[..., 0]
 
 
-# Parameters that a motion rests on linearly, as the place of a frame or of a coupler's point, found by themselves.
+# Parameters on which the motion depends linearly, as the position of the frame or of a coupler point.
 #
-# With all others fixed they are a problem of linear least squares, which has one solution (G. Golub, V. Pereyra, SIAM
-# Journal on Numerical Analysis 10 (1973)). A path without given places takes for each wanted point the nearest of its
-# places, and then others, in turn (P. Besl, N. McKay, IEEE PAMI 14 (1992)).
+# With all others fixed they follow from linear least squares, with a unique solution (G. Golub, V. Pereyra, SIAM
+# Journal on Numerical Analysis 10 (1973)). For a path without driver coordinates, nearest points and parameters are
+# determined alternately (P. Besl, N. McKay, IEEE PAMI 14 (1992)).
 
 
-LINEAR = 1e-9  # of the motion: what second differences of something linear may be
-SHOWN, DRAWN = 3, 200  # candidates that show it, of so many
-TURNS = 12  # of taking nearest places anew
-DAMPING = 1e-9  # keeps what is not determined where it was
-SETTLED_AT_ONCE = 250  # candidates at once
+LINEAR = 1e-9  # relative second difference of a linear motion
+SHOWN, DRAWN = 3, 200  # candidates on which linearity is tested, of so many drawn
+TURNS = 12  # iterations of the nearest points
+DAMPING = 1e-9  # keeps undetermined parameters unchanged
+SETTLED_AT_ONCE = 250  # candidates in a block
 
 
 class LinearParameters:
@@ -205,23 +205,26 @@ def _as_real(rows: Any) -> Real:
     return np.concatenate([rows.real, rows.imag], axis=1) if np.iscomplexobj(rows) else rows
 
 
-# Least squares from many starts beside the evolution: rounds of random ones, of which the best go on.
+# Least squares from many starting points besides the evolution: rounds of random points, of which the best continue.
 #
 # Paths and laws have many local minima at the ends of long narrow valleys. A round is a tournament: many starts,
-# settled (settling.py), make few steps, and those with the least squares go on. The search ends where several of the
-# last of two rounds or more ended at the same least; else the best are shaken, as often minima lie side by side.
+# with solved linear parameters, make few steps, and the best continue. The search ends if several of the last ones of
+# two or more rounds reach the same minimum; else the best are perturbed, as minima often lie side by side.
 
 
-SAMPLES = 20_000  # of a round, of which the best and those that evolved start
-TOURNAMENT = ((400, 6), (160, 15), (24, 40), (8, 60))  # so many of them, and their steps: ranks say little at first
-ROUNDS, AGREED = 3, 6  # at most; starts that end at the same least
-SHAKEN, DECADES = ((160, 15), (24, 40), (8, 60)), (-2.5, -0.3)  # as TOURNAMENT; sizes of shakes, shares of the ranges
-SHAKES, SHAKE_GAIN = 4, 1e-4  # at most, as long as one brings more than such a share
-SAME, NEAR = 1e-3, 1e-2  # of an objective: the same least; as good for most uses
-ZERO = 1e-7  # of the size of what is wanted: it is met
-CLOSER, LAST = 360, 100  # places and steps of the winners
+SAMPLES = 20_000  # random points of a round; the best of them and evolved candidates start
+TOURNAMENT = ((400, 6), (160, 15), (24, 40), (8, 60))  # number of points and their steps: early ranks mean little
+ROUNDS, AGREED = 3, 6  # at most; starting points that must reach the same minimum
+SHAKEN, DECADES = (
+    ((160, 15), (24, 40), (8, 60)),
+    (-2.5, -0.3),
+)  # as TOURNAMENT; log10 of the perturbations, fractions of the ranges
+SHAKES, SHAKE_GAIN = 4, 1e-4  # at most; relative gain for another round
+SAME, NEAR = 1e-3, 1e-2  # relative: same minimum; equivalent for most uses
+ZERO = 1e-7  # relative deviation that counts as zero
+CLOSER, LAST = 360, 100  # positions and steps for the winners
 WINNERS = 4
-BLOCK = 400  # variants at once
+BLOCK = 400  # variants in a block
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from tmm_cli.synthesis.optimal.quantities.transmission import AssemblyReserve
 from tmm_cli.synthesis.optimal.refinement import BestCandidate
 from tmm_cli.synthesis.record import Demand, Listing, NamedValue, SynthesisOutcome
 
-CURVE = 361  # places of a path or a law that is drawn
+CURVE = 361  # points of a drawn path or law
 NONE = np.zeros(0)
 
 Read = Callable[[DriverSamples, str], Real]
@@ -45,20 +45,20 @@ def draw_history(
     """
     objective, violation = evolved.history.T
     if evolved.every:
-        leading, found = N_("candidate at the positions of the search"), N_("the best of them, looked at closely")
-        across, title = N_("candidate"), N_("All candidates, one after another")
+        leading, found = N_("candidate at the positions of the search"), N_("the best of them, after exact evaluation")
+        across, title = N_("candidate"), N_("All candidates in order")
     else:
-        leading, found = N_("leading candidate (a new population where it rises)"), N_("after the polish")
+        leading, found = N_("leading candidate (a rise: new population)"), N_("after local refinement")
         across, title = N_("generation"), N_("Best candidate by generation")
     number = np.arange(len(objective))
     there = np.where(np.isfinite(objective) & ((violation == 0) | (not evolved.every)), objective, np.nan)
     kept = np.fmin.accumulate(np.where(violation == 0, there, np.nan))
     lines = [DiagramLine(leading, number, shown(there), faint=True)]
     if np.any(np.isfinite(kept)):
-        lines.append(DiagramLine(N_("best so far that keeps the constraints"), number, shown(kept)))
+        lines.append(DiagramLine(N_("best so far that satisfies the constraints"), number, shown(kept)))
     lines.append(DiagramLine(found, np.array([len(number)]), np.array([polished]), dots=True))
     missed = np.isfinite(violation) & (violation > NO_VIOLATION)
-    violated = DiagramLine(N_("constraints missed, relative"), number, np.where(missed, violation, np.nan))
+    violated = DiagramLine(N_("constraint violation, relative"), number, np.where(missed, violation, np.nan))
     return Diagram(
         "history",
         title,
@@ -66,7 +66,7 @@ def draw_history(
         (Phrase("objective: {quantity}", quantity=quantity), kind),
         tuple(lines),
         lower=(violated,) if np.any(missed) and not evolved.every else (),
-        lower_y=(N_("constraints missed, relative"), "number"),
+        lower_y=(N_("constraint violation, relative"), "number"),
     )
 
 
@@ -105,21 +105,21 @@ def _compare_law(candidates: Candidates, n: int, quantity: MechanismQuantity, re
     kind = "angle" if swings else "length"
     place = "angle" if candidates.linkage.driver.kind == "turn" else "length"
     columns = (
-        ("at", N_("driver at"), place),
+        ("at", N_("at driver position"), place),
         ("wanted", N_("required"), kind),
         ("reached", N_("reached"), kind),
         ("off", N_("deviation"), kind),
     )
     rows = tuple(zip(quantity.places, wanted.tolist(), there.tolist(), (there - wanted).tolist(), strict=True))
     lines = (
-        DiagramLine(N_("found mechanism"), q, run),
+        DiagramLine(N_("mechanism found"), q, run),
         DiagramLine(N_("required"), at, wanted, dots=True),
         DiagramLine(N_("reached"), at, there, dots=True),
     )
-    up = (N_("angle of the link") if swings else N_("run of the link"), kind)
-    title = N_("Law of motion over the whole way of the driver")
+    up = (N_("angle of the link") if swings else N_("displacement of the link"), kind)
+    title = N_("Law of motion over the whole range of the driver")
     drawn = Diagram(_table_name(candidates, n), title, (N_("driver"), place), up, lines)
-    return Listing(_table_name(candidates, n), N_("Wanted law and what is reached"), columns, rows), drawn
+    return Listing(_table_name(candidates, n), N_("Required and reached law of motion"), columns, rows), drawn
 
 
 def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, read: Read) -> tuple[Listing, Diagram]:
@@ -142,14 +142,17 @@ def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, r
     )
     columns: tuple[tuple[str, str, str], ...] = (
         ("x", N_("x"), "length"),
-        ("y", N_("y(x)"), "length"),
+        ("y", N_("y"), "length"),
         ("x_reached", N_("x reached"), "length"),
         ("y_reached", N_("y reached"), "length"),
         ("off", N_("deviation"), "length"),
     )
     if quantity.places:
         rows = tuple((q, *row) for q, row in zip(quantity.places, rows, strict=True))
-        columns = (("at", N_("driver at"), "angle" if candidates.linkage.driver.kind == "turn" else "length"), *columns)
+        columns = (
+            ("at", N_("at driver position"), "angle" if candidates.linkage.driver.kind == "turn" else "length"),
+            *columns,
+        )
     lines = (
         DiagramLine(N_("path"), path.real, path.imag),
         DiagramLine(N_("required"), wanted.real, wanted.imag, dots=True),
@@ -157,16 +160,16 @@ def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, r
     )
     drawn = Diagram(
         _table_name(candidates, n),
-        N_("Path of the point over the whole way of the driver"),
+        N_("Path of the point over the whole range of the driver"),
         (N_("x"), "length"),
-        (N_("y(x)"), "length"),
+        (N_("y"), "length"),
         lines,
         equal=True,
     )
     title = (
-        N_("Wanted points and those that are reached at these places of the driver")
+        N_("Required points, and points reached at these positions of the driver")
         if quantity.places
-        else N_("Wanted points and the nearest that are reached")
+        else N_("Required points, and the nearest points of the path")
     )
     return Listing(_table_name(candidates, n), title, columns, rows), drawn
 
@@ -181,10 +184,10 @@ def _closest_shares(path: Callable[[Real], Vector], wanted: Vector, closed: bool
     return found
 
 
-# What an optimal synthesis tells: the best candidate, its constraints, the search, the path or law that it reaches.
+# The outcome: best candidate, constraints, search, path or law reached.
 
 
-ACTIVE = 1e-6  # of its scale: a constraint this near to its bound holds the optimum
+ACTIVE = 1e-6  # relative: a constraint closer to its bound is active
 
 
 def outcome_of(candidates: Candidates, found: BestCandidate) -> SynthesisOutcome:
@@ -195,7 +198,7 @@ def outcome_of(candidates: Candidates, found: BestCandidate) -> SynthesisOutcome
     ends = None if ends is None else (float(ends[0]), float(ends[1]))
     demands = [Demand(AssemblyReserve.text, 1.0, "number", partial(driver_completes_range, ends=ends), asked=False)]
     for n in range(len(candidates.quantities)):
-        if n == 1:  # it goes its way
+        if n == 1:  # the assembly constraint
             continue
         quantity = candidates.quantity(n, found.numbers)
         constraint = candidates.constraints[n - 1] if n else None
@@ -225,13 +228,14 @@ def outcome_of(candidates: Candidates, found: BestCandidate) -> SynthesisOutcome
     sketch = candidates.sketch(found.x)
     notes = []
     if evolved.stopped:
-        notes.append(N_("stopped by hand: the best candidate so far, polished"))
+        notes.append(N_("stopped by the user: the best candidate so far, after local refinement"))
     elif found.ends is not None and not found.ends.agree:
         notes.append(
             Phrase(
-                "not sure to be the least: of {count} independent starts {same} ended at it and {near} within "
-                "{share} % "
-                "of it; try another seed, for example seed: {seed}",
+                (
+                    "the minimum is not certain: independent starts: {count}, of these at this value: {same}, within "
+                    "{share} % of it: {near}. Try another seed, e.g. seed: {seed}"
+                ),
                 count=found.ends.count,
                 same=found.ends.same,
                 near=found.ends.near,
@@ -241,12 +245,16 @@ def outcome_of(candidates: Candidates, found: BestCandidate) -> SynthesisOutcome
         )
     objectives = evolved.objective[np.isfinite(evolved.objective)]
     if (task.objective.forces or not task.objective.moves) and len(objectives) and not np.ptp(objectives):
-        notes.append(N_("the objective is the same for all candidates: what was found only keeps the constraints"))
+        notes.append(
+            N_("the objective has the same value for all candidates: the solution only satisfies the constraints")
+        )
     if sketch is not None:
         notes.append(
             N_(
-                "the file's sketch does not show the mechanism that was found: it is assembled as linkages near it are "
-                "that the sketch does show"
+                (
+                    "the sketch of the file does not show the mechanism found: it was assembled in the same way as "
+                    "similar linkages that the sketch shows"
+                )
             )
         )
     return SynthesisOutcome(
@@ -265,17 +273,17 @@ def _given_values(candidates: Candidates, ends: tuple[float, float] | None) -> t
     """Return the bounds of the parameters and of the driver."""
     given = []
     for p in candidates.task.parameters:
-        given.append(NamedValue(p.name, p.low, p.kind, N_("varies from")))
-        given.append(NamedValue(p.name, p.high, p.kind, N_("varies to")))
+        given.append(NamedValue(p.name, p.low, p.kind, N_("lower bound")))
+        given.append(NamedValue(p.name, p.high, p.kind, N_("upper bound")))
     given += [
-        NamedValue(p.name, len(p.values), "number", N_("number of values to choose from"))
+        NamedValue(p.name, len(p.values), "number", N_("number of admissible values"))
         for p in candidates.task.parameters
         if p.values
     ]
     if ends is not None:
         kind = "length" if candidates.linkage.driver.kind == "slide" else "angle"
-        given.append(NamedValue("from", ends[0], kind, N_("the driver goes from")))
-        given.append(NamedValue("to", ends[1], kind, N_("the driver goes to")))
+        given.append(NamedValue("from", ends[0], kind, N_("start of the driver's range")))
+        given.append(NamedValue("to", ends[1], kind, N_("end of the driver's range")))
     return tuple(given)
 
 
@@ -284,11 +292,11 @@ def _found_values(candidates: Candidates, found: BestCandidate) -> tuple[NamedVa
     numbers = []
     for p, number, share in zip(candidates.task.parameters, found.numbers.tolist(), found.x.tolist(), strict=True):
         if share < ACTIVE:
-            text = N_("found at its lower bound")
+            text = N_("solution, at its lower bound")
         elif share > 1 - ACTIVE:
-            text = N_("found at its upper bound")
+            text = N_("solution, at its upper bound")
         else:
-            text = N_("found among its values") if p.values else N_("found within its bounds")
+            text = N_("solution, one of its admissible values") if p.values else N_("solution, within its bounds")
         numbers.append(NamedValue(p.name, number, p.kind, text))
     return tuple(numbers)
 
@@ -296,17 +304,21 @@ def _found_values(candidates: Candidates, found: BestCandidate) -> tuple[NamedVa
 def _source(candidates: Candidates, found: BestCandidate) -> str:
     if many_starts.is_applicable(candidates):
         return N_(
-            "differential evolution (R. Storn, K. Price 1997) and random starts, then least squares (K. Levenberg "
-            "1944, D. Marquardt 1963)"
+            (
+                "differential evolution (R. Storn, K. Price 1997) and random starting points, then nonlinear least "
+                "squares (K. Levenberg 1944, D. Marquardt 1963)"
+            )
         )
     if not found.evolved.every:
         return N_(
-            "differential evolution (R. Storn, K. Price 1997; constraints by K. Deb 2000), then sequential quadratic "
-            "programming on the exact peaks"
+            (
+                "differential evolution (R. Storn, K. Price 1997; constraints by K. Deb 2000), then sequential "
+                "quadratic programming with exact peak values"
+            )
         )
     if found.evolved.stopped:
-        return N_("candidates one after another, as far as the search came")
-    return N_("all candidates, one after another")
+        return N_("evaluation of all candidates in order, stopped before the end")
+    return N_("evaluation of all candidates")
 
 
 def _tabulate_constraints(candidates: Candidates, found: BestCandidate, kinds: list[str]) -> Listing:
@@ -341,7 +353,7 @@ def _tabulate_constraints(candidates: Candidates, found: BestCandidate, kinds: l
     columns = (
         ("quantity", N_("quantity"), "word"),
         ("of", N_("of"), "name"),
-        ("limit", N_("is to be"), "word"),
+        ("limit", N_("condition"), "word"),
         ("bound", N_("bound"), "mixed"),
         ("value", N_("value"), "mixed"),
         ("margin", N_("margin"), "mixed"),

@@ -53,17 +53,20 @@ def _read_parameter(name: str, own: Range, kind: str, sense: ValueReader) -> Par
         values = sorted({si(value, "among", n) for n, value in enumerate(own.among)})
         if len(values) < 2:
             raise ProblemError(
-                _("with one value nothing varies"),
+                _("with a single value the parameter does not vary"),
                 path=(*at, "among"),
                 found=quote(own.among[0]),
-                allowed=_("two and more"),
+                allowed=_("two or more values"),
             )
         return Parameter(name, values[0], values[-1], kind, tuple(values))
     ends = {"from": own.from_, "to": own.to} if isinstance(own, Chosen) else dict(enumerate(own))
     low, high = (si(value, key) for key, value in ends.items())
     if not low < high:
         raise ProblemError(
-            _("the lower bound comes first"), path=at, found=bounds_text(*ends.values()), allowed=_("[low, high]")
+            _("the first bound must be smaller than the second"),
+            path=at,
+            found=bounds_text(*ends.values()),
+            allowed=_("[low, high]"),
         )
     if not isinstance(own, Chosen):
         return Parameter(name, low, high, kind)
@@ -71,12 +74,12 @@ def _read_parameter(name: str, own: Range, kind: str, sense: ValueReader) -> Par
     count = (high - low) / step + STEP_TOLERANCE
     if not 1 <= count < MOST_VALUES:
         raise ProblemError(
-            _("1 to {most} steps must lie between the bounds").format(most=MOST_VALUES - 1),
+            _("the number of steps between the bounds must be 1 to {most}").format(most=MOST_VALUES - 1),
             path=(*at, "step"),
             found=quote(own.step),
-            allowed=_("another step; or bounds without steps, [low, high]"),
+            allowed=_("another step; or bounds without a step: [low, high]"),
         )
-    values = [float(f"{low + step * k:.15g}") for k in range(int(count) + 1)]  # without what adding up leaves
+    values = [float(f"{low + step * k:.15g}") for k in range(int(count) + 1)]  # without rounding errors of the sum
     return Parameter(name, values[0], values[-1], kind, tuple(values))
 
 
@@ -106,7 +109,7 @@ def _find_kinds(
         except TriedFileError as error:
             return 2 if isinstance(error.error, UnitError) else 1
         except ProblemError:
-            return 2  # said when its bounds are read
+            return 2  # reported when its bounds are read
         return 0
 
     def is_share(name: str, kinds: Mapping[str, str]) -> bool:
@@ -130,12 +133,12 @@ def _dimension_name(source: Any, sense: ValueReader) -> str | None:
     try:
         found = evaluate_quantity(source, sense.parameters, sense.units).dimension
     except ProblemError:
-        return None  # said when it is evaluated
+        return None  # reported when it is evaluated
     return None if found is None else found.name
 
 
-# Where the driver goes in an optimal synthesis: round a cycle, along its stroke, through the positions of the file, or
-# from one place to another.
+# Range of the driver in an optimal synthesis: a cycle, its stroke, the positions of the file, or from one coordinate
+# to another.
 
 
 Ends = tuple[Any, Any] | None
@@ -152,7 +155,7 @@ def read_over(over: Any, driver: Driver, sense: ValueReader) -> RangeChoice:
     if isinstance(over, str):
         if over not in possible:
             raise ProblemError(
-                _("the driver has no {over}").format(over=over),
+                _("this driver has no range {over}").format(over=over),
                 path=("over",),
                 found=quote(over),
                 allowed=", ".join([*possible, "[from, to]"]),
@@ -161,7 +164,7 @@ def read_over(over: Any, driver: Driver, sense: ValueReader) -> RangeChoice:
     low, high = (float(sense.number(value, _driver_dimension(driver), ("over", n))) for n, value in enumerate(over))
     if not low < high or (turns and high - low > 2 * np.pi * (1 + 1e-12)):
         raise ProblemError(
-            _("the lower end comes first, the other one at most a turn after it"),
+            _("the first value must be smaller than the second, and by at most one revolution"),
             path=("over",),
             found=bounds_text(*over),
             allowed="[from, to]",
@@ -187,15 +190,15 @@ def _driver_ends(problem: Problem, over: RangeChoice) -> Ends:
         over = (reduce(np.minimum, places), reduce(np.maximum, places)) if places else (0.0, 0.0)
         if not over[0] < over[1]:
             raise ProblemError(
-                _("how far the driver goes is wanted"),
+                _("the range of the driver is missing"),
                 path=("over",),
                 allowed=_("over: [from, to]; or positions: {at: [...]}, or driver: {stroke: [from, to]}"),
             )
     assert not isinstance(over, str)
     if driver.kind != "turn" or driver.stroke is not None or (driver.acceleration and places):
-        return over  # an accelerated crank comes to a place a turn farther on with another speed
+        return over  # an accelerated crank has another speed one revolution later
     turns = round(float(problem.linkage.sketch.at - (over[0] + over[1]) / 2) / (2 * np.pi))
-    return over[0] + 2 * np.pi * turns, over[1] + 2 * np.pi * turns  # about the sketch, whose assembly it has
+    return over[0] + 2 * np.pi * turns, over[1] + 2 * np.pi * turns  # around the sketch, whose assembly it has
 
 
 def read_position(value: Any, variant: Variant, sense: ValueReader, path: Path) -> Any:
@@ -221,8 +224,10 @@ def _out_of_range(path: Path, found: Any, driver: Driver, ends: tuple[Any, Any],
     dimension = _driver_dimension(driver)
     low, high = (f"{units.from_si(float(end), dimension):.6g}" for end in ends)
     return ProblemError(
-        _("the driver does not go there"),
+        _("the driver does not reach this position"),
         path=path,
         found=quote(found) if isinstance(found, str) else None,
-        allowed=_("places of its way, {low} to {high} {unit}").format(low=low, high=high, unit=units.symbol(dimension)),
+        allowed=_("positions in its range, {low} to {high} {unit}").format(
+            low=low, high=high, unit=units.symbol(dimension)
+        ),
     )

@@ -19,12 +19,12 @@ from tmm_cli.synthesis.optimal.evolution import EvolutionResult
 from tmm_cli.synthesis.optimal.many_starts import IndependentEnds
 from tmm_cli.synthesis.optimal.quantities.base import PeakQuantity
 
-STEP = 2e-6  # of a derivative, in shares of the range
-OBJECTIVE_TOLERANCE = 1e-11  # of the objective: what a further step may still bring
+STEP = 2e-6  # difference step, as a fraction of the ranges
+OBJECTIVE_TOLERANCE = 1e-11  # relative gain below which the refinement stops
 MOST = 60  # steps
-IDLE = 3  # steps that bring no more, as where a piece is pointed and its slope promises what no step holds
-TOO_FAR = 1e6  # a piece's value where a step leads to what cannot be assembled, against about 1 at the start
-WEIGHT = 10.0  # of what is violated beside the objective, where steps are compared
+IDLE = 3  # steps without gain, as at a kink
+TOO_FAR = 1e6  # value for linkages that cannot be assembled; about 1 at the start
+WEIGHT = 10.0  # weight of violations relative to the objective
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ def minimize_locally(evaluate: Callable[[Real], LocalValues], x: Real) -> Real:
     from scipy.optimize import minimize
 
     n, differences = len(x), _Differences(evaluate, len(x))
-    steps: list[tuple[float, Real]] = []  # how bad each is, and where
+    steps: list[tuple[float, Real]] = []  # merit and point of each step
     idle = 0
     scale = 1.0
 
@@ -135,10 +135,10 @@ def minimize_locally(evaluate: Callable[[Real], LocalValues], x: Real) -> Real:
 # One candidate of an optimal synthesis, closely: quantities from windows about their peaks, and the polish on them.
 
 
-NARROWER = (1.0, 0.3, 0.0, 0.0, 0.0)  # windows of the polish: peaks move in them less and less
-FEWER = (1.0, 0.0)  # where candidates are moved one by one
-ABOUT = 2.0  # places of the scan to either side of a peak that a window takes at least
-SETTLED = 1e-9  # shares of the ranges: a polish that moves a candidate by less was the last
+NARROWER = (1.0, 0.3, 0.0, 0.0, 0.0)  # relative widths of the windows: peaks move less and less
+FEWER = (1.0, 0.0)  # if candidates are evaluated one by one
+ABOUT = 2.0  # half width of a window in scan steps, at least
+SETTLED = 1e-9  # fraction of the ranges: a smaller change ends the refinement
 
 
 @dataclass(frozen=True)
@@ -178,7 +178,7 @@ def evaluate_exactly(candidates: Candidates, x: Real) -> list[float]:
             def curve(name: str, shares: Real, n: int = n) -> Real:
                 return candidates.program(two, DriverSamples(shares, np.zeros(0)))[f"{n}.{name}"][0, : len(shares)]
 
-            if quantity.forces and np.isnan(coarse[n][0]):  # somewhere the driver has stopped, or is locked
+            if quantity.forces and np.isnan(coarse[n][0]):  # the driver stops or locks somewhere
                 values[n] = np.nan
             else:
                 values[n] = quantity.refine_value(
@@ -270,7 +270,9 @@ def _local_values(candidates: Candidates, found: list[Real], top: float) -> Loca
     least, equal = [], []
     for n, (constraint, pieces) in enumerate(zip(candidates.constraints, found[1:], strict=True), 1):
         low = high = _value(candidates, n, pieces)[:, None]
-        if isinstance(constraint.quantity, PeakQuantity) and not constraint.equal:  # every piece keeps the bound then
+        if (
+            isinstance(constraint.quantity, PeakQuantity) and not constraint.equal
+        ):  # then every peak must satisfy the bound
             low, high = (pieces, high) if constraint.quantity.lowest else (low, pieces)
         above, even = constraint.rows(low, high)
         least += above

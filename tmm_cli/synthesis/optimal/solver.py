@@ -20,12 +20,17 @@ from tmm_cli.synthesis.optimal.task import OptimalTask
 from tmm_cli.synthesis.record import Infeasible, SynthesisOutcome
 
 PARAMETERS: Final[dict[str, str]] = {}
-SHORTER = 20  # times, where starts beside it lead farther
-STARTS = 3  # of the polish: the best that differ; one where candidates are moved one by one
-HOPE = 1.0  # a start that is worse than the best by more of it is not polished
-APART = 0.02  # in shares of the ranges: what counts as different
-MISS_TOLERANCE = 1e-7  # by so much of its scale a constraint may be missed
-NEVER: Final = N_("no mechanism within these bounds can go the whole way of its driver; over: tells another way")
+SHORTER = 20  # factor by which the evolution is shortened if many starting points follow
+STARTS = 3  # distinct starting points of the refinement; one if candidates are evaluated one by one
+HOPE = 1.0  # relative: worse starting points are not refined
+APART = 0.02  # fraction of the ranges: distinct candidates are further apart
+MISS_TOLERANCE = 1e-7  # relative violation that counts as satisfied
+NEVER: Final = N_(
+    (
+        "no mechanism within these bounds completes the range of its driver; widen the bounds, or set "
+        "another range with over:"
+    )
+)
 
 
 def solve(task: OptimalTask) -> SynthesisOutcome:
@@ -120,10 +125,12 @@ def _no_quantity_reason(candidates: Candidates, quantity: MechanismQuantity) -> 
     """Return why no candidate has a quantity; forces are undefined if an accelerated driver does not arrive."""
     if quantity.forces and candidates.variant.accelerated:
         return N_(
-            "the driver does not come to all places of its way with this acceleration: it stops before, or they "
-            "lie before position 0"
+            (
+                "with this acceleration the driver does not reach all positions of its range: it stops earlier, or "
+                "they lie before position 0"
+            )
         )
-    return N_("no mechanism within the bounds was found that has this quantity")
+    return N_("no mechanism was found within the bounds for which this quantity is defined")
 
 
 def _missed_constraint(candidates: Candidates, found: BestCandidate) -> Infeasible:
@@ -139,7 +146,7 @@ def _missed_constraint(candidates: Candidates, found: BestCandidate) -> Infeasib
     others = tuple(other for other in candidates.task.constraints if other is not constraint)
     task = replace(candidates.task, objective=constraint.quantity, constraints=others, target=bound)
     near = _refine_starts(Candidates(task), [found.x], found.evolved)
-    reason = _("no mechanism within the bounds was found that meets this and the other constraints")
+    reason = _("no mechanism was found within the bounds that satisfies this constraint together with the others")
     if near.missed:
         return Infeasible(at, reason)
     side = 0 if constraint.equal else -1 if near.values[0] < bound else 1

@@ -18,7 +18,7 @@ from tmm_cli.mechanics.numerics import Real
 from tmm_cli.synthesis.optimal.quantities.base import MechanismQuantity
 from tmm_cli.synthesis.record import Infeasible
 
-Keys = tuple[str | int, ...]  # of the block, down to what stands there
+Keys = tuple[str | int, ...]  # path inside the block
 
 
 @dataclass(frozen=True)
@@ -125,12 +125,12 @@ def nearest_allowed(numbers: Any, parameters: Sequence[Parameter]) -> Real:
     return found
 
 
-# What is said of a task before its search.
+# Checks of a task before its search.
 
 
-TRIES = 40  # of linkages within the bounds, for one that can be assembled
-SHARES = (0.0, 0.137, 0.382, 0.618, 0.871, 1.0)  # of its range: where a parameter is looked at
-MOST_LOOKED = 100  # of its values, where it has some only
+TRIES = 40  # random linkages tried until one can be assembled
+SHARES = (0.0, 0.137, 0.382, 0.618, 0.871, 1.0)  # of its range: values at which a parameter is checked
+MOST_LOOKED = 100  # values of a discrete parameter that are checked
 
 
 def find_first(task: OptimalTask) -> list[float]:
@@ -149,7 +149,7 @@ def find_first(task: OptimalTask) -> list[float]:
         except LinkageError:
             continue
         return numbers
-    raise Infeasible("vary", _("no linkage within these bounds can be assembled as it is sketched"))
+    raise Infeasible("vary", _("no linkage within these bounds can be assembled as the sketch shows"))
 
 
 def check_task(task: OptimalTask, first: Sequence[float]) -> None:
@@ -164,7 +164,7 @@ def check_task(task: OptimalTask, first: Sequence[float]) -> None:
         other = list(first)
         other[k] = p.low if abs(first[k] - p.low) > abs(first[k] - p.high) else p.high
         if dict(numbers_of(task.make(other))) == before:
-            raise Infeasible(("vary", p.name), _("nothing in the file rests on this parameter"))
+            raise Infeasible(("vary", p.name), _("nothing in the file depends on this parameter"))
     groups, closed = analyse_mobile_structure(variant.linkage).solved, variant.ends is None
     for at, quantity in ((("objective",), task.objective), *((c.at, c.quantity) for c in task.constraints)):
         unfit = quantity.unfit(variant.linkage, groups, closed=closed)
@@ -186,12 +186,17 @@ def _check_cycle(task: OptimalTask, first: Sequence[float], linkage: Linkage) ->
     kernels = assemble(linkage, analyse_mobile_structure(linkage))
     for k, p in enumerate(task.parameters):
         own = p.values or [p.low + share * (p.high - p.low) for share in SHARES]
-        turns: set[Any] = set()  # or ratios with which all never comes round again
+        turns: set[Any] = set()  # or the ratios, if there is no common cycle
         for numbers in task.with_one(first, k, own[:: -(-len(own) // MOST_LOOKED)]):
             other = task.make(numbers).linkage
             turns.add(cycle_turns(other, kernels) or _speed_ratios(other))
         if len(turns) > 1:
-            reason = _("after how many turns all comes round again rests on this parameter")
+            reason = _(
+                (
+                    "the number of revolutions in a cycle depends on this parameter; it must be the same for all "
+                    "candidates"
+                )
+            )
             raise Infeasible(("vary", p.name), reason)
 
 

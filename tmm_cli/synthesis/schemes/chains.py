@@ -23,7 +23,7 @@ def canonical_form(colours: Sequence[int], edges: Mapping[tuple[int, int], int])
     """Return the canonical form of a simple graph on the vertices 0 .. len(colours) - 1; edges: kind by pair of
     vertices.
     """
-    beyond = 2 * max(len(colours), *colours) + 2  # all colours that there can be: one number tells kind and colour
+    beyond = 2 * max(len(colours), *colours) + 2  # number of possible colours: one number encodes kind and colour
     beside: list[list[tuple[int, int]]] = [[] for _ in colours]
     for (i, j), kind in edges.items():
         beside[i].append((kind * beyond, j))
@@ -71,17 +71,17 @@ def _refine_colours(colours: list[int], beside: list[list[tuple[int, int]]]) -> 
         count = len(rank)
 
 
-# Kinematic chains: all that can be built from n links with turning pairs so that they have the mobility W.
+# Kinematic chains: all chains of n links and revolute pairs with the mobility W.
 #
-# Convention of the counts. A chain is a set of n links and simple turning pairs (no compound hinges), two links
+# Convention of the counts. A chain is a set of n links and simple revolute pairs (no compound hinges), two links
 # sharing at most one pair, connected, every link with two pairs or more, 3(n - 1) - 2p = W, and no sub-chain of two
-# links or more rigid: 3(k - 1) - 2p >= 1 for every sub-chain of k links. Chains that fall apart when one link or one
-# pair is taken away (fractionated ones: each part moves by itself) are counted, as the classical tables do, and
+# links or more rigid: 3(k - 1) - 2p >= 1 for every sub-chain of k links. Chains that separate when one link or one
+# pair is removed (fractionated chains: each part moves independently) are counted, as in the classical tables, and
 # marked; with W = 1 there are none. n = 4, 6, 8, 10: 1, 2, 16, 230 for W = 1; n = 5, 7, 9: 1, 4, 40 for W = 2, of
 # which 0, 1, 5 are fractionated; n = 6, 8, 10: 1, 7, 98 for W = 3. Source of the counts: T. S. Mruthyunjaya,
 # Kinematic structure of mechanisms revisited, Mechanism and Machine Theory 38 (2003) 279-320.
 #
-# Way: a chain with all its binary links taken out of their edges is a multigraph with L = (n - W - 1)/2 independent
+# Method: a chain whose binary links are removed from their edges is a multigraph with L = (n - W - 1)/2 independent
 # contours and no vertex below degree 3; there are few of them, and the binary links are distributed over their edges.
 
 

@@ -18,9 +18,9 @@ from tmm_cli.synthesis.schemes.schemes import PlacedGroup, Scheme
 
 CRANK, CRANK_AT = 60, (60, 120, 30)  # mm; deg, of the first, second and third crank
 LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"  # O is the crank's pivot, and I looks like 1
-NEAREST = 30  # mm: points closer to one another cannot be told apart on a drawing
-LONGEST = 420  # mm: longer links are made by no course project
-WEIGHT = 3.0  # metres of links that a transmission angle of 0 is as bad as
+NEAREST = 30  # mm: closer points cannot be distinguished in a drawing
+LONGEST = 420  # mm: longer than the links of course projects
+WEIGHT = 3.0  # a transmission angle of 0 costs as much as this length of links (m)
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ class LayoutDraft:
         """Return the pivot of a crank on the frame."""
         return next(iter(self.points[crank].values()))
 
-    # --- chance
+    # --- random choices
 
     def random_vector(self, shortest: float, longest: float, low: float = 0.0, high: float = 360.0) -> complex:
         """Return a random vector with length (mm) and direction (deg) between bounds."""
@@ -209,9 +209,9 @@ def _wrap_line_angle(angle: int) -> int:
     return 90 - (90 - angle) % 180
 
 
-# A pose for a scheme: links put down assembled first, then the dimensions that fit them, in whole millimetres.
+# Layout of a scheme: links are placed in assembled position; their dimensions follow, in whole millimetres.
 #
-# Many poses are tried from one seed, so that a scheme has the same poses always; they are put in order by the
+# Many layouts are tried from one seed, so that a scheme always has the same ones; they are sorted by the
 # transmission angles of their groups and the lengths of their links.
 
 
@@ -281,7 +281,7 @@ class _GroupPlacer(LayoutDraft):
         self.place_link(b, self.axis_angle[Y], **{nB: B})
         self.add_slide(Y, b, B, turn, nB)
         self.add_transmission_penalty(math.cos(cmath.phase(B - A) - turn))
-        # off the guide, or off the guide of a crank that turns about its pivot
+        # distance from the guide, also for a guide on a rotating crank
         along = cmath.rect(1, turn)
         off = abs(cross(along, A - B))
         if Y in self.cranks:
@@ -305,7 +305,7 @@ class _GroupPlacer(LayoutDraft):
         C = sum(middles) / len(middles) + self.random_vector(60, 220)
         one, other = (X, Y) if X in self.cranks or (Y not in self.cranks and X > Y) else (Y, X)
         slotted = one in self.cranks
-        if slotted:  # a slotted crank has its slot through its pivot
+        if slotted:  # the slot of a slotted crank passes through its pivot
             C = self.pivot(one) + cmath.rect(self.random.uniform(120, 260), self.axis_angle[one])
         turns = {one: self.axis_angle[one] if slotted else self.guide_direction(one, 0, 180)}
         turns[other] = self.guide_direction(other, turns[one] + math.pi / 2, 35)
@@ -351,7 +351,7 @@ class _GroupPlacer(LayoutDraft):
         self.place_link(ternary, cmath.phase(corners[1] - corners[0]), **inner)
         for leg, A, at, (name, B) in zip(legs, outer, names, inner.items(), strict=True):
             self.place_bar(leg, at or self.name_hinge(0, A), A, name, B)
-        # the ternary link is lost when the lines of its legs meet in one point
+        # the ternary link is in a dead position if the lines of its legs meet in one point
         ways = [(corner - A) / abs(corner - A) for corner, A in zip(corners, outer, strict=True)]
         rows = [(w.real, w.imag, cross(c - middle, w) / 75) for w, c in zip(ways, corners, strict=True)]
         self.add_transmission_penalty(_determinant(rows))

@@ -16,7 +16,7 @@ def problem_text(scheme: Scheme, layout: SchemeLayout, title: str) -> str:
 
 def _head(scheme: Scheme, title: str) -> Iterable[str]:
     yield f"# {scheme.formula}; groups: {', '.join(scheme.types)}."
-    yield "# " + _("A scheme to start from: the dimensions only assemble it. Put your own in their places.")
+    yield "# " + _("A scheme to start from. With these dimensions it can be assembled; replace them by your own.")
     yield "tmm: 1"
     yield f"title: {title}"
     yield "units: {length: mm, angle: deg}"

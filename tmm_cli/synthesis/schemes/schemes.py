@@ -61,15 +61,15 @@ def _kind(letter: str) -> Kind:
 
 GROUP_TYPES: dict[str, GroupType] = {
     **{name: _dyad(name) for name in ("RRR", "RRP", "RPR", "PRP", "RPP")},
-    # a ternary link and its three leads
+    # a ternary link with its three external pairs
     "III": GroupType("III", 3, 4, ((0, 1, "R"), (0, 2, "R"), (0, 3, "R")), ((1, "R"), (2, "R"), (3, "R"))),
-    # a closed contour of four; leads on adjacent links would split it into two dyads
+    # a closed contour of four; external pairs on adjacent links would split it into two dyads
     "IV": GroupType("IV", 4, 4, ((0, 1, "R"), (1, 2, "R"), (2, 3, "R"), (0, 3, "R")), ((0, "R"), (2, "R"))),
 }
 GROUP_CLASSES = {"II": ("RRR", "RRP", "RPR", "PRP", "RPP"), "III": ("III",), "IV": ("IV",)}
 
 
-class TooManySchemes(Exception):  # noqa: N818  what is asked for is too much, not wrong
+class TooManySchemes(Exception):  # noqa: N818
     """There are more schemes than MOST_SCHEMES."""
 
 

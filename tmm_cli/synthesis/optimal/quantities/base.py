@@ -24,13 +24,13 @@ from tmm_cli.mechanics.structure import output_link
 from tmm_cli.synthesis import measures
 from tmm_cli.synthesis.measures import DriverEnds
 
-MOST_PEAKS = 4  # of a curve that are looked at closely
-SCAN = 1440  # places in a turn, or in a stroke, of an analysed mechanism
-CLOSELY = "closely."  # begins the names of outputs that are wanted for windows alone
+MOST_PEAKS = 4  # peaks of a curve that are evaluated finely
+SCAN = 1440  # positions per revolution or stroke of an analysed mechanism
+CLOSELY = "closely."  # prefix of outputs that only windows need
 
-Read = Callable[[str], Real]  # an output by name, (variants, places)
-Curve = Callable[[str, Real], Real]  # of one candidate: an output by name, at shares of the driver range
-Windows = list[tuple[Any, float, Read]]  # what a window is of, its first place, its outputs
+Read = Callable[[str], Real]  # an output by name, (variants, positions)
+Curve = Callable[[str, Real], Real]  # an output of one candidate by name, at fractions of the driver range
+Windows = list[tuple[Any, float, Read]]  # subject of a window, its start, its outputs
 
 
 @dataclass(frozen=True)
@@ -78,12 +78,12 @@ class MechanismQuantity(ABC):
     of: ClassVar[str]  # its name in files
     text: ClassVar[str]
     dimension: ClassVar[str] = "length"
-    keys: ClassVar[tuple[str, ...]] = ()  # of a problem file, beside `of`
-    named: ClassVar[str] = ""  # the one of them that says of what it is: pair, point or link
-    given: ClassVar[str] = ""  # the one of them that says what is wanted
-    forces: ClassVar[bool] = False  # wants the force plan
-    moves: ClassVar[bool] = True  # hangs on where the driver goes
-    lowest: ClassVar[bool] = False  # its least value in a cycle counts, and as an objective it is made largest
+    keys: ClassVar[tuple[str, ...]] = ()  # keys of a problem file besides `of`
+    named: ClassVar[str] = ""  # the key that names the pair, point or link
+    given: ClassVar[str] = ""  # the key with the required values
+    forces: ClassVar[bool] = False  # requires the force plan
+    moves: ClassVar[bool] = True  # depends on the driver range
+    lowest: ClassVar[bool] = False  # its smallest value counts, and as an objective it is maximised
 
     @abstractmethod
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:

@@ -25,15 +25,15 @@ from tmm_cli.synthesis.optimal.quantities.base import (
     motion_at,
 )
 
-AWAY = 1e100  # where a variant cannot be assembled
-FOOT_STEPS = 3  # of Newton's method from the nearest corner: it is off by half a step at most
-FOOT = 1e-3  # sine against the normal, above which the nearest place of a path is an end or a corner of it
+AWAY = 1e100  # coordinate of a variant that cannot be assembled
+FOOT_STEPS = 3  # Newton steps from the nearest corner, at most half a step away
+FOOT = 1e-3  # sine of the angle from the normal above which the nearest point is an end or a corner of the path
 
 
 class Deviation(MechanismQuantity):
     """Root mean square or largest deviation."""
 
-    largest: str  # what that is called
+    largest: str  # description of the largest deviation
 
     def title(self, linkage: Linkage) -> str:
         return self.largest if self.norm == "largest" else self.text
@@ -87,8 +87,8 @@ class Deviation(MechanismQuantity):
 class LawDeviation(Deviation):
     """Deviation of a link's motion from a required law, m or rad; relative: from the first position on."""
 
-    of, text = "law", N_("root mean square deviation from the wanted law")
-    largest = N_("largest deviation from the wanted law")
+    of, text = "law", N_("root mean square deviation from the required law")
+    largest = N_("largest deviation from the required law")
     keys, named, given = ("link", "values", "at", "relative", "norm"), "link", "values"
 
     def output(self, linkage: Linkage, groups: Any) -> str | None:
@@ -121,8 +121,8 @@ class LawDeviation(Deviation):
 class PathDeviation(Deviation):
     """Distance of a point's path from required points, m; without `places` it may pass through them at any position."""
 
-    of, text = "path", N_("root mean square distance from the wanted points")
-    largest = N_("largest distance from the wanted points")
+    of, text = "path", N_("root mean square distance from the required points")
+    largest = N_("largest distance from the required points")
     keys, named, given = ("point", "through", "at", "norm"), "point", "through"
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
@@ -196,7 +196,7 @@ def _distances_across(place: Any, wanted: Real, closed: bool) -> Real:
     normal = np.where(end, at / np.abs(at), 1j * along / np.abs(along))
     share = np.tensordot(
         WINDOW_FIT, np.cumprod([np.ones_like(u), *[u] * (2 * WINDOW_SIDE)], axis=0), 1
-    )  # of each corner
+    )  # weight of each corner
     found: Real = dot(normal[..., None], np.sum(share[..., None] * off, axis=0))
     return found.transpose(1, 2, 0)
 
@@ -225,7 +225,7 @@ def nearest_corners(x: Real, y: Real, wanted: Real) -> Any:
     """Return the corners of polygons (variants, corners) that are nearest to points, (points, variants)."""
     square, near = (x * x + y * y) / 2, np.empty((len(wanted), len(x)), dtype=int)
     work, other = np.empty_like(x), np.empty_like(x)
-    for k, w in zip(near, wanted, strict=True):  # half the square of the distance, but for w^2, is least there
+    for k, w in zip(near, wanted, strict=True):  # minimises half the squared distance, without the constant w^2
         np.multiply(x, w.real, out=work)
         np.subtract(square, work, out=work)
         np.multiply(y, w.imag, out=other)

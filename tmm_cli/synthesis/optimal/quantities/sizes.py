@@ -25,7 +25,7 @@ from tmm_cli.synthesis.optimal.quantities.base import (
 )
 
 SIDES: Final = (("x", 1), ("x", -1), ("y", 1), ("y", -1))  # right, left, top, bottom
-OF_A_SIDE = 3  # points that may come to bear on a side
+OF_A_SIDE = 3  # points considered on each side
 
 
 class LinkLengthSum(ConstantQuantity):
@@ -61,7 +61,7 @@ class MotionBox(PeakQuantity):
     smooth.
     """
 
-    of, text = "box", N_("box of the moving points, width + height")
+    of, text = "box", N_("bounding box of the moving points, width + height")
     curves = ("y0", "y1", "y2", "y3")
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:

@@ -18,7 +18,7 @@ from tmm_cli.synthesis import measures
 from tmm_cli.synthesis.measures import DriverEnds, time_ratio_of_curve
 from tmm_cli.synthesis.optimal.quantities.base import Curve, MechanismQuantity, QuantityRange, Read, Windows
 
-FOUR = 4  # ends of strokes in a cycle: of more the highest and the lowest may belong to two strokes
+FOUR = 4  # reversals in a cycle: with more, the extremes may belong to different strokes
 
 
 class StrokeQuantity(MechanismQuantity):
@@ -28,9 +28,11 @@ class StrokeQuantity(MechanismQuantity):
 
     def unfit(self, linkage: Linkage, groups: Any, *, closed: bool) -> str | None:
         if self.output(linkage, groups) is None:
-            return N_("no link is the output, whose stroke this is: it slides or swings on the frame")
+            return N_(
+                "the linkage has no output link with a stroke, that is, no output that slides or swings on the frame"
+            )
         if self.of_a_cycle and not closed:
-            return N_("this belongs to a driver that turns on and on, and this one goes between two ends")
+            return N_("this quantity requires a continuously rotating driver; this driver moves between two ends")
         return None
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
@@ -40,7 +42,7 @@ class StrokeQuantity(MechanismQuantity):
 
     def windows(self, read: Read, over: QuantityRange) -> list[tuple[Any, int]]:
         slope = read("slope")[0]
-        moves = np.flatnonzero(slope)  # in a dwell it is exactly zero
+        moves = np.flatnonzero(slope)  # zero in a dwell
         after = np.roll(moves, -1) if over.closed else np.append(moves[1:], moves[-1:])
         turns = [int(k) for k in moves[slope[moves] * slope[after] < 0]]
         turns = turns if over.closed else [0, *turns, len(slope) - 1]
@@ -60,7 +62,7 @@ class StrokeQuantity(MechanismQuantity):
 class OutputStroke(StrokeQuantity):
     """Stroke of the output, m or rad; the longest of several."""
 
-    of, text = "stroke", N_("stroke of the output")
+    of, text = "stroke", N_("stroke of the output link")
 
     def kind(self, linkage: Linkage, groups: Any) -> str:
         return "length" if self.slides(linkage, groups) else "angle"
@@ -94,7 +96,12 @@ class OutputStroke(StrokeQuantity):
 class TimeRatio(StrokeQuantity):
     """Time ratio k, duration of the longer stroke over that of the shorter: 1 or more."""
 
-    of, text, dimension, of_a_cycle = "k", N_("k, the longer stroke over the shorter"), "number", True
+    of, text, dimension, of_a_cycle = (
+        "k",
+        N_("k, duration of the longer stroke divided by that of the shorter"),
+        "number",
+        True,
+    )
 
     def coarse(self, read: Read, over: QuantityRange) -> Real:
         return time_ratio_of_share(forward_share(read("slope")))
@@ -120,11 +127,11 @@ class TimeRatio(StrokeQuantity):
 class MeanOutputSpeed(StrokeQuantity):
     """Mean speed of a sliding output over a cycle, m/s; with an accelerated crank over the first cycle."""
 
-    of, text, dimension, of_a_cycle = "speed", N_("mean speed of the output"), "speed", True
+    of, text, dimension, of_a_cycle = "speed", N_("mean speed of the output link"), "speed", True
 
     def unfit(self, linkage: Linkage, groups: Any, *, closed: bool) -> str | None:
         if not self.slides(linkage, groups) and self.output(linkage, groups) is not None:
-            return N_("the output swings: it has no mean speed in metres a second")
+            return N_("the output link swings: it has no mean speed in m/s")
         return super().unfit(linkage, groups, closed=closed)
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
@@ -153,9 +160,9 @@ def coarse_travel(read: Read, over: QuantityRange) -> Real:
     """Return the range of the output's motion, coarsely, (variants,); nan for an output that rotates continuously."""
     run = read("run")
     travel: Real = np.max(run, axis=1) - np.min(run, axis=1)
-    if over.swings and np.any(past := travel > np.pi):  # angles are within -pi..pi, and nearer than pi to the next ones
+    if over.swings and np.any(past := travel > np.pi):  # angles lie in -pi..pi, neighbours less than pi apart
         slope = read("slope")[past]
-        turns = np.all(slope > 0, axis=1) | np.all(slope < 0, axis=1)  # such an output has no strokes
+        turns = np.all(slope > 0, axis=1) | np.all(slope < 0, axis=1)  # an output without reversals has no strokes
         travel[past] = np.where(turns & over.closed, np.nan, np.ptp(np.unwrap(run[past], axis=1), axis=1))
     return travel
 
@@ -168,7 +175,7 @@ def longest_stroke(run: Real, travel: Real, *, turns: bool) -> Real:
     step = np.diff(run, axis=1, append=run[:, :1])
     step = (step + np.pi) % (2 * np.pi) - np.pi if turns else step
     stroke, best = np.zeros(len(run)), np.zeros(len(run))
-    for k in range(2 * run.shape[1]):  # twice round, for the stroke that goes on over the end
+    for k in range(2 * run.shape[1]):  # two cycles, for the stroke that continues past the end
         one = step[:, k % run.shape[1]]
         stroke = np.where(stroke * one >= 0, stroke + one, one)
         best = np.maximum(best, np.abs(stroke))

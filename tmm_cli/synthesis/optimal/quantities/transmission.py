@@ -20,7 +20,7 @@ from tmm_cli.synthesis import measures
 from tmm_cli.synthesis.measures import DriverEnds
 from tmm_cli.synthesis.optimal.quantities.base import PeakQuantity
 
-SIDE: Final = "side"  # outputs whose sign tells on which side of a dead position a group is that has one assembly only
+SIDE: Final = "side"  # outputs whose sign shows the side of a dead position, for groups with a single assembly
 
 
 class AssemblyReserve(PeakQuantity):
@@ -29,7 +29,7 @@ class AssemblyReserve(PeakQuantity):
     Every candidate must be assembled in all positions.
     """
 
-    of, text, dimension, lowest = "assembles", N_("driver goes its whole way (1: yes)"), "number", True
+    of, text, dimension, lowest = "assembles", N_("driver completes its range (1: yes)"), "number", True
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
         both = list(zip(motion.kernels, motion.placements, strict=True))
@@ -42,7 +42,7 @@ class AssemblyReserve(PeakQuantity):
 class DeadPositionMargin(PeakQuantity):
     """Smallest distance of a group from a dead position, 1 at best."""
 
-    of, text, dimension, lowest = "margin", N_("least distance from a dead position"), "number", True
+    of, text, dimension, lowest = "margin", N_("smallest distance from a dead position"), "number", True
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
         return {"y": -reduce(np.minimum, [at.margin for at in motion.placements])}
@@ -71,7 +71,7 @@ class LargestPressureAngle(PeakQuantity):
         return measures.largest_pressure_angle(results, ends)
 
 
-# Forces: what balances the driver, reactions.
+# Forces: balancing moment, reactions.
 
 
 class LargestBalancingMoment(PeakQuantity):
