@@ -122,10 +122,7 @@ def refuse(task: CrankConditionTask) -> None:
     if isinstance(task, FourBarLinks) and classify_four_bar(task).kind < 0:
         longest = max(("l1", "l2", "l3", "l4"), key=lambda name: float(getattr(task, name)))
         reason = _(
-            (
-                "the links do not form a closed loop: {link} is as long as the other three together, or longer. "
-                "Shorten it"
-            )
+            "the links do not form a closed loop: {link} is as long as the other three together, or longer. Shorten it"
         )
         raise Infeasible(longest, reason.format(link=longest))
 
@@ -171,10 +168,8 @@ def _solve_four_bar(task: FourBarLinks) -> SynthesisOutcome:
     for role, turns in zip((N_("input link"), N_("coupler"), N_("output link")), found.turns, strict=True):
         values.append(NamedValue("", (at_change if change else fully) if turns else rocks, "word", role))
     source = N_(
-        (
-            "F. Grashof: compare s + l with p + q; types after C. R. Barker, A complete classification of "
-            "planar four-bar linkages, Mechanism and Machine Theory 20 (1985)"
-        )
+        "F. Grashof: compare s + l with p + q; types after C. R. Barker, A complete classification of "
+        "planar four-bar linkages, Mechanism and Machine Theory 20 (1985)"
     )
     return SynthesisOutcome(asked, tuple(values), source, _rotation_demands(bool(found.turns[0]), change))
 

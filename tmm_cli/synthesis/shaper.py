@@ -176,10 +176,8 @@ def solve(task: ShaperTask) -> SynthesisOutcome:
         Demand(text, float(f.pressure), kind, largest_pressure_angle, task.pressure is not None, of="pressure"),
     )
     source = N_(
-        (
-            "D has the same height in both extreme positions of the lever: CD = H/(2 sin(theta/2)), theta = pi "
-            "(k - 1)/(k + 1), OA = OC sin(theta/2); the guide is at half the height of D's arc"
-        )
+        "D has the same height in both extreme positions of the lever: CD = H/(2 sin(theta/2)), theta = pi "
+        "(k - 1)/(k + 1), OA = OC sin(theta/2); the guide is at half the height of D's arc"
     )
     return SynthesisOutcome(
         given_values(task, QUANTITIES), found, source, demands, (draw_construction(f),), output="slide"

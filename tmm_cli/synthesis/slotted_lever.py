@@ -140,10 +140,8 @@ QUANTITIES: Final = {  # quantities that a task may give: kind and description
     "OA": ("length", N_("crank OA")),
 }
 QUICK_RETURN: Final = N_(
-    (
-        "k must be greater than 1: a swinging lever returns faster, and k is the duration of the slow "
-        "stroke divided by that of the fast one"
-    )
+    "k must be greater than 1: a swinging lever returns faster, and k is the duration of the slow "
+    "stroke divided by that of the fast one"
 )
 HALF_A_TURN: Final = N_("with a fully rotating crank the swing angle of the lever must be less than 180 deg")
 
@@ -267,10 +265,8 @@ def solve(task: SlottedLeverTask) -> SynthesisOutcome:
     free = tabulate_family(task, f) if task.within is not None and task.within[0] < task.within[1] else None
     drawings, listings = ((draw_construction(f), free[0]), (free[1],)) if free else ((draw_construction(f),), ())
     source = N_(
-        (
-            "in the extreme positions OA is perpendicular to the lever: B1CB2 = theta = pi (k - 1)/(k + 1), "
-            "CB1 = CB2, O on the bisector, OA = OC sin(theta/2)"
-        )
+        "in the extreme positions OA is perpendicular to the lever: B1CB2 = theta = pi (k - 1)/(k + 1), "
+        "CB1 = CB2, O on the bisector, OA = OC sin(theta/2)"
     )
     return SynthesisOutcome(
         _given_values(task), _found_values(task, f), source, demands, drawings, notes, listings, output="swing"

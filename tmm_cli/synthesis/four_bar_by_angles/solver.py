@@ -153,14 +153,10 @@ def draw_construction(one: FourBarRatios, given_phi: Any, given_psi: Any, size: 
     lengths = (("l1", float(abs(b[0]))), ("l2", float(abs(c[0] - b[0]))), ("l3", float(abs(c[0] - d))), ("l4", size))
     values = tuple((name, value, "length") for name, value in lengths)
     title = N_(
-        (
-            "Positions rotated back about {A} to the first input angle: {B}1 is the centre of the circle "
-            "through {C}1, {C}2′, ..."
-        )
+        "Positions rotated back about {A} to the first input angle: {B}1 is the centre of the circle "
+        "through {C}1, {C}2′, ..."
     )
-    note = N_(
-        ("dashed: perpendicular bisectors, and arcs {C}{C}′ about {A} for the reverse rotation of the input link")
-    )
+    note = N_("dashed: perpendicular bisectors, and arcs {C}{C}′ about {A} for the reverse rotation of the input link")
     return GeometricConstruction(
         title, tuple(segments), tuple(arcs), tuple(spots), (note,), chain="four-bar", values=values
     )
@@ -189,10 +185,8 @@ MEAN: Final = N_("root mean square error of the output angle")
 SHORT_DEFECTS: Final = {"": N_("none"), "branch": N_("branch"), "locks": N_("order")}
 NO_FOUR_BAR: Final = N_("no four-bar passes through these pairs of angles")
 NONE_NEAR: Final = N_(
-    (
-        "no four-bar has the smallest error for these pairs: it keeps decreasing as the links become "
-        "longer, or as the input link comes closer to locking"
-    )
+    "no four-bar has the smallest error for these pairs: it keeps decreasing as the links become "
+    "longer, or as the input link comes closer to locking"
 )
 DEFECTS_OF_ALL: Final = {
     "branch": N_("branch defect: every four-bar through these pairs reaches some of them only in its other assembly"),
@@ -360,17 +354,13 @@ def _measured_largest_error(one: FourBarRatios, task: AnglePairsTask, results: A
 def _notes(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality, any_one: bool) -> Iterable[str]:
     if task.approximate and not any_one:
         yield N_(
-            (
-                "there are more pairs than a four-bar can reach exactly: the sum of the squared errors of the "
-                "output angle is minimised"
-            )
+            "there are more pairs than a four-bar can reach exactly: the sum of the squared errors of the "
+            "output angle is minimised"
         )
     if any_one and len(task.lengths) == 1:
         yield N_(
-            (
-                "the angles stay equal: every parallelogram l1 = l3, l2 = l4 passes through the pairs, and its "
-                "transmission angle is the angle between DC and AD; l1/l4 is free, 1/2 was taken"
-            )
+            "the angles stay equal: every parallelogram l1 = l3, l2 = l4 passes through the pairs, and its "
+            "transmission angle is the angle between DC and AD; l1/l4 is free, 1/2 was taken"
         )
     if mark.reversed:
         yield N_("a zero angle differs from the given one by 180 deg: with the given direction no such link exists")
@@ -378,17 +368,13 @@ def _notes(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality, any_o
         yield N_("no solution without defects has an input link that rotates fully: another solution was taken")
     if task.free and abs(abs(np.log(abs(float(one.l1)))) - np.log(LONGEST)) < 1e-9:
         yield N_(
-            (
-                "two pairs leave l4/l1 free: of 0.1 to 10 one end of the range has the best transmission angle and "
-                "was taken; for another value give two of l1, l3, l4"
-            )
+            "two pairs leave l4/l1 free: of 0.1 to 10 one end of the range has the best transmission angle and "
+            "was taken; for another value give two of l1, l3, l4"
         )
     elif task.free:
         yield N_(
-            (
-                "two pairs leave l4/l1 free: of 0.1 to 10 the value with the best transmission angle was taken; "
-                "for another value give two of l1, l3, l4"
-            )
+            "two pairs leave l4/l1 free: of 0.1 to 10 the value with the best transmission angle was taken; "
+            "for another value give two of l1, l3, l4"
         )
 
 

@@ -331,10 +331,8 @@ def _refuse_numbers(task: FourBarByKTask) -> None:
         raise Infeasible(
             "k",
             _(
-                (
-                    "k is too large for this swing angle: for every pivot A on the circle the rocker would pass "
-                    "through a dead position or nearly reach it"
-                )
+                "k is too large for this swing angle: for every pivot A on the circle the rocker would pass "
+                "through a dead position or nearly reach it"
             ),
         )
     if against and theta > np.pi / 2 - half - SHORTEST_ARC:  # of the other arc
@@ -349,10 +347,8 @@ def _refuse_numbers(task: FourBarByKTask) -> None:
         raise Infeasible(
             "k",
             _(
-                (
-                    "with k = 1 there is no best pivot: the farther away A is, the closer the largest pressure angle "
-                    "comes to psi/2"
-                )
+                "with k = 1 there is no best pivot: the farther away A is, the closer the largest pressure angle "
+                "comes to psi/2"
             ),
         )
     if theta == 0 and task.choose == "l1":
@@ -381,10 +377,8 @@ def solve(task: FourBarByKTask) -> SynthesisOutcome:
     ]
     family = [four_bar_at(task, sample_whole_arc(task, side), side) for side in admissible_arcs(task)]
     source = N_(
-        (
-            "circle through C1 and C2 from which C1C2 is seen at the angle theta = pi (k - 1)/(k + 1); l1 = "
-            "(AC2 - AC1)/2, l2 = AC2 - l1, l4 = AD; C1 and C2 on one side of AD"
-        )
+        "circle through C1 and C2 from which C1C2 is seen at the angle theta = pi (k - 1)/(k + 1); l1 = "
+        "(AC2 - AC1)/2, l2 = AC2 - l1, l4 = AD; C1 and C2 on one side of AD"
     )
     notes = (
         () if task.k > 1 else (N_("with k = 1 the circle becomes the line C1C2: A may be any of its points beyond C1"),)

@@ -251,10 +251,8 @@ def outcome_of(candidates: Candidates, found: BestCandidate) -> SynthesisOutcome
     if sketch is not None:
         notes.append(
             N_(
-                (
-                    "the sketch of the file does not show the mechanism found: it was assembled in the same way as "
-                    "similar linkages that the sketch shows"
-                )
+                "the sketch of the file does not show the mechanism found: it was assembled in the same way as "
+                "similar linkages that the sketch shows"
             )
         )
     return SynthesisOutcome(
@@ -304,17 +302,13 @@ def _found_values(candidates: Candidates, found: BestCandidate) -> tuple[NamedVa
 def _source(candidates: Candidates, found: BestCandidate) -> str:
     if many_starts.is_applicable(candidates):
         return N_(
-            (
-                "differential evolution (R. Storn, K. Price 1997) and random starting points, then nonlinear least "
-                "squares (K. Levenberg 1944, D. Marquardt 1963)"
-            )
+            "differential evolution (R. Storn, K. Price 1997) and random starting points, then nonlinear least "
+            "squares (K. Levenberg 1944, D. Marquardt 1963)"
         )
     if not found.evolved.every:
         return N_(
-            (
-                "differential evolution (R. Storn, K. Price 1997; constraints by K. Deb 2000), then sequential "
-                "quadratic programming with exact peak values"
-            )
+            "differential evolution (R. Storn, K. Price 1997; constraints by K. Deb 2000), then sequential "
+            "quadratic programming with exact peak values"
         )
     if found.evolved.stopped:
         return N_("evaluation of all candidates in order, stopped before the end")

@@ -26,10 +26,8 @@ HOPE = 1.0  # relative: worse starting points are not refined
 APART = 0.02  # fraction of the ranges: distinct candidates are further apart
 MISS_TOLERANCE = 1e-7  # relative violation that counts as satisfied
 NEVER: Final = N_(
-    (
-        "no mechanism within these bounds completes the range of its driver; widen the bounds, or set "
-        "another range with over:"
-    )
+    "no mechanism within these bounds completes the range of its driver; widen the bounds, or set "
+    "another range with over:"
 )
 
 
@@ -125,10 +123,8 @@ def _no_quantity_reason(candidates: Candidates, quantity: MechanismQuantity) -> 
     """Return why no candidate has a quantity; forces are undefined if an accelerated driver does not arrive."""
     if quantity.forces and candidates.variant.accelerated:
         return N_(
-            (
-                "with this acceleration the driver does not reach all positions of its range: it stops earlier, or "
-                "they lie before position 0"
-            )
+            "with this acceleration the driver does not reach all positions of its range: it stops earlier, or "
+            "they lie before position 0"
         )
     return N_("no mechanism was found within the bounds for which this quantity is defined")
 

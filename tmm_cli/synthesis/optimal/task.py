@@ -192,10 +192,7 @@ def _check_cycle(task: OptimalTask, first: Sequence[float], linkage: Linkage) ->
             turns.add(cycle_turns(other, kernels) or _speed_ratios(other))
         if len(turns) > 1:
             reason = _(
-                (
-                    "the number of revolutions in a cycle depends on this parameter; it must be the same for all "
-                    "candidates"
-                )
+                "the number of revolutions in a cycle depends on this parameter; it must be the same for all candidates"
             )
             raise Infeasible(("vary", p.name), reason)
 
