@@ -22,17 +22,17 @@ from tmm_cli.bench import (
     TARGETS,
     Accuracy,
     AccuracyRow,
-    Answers,
     Case,
     LoopEquations,
     Method,
+    MethodAnswers,
+    convert_precision,
     draw_accuracy,
-    errors,
     measure_accuracy,
-    places,
-    recast,
     reference,
+    relative_errors,
     rivals,
+    sample_coordinates,
 )
 from tmm_cli.bench.methods import board
 from tmm_cli.mechanics.plans import sheet_scale
@@ -45,7 +45,7 @@ UNIT = np.finfo(float).eps
 
 def error_of(method, name):
     true = reference(name)
-    return errors(BY_NAME[method].solve(true.case, true.q), true.exact)
+    return relative_errors(BY_NAME[method].solve(true.case, true.q), true.exact)
 
 
 @pytest.fixture(params=REFERENCE_NAMES)
@@ -117,7 +117,7 @@ def test_extended_precision_is_better_than_double_and_double_than_single(name):
 
 def test_numbers_are_recast_and_names_are_not():
     linkage = reference("shaper").case.linkage
-    wide = recast(linkage, np.longdouble)
+    wide = convert_precision(linkage, np.longdouble)
     assert wide.links.keys() == linkage.links.keys()
     assert isinstance(wide.links["3"].mass, np.longdouble)
     assert wide.links["3"].points["D"].dtype == np.clongdouble
@@ -163,9 +163,9 @@ def test_what_is_drawn_to_half_a_millimetre_comes_within_the_five_percent_rule_o
 def test_a_finer_grid_makes_a_truer_drawing(name):
     fine, coarse = (error_of(f"board-{mm}", name) for mm in ("0.25", "0.50"))
     assert np.prod([coarse[q] / fine[q] for q in QUANTITIES]) > 1
-    finest = Method("", "", partial(board.prepare, 1e-6))
+    finest = Method("", "", partial(board.prepare_board, 1e-6))
     true = reference(name)
-    assert max(errors(finest.solve(true.case, true.q), true.exact).values()) < 1e-6
+    assert max(relative_errors(finest.solve(true.case, true.q), true.exact).values()) < 1e-6
 
 
 # the form
@@ -182,18 +182,18 @@ def test_loops_have_two_equations_each_and_one_coordinate_a_moving_link(name):
 def test_a_case_is_made_of_a_linkage_alone():
     true = reference("crank-rocker").case
     case = Case.of(true.linkage, "alone", true.start, true.strokes)
-    q = places(case, 5)
+    q = sample_coordinates(case, 5)
     one, other = CLOSED_FORM.solve(case, q), CLOSED_FORM.solve(true, q)
     assert np.array_equal(one.balancing, other.balancing)
 
 
 def test_what_a_method_does_not_give_is_nan_and_where_it_fails_its_error_is_infinite():
-    exact = Answers(positions={"A": np.array([1.0 + 0j, 2.0])}, balancing=np.array([1.0, -4.0]))
-    found = Answers(positions={"A": np.array([np.nan + 0j, 2.0])})
-    got = errors(found, exact)
+    exact = MethodAnswers(positions={"A": np.array([1.0 + 0j, 2.0])}, balancing=np.array([1.0, -4.0]))
+    found = MethodAnswers(positions={"A": np.array([np.nan + 0j, 2.0])})
+    got = relative_errors(found, exact)
     assert got["positions"] == np.inf
     assert np.isnan(got["balancing"])
-    assert errors(Answers(balancing=np.array([1.0, -3.0])), exact)["balancing"] == 0.25
+    assert relative_errors(MethodAnswers(balancing=np.array([1.0, -3.0])), exact)["balancing"] == 0.25
 
 
 def test_a_missed_target_is_a_failure_and_reduced_ones_are_twice_as_wide():

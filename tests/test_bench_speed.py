@@ -11,7 +11,19 @@ import numpy as np
 import pytest
 from test_commands import tmm
 
-from tmm_cli.bench import MECHANISMS, Growth, Iterated, Race, Rival, Speed, Sweeping, chain, exponent, measured, speed
+from tmm_cli.bench import (
+    MECHANISMS,
+    Growth,
+    IteratedRace,
+    Race,
+    RivalRace,
+    SpeedMeasurement,
+    SweepRate,
+    dyad_chain,
+    fit_exponent,
+    measured,
+    speed,
+)
 from tmm_cli.mechanics.assembly import analyse_mobile_structure, assemble
 from tmm_cli.mechanics.forces import collect_loads, compute_lever, reduced_driving_moment, solve_reactions
 from tmm_cli.mechanics.groups import DriverMotion
@@ -34,7 +46,7 @@ def test_the_code_by_hand_gives_what_the_product_gives(mechanism, variants):
 
 
 def test_a_long_chain_of_dyads_moves_and_balances():
-    it = chain(30)
+    it = dyad_chain(30)
     structure = analyse_mobile_structure(it)
     motion = compute_motion(it, assemble(it, structure), np.linspace(0, 6.28, 25), DriverMotion(1.0, 10.0, 0.0, 1))
     assert len(structure.groups) == 30 and bool(np.all(motion.moving))
@@ -47,7 +59,7 @@ def test_a_long_chain_of_dyads_moves_and_balances():
 
 def once(monkeypatch):
     """Every run is timed once."""
-    for name, value in {"REDUCED_TURNS": 1, "LEAST": 0.0, "AGAIN": 0}.items():
+    for name, value in {"REDUCED_TURNS": 1, "LEAST_DURATION": 0.0, "ADDITIONAL_RUNS": 0}.items():
         monkeypatch.setattr(measured, name, value)
 
 
@@ -63,15 +75,15 @@ def test_what_misses_its_target_is_timed_again_and_the_least_of_all_turns_is_kep
             assert slack == (2 if reduced else 1)
             return "missed" if next(ticks) < missing else ""
 
-    found = measured.timed({"": None}, lambda least: Judged(least=least[""]), reduced)
+    found = measured.time_until_met({"": None}, lambda least: Judged(least=least[""]), reduced)
     assert found.least == 1001 - turns
 
 
 @pytest.mark.parametrize("true", [0.8, 1.0, 1.2])
 def test_the_exponent_is_found_beside_a_constant_cost(true):
     n = [30, 100, 300, 1000, 3000, 10_000]
-    assert abs(exponent(n, [2.0 + 1e-3 * k**true for k in n]) - true) < 0.002
-    assert abs(exponent(n, [1e-3 * k**true for k in n]) - true) < 0.002
+    assert abs(fit_exponent(n, [2.0 + 1e-3 * k**true for k in n]) - true) < 0.002
+    assert abs(fit_exponent(n, [1e-3 * k**true for k in n]) - true) < 0.002
 
 
 def test_the_verdict():
@@ -79,10 +91,10 @@ def test_the_verdict():
     assert good.ratio == 1.2 and good.target == 1.3
     bad = replace(good, ours=150.0)
     growth = Growth("links", (3, 5), (1.0, 1.7), 1.07)
-    rival = Rival("kinepy", "shaper", 2000.0, 100.0)
-    iterated = Iterated("press", 360, 2000.0, 200.0, 0.0)
-    sweep = Sweeping("six-bar", 20_000, 12, 0.9e6, 100.0)
-    found = Speed((good, bad), (growth,), (rival,), (iterated,), (sweep,)).failures
+    rival = RivalRace("kinepy", "shaper", 2000.0, 100.0)
+    iterated = IteratedRace("press", 360, 2000.0, 200.0, 0.0)
+    sweep = SweepRate("six-bar", 20_000, 12, 0.9e6, 100.0)
+    found = SpeedMeasurement((good, bad), (growth,), (rival,), (iterated,), (sweep,)).failures
     assert found == (
         "six-bar, 1 x 360: 1.50 times the code by hand, target 1.3",
         "press, 360 positions: 10.0 times the six-bar, target 8.7",
@@ -90,7 +102,7 @@ def test_the_verdict():
         "growth with links: exponent 1.070, target 1 +- 0.05",
         "kinepy, shaper: 20.0 times as long, target 30",
     )
-    reduced = Speed((good, bad), (growth,), (rival,), (iterated,), (sweep,), reduced=True)
+    reduced = SpeedMeasurement((good, bad), (growth,), (rival,), (iterated,), (sweep,), reduced=True)
     assert reduced.failures == ()  # twice as wide
 
 

@@ -15,23 +15,23 @@ from test_commands import tmm
 from write_stability_references import Closely, circles, closed, starts, written
 
 from tmm_cli.bench import (
-    BY_NAME,
     FAMILIES,
+    FAMILIES_BY_NAME,
     KEYS,
     PRODUCT,
     QUANTITIES,
     RIVALS,
     WRONG,
-    Answers,
     Case,
     Method,
-    Unable,
+    MethodAnswers,
+    MethodUnable,
     close_positions,
+    error_limit,
+    family_members,
+    judge_product,
     known_scenes,
-    limit,
     measure_stability,
-    ours,
-    seeds,
     stability,
     stability_charts,
 )
@@ -77,15 +77,15 @@ def same(stated, value):
     ],
 )
 def test_answers_are_what_the_textbook_says_in_a_hundred_digits(family, seed, k):
-    stored = seeds(family)[seed]
-    scene = BY_NAME[family].scene(stored.numbers, BY_NAME[family].distances[k])
-    assert Decimal(stored.scenes[k]["distance"]) == BY_NAME[family].distances[k]
+    stored = family_members(family)[seed]
+    scene = FAMILIES_BY_NAME[family].scene(stored.numbers, FAMILIES_BY_NAME[family].distances[k])
+    assert Decimal(stored.scenes[k]["distance"]) == FAMILIES_BY_NAME[family].distances[k]
     for key, value in Closely(scene).answers().items():
         assert same(stored.scenes[k][key], value)
 
 
 def test_the_triads_of_the_fold_lose_two_assemblies_there():
-    family, stored = BY_NAME["two-assemblies-lost"], seeds("two-assemblies-lost")[0]
+    family, stored = FAMILIES_BY_NAME["two-assemblies-lost"], family_members("two-assemblies-lost")[0]
     n = {key: value for key, value in stored.numbers.items() if key != "critical"}
     n["end"] = Decimal(float(stored.numbers["critical"]))  # near it: the fold is found to fifty digits
     begin = starts(replace(family, distances=(Decimal("1e-9"),)), n)
@@ -103,7 +103,7 @@ def test_the_triads_of_the_fold_lose_two_assemblies_there():
 
 
 def test_a_rocker_runs_off_its_velocity_as_the_root_of_the_distance_from_a_dead_position():
-    stored = seeds("dead-position")[0].scenes
+    stored = family_members("dead-position")[0].scenes
     speeds = [abs(complex(*map(float, scene["velocity"]))) for scene in stored]
     assert [b / a for a, b in pairwise(speeds[5:14])] == pytest.approx([10**0.5] * 8, rel=0.01)
 
@@ -123,7 +123,7 @@ def test_the_doubles_of_a_scene_are_its_data():
 
 
 def json_of(at, key):
-    scenes = seeds(at.family.name)[at.seed].scenes
+    scenes = family_members(at.family.name)[at.seed].scenes
     return next(scene[key] for scene in scenes if Decimal(scene["distance"]) == at.distance)
 
 
@@ -160,7 +160,7 @@ def test_a_plan_has_letters_at_all_ends_where_rounding_parts_them():
     at = near("dead-position", "1e-15")
     with np.errstate(all="ignore"):
         answers = METHODS["board-0.25"].prepare(Case.of(at.scene.linkage))(np.array([at.scene.q]))
-    assert isinstance(answers, Answers)
+    assert isinstance(answers, MethodAnswers)
 
 
 @pytest.mark.parametrize("family", ["dead-position", "short-rod", "inner-tangent"])
@@ -197,7 +197,7 @@ def test_no_value_of_ours_is_outside_its_bound(family):
     for at in known_scenes(family, 2, 7):
         if at.seed == 0:
             continue  # among those of `own`
-        shot = ours(Case.of(at.scene.linkage), at)
+        shot = judge_product(Case.of(at.scene.linkage), at)
         assert shot.verdict in ("right", "said"), (at.seed, at.distance, shot)
         assert shot.verdict == "said" or max(shot.errors.values()) <= WRONG
 
@@ -248,7 +248,7 @@ def test_bounds_that_are_too_wide_are_found_out(monkeypatch):
 
 def answering(place, name="x", family="x", setting=None):
     """A method that answers one place and nothing else."""
-    return Method(name, family, lambda case: lambda q: Answers({"B": np.array([place])}), setting)
+    return Method(name, family, lambda case: lambda q: MethodAnswers({"B": np.array([place])}), setting)
 
 
 def test_an_answer_is_right_wrong_or_not_given():
@@ -256,7 +256,7 @@ def test_an_answer_is_right_wrong_or_not_given():
     true, size = complex(at.exact["positions"]), at.largest["positions"]
 
     def verdict(method):
-        return stability.judged(method, method.prepare(None), at).verdict
+        return stability.judge_method(method, method.prepare(None), at).verdict
 
     assert verdict(answering(true)) == "right"
     assert verdict(answering(true + 2 * WRONG * size)) == "wrong"
@@ -268,9 +268,14 @@ def test_an_answer_is_right_wrong_or_not_given():
 
 
 def test_methods_are_held_to_what_they_state():
-    assert limit(METHODS["newton-2"]) == pytest.approx(0.1)
-    assert limit(METHODS["newton-15"]) == limit(METHODS["closed"]) == limit(METHODS["differences-4"]) == WRONG
-    assert limit(METHODS["board-0.25"]) == 0.05
+    assert error_limit(METHODS["newton-2"]) == pytest.approx(0.1)
+    assert (
+        error_limit(METHODS["newton-15"])
+        == error_limit(METHODS["closed"])
+        == error_limit(METHODS["differences-4"])
+        == WRONG
+    )
+    assert error_limit(METHODS["board-0.25"]) == 0.05
 
 
 def test_a_method_that_raises_says_so():
@@ -299,7 +304,7 @@ def test_newtons_method_gives_nothing_where_it_does_not_converge():
 
 def test_the_textbook_has_no_formula_for_other_linkages():
     at = near("stone-over-pivot", "0.1")
-    with pytest.raises(Unable):
+    with pytest.raises(MethodUnable):
         METHODS["cosines"].prepare(Case.of(at.scene.linkage))
 
 

@@ -16,26 +16,26 @@ from tmm_cli.bench import (
     REDUCED_PATHS,
     SEARCH_NAMES,
     SEARCHED,
-    Found,
-    PathFound,
+    PathOutcome,
     Searches,
+    SearchOutcome,
     SearchRate,
     best_known,
-    prepared,
+    load_candidates,
     search_problem_text,
     searches,
 )
 from tmm_cli.synthesis import evaluate_exactly
 
 RATE = SearchRate(SEARCHED, 5, 3, 72, 98, 100, 120_000.0, PER_SECOND[SEARCHED])
-FOUND = Found(1, 1.0, 0.0, 1e-4, 1000, 0.1, 0.1, ((100, 0.5), (1000, 0.01)))
+FOUND = SearchOutcome(1, 1.0, 0.0, 1e-4, 1000, 0.1, 0.1, ((100, 0.5), (1000, 0.01)))
 
 
 def test_the_measured_problem_is_that_of_the_bank_with_5_lengths_3_constraints_72_positions():
     assert search_problem_text(SEARCHED) == (ROOT / "problems" / "crank-rocker-optimal.yaml").read_text(
         encoding="utf-8"
     )
-    search = prepared(SEARCHED)
+    search = load_candidates(SEARCHED)
     assert (len(search.low), len(search.constraints) - 1, len(search.places.shares)) == (
         5,
         3,
@@ -44,7 +44,7 @@ def test_the_measured_problem_is_that_of_the_bank_with_5_lengths_3_constraints_7
 
 
 def test_the_best_known_keeps_its_constraints_and_is_what_its_numbers_give():
-    best, search = best_known(), prepared(SEARCHED)
+    best, search = best_known(), load_candidates(SEARCHED)
     x = (np.array(list(best["numbers"].values())) - search.low) / (search.high - search.low)
     values = evaluate_exactly(search, x)
     assert values[0] == pytest.approx(best["objective"], rel=1e-10)
@@ -54,7 +54,7 @@ def test_the_best_known_keeps_its_constraints_and_is_what_its_numbers_give():
 
 @pytest.mark.parametrize("name", SEARCH_NAMES)
 def test_a_generation_at_once_is_what_its_candidates_are_one_by_one(name):
-    search = prepared(name)
+    search = load_candidates(name)
     x = np.random.default_rng(1).random((300, len(search.low)))
     together = np.array(search.evaluate(x))
     alone = np.array([search.evaluate(x[k : k + 1]) for k in range(0, 300, 7)])[:, :, 0].T
@@ -76,7 +76,7 @@ def test_the_verdict():
 
 
 def test_a_path_far_above_the_least_known_or_found_late_is_a_miss():
-    path = PathFound("line", 9, 1, 0.1, 0.0, True, 10.0)
+    path = PathOutcome("line", 9, 1, 0.1, 0.0, True, 10.0)
     ten = tuple(replace(path, seed=k) for k in range(10))
     far, late = replace(path, off=0.02), replace(path, seconds=30.0)
     one, two = (Searches((RATE,), (FOUND,) * 10, {}, paths) for paths in ((*ten[:9], far), (*ten[:8], far, far)))

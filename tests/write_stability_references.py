@@ -17,7 +17,7 @@ import mpmath as mp
 import numpy as np
 from multibody import Multibody
 
-from tmm_cli.bench import BY_NAME, FAMILIES, shape, triad
+from tmm_cli.bench import FAMILIES, FAMILIES_BY_NAME, transmission_sine, triad_linkage
 from tmm_cli.mechanics.assembly import assemble
 from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.kinematics import find_range
@@ -191,7 +191,7 @@ def sound(n, distances):
     for distance in distances:
         q = float(n["critical"] + n["sense"] * distance)
         A = complex(float(n["Ox"]), float(n["Oy"])) + float(n["a"]) * np.exp(1j * q)
-        if shape(A, float(n["b"]), complex(float(n["Dx"]), float(n["Dy"])), float(n["c"])) < 0.15:
+        if transmission_sine(A, float(n["b"]), complex(float(n["Dx"]), float(n["Dy"])), float(n["c"])) < 0.15:
             return False
     return True
 
@@ -230,7 +230,7 @@ def tangent(outer):
             n |= pin(n)
             if abs(n["b"] - n["c"]) < Decimal("0.15"):
                 continue
-            it = BY_NAME["outer-tangent" if outer else "inner-tangent"].scene(n, Decimal("1e-15")).linkage
+            it = FAMILIES_BY_NAME["outer-tangent" if outer else "inner-tangent"].scene(n, Decimal("1e-15")).linkage
             way = it.sketch.at - float(n["q"])
             if (
                 all(shaped(it, float(n["q"]) + way * k / 40) > 0.02 for k in range(1, 41))
@@ -244,7 +244,7 @@ def tangent(outer):
 def shaped(it, q):
     """Sine of a four-bar's transmission angle."""
     A = it.local(FRAME, "O") + it.local("1", "A") * np.exp(1j * q)
-    return shape(A, it.local("2", "B").real, it.local(FRAME, "D"), it.local("3", "B").real)
+    return transmission_sine(A, it.local("2", "B").real, it.local(FRAME, "D"), it.local("3", "B").real)
 
 
 def inclined(r):
@@ -332,7 +332,7 @@ def folding(r, seed):
         for key, (x, y) in near.items():
             shake = r.randint(-9, 9), r.randint(-9, 9)
             n |= {key + "x": Decimal(x + shake[0]) / 1000, key + "y": Decimal(y + shake[1]) / 1000}
-        it = triad(n)
+        it = triad_linkage(n)
         try:
             way = find_range(it, assemble(it, analyse_structure(it)))
         except LinkageError:
@@ -385,7 +385,7 @@ def written(value, digits=DIGITS):
 
 
 def write(name):
-    family, seeds = BY_NAME[name], []
+    family, seeds = FAMILIES_BY_NAME[name], []
     for seed in range(SEEDS):
         mp.mp.dps = Closely.digits
         n = NUMBERS[name](random.Random(f"{name} {seed}"), seed)

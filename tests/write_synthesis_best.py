@@ -9,7 +9,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-from tmm_cli.bench import SEARCHED, prepared
+from tmm_cli.bench import SEARCHED, load_candidates
 from tmm_cli.synthesis import find_best
 
 BEST = Path(__file__).parent.parent / "tmm_cli" / "bench" / "data" / "synthesis" / "best.json"
@@ -19,7 +19,7 @@ LONG_RUNS, LONGER = 10, 4  # for the best known: so many times the population in
 
 def long_runs():
     """The best of long runs of SEARCHED, as `known` of tmm_cli.bench.searches reads it."""
-    search = prepared(SEARCHED)
+    search = load_candidates(SEARCHED)
     population, generations = LONGER * search.population, LONGER * search.generations
     search.task = replace(search.task, population=population, generations=generations)
     runs = []

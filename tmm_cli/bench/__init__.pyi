@@ -5,36 +5,46 @@ from .accuracy import (
     Accuracy as Accuracy,
     AccuracyRow as AccuracyRow,
     measure_accuracy as measure_accuracy,
-    places as places,
+    sample_coordinates as sample_coordinates,
 )
 from .by_hand import MECHANISMS as MECHANISMS
-from .chart_accuracy import accuracy_charts as accuracy_charts, draw_accuracy as draw_accuracy
 from .chart_axes import png_bytes as png_bytes
-from .chart_stability import stability_charts as stability_charts
+from .error_charts import (
+    accuracy_charts as accuracy_charts,
+    draw_accuracy as draw_accuracy,
+    stability_charts as stability_charts,
+)
 from .grading import (
-    Figure as Figure,
-    Grades as Grades,
+    GradingFigure as GradingFigure,
+    GradingMeasurement as GradingMeasurement,
     grading_task_text as grading_task_text,
     measure_grading as measure_grading,
 )
-from .measured import Measured as Measured
+from .linkage_families import (
+    FAMILIES as FAMILIES,
+    FAMILIES_BY_NAME as FAMILIES_BY_NAME,
+    dyad_chain as dyad_chain,
+    transmission_sine as transmission_sine,
+    triad_linkage as triad_linkage,
+)
+from .measured import Measurement as Measurement
 from .methods.case import (
     QUANTITIES as QUANTITIES,
-    Answers as Answers,
     Case as Case,
     Method as Method,
-    Unable as Unable,
-    errors as errors,
+    MethodAnswers as MethodAnswers,
+    MethodUnable as MethodUnable,
+    relative_errors as relative_errors,
 )
 from .methods.constraint_equations import LoopEquations as LoopEquations, close_positions as close_positions
-from .methods.product import recast as recast
+from .methods.product import convert_precision as convert_precision
 from .methods.registry import CLOSED_FORM as CLOSED_FORM, FEWER as FEWER, METHODS as METHODS
 from .references import (
     KEYS as KEYS,
     REFERENCE_NAMES as REFERENCE_NAMES,
+    family_members as family_members,
     known_scenes as known_scenes,
     reference as reference,
-    seeds as seeds,
 )
 from .savings import (
     SAVING_TITLES as SAVING_TITLES,
@@ -45,38 +55,37 @@ from .savings import (
     with_all_orders as with_all_orders,
     without_closed_forms as without_closed_forms,
 )
-from .scenes import BY_NAME as BY_NAME, FAMILIES as FAMILIES, chain as chain, shape as shape, triad as triad
 from .searches import (
     PER_SECOND as PER_SECOND,
     PROBLEMS as PROBLEMS,
     REDUCED_PATHS as REDUCED_PATHS,
     SEARCH_NAMES as SEARCH_NAMES,
     SEARCHED as SEARCHED,
-    Found as Found,
-    PathFound as PathFound,
+    PathOutcome as PathOutcome,
     Searches as Searches,
+    SearchOutcome as SearchOutcome,
     SearchRate as SearchRate,
     best_known as best_known,
+    load_candidates as load_candidates,
     measure_searches as measure_searches,
-    prepared as prepared,
     search_problem_text as search_problem_text,
 )
 from .speed import (
     Growth as Growth,
+    IteratedRace as IteratedRace,
     Race as Race,
-    Rival as Rival,
-    Speed as Speed,
-    exponent as exponent,
+    RivalRace as RivalRace,
+    SpeedMeasurement as SpeedMeasurement,
+    SweepRate as SweepRate,
+    fit_exponent as fit_exponent,
     measure_speed as measure_speed,
 )
-from .speed_of_iterated import Iterated as Iterated
-from .speed_of_sweeps import Sweeping as Sweeping
 from .stability import (
     PRODUCT as PRODUCT,
     RIVALS as RIVALS,
     WRONG as WRONG,
-    limit as limit,
+    error_limit as error_limit,
+    judge_product as judge_product,
     measure_stability as measure_stability,
-    ours as ours,
 )
 from .time_charts import savings_charts as savings_charts, search_charts as search_charts, speed_charts as speed_charts

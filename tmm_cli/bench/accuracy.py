@@ -11,26 +11,26 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from tmm_cli.bench.measured import Measured, cell, slack, times, words
-from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared, Method, Unable, errors
+from tmm_cli.bench.measured import Measurement, csv_cell, target_slack, text_table, time_runs
+from tmm_cli.bench.methods.case import QUANTITIES, Case, Compared, Method, MethodAnswers, MethodUnable, relative_errors
 from tmm_cli.bench.methods.registry import CLOSED_FORM, FEWER, METHODS, TAPED
 from tmm_cli.bench.references import REFERENCE_NAMES, reference
 from tmm_cli.bench.rivals import installed
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.reports import Table
 
-NAMED: dict[Compared, str] = {
+QUANTITY_TITLES: dict[Compared, str] = {
     "positions": "Positions",
     "velocities": "Velocities",
     "accelerations": "Accelerations",
     "reactions": "Reactions",
     "balancing": "Balancing moment",
 }
-COUNT = 360  # positions of a timed run
+TIMED_POSITIONS = 360  # positions of a timed run
 REPEATS, REDUCED_REPEATS = 15, 3
 TARGETS: dict[Compared, float] = {quantity: 1e-14 if quantity == "positions" else 1e-13 for quantity in QUANTITIES}
 
-Solver = Callable[[Real], Answers]
+Solver = Callable[[Real], MethodAnswers]
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class AccuracyRow:
 
 
 @dataclass(frozen=True)
-class Accuracy(Measured):
+class Accuracy(Measurement):
     """The whole measurement. absent: rivals that are not installed, or cannot do a linkage, and why."""
 
     rows: tuple[AccuracyRow, ...]
@@ -67,7 +67,7 @@ class Accuracy(Measured):
             for row in self.rows
             if row.method in (CLOSED_FORM.name, TAPED.name)
             for quantity in QUANTITIES
-            if not row.errors[quantity] <= slack(self.reduced) * TARGETS[quantity]
+            if not row.errors[quantity] <= target_slack(self.reduced) * TARGETS[quantity]
         )
 
     def to_dict(self) -> dict[str, Any]:
@@ -87,9 +87,9 @@ class Accuracy(Measured):
                     row.linkage,
                     row.method,
                     row.family,
-                    cell(row.setting),
-                    cell(row.microseconds, 4),
-                    *(cell(row.errors[quantity]) for quantity in QUANTITIES),
+                    csv_cell(row.setting),
+                    csv_cell(row.microseconds, 4),
+                    *(csv_cell(row.errors[quantity]) for quantity in QUANTITIES),
                 )
                 for row in self.rows
             ),
@@ -99,15 +99,15 @@ class Accuracy(Measured):
     def tables(self) -> tuple[Table, ...]:
         """One a linkage."""
         return tuple(
-            words(
+            text_table(
                 "accuracy",
                 f"Errors over the largest value in the cycle: {name}",
-                ("method", "µs a position", *NAMED.values()),
+                ("method", "µs a position", *QUANTITY_TITLES.values()),
                 [
                     (
                         row.method,
                         "-" if row.microseconds is None else f"{row.microseconds:.3g}",
-                        *("-" if math.isnan(row.errors[q]) else f"{row.errors[q]:.1e}" for q in NAMED),
+                        *("-" if math.isnan(row.errors[q]) else f"{row.errors[q]:.1e}" for q in QUANTITY_TITLES),
                     )
                     for row in self.rows
                     if row.linkage == name
@@ -121,7 +121,7 @@ def _plain(value: float) -> float | str | None:
     return None if math.isnan(value) else value if math.isfinite(value) else "inf"
 
 
-def places(case: Case, count: int) -> Real:
+def sample_coordinates(case: Case, count: int) -> Real:
     """Places of the driver over a turn, close together, none of them a special one."""
     return case.start + case.law.sense * 2 * np.pi * (np.arange(count) + 0.3717) / count
 
@@ -146,11 +146,11 @@ def measure_accuracy(
         for method in (*chosen, *rivals):
             try:
                 solvers[method] = method.prepare(true.case)
-            except Unable as error:
+            except MethodUnable as error:
                 absent.append(f"{method.name}: {name}: {error}")
-        worst = {method: errors(solver(true.q), true.exact) for method, solver in solvers.items()}
-        q = places(true.case, COUNT)
-        seconds = times({m: partial(solver, q) for m, solver in solvers.items() if m.timed}, repeats)
-        micro = {m: 1e6 * median(of_turns) / COUNT for m, of_turns in seconds.items()}
+        worst = {method: relative_errors(solver(true.q), true.exact) for method, solver in solvers.items()}
+        q = sample_coordinates(true.case, TIMED_POSITIONS)
+        seconds = time_runs({m: partial(solver, q) for m, solver in solvers.items() if m.timed}, repeats)
+        micro = {m: 1e6 * median(of_turns) / TIMED_POSITIONS for m, of_turns in seconds.items()}
         rows += [AccuracyRow(name, m.name, m.family, m.setting, micro.get(m), worst[m]) for m in solvers]
-    return Accuracy(tuple(rows), COUNT, repeats, reduced=reduced, absent=tuple(absent))
+    return Accuracy(tuple(rows), TIMED_POSITIONS, repeats, reduced=reduced, absent=tuple(absent))

@@ -257,7 +257,7 @@ Arguments = Callable[[Linkage], dict[str, Any]]
 
 
 @dataclass(frozen=True)
-class Mechanism:
+class HandCodedMechanism:
     """A mechanism in both ways. code: by hand; longer: links that variants have longer."""
 
     name: str
@@ -371,7 +371,7 @@ def _shaper(linkage: Linkage) -> dict[str, Any]:
 
 
 MECHANISMS = (
-    Mechanism("crank-slider", crank_slider, _crank_slider, ("1", "2")),
-    Mechanism("six-bar", six_bar, _six_bar, ("1", "2", "3", "4")),
-    Mechanism("shaper", shaper, _shaper, ("1", "3", "4")),
+    HandCodedMechanism("crank-slider", crank_slider, _crank_slider, ("1", "2")),
+    HandCodedMechanism("six-bar", six_bar, _six_bar, ("1", "2", "3", "4")),
+    HandCodedMechanism("shaper", shaper, _shaper, ("1", "3", "4")),
 )

@@ -20,7 +20,7 @@ import numpy as np
 
 import tmm_cli
 from tmm_cli.batch import Task, VariantFamily, read_task, split_families
-from tmm_cli.bench.measured import CLOCK, Measured, slack, words
+from tmm_cli.bench.measured import CLOCK, Measurement, target_slack, text_table
 from tmm_cli.grading import (
     CHUNK,
     Mistake,
@@ -41,8 +41,8 @@ from tmm_cli.mechanics.numerics import Real, Vector
 from tmm_cli.problem import read_text
 from tmm_cli.reports import Table
 
-DRAWING = 0.01  # of the largest value: how far off answers are at most
-MOVES = 4  # times that a mistake must move an answer, or nobody could see it
+DRAWING_ERROR = 0.01  # of the largest value: how far off answers are at most
+VISIBLE_FACTOR = 4  # times that a mistake must move an answer, or nobody could see it
 BOUNDS = {"OA": (90.0, 110.0, "mm"), "AB": (340.0, 360.0, "mm"), "n1": (80.0, 110.0, "rpm")}
 
 
@@ -53,7 +53,7 @@ def grading_task_text() -> str:
 
 
 @dataclass(frozen=True, eq=False)
-class Group:
+class StudentGroup:
     """Students with variants of their own; what is right for them."""
 
     task: Task
@@ -77,7 +77,7 @@ class Group:
         """Which mistakes can be seen on whose sheets, (cases, students)."""
         with np.errstate(all="ignore"):
             moved = np.max(np.abs(self.with_mistake - self.right.value) / self.right.scale, axis=2)
-        found: Real = np.isfinite(moved) & (moved >= MOVES * DRAWING)
+        found: Real = np.isfinite(moved) & (moved >= VISIBLE_FACTOR * DRAWING_ERROR)
         return found
 
     def mistakes(self, n: int, count: int) -> tuple[int, ...]:
@@ -113,24 +113,24 @@ class Group:
                 *((asked.quantity.vector, asked.quantity.against == "exact") for asked in self.right.asked), strict=True
             )
         )
-        off = self.random.uniform(-DRAWING, DRAWING, value.shape)
-        aside = self.random.uniform(-DRAWING, DRAWING, value.shape) * vector
+        off = self.random.uniform(-DRAWING_ERROR, DRAWING_ERROR, value.shape)
+        aside = self.random.uniform(-DRAWING_ERROR, DRAWING_ERROR, value.shape) * vector
         size = np.maximum(scale, np.abs(value)) / np.where(vector, np.sqrt(2), 1)
         return np.where(exact, value, value + (off + 1j * aside) * size)
 
 
-def group(count: int, seed: int = 1) -> Group:
+def make_students(count: int, seed: int = 1) -> StudentGroup:
     """So many students."""
     task = read_task(read_text(grading_task_text(), "six-bar.yaml"))
     random = np.random.default_rng(seed)
     columns = [[f"{x:.2f} {unit}" for x in random.uniform(low, high, count)] for low, high, unit in BOUNDS.values()]
     rows = {str(n): row for n, row in enumerate(zip(*columns, strict=True))}
     table = VariantTable(tuple(BOUNDS), rows)
-    family = family_of(task, table)
-    return Group(task, table, family, right(family, task.asked), random)
+    family = solve_family(task, table)
+    return StudentGroup(task, table, family, right(family, task.asked), random)
 
 
-def family_of(task: Task, table: VariantTable) -> VariantFamily:
+def solve_family(task: Task, table: VariantTable) -> VariantFamily:
     """All variants of a table, solved together."""
     dimensions, numbers = numbers_of(task, table, list(table.rows))
     ((rows, family),) = split_families(lambda own: task.make(table.names, dimensions, own), numbers)
@@ -139,7 +139,7 @@ def family_of(task: Task, table: VariantTable) -> VariantFamily:
     return family
 
 
-def write(group: Group, sheets: Vector, folder: Path, first: int = 0) -> None:
+def write_submissions(group: StudentGroup, sheets: Vector, folder: Path, first: int = 0) -> None:
     """The task, the table of variants, and a file of each student, as they are handed in.
 
     first: students who are there already.
@@ -152,10 +152,10 @@ def write(group: Group, sheets: Vector, folder: Path, first: int = 0) -> None:
         csv.writer(stream).writerows(rows if first else [["student", *group.table.names], *rows])
     for name, own in zip(names, sheets.tolist(), strict=True):
         with (folder / "submissions" / f"{name}.csv").open("w", encoding="utf-8", newline="") as stream:
-            csv.writer(stream).writerows(_rows(group.task, own))
+            csv.writer(stream).writerows(_submission_rows(group.task, own))
 
 
-def _rows(task: Task, values: Sequence[complex]) -> Iterator[Sequence[object]]:
+def _submission_rows(task: Task, values: Sequence[complex]) -> Iterator[Sequence[object]]:
     yield "quantity", "position", "unit", "value", "x", "y"
     for asked, value in zip(task.asked, values, strict=True):
         number = value / task.units.factor(asked.quantity.dimension)
@@ -169,9 +169,9 @@ def _rows(task: Task, values: Sequence[complex]) -> Iterator[Sequence[object]]:
 
 
 STUDENTS, REDUCED_STUDENTS = (2_000, 10_000), (300,)
-MANY = 100_000  # students of a full run
-OF = 10_000  # that the targets are for
-PART = 1_000  # students made up at once
+FULL_STUDENTS = 100_000  # students of a full run
+TARGET_STUDENTS = 10_000  # that the targets are for
+PART_STUDENTS = 1_000  # students made up at once
 SECONDS, BEGINNING = 60.0 / 10_000, 3.0  # s of a student; s that any run takes
 MEMORY, SOLVING, GROWTH = 1000.0, 5.0, 1.1  # MB of all processes; % of the processors' time; power of the students
 ONE, TWO = 0.2, 0.05  # of the students have a sheet with one mistake, with two
@@ -182,7 +182,7 @@ LOOKS = 0.05  # s between looks at the memory
 
 
 @dataclass(frozen=True)
-class Figure:
+class GradingFigure:
     """One figure, and the most or the least that it may be.
 
     absolute: a time by itself, that a slower or busier machine does not keep; a reduced run only shows it.
@@ -211,15 +211,15 @@ class Figure:
 
 
 @dataclass(frozen=True)
-class Grades(Measured):
+class GradingMeasurement(Measurement):
     """The whole measurement."""
 
-    figures: tuple[Figure, ...]
+    figures: tuple[GradingFigure, ...]
 
     @property
     def failures(self) -> tuple[str, ...]:
         judged = (figure for figure in self.figures if not (self.reduced and figure.absolute))
-        return tuple(filter(None, (figure.missed(slack(self.reduced)) for figure in judged)))
+        return tuple(filter(None, (figure.missed(target_slack(self.reduced)) for figure in judged)))
 
     @property
     def tables(self) -> tuple[Table, ...]:
@@ -234,28 +234,28 @@ class Grades(Measured):
             )
             for one in self.figures
         ]
-        return (words("grading", title, ("figure", "of", "found", "target"), rows),)
+        return (text_table("grading", title, ("figure", "of", "found", "target"), rows),)
 
 
 def measure_grading(
     *, reduced: bool = False, full: bool = False, progress: Callable[[str], None] = lambda _: None
-) -> Grades:
+) -> GradingMeasurement:
     """All figures; full: of 100 000 students too."""
     sheets = REDUCED_SHEETS if reduced else SHEETS
-    figures: list[Figure] = []
-    made = group(sheets)
+    figures: list[GradingFigure] = []
+    made = make_students(sheets)
     for count in range(3):
         progress(f"diagnosis of {count} mistakes")
-        figures += diagnosed(made, count)
+        figures += measure_diagnosis(made, count)
     progress("following errors")
-    figures.append(followed(group(REDUCED_CHAINS if reduced else CHAINS, seed=2)))
+    figures.append(measure_carried_errors(make_students(REDUCED_CHAINS if reduced else CHAINS, seed=2)))
     progress("variants")
-    figures.append(judged(REDUCED_CANDIDATES if reduced else CANDIDATES))
-    sizes = REDUCED_STUDENTS if reduced else (*STUDENTS, *[MANY] * full)
-    return Grades((*figures, *graded(sizes, progress)), reduced=reduced)
+    figures.append(measure_variant_selection(REDUCED_CANDIDATES if reduced else CANDIDATES))
+    sizes = REDUCED_STUDENTS if reduced else (*STUDENTS, *[FULL_STUDENTS] * full)
+    return GradingMeasurement((*figures, *measure_command(sizes, progress)), reduced=reduced)
 
 
-def diagnosed(group: Group, count: int) -> Iterator[Figure]:
+def measure_diagnosis(group: StudentGroup, count: int) -> Iterator[GradingFigure]:
     """Sheets with so many mistakes in: how many are explained by them, and how many by what was not made."""
     students = range(len(group.family))
     made = [group.mistakes(n, count) for n in students]
@@ -272,17 +272,17 @@ def diagnosed(group: Group, count: int) -> Iterator[Figure]:
     share = 100 / len(students)
     if count == 0:
         fails = np.any(group.right.error(written) > group.right.allowed, axis=1)
-        yield Figure("right sheets with an answer marked wrong, %", len(students), share * np.sum(fails), 0.0)
-        yield Figure("right sheets accused of a mistake, %", len(students), share * wrongly, 0.0)
+        yield GradingFigure("right sheets with an answer marked wrong, %", len(students), share * np.sum(fails), 0.0)
+        yield GradingFigure("right sheets accused of a mistake, %", len(students), share * wrongly, 0.0)
         return
     least, most = ((95.0, 1.0), (80.0, 2.0))[count - 1]
     told = ("sheets with one mistake, {how}, %", "sheets with two mistakes, {how}, %")[count - 1]
-    yield Figure(told.format(how="named rightly"), len(students), share * rightly, least, "least")
-    yield Figure(told.format(how="named wrongly"), len(students), share * wrongly, most)
-    yield Figure(told.format(how="with another one named too"), len(students), share * (beside - wrongly))
+    yield GradingFigure(told.format(how="named rightly"), len(students), share * rightly, least, "least")
+    yield GradingFigure(told.format(how="named wrongly"), len(students), share * wrongly, most)
+    yield GradingFigure(told.format(how="with another one named too"), len(students), share * (beside - wrongly))
 
 
-def followed(group: Group) -> Figure:
+def measure_carried_errors(group: StudentGroup) -> GradingFigure:
     """Chains in which one answer is far off and all later ones are right given it: how many lose its points alone."""
     right, chance = group.right, group.random
     count = len(group.family)
@@ -311,12 +311,12 @@ def followed(group: Group) -> Figure:
         for n in range(count)
     )
     told = "chains that lose the points of one answer alone, %"
-    return Figure(told, count, 100 * alone / count, 100.0, "least")
+    return GradingFigure(told, count, 100 * alone / count, 100.0, "least")
 
 
-def judged(count: int) -> Figure:
+def measure_variant_selection(count: int) -> GradingFigure:
     """Candidates for variants judged as sound or not, in a second of one core."""
-    variety = Variety(group(1).task)
+    variety = Variety(make_students(1).task)
     random = np.random.default_rng(1)
     picks = np.stack([random.integers(0, len(values), count) for values in variety.numbers], axis=1)
     per_second = 0.0
@@ -324,44 +324,50 @@ def judged(count: int) -> Figure:
         start = CLOCK()
         found = variety.judged(picks[first : first + CHUNK])
         per_second = max(per_second, len(found.why) / (CLOCK() - start))
-    return Figure("candidates for variants judged in a second", count, per_second, PER_SECOND, "least", absolute=True)
+    return GradingFigure(
+        "candidates for variants judged in a second", count, per_second, PER_SECOND, "least", absolute=True
+    )
 
 
-def graded(sizes: Sequence[int], progress: Callable[[str], None]) -> Iterator[Figure]:
+def measure_command(sizes: Sequence[int], progress: Callable[[str], None]) -> Iterator[GradingFigure]:
     """Groups of these sizes graded by the command, from files to files."""
     times = []
     for students in sizes:
         progress(f"{students} students")
         solving = 0.0
         with tempfile.TemporaryDirectory() as folder:
-            for number in range(-(-students // PART)):
-                part = group(min(PART, students - PART * number), seed=number + 3)
-                write(part, part.sheets(_mixed(part)), Path(folder), PART * number)
+            for number in range(-(-students // PART_STUDENTS)):
+                part = make_students(min(PART_STUDENTS, students - PART_STUDENTS * number), seed=number + 3)
+                write_submissions(part, part.sheets(_draw_mistakes(part)), Path(folder), PART_STUDENTS * number)
                 start = CLOCK()
-                solve(family_of(part.task, part.table))
+                solve(solve_family(part.task, part.table))
                 solving += CLOCK() - start
-            run = _command(Path(folder))
+            run = _run_command(Path(folder))
         times.append(run.first + run.others)
-        limit = SECONDS * students + (BEGINNING if students < OF else 0)
+        limit = SECONDS * students + (BEGINNING if students < TARGET_STUDENTS else 0)
         least = min(run.seconds, run.first + run.others / 2)  # what else the machine does counts in the former alone
-        yield Figure("graded with all outputs on two cores, s", students, least, limit, absolute=True)
-        yield Figure("the same by the clock, s", students, run.seconds)
-        yield Figure("the same, s of all processors", students, times[-1])
-        yield Figure("memory of all processes, MB", students, run.memory, MEMORY if students <= OF else None)
-        yield Figure("solving the variants, % of the time of processors", students, 100 * solving / times[-1], SOLVING)
+        yield GradingFigure("graded with all outputs on two cores, s", students, least, limit, absolute=True)
+        yield GradingFigure("the same by the clock, s", students, run.seconds)
+        yield GradingFigure("the same, s of all processors", students, times[-1])
+        yield GradingFigure(
+            "memory of all processes, MB", students, run.memory, MEMORY if students <= TARGET_STUDENTS else None
+        )
+        yield GradingFigure(
+            "solving the variants, % of the time of processors", students, 100 * solving / times[-1], SOLVING
+        )
     for k in range(1, len(sizes)):
         power = math.log(times[k] / times[k - 1]) / math.log(sizes[k] / sizes[k - 1])
-        yield Figure("time grows as the number of students to the power", sizes[k], power, GROWTH)
+        yield GradingFigure("time grows as the number of students to the power", sizes[k], power, GROWTH)
 
 
-def _mixed(group: Group) -> list[tuple[int, ...]]:
+def _draw_mistakes(group: StudentGroup) -> list[tuple[int, ...]]:
     """Mistakes of a group as groups are: most of the sheets have none."""
     draws = group.random.random(len(group.family))
     return [group.mistakes(n, 2 if x < TWO else 1 if x < TWO + ONE else 0) for n, x in enumerate(draws.tolist())]
 
 
 @dataclass
-class _Run:
+class _CommandRun:
     """A command that runs: s by the clock, s of the processor for its first process and for the others, MB of all."""
 
     seconds: float = math.nan
@@ -370,17 +376,17 @@ class _Run:
     memory: float = math.nan
 
 
-def _command(folder: Path) -> _Run:
+def _run_command(folder: Path) -> _CommandRun:
     """`tmm grade` by two processes."""
     call = ["-m", "tmm_cli", "grade", "task.yaml", "--variants", "variants.csv", "--submissions", "submissions"]
     environment = {**os.environ, "PYTHONPATH": str(Path(tmm_cli.__file__).parents[1])}
-    run, begun, start = _Run(), os.times(), time.perf_counter()
+    run, begun, start = _CommandRun(), os.times(), time.perf_counter()
     with (folder / "told.txt").open("wb") as told:
         running = subprocess.Popen(
             [sys.executable, *call, "--jobs", "2"], cwd=folder, env=environment, stdout=told, stderr=told
         )
         while running.poll() is None:
-            _look(run, running.pid)
+            _observe_process(run, running.pid)
             time.sleep(LOOKS)
     run.seconds, ended = time.perf_counter() - start, os.times()
     if running.returncode:
@@ -391,7 +397,7 @@ def _command(folder: Path) -> _Run:
     return run
 
 
-def _look(run: _Run, process: int) -> None:
+def _observe_process(run: _CommandRun, process: int) -> None:
     """What a running process takes, where the system tells."""
     try:
         own = Path(f"/proc/{process}")

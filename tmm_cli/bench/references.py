@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared
-from tmm_cli.bench.scenes import BY_NAME, Family, Numbers, Scene
+from tmm_cli.bench.linkage_families import FAMILIES_BY_NAME, LinkageFamily, LinkageScene, Numbers
+from tmm_cli.bench.methods.case import QUANTITIES, Case, Compared, MethodAnswers
 from tmm_cli.mechanics.analysis import Results
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.problem import Tree, build_problem, read_text
@@ -28,40 +28,42 @@ class Reference:
 
     case: Case
     q: Real
-    exact: Answers
+    exact: MethodAnswers
 
 
-def case_of(name: str, results: Results) -> Case:
+def make_case(name: str, results: Results) -> Case:
     """What methods are given of a problem that was solved to kinematics at least."""
     return Case(name, results.linkage, results.structure, results.kernels, results.start, results.strokes)
 
 
 @cache
-def _content(name: str) -> dict[str, Any]:
+def _read_data(name: str) -> dict[str, Any]:
     found: dict[str, Any] = json.loads((files("tmm_cli.bench") / "data" / f"{name}.json").read_text(encoding="utf-8"))
     return found
 
 
-def tree_of(name: str) -> Tree:
+def problem_tree(name: str) -> Tree:
     """The problem file of a reference, as it was read."""
-    return read_text(_content(name)["problem"], f"{name}.yaml")
+    return read_text(_read_data(name)["problem"], f"{name}.yaml")
 
 
 @cache
 def reference(name: str) -> Reference:
     """A reference by its name."""
-    content = _content(name)
-    results = solve(build_problem(tree_of(name)), "kinematics")
+    content = _read_data(name)
+    results = solve(build_problem(problem_tree(name)), "kinematics")
     x, v, a, forces = (
-        {point: exact(values) for point, values in content[key].items()}
+        {point: to_longdouble(values) for point, values in content[key].items()}
         for key in ("positions", "velocities", "accelerations", "reactions")
     )
     return Reference(
-        case_of(name, results), np.array(content["q"]), Answers(x, v, a, forces, exact(content["balancing"]))
+        make_case(name, results),
+        np.array(content["q"]),
+        MethodAnswers(x, v, a, forces, to_longdouble(content["balancing"])),
     )
 
 
-def exact(written: Sequence[Any]) -> Any:
+def to_longdouble(written: Sequence[Any]) -> Any:
     """Numbers of 50 digits, or vectors of two of them, in longdouble."""
     found = np.array(written, dtype=np.longdouble)
     return found if found.ndim == 1 else found[:, 0] + 1j * found[:, 1]
@@ -80,22 +82,22 @@ KEYS: dict[Compared, str] = {
 
 
 @dataclass(frozen=True)
-class Known:
+class KnownScene:
     """A scene and what is true there, longdouble: of its watched point and pair.
 
     largest: what errors are counted in, the larger of the value here and in the harmless scene of the same numbers.
     """
 
-    family: Family
+    family: LinkageFamily
     seed: int
     distance: Decimal
-    scene: Scene
+    scene: LinkageScene
     exact: Mapping[Compared, Any]
     largest: Mapping[Compared, float]
 
 
 @dataclass(frozen=True)
-class Seed:
+class FamilyMember:
     """Numbers of a family's linkage, and the answers at every distance."""
 
     numbers: Numbers
@@ -103,24 +105,24 @@ class Seed:
 
 
 @cache
-def seeds(family: str) -> tuple[Seed, ...]:
+def family_members(family: str) -> tuple[FamilyMember, ...]:
     """What the file of a family holds."""
     text = (files("tmm_cli.bench") / "data" / "stability" / f"{family}.json").read_text(encoding="utf-8")
     return tuple(
-        Seed({key: Decimal(value) for key, value in seed["numbers"].items()}, tuple(seed["scenes"]))
+        FamilyMember({key: Decimal(value) for key, value in seed["numbers"].items()}, tuple(seed["scenes"]))
         for seed in json.loads(text)["seeds"]
     )
 
 
-def known_scenes(family: str, chosen: int | None = None, every: int = 1) -> Iterator[Known]:
+def known_scenes(family: str, chosen: int | None = None, every: int = 1) -> Iterator[KnownScene]:
     """All scenes of a family, or of its first so many seeds; every second distance and so on, the last one always."""
-    of = BY_NAME[family]
-    for number, seed in enumerate(seeds(family)[:chosen]):
-        true = [{quantity: exact([scene[key]])[0] for quantity, key in KEYS.items()} for scene in seed.scenes]
+    of = FAMILIES_BY_NAME[family]
+    for number, seed in enumerate(family_members(family)[:chosen]):
+        true = [{quantity: to_longdouble([scene[key]])[0] for quantity, key in KEYS.items()} for scene in seed.scenes]
         for k, scene in enumerate(seed.scenes):
             if k % every and k != len(seed.scenes) - 1:
                 continue
             of_all = [true[k], true[0]] if of.unit in ("rad", "share") else [true[k]]
             largest = {quantity: max(float(abs(one[quantity])) for one in of_all) for quantity in QUANTITIES}
             distance = Decimal(scene["distance"])
-            yield Known(of, number, distance, of.scene(seed.numbers, distance), true[k], largest)
+            yield KnownScene(of, number, distance, of.scene(seed.numbers, distance), true[k], largest)

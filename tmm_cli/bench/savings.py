@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.bench.measured import Measured
+from tmm_cli.bench.measured import Measurement
 from tmm_cli.drawing.run import sheet_files
 from tmm_cli.mechanics.analysis import Results, mechanism, motion_at_positions, pipeline, with_forces
 from tmm_cli.mechanics.assembly import assemble, assembling, sketch_matching
@@ -155,7 +155,7 @@ class Saving:
 
 
 @dataclass(frozen=True)
-class Savings(Measured):
+class Savings(Measurement):
     """The whole measurement on a problem."""
 
     problem: str

@@ -19,7 +19,7 @@ from typing import Any, Final
 import numpy as np
 
 from tmm_cli.batch import TracedVariants
-from tmm_cli.bench.measured import CLOCK, Measured, slack, timed, words
+from tmm_cli.bench.measured import CLOCK, Measurement, target_slack, text_table, time_until_met
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.problem import read_text
 from tmm_cli.reports import Table
@@ -218,7 +218,7 @@ class SearchRate:
 
 
 @dataclass(frozen=True)
-class Found:
+class SearchOutcome:
     """What a seed led to: its objective exactly, by how much constraints are missed (shares), processor's time (s).
 
     off: above the best known, as a share of it. history: candidates so far, and how far the best of them is off,
@@ -240,7 +240,7 @@ class Found:
 
 
 @dataclass(frozen=True)
-class PathFound:
+class PathOutcome:
     """What a seed led to on a published path problem: root mean square distance (mm), how far it is above the least
     known (a share; where that is zero, of the points' spread), whether independent starts agree, processor's time (s),
     the distance of the best linkage printed.
@@ -261,13 +261,13 @@ class PathFound:
 
 
 @dataclass(frozen=True)
-class Searches(Measured):
+class Searches(Measurement):
     """The whole measurement. known: what the long runs found (`known`)."""
 
     rates: tuple[SearchRate, ...]
-    found: tuple[Found, ...]
+    found: tuple[SearchOutcome, ...]
     known: dict[str, Any]
-    paths: tuple[PathFound, ...] = ()
+    paths: tuple[PathOutcome, ...] = ()
 
     @property
     def near(self) -> int:
@@ -281,7 +281,7 @@ class Searches(Measured):
     @property
     def failures(self) -> tuple[str, ...]:
         """Targets that are missed; of a reduced run, by more than twice."""
-        slow = tuple(filter(None, (rate.missed(slack(self.reduced)) for rate in self.rates)))
+        slow = tuple(filter(None, (rate.missed(target_slack(self.reduced)) for rate in self.rates)))
         slow += tuple(filter(None, (self._far(name) for name in dict.fromkeys(path.problem for path in self.paths))))
         if self.near >= self.wanted:
             return slow
@@ -297,7 +297,7 @@ class Searches(Measured):
         above = sum(p.printed is not None and p.distance > p.printed * (1 + MET) + MET for p in own)
         if above:
             return f"{name}: {above} of {len(own)} seeds above the best linkage printed"
-        if longest > SECONDS * slack(self.reduced):
+        if longest > SECONDS * target_slack(self.reduced):
             return f"{name}: {longest:.0f} s of the processor, target {SECONDS:g}"
         return ""
 
@@ -313,14 +313,14 @@ class Searches(Measured):
             "Search from several seeds, {problem}; best known {objective:.9g} "
             "of {runs} runs of {evaluations} candidates"
         )
-        rates = words(
+        rates = text_table(
             "rates", "Candidates a second at the evaluation, one thread: least time of several turns",
             ("problem", "parameters", "constraints", "positions", "operations", "generation",
              "candidates/s", "at least"),
             [(r.problem, str(r.parameters), str(r.constraints), str(r.positions), str(r.operations), str(r.generation),
               f"{r.per_second:.0f}", "" if r.target is None else f"{r.target:.0f}") for r in self.rates],
         )  # fmt: skip
-        found = words(
+        found = text_table(
             "found", title.format(problem=self.known["problem"], objective=self.known["objective"], runs=len(runs),
                                   evaluations=max(run["evaluations"] for run in runs)),
             ("seed", "objective (SI)", "above the best known, %", "candidates", "search, s",
@@ -328,7 +328,7 @@ class Searches(Measured):
             [(str(f.seed), f"{f.objective:.9g}", f"{100 * f.off:.2g}", str(f.evaluations), f"{f.searching:.2f}",
               f"{f.polishing:.2f}") for f in self.found],
         )  # fmt: skip
-        paths = words(
+        paths = text_table(
             "paths", "Published path problems of four-bar linkages, least squares",
             ("problem", "parameters", "seed", "distance, mm", "best printed, mm",
              "above the least known, %",
@@ -354,7 +354,7 @@ def best_known() -> dict[str, Any]:
     return found
 
 
-def prepared(name: str) -> Candidates:
+def load_candidates(name: str) -> Candidates:
     """The task of a problem by its name, ready for evaluation."""
     return Candidates(read_task(read_text(search_problem_text(name), f"{name}.yaml")))
 
@@ -364,27 +364,29 @@ def measure_searches(*, reduced: bool = False, progress: Callable[[str], None] =
     rates: list[SearchRate] = []
     for name in SEARCH_NAMES:
         progress(name)
-        rates += rate(name, reduced)
-    search = prepared(SEARCHED)
+        rates += measure_rates(name, reduced)
+    search = load_candidates(SEARCHED)
     reference = best_known()
     found = []
     for seed in range(1, 1 + (REDUCED_SEEDS if reduced else SEEDS)):
         progress(f"{SEARCHED}, seed {seed}")
-        found.append(searched(search, seed, reference["objective"]))
-    return Searches(tuple(rates), tuple(found), reference, tuple(_paths(reduced, progress)), reduced=reduced)
+        found.append(run_search(search, seed, reference["objective"]))
+    return Searches(
+        tuple(rates), tuple(found), reference, tuple(_run_path_searches(reduced, progress)), reduced=reduced
+    )
 
 
-def _paths(reduced: bool, progress: Callable[[str], None]) -> Iterator[PathFound]:
+def _run_path_searches(reduced: bool, progress: Callable[[str], None]) -> Iterator[PathOutcome]:
     """Published path problems, from several seeds; of a reduced run some of them from one."""
     for problem in PROBLEMS:
         if reduced and problem.name not in REDUCED_PATHS:
             continue
         for seed in range(1, 2 if reduced else 1 + SEEDS):
             progress(f"{problem.name}, seed {seed}")
-            yield path_found(problem, seed)
+            yield run_path_search(problem, seed)
 
 
-def path_found(problem: PathProblem, seed: int) -> PathFound:
+def run_path_search(problem: PathProblem, seed: int) -> PathOutcome:
     """What the ordinary search leads to."""
     search = Candidates(read_task(read_text(problem.text(), f"{problem.name}.yaml")))
     search.task = replace(search.task, seed=seed)
@@ -392,18 +394,20 @@ def path_found(problem: PathProblem, seed: int) -> PathFound:
     one = find_best(search)
     distance, spread = 1000 * one.values[0], 1000 * float(np.std(np.array(search.task.objective.wanted)))
     off = distance / problem.least - 1 if problem.least else distance / spread
-    return PathFound(problem.name, problem.variables, seed, distance, off, one.agree, CLOCK() - start, problem.printed)
+    return PathOutcome(
+        problem.name, problem.variables, seed, distance, off, one.agree, CLOCK() - start, problem.printed
+    )
 
 
-def rate(name: str, reduced: bool) -> list[SearchRate]:
+def measure_rates(name: str, reduced: bool) -> list[SearchRate]:
     """Candidates a second, evenly spread over the bounds, by the size of generations."""
-    search = prepared(name)
+    search = load_candidates(name)
     chance = np.random.default_rng(1)
     sizes = (search.population, *GENERATIONS[: 2 if reduced else None])
-    return [_rated(name, search, chance.random((2, size, len(search.low))), reduced) for size in sizes]
+    return [_time_generations(name, search, chance.random((2, size, len(search.low))), reduced) for size in sizes]
 
 
-def _rated(name: str, search: Candidates, generations: Real, reduced: bool) -> SearchRate:
+def _time_generations(name: str, search: Candidates, generations: Real, reduced: bool) -> SearchRate:
     """generations (2, size, parameters) by turns: the way of candidates that come again is known already."""
     _, size, parameters = generations.shape
     target = PER_SECOND.get(name) if size == search.population else None
@@ -415,10 +419,10 @@ def _rated(name: str, search: Candidates, generations: Real, reduced: bool) -> S
         positions, per_second = search.task.positions, size / least[""]
         return SearchRate(name, parameters, constraints, positions, operations, size, per_second, target)
 
-    return timed({"": lambda: search.evaluate(next(turn))}, found, reduced)
+    return time_until_met({"": lambda: search.evaluate(next(turn))}, found, reduced)
 
 
-def searched(search: Candidates, seed: int, known: float) -> Found:
+def run_search(search: Candidates, seed: int, known: float) -> SearchOutcome:
     """Search and polish from a seed, at the ordinary settings of the task."""
     times = [CLOCK()]
 
@@ -434,7 +438,7 @@ def searched(search: Candidates, seed: int, known: float) -> Found:
     so_far = np.fmin.accumulate(f)
     steps = [k for k, v in enumerate(so_far) if not np.isnan(v) and (k in (0, len(f) - 1) or v != so_far[k - 1])]
     history = [(size * (k + 1), float(so_far[k] / known - 1)) for k in steps]
-    return Found(
+    return SearchOutcome(
         seed, one.values[0], one.missed, one.values[0] / known - 1, size * len(f), times[1] - times[0],
         times[2] - times[1], tuple(history),
     )  # fmt: skip

@@ -1,28 +1,28 @@
-"""`tmm bench speed`: against code by hand for one mechanism, dyads for class III, other programs; sweeps, growth."""
+"""Measurement of `tmm bench speed`: against code written by hand, dyads, other programs; sweeps and growth."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch import Batch, prepare_batch
-from tmm_cli.bench.by_hand import MECHANISMS, Mechanism
-from tmm_cli.bench.measured import Measured, Timed, slack, timed, words
+from tmm_cli.batch import Batch, Task, prepare_batch
+from tmm_cli.bench.by_hand import MECHANISMS, HandCodedMechanism
+from tmm_cli.bench.linkage_families import dyad_chain
+from tmm_cli.bench.measured import Measurement, TimedResult, target_slack, text_table, time_until_met
 from tmm_cli.bench.methods import product as taped
-from tmm_cli.bench.methods.case import Case, Method, Unable
-from tmm_cli.bench.references import reference
+from tmm_cli.bench.methods.case import Case, Method, MethodUnable
+from tmm_cli.bench.references import problem_tree, reference
 from tmm_cli.bench.rivals import installed
-from tmm_cli.bench.scenes import chain
-from tmm_cli.bench.speed_of_iterated import ITERATED, Iterated, against_six_bar, iterated_table
-from tmm_cli.bench.speed_of_sweeps import SWEPT, Sweeping, sweep_table, sweeping
 from tmm_cli.mechanics.forces import Reactions
 from tmm_cli.mechanics.kinematics import Motion
+from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.reports import Table
+from tmm_cli.sweep import SweptMechanisms, grid_points, read_axes
 
 POSITIONS = (12, 360, 36_000)
 VARIANTS = (100, 10_000)
@@ -83,7 +83,7 @@ class Growth:
 
 
 @dataclass(frozen=True)
-class Rival:
+class RivalRace:
     """Another program on a mechanism: nanoseconds a position of both, the product giving what the other gives."""
 
     name: str
@@ -107,20 +107,20 @@ class Rival:
 
 
 @dataclass(frozen=True)
-class Speed(Measured):
+class SpeedMeasurement(Measurement):
     """The whole measurement."""
 
     races: tuple[Race, ...]
     growths: tuple[Growth, ...]
-    rivals: tuple[Rival, ...]
-    iterated: tuple[Iterated, ...] = ()
-    sweeps: tuple[Sweeping, ...] = ()
+    rivals: tuple[RivalRace, ...]
+    iterated: tuple[IteratedRace, ...] = ()
+    sweeps: tuple[SweepRate, ...] = ()
 
     @property
     def failures(self) -> tuple[str, ...]:
         """Targets that are missed; of a reduced run, by more than twice."""
-        found: tuple[Timed, ...] = (*self.races, *self.iterated, *self.sweeps, *self.growths, *self.rivals)
-        return tuple(filter(None, (one.missed(slack(self.reduced)) for one in found)))
+        found: tuple[TimedResult, ...] = (*self.races, *self.iterated, *self.sweeps, *self.growths, *self.rivals)
+        return tuple(filter(None, (one.missed(target_slack(self.reduced)) for one in found)))
 
     def to_dict(self) -> dict[str, Any]:
         """JSON."""
@@ -133,7 +133,7 @@ class Speed(Measured):
 
     @property
     def tables(self) -> tuple[Table, ...]:
-        races = words(
+        races = text_table(
             "races",
             "Nanoseconds a position with all reactions, against NumPy written by hand for this mechanism",
             ("mechanism", "variants", "positions", "tmm", "by hand", "ratio", "at most", "preparing once, ms"),
@@ -151,7 +151,7 @@ class Speed(Measured):
                 for r in self.races
             ],
         )
-        growths = words(
+        growths = text_table(
             "growths",
             "How time grows: t0 + c n^exponent",
             ("with", "n", "ms", "exponent"),
@@ -165,7 +165,7 @@ class Speed(Measured):
                 for g in self.growths
             ],
         )
-        rivals = words(
+        rivals = text_table(
             "rivals",
             "Other programs, nanoseconds a position of 360",
             ("program", "mechanism", "its time", "tmm", "times as long", "at least"),
@@ -178,35 +178,37 @@ class Speed(Measured):
         return (*found, rivals) if self.rivals else found
 
 
-def measure_speed(*, reduced: bool = False, progress: Callable[[str], None] = lambda __: None) -> Speed:
+def measure_speed(*, reduced: bool = False, progress: Callable[[str], None] = lambda __: None) -> SpeedMeasurement:
     """All in one process, by turns, so that what disturbs the machine disturbs all alike."""
     races: list[Race] = []
     for mechanism in MECHANISMS:
         progress(mechanism.name)
-        races += race(mechanism, reduced)
-    iterated: list[Iterated] = []
+        races += race_mechanism(mechanism, reduced)
+    iterated: list[IteratedRace] = []
     for name in ITERATED:
         progress(name)
-        iterated += against_six_bar(name, reduced)
+        iterated += race_iterated(name, reduced)
     sweeps = []
     for name in SWEPT:
         progress(f"sweep of {name}")
-        sweeps.append(sweeping(name, reduced))
+        sweeps.append(time_sweep(name, reduced))
     growths = []
     for what in GROWING:
         progress(what)
-        growths.append(growth(what, reduced))
-    rivals, absent = against_rivals(reduced, progress)
-    return Speed(tuple(races), tuple(growths), rivals, tuple(iterated), tuple(sweeps), reduced=reduced, absent=absent)
+        growths.append(measure_growth(what, reduced))
+    rivals, absent = race_rivals(reduced, progress)
+    return SpeedMeasurement(
+        tuple(races), tuple(growths), rivals, tuple(iterated), tuple(sweeps), reduced=reduced, absent=absent
+    )
 
 
-def race(mechanism: Mechanism, reduced: bool) -> list[Race]:
+def race_mechanism(mechanism: HandCodedMechanism, reduced: bool) -> list[Race]:
     """A mechanism with one and with many variants, ours and by hand by turns."""
     kinds = [(1, n) for n in POSITIONS] + [(v, OF_VARIANTS) for v in VARIANTS if not (reduced and v == 100)]
-    return [_raced(mechanism, variants, positions, reduced) for variants, positions in kinds]
+    return [_time_race(mechanism, variants, positions, reduced) for variants, positions in kinds]
 
 
-def _raced(mechanism: Mechanism, variants: int, positions: int, reduced: bool) -> Race:
+def _time_race(mechanism: HandCodedMechanism, variants: int, positions: int, reduced: bool) -> Race:
     linkages = mechanism.variants(variants)
     start = perf_counter()
     ours = mechanism.ours(linkages)
@@ -219,10 +221,10 @@ def _raced(mechanism: Mechanism, variants: int, positions: int, reduced: bool) -
     def found(least: dict[str, float]) -> Race:
         return Race(mechanism.name, variants, positions, least["ours"] * share, least["hand"] * share, preparing)
 
-    return timed({"ours": lambda: ours(q), "hand": lambda: by_hand(q)}, found, reduced)
+    return time_until_met({"ours": lambda: ours(q), "hand": lambda: by_hand(q)}, found, reduced)
 
 
-def growth(what: str, reduced: bool) -> Growth:
+def measure_growth(what: str, reduced: bool) -> Growth:
     """Times of a chain of dyads with growing numbers of links, of the six-bar with growing positions or variants.
 
     Of the balancing moment, for which all groups are walked forward and backward; what is large is the work, not the
@@ -233,17 +235,17 @@ def growth(what: str, reduced: bool) -> Growth:
     runs: dict[str, Callable[[], Any]] = {}
     for number in numbers:
         if what == "links":
-            runs[str(number)] = _ready(prepare_batch(chain(number), _balancing), OF_LINKS)
+            runs[str(number)] = _make_call(prepare_batch(dyad_chain(number), _balancing), OF_LINKS)
         elif what == "positions":
-            runs[str(number)] = _ready(prepare_batch(six_bar.linkage(), _balancing), number)
+            runs[str(number)] = _make_call(prepare_batch(six_bar.linkage(), _balancing), number)
         else:
-            runs[str(number)] = _ready(prepare_batch(six_bar.variants(number), _balancing), OF_VARIANTS)
+            runs[str(number)] = _make_call(prepare_batch(six_bar.variants(number), _balancing), OF_VARIANTS)
     size = tuple(2 * n + 1 if what == "links" else n for n in numbers)
 
     def found(least: dict[str, float]) -> Growth:
-        return Growth(what, size, tuple(least.values()), exponent(size, tuple(least.values())))
+        return Growth(what, size, tuple(least.values()), fit_exponent(size, tuple(least.values())))
 
-    return timed(runs, found, reduced)
+    return time_until_met(runs, found, reduced)
 
 
 def _balancing(__: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
@@ -251,12 +253,12 @@ def _balancing(__: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
     return {"T": reactions.balance.generalized}
 
 
-def _ready(batch: Batch, positions: int) -> Callable[[], Any]:
+def _make_call(batch: Batch, positions: int) -> Callable[[], Any]:
     q: Real = 1.0 + 2 * np.pi * np.arange(positions) / positions
     return lambda: batch(q)
 
 
-def exponent(numbers: Sequence[int], seconds: Sequence[float]) -> float:
+def fit_exponent(numbers: Sequence[int], seconds: Sequence[float]) -> float:
     """p of the best t0 + c n^p, t0 >= 0, by least squares of relative deviations."""
     n, t = np.asarray(numbers, float), np.asarray(seconds, float)
     best, found = np.inf, 1.0
@@ -271,7 +273,7 @@ def exponent(numbers: Sequence[int], seconds: Sequence[float]) -> float:
     return found
 
 
-def against_rivals(reduced: bool, progress: Callable[[str], None]) -> tuple[tuple[Rival, ...], tuple[str, ...]]:
+def race_rivals(reduced: bool, progress: Callable[[str], None]) -> tuple[tuple[RivalRace, ...], tuple[str, ...]]:
     """Rivals that are installed, on the mechanisms that they can do, at 360 positions."""
     there, missing = installed()
     absent = [f"{name}: not installed" for name in missing]
@@ -282,18 +284,177 @@ def against_rivals(reduced: bool, progress: Callable[[str], None]) -> tuple[tupl
             case = reference(mechanism.name).case
             try:
                 solver = (method.alone or method.prepare)(case)
-            except Unable as error:
+            except MethodUnable as error:
                 absent.append(f"{method.name}: {mechanism.name}: {error}")
                 continue
-            found.append(_against(method, mechanism.name, case, solver, reduced))
+            found.append(_race_rival(method, mechanism.name, case, solver, reduced))
     return tuple(found), tuple(absent)
 
 
-def _against(method: Method, mechanism: str, case: Case, solver: Callable[[Real], object], reduced: bool) -> Rival:
+def _race_rival(
+    method: Method, mechanism: str, case: Case, solver: Callable[[Real], object], reduced: bool
+) -> RivalRace:
     q = case.start + 2 * np.pi * (np.arange(360) + 0.37) / 360
-    ours = taped.batch(case, forces=method.solve(case, q).reactions is not None)
+    ours = taped.make_batch(case, forces=method.solve(case, q).reactions is not None)
 
-    def found(least: dict[str, float]) -> Rival:
-        return Rival(method.name, mechanism, least["theirs"] * 1e9 / 360, least["ours"] * 1e9 / 360)
+    def found(least: dict[str, float]) -> RivalRace:
+        return RivalRace(method.name, mechanism, least["theirs"] * 1e9 / 360, least["ours"] * 1e9 / 360)
 
-    return timed({"theirs": lambda: solver(q), "ours": lambda: ours(q)}, found, reduced)
+    return time_until_met({"theirs": lambda: solver(q), "ours": lambda: ours(q)}, found, reduced)
+
+
+ITERATED = ("press-class-iii",)
+ITERATED_POSITIONS = (360, 36_000)
+OF_SIX_BAR = 360  # positions
+ITERATED_TARGETS = {360: 2.0 / 0.23, 36_000: 1.0 / 0.23}  # 2 us and 1 us a position where the six-bar takes 0.23
+
+
+@dataclass(frozen=True)
+class IteratedRace:
+    """A linkage with a group that is found by iteration: nanoseconds a position, its own and the six-bar's of 360.
+
+    rest: share of the positions that the tape leaves to the ordinary stages.
+    """
+
+    mechanism: str
+    positions: int
+    ours: float
+    six_bar: float
+    rest: float
+
+    @property
+    def ratio(self) -> float:
+        return self.ours / self.six_bar
+
+    @property
+    def target(self) -> float:
+        """At most this ratio."""
+        return ITERATED_TARGETS[self.positions]
+
+    def missed(self, slack: float) -> str:
+        if self.ratio <= slack * self.target:
+            return ""
+        kind = f"{self.mechanism}, {self.positions} positions"
+        return f"{kind}: {self.ratio:.1f} times the six-bar, target {self.target:.1f}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON."""
+        return asdict(self) | {"ratio": self.ratio, "target": self.target}
+
+
+def race_iterated(name: str, reduced: bool) -> list[IteratedRace]:
+    """Times of a linkage round its cycle, with all that `everything` holds."""
+    batch, six_bar = (
+        prepare_batch(_linkage_with_constant_loads(name)),
+        prepare_batch(_linkage_with_constant_loads("six-bar")),
+    )
+    found = []
+    for positions in ITERATED_POSITIONS:
+        q, few = (batch.linkages[0].sketch.at + 2 * np.pi * np.arange(n) / n for n in (positions, OF_SIX_BAR))
+        rest = 1 - float(np.mean(batch.closed(q)))
+
+        def judged(least: dict[str, float], n: int = positions, rest: float = rest) -> IteratedRace:
+            return IteratedRace(name, n, least["ours"] * 1e9 / n, least["six"] * 1e9 / OF_SIX_BAR, rest)
+
+        runs = {"ours": lambda q=q: batch(q), "six": lambda q=few: six_bar(q)}
+        found.append(time_until_met(runs, judged, reduced))
+    return found
+
+
+def _linkage_with_constant_loads(name: str) -> Linkage:
+    """A reference whose loads are constant, as those of the other races are."""
+    found = reference(name).case.linkage
+    loads = tuple(
+        replace(x, force=x.force * (1 if x.table is None else x.table.values[0]), table=None, when="always")
+        for x in found.loads
+    )
+    return replace(found, loads=loads)
+
+
+def iterated_table(rows: Sequence[IteratedRace]) -> Table:
+    """What a terminal shows."""
+    return text_table(
+        "iterated",
+        "Groups of class III, nanoseconds a position with all reactions, against the six-bar",
+        ("mechanism", "positions", "tmm", "six-bar", "ratio", "at most", "left to the stages"),
+        [
+            (
+                r.mechanism,
+                str(r.positions),
+                f"{r.ours:.0f}",
+                f"{r.six_bar:.0f}",
+                f"{r.ratio:.1f}",
+                f"{r.target:.1f}",
+                f"{100 * r.rest:.1f} %",
+            )
+            for r in rows
+        ],
+    )
+
+
+SWEPT = {"six-bar": "OA=80..120"}  # problems of 12 positions, and over what
+SWEPT_QUANTITIES = ("H,k,pressure,M_b,R_34",)
+SWEPT_MECHANISMS, REDUCED_MECHANISMS = 20_000, 2_000  # of a sweep: as many as are one job of a long one
+A_MINUTE = 1e6
+
+
+@dataclass(frozen=True)
+class SweepRate:
+    """A sweep of so many mechanisms of so many positions each: mechanisms a minute; preparing (ms) is once."""
+
+    mechanism: str
+    mechanisms: int
+    positions: int
+    a_minute: float
+    preparing: float
+
+    @property
+    def target(self) -> float:
+        """At least so many mechanisms a minute."""
+        return A_MINUTE
+
+    def missed(self, slack: float) -> str:
+        if self.a_minute >= self.target / slack:
+            return ""
+        return f"sweep of {self.mechanism}: {self.a_minute:.0f} mechanisms a minute, target {self.target:.0f}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON."""
+        return asdict(self) | {"target": self.target}
+
+
+def time_sweep(name: str, reduced: bool) -> SweepRate:
+    """How the command computes the points of a sweep, of which every one works."""
+    count = REDUCED_MECHANISMS if reduced else SWEPT_MECHANISMS
+    start = perf_counter()
+    tree = problem_tree(name)
+    mechanisms = SweptMechanisms(tree, read_axes(Task(tree), [f"{SWEPT[name]}:{count}"]), SWEPT_QUANTITIES)
+    assert mechanisms.turning is not None
+    preparing = 1e3 * (perf_counter() - start)
+    points = grid_points(mechanisms.axes)
+
+    def found(least: dict[str, float]) -> SweepRate:
+        positions = mechanisms.task.problem.request.count
+        return SweepRate(name, count, positions, 60 * count / least[""], preparing)
+
+    return time_until_met({"": lambda: mechanisms.at(points)}, found, reduced)
+
+
+def sweep_table(rows: Sequence[SweepRate]) -> Table:
+    """What a terminal shows."""
+    return text_table(
+        "sweeps",
+        f"Mechanisms that a sweep goes through in a minute on one core, with {SWEPT_QUANTITIES[0]}",
+        ("mechanism", "mechanisms", "positions of each", "a minute", "at least", "preparing once, ms"),
+        [
+            (
+                r.mechanism,
+                str(r.mechanisms),
+                str(r.positions),
+                f"{r.a_minute:.0f}",
+                f"{r.target:.0f}",
+                f"{r.preparing:.0f}",
+            )
+            for r in rows
+        ],
+    )

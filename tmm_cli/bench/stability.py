@@ -14,12 +14,12 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from tmm_cli.bench.measured import Measured, words
+from tmm_cli.bench.linkage_families import FAMILIES_BY_NAME
+from tmm_cli.bench.measured import Measurement, text_table
 from tmm_cli.bench.methods import textbook
-from tmm_cli.bench.methods.case import QUANTITIES, Answers, Case, Compared, Method, Unable
+from tmm_cli.bench.methods.case import QUANTITIES, Case, Compared, Method, MethodAnswers, MethodUnable
 from tmm_cli.bench.methods.registry import METHODS
-from tmm_cli.bench.references import Known, known_scenes
-from tmm_cli.bench.scenes import BY_NAME
+from tmm_cli.bench.references import KnownScene, known_scenes
 from tmm_cli.mechanics.accuracy import bound_values, solve_bare_linkage
 from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.numerics import ROUNDOFF, Real
@@ -27,23 +27,23 @@ from tmm_cli.reports import Table
 
 PRODUCT = "tmm"
 WRONG, TIMES = 1e-6, 10.0  # of the largest value; of what a method states itself
-FIVE = 0.05  # what the drawing board states
-WIDE, TARGET = 100.0, 0.9  # a bound so many times the true error is too wide; the share that may not be
-TRUE = 1e-40  # of the largest value: what is not known of the truth
+BOARD_ERROR = 0.05  # what the drawing board states
+LARGEST_WIDTH, TARGET = 100.0, 0.9  # a bound so many times the true error is too wide; the share that may not be
+REFERENCE_ERROR = 1e-40  # of the largest value: what is not known of the truth
 SEEDS_WHEN_REDUCED, EVERY_WHEN_REDUCED = 2, 4
 WHEN_REDUCED = ("closed", "newton-2", "newton-6", "newton-12", "differences-4", "single", "extended")
-NAIVE = (
+TEXTBOOK_METHODS = (
     Method("cosines", "cosines", textbook.cosines),
     Method("freudenstein", "freudenstein", textbook.freudenstein),
 )
-RIVALS: tuple[Method, ...] = (*METHODS, *NAIVE)
+RIVALS: tuple[Method, ...] = (*METHODS, *TEXTBOOK_METHODS)
 
 Verdict = Literal["right", "said", "wrong"]
-Solver = Callable[[Real], Answers]
+Solver = Callable[[Real], MethodAnswers]
 
 
 @dataclass(frozen=True)
-class Shot:
+class SceneOutcome:
     """One method in one scene: the errors of its answers (shares of the largest), and what to think of it.
 
     why: how it said so. For ours, widths: bound over true error of every number, nan where there is no bound.
@@ -83,7 +83,7 @@ class StabilityRow:
 
 
 @dataclass(frozen=True)
-class Stability(Measured):
+class Stability(Measurement):
     """The whole measurement. widths: of all bounds of ours, over the true errors."""
 
     rows: tuple[StabilityRow, ...]
@@ -110,7 +110,7 @@ class Stability(Measured):
     @property
     def sharp(self) -> float:
         """Share of our bounds that are at most 100 times the true error."""
-        return float(np.mean(np.array(self.widths) <= WIDE)) if self.widths else float("nan")
+        return float(np.mean(np.array(self.widths) <= LARGEST_WIDTH)) if self.widths else float("nan")
 
     @property
     def failures(self) -> tuple[str, ...]:
@@ -121,7 +121,9 @@ class Stability(Measured):
             if row.method == PRODUCT and row.wrong
         ]
         if self.widths and not self.sharp >= TARGET:
-            lies.append(f"{self.sharp:.1%} of the bounds are within {WIDE:g} times the true error, target {TARGET:.0%}")
+            lies.append(
+                f"{self.sharp:.1%} of the bounds are within {LARGEST_WIDTH:g} times the true error, target {TARGET:.0%}"
+            )
         return tuple(lies)
 
     def to_dict(self) -> dict[str, Any]:
@@ -151,12 +153,12 @@ class Stability(Measured):
 
         rows = [(method, *(first(family, method) for family in self.families)) for method in self.methods]
         title = "Where each method first gives a wrong answer without saying so"
-        return (words("stability", title, ("method", *self.families), rows),)
+        return (text_table("stability", title, ("method", *self.families), rows),)
 
     @property
     def remarks(self) -> tuple[str, ...]:
         sharp = "{count} bounds of tmm against 50 digits: {share} are at most {wide} times the true error"
-        return *self.absent, sharp.format(count=len(self.widths), share=f"{self.sharp:.1%}", wide=f"{WIDE:g}")
+        return *self.absent, sharp.format(count=len(self.widths), share=f"{self.sharp:.1%}", wide=f"{LARGEST_WIDTH:g}")
 
 
 def _plain(value: float) -> float | None:
@@ -164,7 +166,7 @@ def _plain(value: float) -> float | None:
 
 
 def measure_stability(
-    families: Sequence[str] = tuple(BY_NAME),
+    families: Sequence[str] = tuple(FAMILIES_BY_NAME),
     *,
     reduced: bool = False,
     methods: Iterable[Method] | None = None,
@@ -172,7 +174,7 @@ def measure_stability(
     progress: Callable[[str], None] = lambda __: None,
 ) -> Stability:
     """All methods in all scenes; reduced: fewer scenes and methods. own: the product with its bounds too."""
-    fewer = [method for method in RIVALS if method.name in WHEN_REDUCED or method in NAIVE]
+    fewer = [method for method in RIVALS if method.name in WHEN_REDUCED or method in TEXTBOOK_METHODS]
     chosen = tuple(methods if methods is not None else fewer if reduced else RIVALS)
     rows: list[StabilityRow] = []
     widths: list[float] = []
@@ -180,19 +182,19 @@ def measure_stability(
     for family in families:
         progress(family)
         some = (SEEDS_WHEN_REDUCED, EVERY_WHEN_REDUCED) if reduced else (None, 1)
-        shots: dict[tuple[str, float], list[Shot]] = {}
-        for at, case, solvers in _prepared(known_scenes(family, *some), chosen, absent):
-            mine = (ours(case, at),) if own else ()
-            for shot in (*mine, *(judged(method, solver, at) for method, solver in solvers.items())):
+        shots: dict[tuple[str, float], list[SceneOutcome]] = {}
+        for at, case, solvers in _prepare_scenes(known_scenes(family, *some), chosen, absent):
+            mine = (judge_product(case, at),) if own else ()
+            for shot in (*mine, *(judge_method(method, solver, at) for method, solver in solvers.items())):
                 shots.setdefault((shot.method, float(at.distance)), []).append(shot)
                 widths += shot.widths
-        rows += [_row(family, *key, found) for key, found in shots.items()]
+        rows += [_make_row(family, *key, found) for key, found in shots.items()]
     return Stability(tuple(rows), tuple(widths), reduced=reduced, absent=tuple(absent))
 
 
-def _prepared(
-    scenes: Iterable[Known], methods: tuple[Method, ...], absent: dict[str, None]
-) -> Iterator[tuple[Known, Case, dict[Method, Solver | Exception]]]:
+def _prepare_scenes(
+    scenes: Iterable[KnownScene], methods: tuple[Method, ...], absent: dict[str, None]
+) -> Iterator[tuple[KnownScene, Case, dict[Method, Solver | Exception]]]:
     """Scenes with what is made ready of their linkage, once where it is the same at all distances."""
     for __, group in groupby(scenes, key=lambda at: (at.seed, None if at.family.fixed else at.distance)):
         of_one = list(group)
@@ -202,7 +204,7 @@ def _prepared(
             try:
                 with np.errstate(all="ignore"):
                     solvers[method] = method.prepare(case)
-            except Unable as error:
+            except MethodUnable as error:
                 absent[f"{method.name}: {of_one[0].family.name}: {error}"] = None
             except (ArithmeticError, ValueError, LinkageError, np.linalg.LinAlgError) as error:
                 solvers[method] = error
@@ -210,13 +212,19 @@ def _prepared(
             yield at, case, solvers
 
 
-def limit(method: Method) -> float:
+def error_limit(method: Method) -> float:
     """The share of the largest value beyond which an answer of the method is wrong."""
-    stated = FIVE if method.family == "board" else TIMES * (method.setting or 0.0) if method.family == "newton" else 0.0
+    stated = (
+        BOARD_ERROR
+        if method.family == "board"
+        else TIMES * (method.setting or 0.0)
+        if method.family == "newton"
+        else 0.0
+    )
     return max(WRONG, stated)
 
 
-def judged(method: Method, solver: Solver | Exception, at: Known) -> Shot:
+def judge_method(method: Method, solver: Solver | Exception, at: KnownScene) -> SceneOutcome:
     """What a method answers in a scene, or why it does not: its errors and what to think of them."""
     nothing: dict[Compared, float] = dict.fromkeys(QUANTITIES, float("nan"))
     try:
@@ -225,29 +233,29 @@ def judged(method: Method, solver: Solver | Exception, at: Known) -> Shot:
         with np.errstate(all="ignore"):
             found = solver(np.array([at.scene.q]))
     except (ArithmeticError, ValueError, IndexError, AssertionError, LinkageError, np.linalg.LinAlgError) as error:
-        return Shot(method.name, "said", nothing, type(error).__name__)
-    values = {quantity: _watched(found, quantity, at) for quantity in QUANTITIES}
+        return SceneOutcome(method.name, "said", nothing, type(error).__name__)
+    values = {quantity: _watched_value(found, quantity, at) for quantity in QUANTITIES}
     if not all(np.isfinite(value) for value in values.values() if value is not None):
-        return Shot(method.name, "said", nothing, "nan")
+        return SceneOutcome(method.name, "said", nothing, "nan")
     errors = {
-        quantity: nothing[quantity] if value is None else _off(value, quantity, at)
+        quantity: nothing[quantity] if value is None else _relative_error(value, quantity, at)
         for quantity, value in values.items()
     }
-    wrong = max(error for error in errors.values() if not np.isnan(error)) > limit(method)
-    return Shot(method.name, "wrong" if wrong else "right", errors)
+    wrong = max(error for error in errors.values() if not np.isnan(error)) > error_limit(method)
+    return SceneOutcome(method.name, "wrong" if wrong else "right", errors)
 
 
-def _off(value: Any, quantity: Compared, at: Known) -> float:
+def _relative_error(value: Any, quantity: Compared, at: KnownScene) -> float:
     return float(abs(value - at.exact[quantity]) / at.largest[quantity])
 
 
-def _watched(found: Answers, quantity: Compared, at: Known) -> Any:
+def _watched_value(found: MethodAnswers, quantity: Compared, at: KnownScene) -> Any:
     series = found.series(quantity)
     name = {"reactions": at.scene.pair, "balancing": "balancing"}.get(quantity, at.scene.point)
     return None if series is None else series[name][0]
 
 
-def ours(case: Case, at: Known) -> Shot:
+def judge_product(case: Case, at: KnownScene) -> SceneOutcome:
     """What the product prints, and its bounds: a value outside its own is a lie; without a bound none is printed."""
     q = np.array([at.scene.q])
     results = solve_bare_linkage(case.linkage, q, case.structure, case.kernels)
@@ -275,21 +283,21 @@ def ours(case: Case, at: Known) -> Shot:
                 given, total = False, float("nan")
                 continue
             off = float(abs(mine - (sense if quantity == "reactions" else 1) * exact))
-            within = within and off <= bound + TRUE * at.largest[quantity]
-            floor = max(off, ROUNDOFF * abs(float(exact)), TRUE * at.largest[quantity])
+            within = within and off <= bound + REFERENCE_ERROR * at.largest[quantity]
+            floor = max(off, ROUNDOFF * abs(float(exact)), REFERENCE_ERROR * at.largest[quantity])
             widths.append(bound / floor if bound else 1.0)  # a part that is nothing for certain
             total += off * off
             widest = max(widest, bound / at.largest[quantity])
         errors[quantity] = float(np.sqrt(total)) / at.largest[quantity]
     if not within:
-        return Shot(PRODUCT, "wrong", errors, "", widest, tuple(widths))
+        return SceneOutcome(PRODUCT, "wrong", errors, "", widest, tuple(widths))
     if not given:
-        return Shot(PRODUCT, "said", errors, "nan", widest or float("nan"), tuple(widths))
+        return SceneOutcome(PRODUCT, "said", errors, "nan", widest or float("nan"), tuple(widths))
     far = max(errors.values()) > WRONG  # the bound says it
-    return Shot(PRODUCT, "said" if far else "right", errors, "bound" if far else "", widest, tuple(widths))
+    return SceneOutcome(PRODUCT, "said" if far else "right", errors, "bound" if far else "", widest, tuple(widths))
 
 
-def _row(family: str, method: str, distance: float, shots: list[Shot]) -> StabilityRow:
+def _make_row(family: str, method: str, distance: float, shots: list[SceneOutcome]) -> StabilityRow:
     errors: dict[Compared, float] = {}
     for quantity in QUANTITIES:
         given = [shot.errors[quantity] for shot in shots if not np.isnan(shot.errors[quantity])]

@@ -11,17 +11,17 @@ from matplotlib.ticker import FuncFormatter, NullFormatter, NullLocator
 from tmm_cli.bench.chart_axes import BLUE, GREEN, GREY, INK, ORANGE, RED, label_axes, make_page, set_log_axes
 from tmm_cli.bench.savings import COUNTED_NAMES, SAVING_TITLES, Savings
 from tmm_cli.bench.searches import NEAR, SEARCH_NAMES, SEARCHED, Searches
-from tmm_cli.bench.speed import GROWING, Growth, Speed
+from tmm_cli.bench.speed import GROWING, Growth, SpeedMeasurement
 
 MECHANISM_COLOURS = {"crank-slider": BLUE, "six-bar": RED, "shaper": GREEN}
 
 
-def speed_charts(speed: Speed) -> dict[str, Figure]:
+def speed_charts(speed: SpeedMeasurement) -> dict[str, Figure]:
     """By the names of their files."""
     return {"speed.png": draw_speed(speed)}
 
 
-def draw_speed(speed: Speed) -> Figure:
+def draw_speed(speed: SpeedMeasurement) -> Figure:
     """All of the measurement on one sheet."""
     caption = (
         "all joints, centres of mass, reactions, balancing moment; least of many turns in one "
@@ -36,7 +36,7 @@ def draw_speed(speed: Speed) -> Figure:
     return figure
 
 
-def _draw_times(axes: Any, speed: Speed) -> None:
+def _draw_times(axes: Any, speed: SpeedMeasurement) -> None:
     for name, colour in MECHANISM_COLOURS.items():
         races = [r for r in speed.races if r.mechanism == name and r.variants == 1]
         x = [r.positions for r in races]
@@ -49,7 +49,7 @@ def _draw_times(axes: Any, speed: Speed) -> None:
     label_axes(axes, "Time a position", "positions", "ns a position")
 
 
-def _draw_ratios(axes: Any, speed: Speed) -> None:
+def _draw_ratios(axes: Any, speed: SpeedMeasurement) -> None:
     kinds = list(dict.fromkeys((r.variants, r.positions) for r in speed.races))
     width = 0.8 / len(MECHANISM_COLOURS)
     for k, (name, colour) in enumerate(MECHANISM_COLOURS.items()):

@@ -12,9 +12,9 @@ import typer
 from matplotlib.figure import Figure
 
 from tmm_cli.bench import (
-    BY_NAME,
+    FAMILIES_BY_NAME,
     REFERENCE_NAMES,
-    Measured,
+    Measurement,
     accuracy_charts,
     measure_accuracy,
     measure_grading,
@@ -62,7 +62,7 @@ def _keep_group() -> None:
 
 
 Charts = Mapping[str, Figure]  # by the names of their files
-M = TypeVar("M", bound=Measured)
+M = TypeVar("M", bound=Measurement)
 
 Reduced = Annotated[bool, typer.Option("--reduced", help="A shorter measurement; its targets are twice as wide.")]
 Out = Annotated[
@@ -106,7 +106,7 @@ def show_and_write(name: str, measured: M, charts: Callable[[M], Charts], out: P
     raise typer.Exit(CHECK_FAILED if measured.failures else OK)
 
 
-def _write(name: str, measured: Measured, charts: Charts, folder: Path) -> str:
+def _write(name: str, measured: Measurement, charts: Charts, folder: Path) -> str:
     """Write NAME.json, NAME.csv of the lines or of the only table, and charts."""
     contents = {f"{name}.json": json_bytes(measured.to_dict())}
     lines = io.StringIO()
@@ -174,7 +174,7 @@ def stability(family: Families = None, reduced: Reduced = False, out: Out = None
     Exit code 1 when a value of the product is off by more than its bound, or when fewer than nine of ten of its bounds
     are within 100 times the true error.
     """
-    names = requested_names(family, BY_NAME, "there is no family {name}; there are {names}")
+    names = requested_names(family, FAMILIES_BY_NAME, "there is no family {name}; there are {names}")
     show_and_write("stability", measure_stability(names, reduced=reduced, progress=say), stability_charts, out, as_json)
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tmm_cli.bench.methods.case import Answers, Case, from_plan
+from tmm_cli.bench.methods.case import Case, MethodAnswers, answers_of_plan
 from tmm_cli.mechanics.forces import Reactions, solve_reactions
 from tmm_cli.mechanics.groups import (
     Accel,
@@ -38,13 +38,13 @@ from tmm_cli.mechanics.numerics import Real, Vector, cross, unit
 from tmm_cli.mechanics.plans import Plan, acceleration_plan, force_plans, sheet_scale, velocity_plan
 
 
-def snapped(value: Vector, grid: Real) -> Vector:
+def snap_to_grid(value: Vector, grid: Real) -> Vector:
     """Vectors read to a grid."""
     return grid * (np.round(value.real / grid) + 1j * np.round(value.imag / grid))
 
 
 @dataclass(frozen=True)
-class Scales:
+class BoardScales:
     """SI a millimetre at every position: of the mechanism (m), the velocity, acceleration and force plans."""
 
     x: Real
@@ -53,7 +53,7 @@ class Scales:
     forces: Mapping[tuple[str, ...], Real]  # by the links of the polygon
 
     @classmethod
-    def of(cls, case: Case, motion: Motion, reactions: Reactions) -> Scales:
+    def of(cls, case: Case, motion: Motion, reactions: Reactions) -> BoardScales:
         """Those that the product's sheets would have."""
         count = range(len(motion.q))
         fixed = [case.linkage.local(FRAME, h.point) for h in case.linkage.hinges if FRAME in h.links]
@@ -74,18 +74,18 @@ def _scale(plan: Plan) -> float:
 
 
 @dataclass(frozen=True)
-class Polygon(WrappedSolver):
+class PolygonSolver(WrappedSolver):
     """A group whose forces are read off its polygon; grid in N."""
 
     grid: Real
 
     def reactions(self, at: Placement, poses: Poses, on: tuple[Wrench, ...]) -> GroupReactions:
-        laid_off = tuple(Wrench(snapped(wrench.force, self.grid), wrench.moment) for wrench in on)
+        laid_off = tuple(Wrench(snap_to_grid(wrench.force, self.grid), wrench.moment) for wrench in on)
         found = self.inner.reactions(at, poses, laid_off)
         return replace(found, outer=tuple(map(self._read, found.outer)), inner=tuple(map(self._read, found.inner)))
 
     def _read(self, reaction: PairReaction) -> PairReaction:
-        return replace(reaction, force=snapped(reaction.force, self.grid))
+        return replace(reaction, force=snap_to_grid(reaction.force, self.grid))
 
 
 @dataclass(frozen=True)
@@ -134,11 +134,11 @@ class Board:
                 partner = self._partner(link, drawn)
                 z = pose.z if partner is None else drawn[partner[0]].z * unit(partner[1])
                 at = self._point(link)
-                drawn[link] = Pose(snapped(pose.at(at), self.x) - at * z, z)
+                drawn[link] = Pose(snap_to_grid(pose.at(at), self.x) - at * z, z)
                 continue
             one, other = (self.case.linkage.local(link, point) for point in ends)
-            start = pose.at(one) if self._fixed(ends[0]) else snapped(pose.at(one), self.x)
-            along = (snapped(pose.at(other), self.x) - start) / (other - one)
+            start = pose.at(one) if self._fixed(ends[0]) else snap_to_grid(pose.at(one), self.x)
+            along = (snap_to_grid(pose.at(other), self.x) - start) / (other - one)
             z = along / np.abs(along)
             drawn[link] = Pose(start - one * z, z)
         return drawn
@@ -152,10 +152,10 @@ class Board:
                 partner = self._partner(link, drawn)
                 w = rate.w if partner is None else drawn[partner[0]].w
                 arm = self._point(link) * pose.z
-                drawn[link] = Rate.through(snapped(rate.at(arm), self.v), w, arm)
+                drawn[link] = Rate.through(snap_to_grid(rate.at(arm), self.v), w, arm)
                 continue
             one, other = (self.case.linkage.local(link, point) * pose.z for point in ends)
-            v, u = snapped(rate.at(one), self.v), snapped(rate.at(other), self.v)
+            v, u = snap_to_grid(rate.at(one), self.v), snap_to_grid(rate.at(other), self.v)
             drawn[link] = Rate.through(v, cross(other - one, u - v) / np.abs(other - one) ** 2, one)
         return drawn
 
@@ -182,10 +182,10 @@ class Board:
                 partner = self._partner(link, drawn)
                 e = accel.e if partner is None else drawn[partner[0]].e
                 arm = self._point(link) * pose.z
-                drawn[link] = Accel.through(snapped(accel.at(arm, w), self.a), e, w, arm)
+                drawn[link] = Accel.through(snap_to_grid(accel.at(arm, w), self.a), e, w, arm)
                 continue
             one, other = (self.case.linkage.local(link, point) * pose.z for point in ends)
-            b, c = snapped(accel.at(one, w), self.a), snapped(accel.at(other, w), self.a)
+            b, c = snap_to_grid(accel.at(one, w), self.a), snap_to_grid(accel.at(other, w), self.a)
             e = cross(other - one, c - b) / np.abs(other - one) ** 2
             drawn[link] = Accel.through(b, e, w, one)
         return drawn
@@ -217,27 +217,27 @@ class Board:
         return self.case.motion(q, poses, first, second), tuple(placements)
 
 
-def prepare(millimetres: float, case: Case) -> Callable[[Real], Answers]:
+def prepare_board(millimetres: float, case: Case) -> Callable[[Real], MethodAnswers]:
     """The board on which points are read to so many millimetres."""
 
-    def at(q: Real) -> Answers:
+    def at(q: Real) -> MethodAnswers:
         exact = compute_motion(case.linkage, case.kernels, q, case.law)
-        scales = Scales.of(case, exact, solve_reactions(exact, case.structure, case.loads(exact)))
+        scales = BoardScales.of(case, exact, solve_reactions(exact, case.structure, case.loads(exact)))
         x, v, a = (millimetres * scale for scale in (scales.x, scales.v, scales.a))
         speed = np.abs(exact.rate)
         motion, placements = Board(case, x, v / speed, a / speed**2).motion(q)
         forces = {links: millimetres * scale for links, scale in scales.forces.items()}
-        polygons = tuple(Polygon.around(k, forces[k.group.links]) for k in case.kernels)
+        polygons = tuple(PolygonSolver.around(k, forces[k.group.links]) for k in case.kernels)
         motion = replace(motion, kernels=polygons, placements=placements)
         plan = solve_reactions(motion, case.structure, case.loads(motion))
-        frames = tuple(replace(f, force=snapped(f.force, forces[(f.on,)])) for f in plan.frames)
-        found = from_plan(case, motion, replace(plan, frames=frames))
+        frames = tuple(replace(f, force=snap_to_grid(f.force, forces[(f.on,)])) for f in plan.frames)
+        found = answers_of_plan(case, motion, replace(plan, frames=frames))
         assert found.positions and found.velocities and found.accelerations
         return replace(
             found,
-            positions={name: snapped(value, x) for name, value in found.positions.items()},
-            velocities={name: snapped(value, v) for name, value in found.velocities.items()},
-            accelerations={name: snapped(value, a) for name, value in found.accelerations.items()},
+            positions={name: snap_to_grid(value, x) for name, value in found.positions.items()},
+            velocities={name: snap_to_grid(value, v) for name, value in found.velocities.items()},
+            accelerations={name: snap_to_grid(value, a) for name, value in found.accelerations.items()},
         )
 
     return at

@@ -21,7 +21,7 @@ Compared = Literal["positions", "velocities", "accelerations", "reactions", "bal
 QUANTITIES: tuple[Compared, ...] = ("positions", "velocities", "accelerations", "reactions", "balancing")
 
 
-class Unable(Exception):  # noqa: N818 - no error, but what a method says of itself
+class MethodUnable(Exception):  # noqa: N818 - no error, but what a method says of itself
     """A method has no way to compute this linkage."""
 
 
@@ -92,7 +92,7 @@ class Case:
 
 
 @dataclass(frozen=True)
-class Answers:
+class MethodAnswers:
     """What a method found at every position, SI; None is what it does not give.
 
     positions (m), velocities (m/s), accelerations (m/s2) of moving points by their names; reactions (N) on the second
@@ -121,20 +121,22 @@ class Method:
 
     name: str
     family: str
-    prepare: Callable[[Case], Callable[[Real], Answers]]
+    prepare: Callable[[Case], Callable[[Real], MethodAnswers]]
     setting: float | None = None
     timed: bool = True
     alone: Callable[[Case], Callable[[Real], object]] | None = None
 
-    def solve(self, case: Case, q: Real) -> Answers:
+    def solve(self, case: Case, q: Real) -> MethodAnswers:
         """All in one."""
         return self.prepare(case)(np.atleast_1d(np.asarray(q)))
 
 
-def answers(case: Case, motion: Motion, reactions: Mapping[str, Vector] | None, balancing: Real | None) -> Answers:
+def answers_of_motion(
+    case: Case, motion: Motion, reactions: Mapping[str, Vector] | None, balancing: Real | None
+) -> MethodAnswers:
     """The answers that a motion holds, with forces found from it."""
     points = {name: motion.named(name) for name in case.linkage.moving_points}
-    return Answers(
+    return MethodAnswers(
         {name: point.x for name, point in points.items()},
         {name: point.v for name, point in points.items()},
         {name: point.a for name, point in points.items()},
@@ -143,13 +145,15 @@ def answers(case: Case, motion: Motion, reactions: Mapping[str, Vector] | None, 
     )
 
 
-def from_plan(case: Case, motion: Motion, plan: Reactions) -> Answers:
+def answers_of_plan(case: Case, motion: Motion, plan: Reactions) -> MethodAnswers:
     """The answers that a motion and its force plan hold."""
     forces = {r.pair.name: r.onto(r.pair.j) for r in plan.all}
-    return answers(case, motion, forces, plan.balance.generalized)
+    return answers_of_motion(case, motion, forces, plan.balance.generalized)
 
 
-def errors(found: Answers, exact: Answers, quantities: Iterable[Compared] = QUANTITIES) -> dict[Compared, float]:
+def relative_errors(
+    found: MethodAnswers, exact: MethodAnswers, quantities: Iterable[Compared] = QUANTITIES
+) -> dict[Compared, float]:
     """The largest error of each quantity over the largest value of the same point or pair in the cycle; nan: not given.
 
     Errors of a method that fails somewhere (nan) are infinite.

@@ -16,7 +16,7 @@ from typing import Protocol
 
 import numpy as np
 
-from tmm_cli.bench.methods.case import Answers, Case, answers
+from tmm_cli.bench.methods.case import Case, MethodAnswers, answers_of_motion
 from tmm_cli.mechanics.groups import (
     PAIR_CONSTRAINTS,
     Accel,
@@ -371,11 +371,11 @@ def _traced_loops(case: Case) -> tuple[LoopEquations, TracedCoordinates]:
     return loops, trace_coordinates(case, loops)
 
 
-def prepare_loops(tolerance: float, case: Case) -> Callable[[Real], Answers]:
+def prepare_loops(tolerance: float, case: Case) -> Callable[[Real], MethodAnswers]:
     """The method that stops when every loop closes within the tolerance, a share of the linkage's size (or rad)."""
     loops, nodes = _traced_loops(case)
 
-    def at(q: Real) -> Answers:
+    def at(q: Real) -> MethodAnswers:
         poses = loops.poses(close_positions(loops, nodes.near(q), q, tolerance), q)
         links, R = loops.rows.matrix(poses), loops.transformation(poses)
         J = links @ R
@@ -390,7 +390,7 @@ def prepare_loops(tolerance: float, case: Case) -> Callable[[Real], Answers]:
         on = case.wrenches(motion)
         loads = columns_by_link(case.linkage, {name: (wrench.force, wrench.moment) for name, wrench in on.items()})
         forces, balancing = loops.forces(poses, J, np.einsum("nck,nc->nk", R, loads), on)
-        return answers(case, motion, forces, balancing)
+        return answers_of_motion(case, motion, forces, balancing)
 
     return at
 
@@ -430,12 +430,12 @@ class MultibodyEquations:
         return self.rows.matrix(self.poses(X))
 
 
-def prepare_multibody(case: Case) -> Callable[[Real], Answers]:
+def prepare_multibody(case: Case) -> Callable[[Real], MethodAnswers]:
     """One linear system a position and order: J^T for the forces, J for all else."""
     body = MultibodyEquations(case)
     nodes = trace_coordinates(case, body)
 
-    def at(q: Real) -> Answers:
+    def at(q: Real) -> MethodAnswers:
         X = close_positions(body, nodes.near(q), q, TOLERANCE)
         J, poses = body.matrix(X, q), body.poses(X)
         asked = np.zeros_like(X)
@@ -451,6 +451,6 @@ def prepare_multibody(case: Case) -> Callable[[Real], Answers]:
         motion = case.motion(q, poses, first, second)
         on = {name: (wrench.force, wrench.moment) for name, wrench in case.wrenches(motion).items()}
         multipliers = solve(np.swapaxes(J, -1, -2), -columns_by_link(case.linkage, on))
-        return answers(case, motion, body.rows.reactions(poses, multipliers), multipliers[:, -1])
+        return answers_of_motion(case, motion, body.rows.reactions(poses, multipliers), multipliers[:, -1])
 
     return at

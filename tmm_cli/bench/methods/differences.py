@@ -11,18 +11,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.bench.methods.case import Answers, Case, from_plan
+from tmm_cli.bench.methods.case import Case, MethodAnswers, answers_of_plan
 from tmm_cli.mechanics.forces import solve_reactions
 from tmm_cli.mechanics.groups import Accel, Rate
 from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.numerics import Real
 
 
-def prepare(step: float, case: Case) -> Callable[[Real], Answers]:
+def prepare_differences(step: float, case: Case) -> Callable[[Real], MethodAnswers]:
     """The method with one step of the driver (rad, or the linkage's size for a driver that slides)."""
     h = step * (1.0 if case.linkage.driver.kind == "turn" else case.size)
 
-    def answer(q: Real) -> Answers:
+    def answer(q: Real) -> MethodAnswers:
         back, on = q - h, q + h
         here, less, more = (
             compute_motion(case.linkage, case.kernels, at, case.law, 0, blank=False) for at in (q, back, on)
@@ -36,6 +36,6 @@ def prepare(step: float, case: Case) -> Callable[[Real], Answers]:
             first[name] = Rate((ahead.x - behind.x) / (2 * half), (b - a) / (2 * half))
             second[name] = Accel((ahead.x - 2 * pose.x + behind.x) / half**2, (a + b) / half**2)
         motion = replace(case.motion(q, here.poses, first, second), kernels=case.kernels, placements=here.placements)
-        return from_plan(case, motion, solve_reactions(motion, case.structure, case.loads(motion)))
+        return answers_of_plan(case, motion, solve_reactions(motion, case.structure, case.loads(motion)))
 
     return answer

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.batch import Batch, prepare_batch as batch_of
-from tmm_cli.bench.methods.case import Answers, Case, Unable, from_plan
+from tmm_cli.bench.methods.case import Case, MethodAnswers, MethodUnable, answers_of_plan
 from tmm_cli.mechanics.accuracy import as_double_doubles
 from tmm_cli.mechanics.forces import Reactions, solve_reactions
 from tmm_cli.mechanics.groups import GroupSolver, NewtonSolver, WrappedSolver
@@ -21,7 +21,7 @@ from tmm_cli.mechanics.numerics import DoubleDouble, Real, map_record, to_double
 from tmm_cli.mechanics.structure import Group, Pair
 
 
-def recast(value: Any, real: type) -> Any:
+def convert_precision(value: Any, real: type) -> Any:
     """All numbers in records, tuples and arrays as `real` or its complex counterpart; widening is exact."""
     if isinstance(value, (bool, int, str, Group, Pair)) or value is None:
         return value
@@ -34,48 +34,52 @@ def recast(value: Any, real: type) -> Any:
     if isinstance(value, (complex, np.complexfloating)):
         return np.result_type(real, np.complex64).type(value)
     if isinstance(value, Mapping):
-        return {key: recast(part, real) for key, part in value.items()}
+        return {key: convert_precision(part, real) for key, part in value.items()}
     if isinstance(value, tuple):
-        return tuple(recast(part, real) for part in value)
+        return tuple(convert_precision(part, real) for part in value)
     if is_dataclass(value) and not isinstance(value, type):
         names = [field.name for field in fields(value) if field.init]
-        return replace(value, **{name: recast(getattr(value, name), real) for name in names})
+        return replace(value, **{name: convert_precision(getattr(value, name), real) for name in names})
     return value
 
 
 @dataclass(frozen=True)
-class Recast(WrappedSolver):
+class ConvertedSolver(WrappedSolver):
     """A group whose work is done in another precision, whatever it is given."""
 
     real: type
 
     def passed(self, work: Callable[..., Any], *given: Any) -> Any:
-        return recast(work(*(recast(part, self.real) for part in given)), self.real)
+        return convert_precision(work(*(convert_precision(part, self.real) for part in given)), self.real)
 
 
-def double(case: Case) -> Callable[[Real], Answers]:
+def prepare_double(case: Case) -> Callable[[Real], MethodAnswers]:
     """Groups of class II are closed, those of higher classes are found by Newton's method from a track of theirs."""
-    return _at(case, np.float64)
+    return _prepare_precision(case, np.float64)
 
 
-def single(case: Case) -> Callable[[Real], Answers]:
+def prepare_single(case: Case) -> Callable[[Real], MethodAnswers]:
     """Data, groups and forces in float32; only sums of loads and the last products with the speed are in float64."""
-    linkage = recast(case.linkage, np.float32)
-    kernels = tuple(Recast(k.group, k.size, _started(k.rebind(linkage)), np.float32) for k in case.kernels)
-    return _at(replace(case, linkage=linkage, kernels=kernels), np.float32)
+    linkage = convert_precision(case.linkage, np.float32)
+    kernels = tuple(ConvertedSolver(k.group, k.size, _round_start(k.rebind(linkage)), np.float32) for k in case.kernels)
+    return _prepare_precision(replace(case, linkage=linkage, kernels=kernels), np.float32)
 
 
-def _started(kernel: GroupSolver) -> GroupSolver:
+def _round_start(kernel: GroupSolver) -> GroupSolver:
     """A group of a higher class starts from rounded places too."""
     if isinstance(kernel, NewtonSolver):
-        return replace(kernel, start=recast(kernel.start, np.float32), trace=recast(kernel.trace, np.float32))
+        return replace(
+            kernel, start=convert_precision(kernel.start, np.float32), trace=convert_precision(kernel.trace, np.float32)
+        )
     return kernel
 
 
-def extended(case: Case) -> Callable[[Real], Answers]:
+def prepare_extended(case: Case) -> Callable[[Real], MethodAnswers]:
     """Everything in double-doubles, from the same numbers; answers in longdouble, as the truth is."""
     linkage = as_double_doubles(case.linkage)
-    wide = _at(replace(case, linkage=linkage, kernels=tuple(k.rebind(linkage) for k in case.kernels)), to_double_double)
+    wide = _prepare_precision(
+        replace(case, linkage=linkage, kernels=tuple(k.rebind(linkage) for k in case.kernels)), to_double_double
+    )
     return lambda q: map_record(lambda _, leaf: _longdouble(leaf) if isinstance(leaf, DoubleDouble) else leaf, wide(q))
 
 
@@ -84,11 +88,11 @@ def _longdouble(value: DoubleDouble) -> Any:
     return value.hi.astype(kind) + value.lo
 
 
-def _at(case: Case, real: Callable[[Any], Any]) -> Callable[[Real], Answers]:
-    def at(q: Real) -> Answers:
+def _prepare_precision(case: Case, real: Callable[[Any], Any]) -> Callable[[Real], MethodAnswers]:
+    def at(q: Real) -> MethodAnswers:
         motion = compute_motion(case.linkage, case.kernels, real(q), case.law)
         motion = replace(motion, rate=real(motion.rate))  # else its square is rounded to float64
-        return from_plan(case, motion, solve_reactions(motion, case.structure, case.loads(motion)))
+        return answers_of_plan(case, motion, solve_reactions(motion, case.structure, case.loads(motion)))
 
     return at
 
@@ -96,7 +100,7 @@ def _at(case: Case, real: Callable[[Any], Any]) -> Callable[[Real], Answers]:
 # The product's own way for many positions: the groups written on a tape and played back.
 
 
-def batch(case: Case, *, forces: bool = True) -> Batch:
+def make_batch(case: Case, *, forces: bool = True) -> Batch:
     """What the common form of answers holds, and nothing else: QUANTITY.NAME, and "balancing"."""
 
     def asked(motion: Motion, plan: Reactions | None) -> Mapping[str, Any]:
@@ -112,17 +116,17 @@ def batch(case: Case, *, forces: bool = True) -> Batch:
     return batch_of(case.linkage, asked, forces=forces, strokes=case.strokes)
 
 
-def prepare(case: Case) -> Callable[[Real], Answers]:
+def prepare_traced(case: Case) -> Callable[[Real], MethodAnswers]:
     """Writes the tape. Raises Unable for what cannot be written on one."""
-    played = batch(case)
+    played = make_batch(case)
     if played.program is None:
-        raise Unable("laws of cams, friction and passive constraints cannot be written on a tape")
+        raise MethodUnable("laws of cams, friction and passive constraints cannot be written on a tape")
     kinds = ("positions", "velocities", "accelerations", "reactions")
     names = {kind: [name for name in played.program.outputs if name.startswith(f"{kind}.")] for kind in kinds}
 
-    def at(q: Real) -> Answers:
+    def at(q: Real) -> MethodAnswers:
         found = played(q)
         x, v, a, forces = ({name[len(kind) + 1 :]: found[name] for name in own} for kind, own in names.items())
-        return Answers(x, v, a, forces, found["balancing"])
+        return MethodAnswers(x, v, a, forces, found["balancing"])
 
     return at

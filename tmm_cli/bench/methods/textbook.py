@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.bench.methods.case import Answers, Case, Unable
+from tmm_cli.bench.methods.case import Case, MethodAnswers, MethodUnable
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import Real, cross, dot, unit
 
@@ -20,7 +20,7 @@ Angles = Callable[[Real, int], tuple[Real, Real]]
 
 
 @dataclass(frozen=True)
-class FourBar:
+class TextbookFourBar:
     """Pivots O and D, lengths a, b, c of crank OA, coupler AB, rocker DB, and how fast the crank turns (rad/s)."""
 
     O: complex  # noqa: E741
@@ -50,7 +50,7 @@ class FourBar:
         coupler = _half_angle(t - k1 + k4 * t + k5, middle, k1 + (k4 - 1) * t + k5, -sign)
         return along + coupler, along + rocker
 
-    def solved(self, q: Real, angles: tuple[Real, Real]) -> Answers:
+    def solved(self, q: Real, angles: tuple[Real, Real]) -> MethodAnswers:
         """Points A and B from the angles of the links, B on the rocker."""
         a, b, c, w = self.a, self.b, self.c, self.w
         three, four = angles
@@ -61,7 +61,7 @@ class FourBar:
         G = -a * w**2 * np.sin(q) - w3**2 * B + w4**2 * A
         e4 = (C * E - B * G) / (A * E - B * F)
         crank, rocker = a * unit(q), c * unit(four)
-        return Answers(
+        return MethodAnswers(
             {"A": self.O + crank, "B": self.D + rocker},
             {"A": 1j * w * crank, "B": 1j * w4 * rocker},
             {"A": -(w**2) * crank, "B": (1j * e4 - w4**2) * rocker},
@@ -69,7 +69,7 @@ class FourBar:
 
 
 @dataclass(frozen=True)
-class Slider:
+class TextbookCrankSlider:
     """Crank OA = a and rod AB = b, the guide through O in the direction `along` (rad)."""
 
     O: complex  # noqa: E741
@@ -90,14 +90,14 @@ class Slider:
         rod = self.along + _half_angle(s, -2 + 0 * s, s, -sign)
         return rod, rod
 
-    def solved(self, q: Real, angles: tuple[Real, Real]) -> Answers:
+    def solved(self, q: Real, angles: tuple[Real, Real]) -> MethodAnswers:
         """Points A and B from the rod's angle."""
         a, b, w = self.a, self.b, self.w
         crank, rod = a * unit(q), b * unit(angles[0])
         unwrapped, lean = q - self.along, angles[0] - self.along
         w3 = -a * w * np.cos(unwrapped) / (b * np.cos(lean))
         e3 = (a * w**2 * np.sin(unwrapped) + b * w3**2 * np.sin(lean)) / (b * np.cos(lean))
-        return Answers(
+        return MethodAnswers(
             {"A": self.O + crank, "B": self.O + crank + rod},
             {"A": 1j * w * crank, "B": 1j * w * crank + 1j * w3 * rod},
             {"A": -(w**2) * crank, "B": -(w**2) * crank + (1j * e3 - w3**2) * rod},
@@ -110,7 +110,7 @@ def _half_angle(a: Real, b: Real, c: Real, sign: int) -> Real:
     return angle
 
 
-def recognised(case: Case) -> FourBar | Slider:
+def recognise(case: Case) -> TextbookFourBar | TextbookCrankSlider:
     """The mechanism; Unable where there is no formula for it in the book."""
     linkage = case.linkage
     driver, types = linkage.driver, [group.type for group in case.structure.groups]
@@ -126,32 +126,34 @@ def recognised(case: Case) -> FourBar | Slider:
             if types == ["RRP"]:
                 slide = linkage.slides[0]
                 if slide.carrier == FRAME and slide.through == pivot and slide.at == local(b, last):
-                    return Slider(pivot, crank, rod, slide.direction, w)
+                    return TextbookCrankSlider(pivot, crank, rod, slide.direction, w)
             else:
                 D = next(h.point for h in linkage.hinges if {FRAME, b} <= set(h.links))
-                return FourBar(pivot, local(FRAME, D), crank, rod, abs(local(b, last) - local(b, D)), w)
-    raise Unable("the textbook has formulas for a four-bar and a central crank-slider only")
+                return TextbookFourBar(pivot, local(FRAME, D), crank, rod, abs(local(b, last) - local(b, D)), w)
+    raise MethodUnable("the textbook has formulas for a four-bar and a central crank-slider only")
 
 
-def _prepare(case: Case, which: Callable[[FourBar | Slider], Angles]) -> Callable[[Real], Answers]:
-    mechanism = recognised(case)
-    angles, sign = which(mechanism), _side(mechanism, case.linkage.sketch.points)
+def _prepare(
+    case: Case, which: Callable[[TextbookFourBar | TextbookCrankSlider], Angles]
+) -> Callable[[Real], MethodAnswers]:
+    mechanism = recognise(case)
+    angles, sign = which(mechanism), _sketched_side(mechanism, case.linkage.sketch.points)
     return lambda q: mechanism.solved(q, angles(q, sign))
 
 
-def _side(mechanism: FourBar | Slider, points: Mapping[str, complex]) -> int:
+def _sketched_side(mechanism: TextbookFourBar | TextbookCrankSlider, points: Mapping[str, complex]) -> int:
     """The assembly of the sketch: 1 with B on the left of AD, of a slider with B before A along the guide."""
     rod = points["B"] - points["A"]
-    if isinstance(mechanism, Slider):
+    if isinstance(mechanism, TextbookCrankSlider):
         return 1 if dot(rod, unit(mechanism.along)) > 0 else -1
     return 1 if cross(mechanism.D - points["A"], rod) > 0 else -1
 
 
-def cosines(case: Case) -> Callable[[Real], Answers]:
+def cosines(case: Case) -> Callable[[Real], MethodAnswers]:
     """By the law of cosines."""
     return _prepare(case, lambda mechanism: mechanism.cosines)
 
 
-def freudenstein(case: Case) -> Callable[[Real], Answers]:
+def freudenstein(case: Case) -> Callable[[Real], MethodAnswers]:
     """By Freudenstein's equation."""
     return _prepare(case, lambda mechanism: mechanism.freudenstein)

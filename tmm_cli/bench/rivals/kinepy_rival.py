@@ -11,7 +11,7 @@ from typing import Any
 import kinepy
 import numpy as np
 
-from tmm_cli.bench.methods.case import Answers, Case, Method, Unable
+from tmm_cli.bench.methods.case import Case, Method, MethodAnswers, MethodUnable
 from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import Real, Vector, cross, unit
@@ -20,11 +20,11 @@ STEP = 2 * np.pi / 360  # rad: places are at most so far apart, since difference
 SAME = 1e-6  # of the linkage's size
 
 
-def prepare(case: Case) -> Callable[[Real], Answers]:
+def prepare(case: Case) -> Callable[[Real], MethodAnswers]:
     """Its answers in the common form, for places q at equal steps. Raises Unable."""
     model = _Model(case)
 
-    def at(q: Real) -> Answers:
+    def at(q: Real) -> MethodAnswers:
         chosen, dt = model.solve(q)
         return model.answers(chosen, dt)
 
@@ -42,7 +42,7 @@ class _Model:
     def __init__(self, case: Case) -> None:
         driver = case.linkage.driver
         if driver.kind != "turn" or case.linkage.others:
-            raise Unable("the driver must be one crank here")
+            raise MethodUnable("the driver must be one crank here")
         kinepy.units.set_unit_system(kinepy.units.SI)
         self.case, self.system = case, kinepy.System()
         self.solids: dict[str, Any] = {FRAME: self.system.ground}
@@ -77,7 +77,7 @@ class _Model:
             try:
                 self.system.compile()
             except Exception as error:
-                raise Unable(f"it does not compile this: {type(error).__name__}") from None
+                raise MethodUnable(f"it does not compile this: {type(error).__name__}") from None
         self._choose()
 
     def _choose(self) -> None:
@@ -92,7 +92,7 @@ class _Model:
             found = self.positions()
             if all(np.max(np.abs(found[p] - true.named(p).x)) < SAME * case.size for p in case.linkage.moving_points):
                 return
-        raise Unable("it does not solve this linkage")
+        raise MethodUnable("it does not solve this linkage")
 
     def solve(self, q: Real) -> tuple[slice, float]:
         """Everything at places q at equal steps, two more at the ends, whose values it loses.
@@ -131,14 +131,14 @@ class _Model:
             found[point] = x + 1j * y
         return found
 
-    def answers(self, chosen: slice, dt: float) -> Answers:
+    def answers(self, chosen: slice, dt: float) -> MethodAnswers:
         """What it has found, with its own differences for velocities and accelerations."""
         x = self.positions()
         v = {name: _between((at[2:] - at[:-2]) / (2 * dt)) for name, at in x.items()}
         a = {name: _between((at[2:] + at[:-2] - 2 * at[1:-1]) / (dt * dt)) for name, at in x.items()}
         reactions = {name: self._force(name)[chosen] for name in self.joints}
         one, two, three = ({name: part[chosen] for name, part in parts.items()} for parts in (x, v, a))
-        return Answers(one, two, three, reactions, -np.asarray(self.crank.torque)[chosen])
+        return MethodAnswers(one, two, three, reactions, -np.asarray(self.crank.torque)[chosen])
 
     def _force(self, name: str) -> Vector:
         """On the pair's second link; kinepy gives what acts on the first."""

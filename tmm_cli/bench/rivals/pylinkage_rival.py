@@ -12,21 +12,21 @@ from pylinkage.dyads import RRPDyad, RRRDyad
 from pylinkage.simulation import Linkage
 from pylinkage.solver import linkage_to_solver_data, simulate_with_kinematics
 
-from tmm_cli.bench.methods.case import Answers, Case, Method, Unable
+from tmm_cli.bench.methods.case import Case, Method, MethodAnswers, MethodUnable
 from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import Real, unit
 from tmm_cli.mechanics.structure import Group, Pair
 
 
-def prepare(case: Case) -> Callable[[Real], Answers]:
+def prepare(case: Case) -> Callable[[Real], MethodAnswers]:
     """Its answers in the common form, for places q at equal steps. Raises Unable."""
     simulated, names = _simulated(case)
     own = [(k, name) for k, name in enumerate(names) if name in case.linkage.moving_points]
 
-    def at(q: Real) -> Answers:
+    def at(q: Real) -> MethodAnswers:
         x, v, a = ({name: part[:, k, 0] + 1j * part[:, k, 1] for k, name in own} for part in simulated(q))
-        return Answers(x, v, a)
+        return MethodAnswers(x, v, a)
 
     return at
 
@@ -44,7 +44,7 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
     """
     driver = case.linkage.driver
     if driver.kind != "turn" or case.linkage.others:
-        raise Unable("a crank is the only driver")
+        raise MethodUnable("a crank is the only driver")
     start = compute_motion(case.linkage, case.kernels, np.array([case.start]), case.law)
     places = {point: complex(start.named(point).x[0]) for point in case.linkage.moving_points}
     parts: dict[str, Any] = {}
@@ -53,7 +53,7 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
     arm = case.linkage.links[driver.link].points
     ends = [point for point in arm if point != driver.joint]
     if len(ends) != 1:
-        raise Unable("a crank has one end")
+        raise MethodUnable("a crank has one end")
     radius = abs(arm[ends[0]] - arm[driver.joint])
     crank = parts[ends[0]] = Crank(parts[driver.joint], radius, 0.0, case.start, name=ends[0])
     guides: list[Any] = []
@@ -99,14 +99,14 @@ def _add(group: Group, case: Case, parts: dict[str, Any], guides: list[Any], pla
     """The inner hinge of a group."""
     local = case.linkage.local
     if group.type not in ("RRR", "RRP"):
-        raise Unable(f"it has no group {group.title} of type {group.type or 'of class III'}")
+        raise MethodUnable(f"it has no group {group.title} of type {group.type or 'of class III'}")
     point = group.inner[0].point
     x, y = places[point].real, places[point].imag
 
     def reach(pair: Pair) -> tuple[Any, float]:
         own = pair.i if pair.i in group.links else pair.j
         if pair.point not in parts:
-            raise Unable(f"{group.title} hangs on a point that is not a joint before")
+            raise MethodUnable(f"{group.title} hangs on a point that is not a joint before")
         return parts[pair.point], float(abs(local(own, pair.point) - local(own, point)))
 
     turning = [pair for pair in group.outer if pair.kind == "R"]
@@ -116,7 +116,7 @@ def _add(group: Group, case: Case, parts: dict[str, Any], guides: list[Any], pla
         return
     slide = next(pair.slide for pair in group.outer if pair.slide is not None)
     if slide.carrier != FRAME or slide.at != local(slide.runner, point):
-        raise Unable("it knows guides through hinges only")
+        raise MethodUnable("it knows guides through hinges only")
     one, r = reach(turning[0])
     line = [slide.through, slide.through + unit(slide.direction)]
     ends = [Ground(p.real, p.imag, name=f"guide {slide.name} {k}") for k, p in enumerate(line)]

@@ -1,4 +1,4 @@
-"""Chains of dyads of any length, for measuring how time grows with the number of links."""
+"""Generated linkages of the measurements: chains of dyads, and families of linkages near a critical position."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ CHAIN_CRANK, COUPLER, ROCKER, BEYOND = (
 AT = 1.0  # rad, the crank in the sketch
 
 
-def chain(dyads: int) -> Linkage:
+def dyad_chain(dyads: int) -> Linkage:
     """A crank and so many RRR groups, each on the rocker of the one before it: 2 dyads + 1 moving links."""
     links = {
         FRAME: Link(FRAME, {"O": 0j}),
@@ -67,12 +67,12 @@ Numbers = Mapping[str, Decimal]
 NEAR = tuple(Decimal(10) ** -k for k in range(1, 16))  # rad, or shares of a length
 LONGER = tuple(Decimal(10) ** k for k in range(1, 13))
 SIZES = tuple(Decimal(10) ** k for k in (0, 1, -1, 3, -3, 5, -5, 7, -7, 9, -9))
-Place = tuple[Decimal, Decimal]
+DecimalPoint = tuple[Decimal, Decimal]
 CRANK = Driver("1", "turn", "O", 10.0)  # rad/s
 
 
 @dataclass(frozen=True)
-class Scene:
+class LinkageScene:
     """A linkage, the place q of its driver (rad), and what is watched there: a point of a link and a pair."""
 
     linkage: Linkage
@@ -82,7 +82,7 @@ class Scene:
 
 
 @dataclass(frozen=True)
-class Family:
+class LinkageFamily:
     """Scenes of one kind. distances: from the harmless one to the worst.
 
     unit: what the distance is; fixed: whether the linkage is the same at every distance, its driver alone moves.
@@ -90,7 +90,7 @@ class Family:
 
     name: str
     title: str
-    scene: Callable[[Numbers, Decimal], Scene]
+    scene: Callable[[Numbers, Decimal], LinkageScene]
     distances: tuple[Decimal, ...]
     unit: Literal["rad", "share", "ratio", "m"] = "rad"
     fixed: bool = False
@@ -102,11 +102,11 @@ def _bar(name: str, ends: tuple[str, str], length: float, mass: float) -> Link:
     return Link(name, points, mass, mass * length * length / 12, complex(length / 2))
 
 
-def _point(place: Place) -> complex:
+def _point(place: DecimalPoint) -> complex:
     return complex(float(place[0]), float(place[1]))
 
 
-def meeting(A: complex, b: float, D: complex, c: float, side: float) -> complex:
+def intersect_circles(A: complex, b: float, D: complex, c: float, side: float) -> complex:
     """Where circles about A and D meet, on the left of AD for side 1; for sketches, so nothing is gained by care."""
     base = D - A
     d = abs(base)
@@ -114,13 +114,15 @@ def meeting(A: complex, b: float, D: complex, c: float, side: float) -> complex:
     return A + base / d * complex(x, side * math.sqrt(max(b * b - x * x, 0.0)))
 
 
-def shape(A: complex, b: float, D: complex, c: float) -> float:
+def transmission_sine(A: complex, b: float, D: complex, c: float) -> float:
     """Sine of the transmission angle, 0 where the circles do not meet."""
     cosine = (b * b + c * c - abs(D - A) ** 2) / (2 * b * c)
     return math.sqrt(max(1 - cosine * cosine, 0.0))
 
 
-def four_bar(a: Decimal, b: Decimal, c: Decimal, pivots: tuple[Place, Place], side: float, at: float) -> Linkage:
+def four_bar_linkage(
+    a: Decimal, b: Decimal, c: Decimal, pivots: tuple[DecimalPoint, DecimalPoint], side: float, at: float
+) -> Linkage:
     """Crank OA = a, coupler AB = b, rocker DB = c under a moment; B is on the left of AD for side 1; at: the sketch."""
     la, lb, lc = float(a), float(b), float(c)
     o, d = (_point(place) for place in pivots)
@@ -137,11 +139,11 @@ def four_bar(a: Decimal, b: Decimal, c: Decimal, pivots: tuple[Place, Place], si
         Hinge("B", ("2", "3")),
         Hinge("D", (FRAME, "3")),
     )
-    sketch = Sketch(at, {"A": A, "B": meeting(A, lb, d, lc, side)})
+    sketch = Sketch(at, {"A": A, "B": intersect_circles(A, lb, d, lc, side)})
     return Linkage(links, hinges, (), CRANK, sketch, (Load("M", "3", moment=-40 * lc),))
 
 
-def slider(r: Decimal, length: Decimal, pivot: Place, at: float) -> Linkage:
+def crank_slider_linkage(r: Decimal, length: Decimal, pivot: DecimalPoint, at: float) -> Linkage:
     """Crank OA = r, rod AB, piston on the level of O with a force on it."""
     lr, ll = float(r), float(length)
     o = _point(pivot)
@@ -159,7 +161,7 @@ def slider(r: Decimal, length: Decimal, pivot: Place, at: float) -> Linkage:
     return Linkage(links, hinges, (slide,), CRANK, Sketch(at, {"A": A, "B": B}), (load,))
 
 
-def slotted(a: Decimal, pivots: tuple[Place, Place], far: Decimal, at: float) -> Linkage:
+def slotted_lever_linkage(a: Decimal, pivots: tuple[DecimalPoint, DecimalPoint], far: Decimal, at: float) -> Linkage:
     """Crank OA = a, stone at A, slotted link on pivot C with a point K at `far` from it, on A's side, and a moment."""
     la, lk = float(a), float(far)
     o, c = (_point(place) for place in pivots)
@@ -177,7 +179,7 @@ def slotted(a: Decimal, pivots: tuple[Place, Place], far: Decimal, at: float) ->
     return Linkage(links, hinges, (slide,), CRANK, sketch, (Load("M", "3", moment=-20.0),), keep_side=True)
 
 
-def triad(n: Numbers) -> Linkage:
+def triad_linkage(n: Numbers) -> Linkage:
     """Crank OA, ternary link PQR on three legs AP, CQ, DR; a moment on leg CQ."""
     at = float(n["at"])
     z = {key: complex(float(n[key + "x"]), float(n[key + "y"])) for key in "OCDQRPqr"}
@@ -207,85 +209,89 @@ def triad(n: Numbers) -> Linkage:
 # families
 
 
-def _pivots(n: Numbers) -> tuple[Place, Place]:
+def _pivots(n: Numbers) -> tuple[DecimalPoint, DecimalPoint]:
     return (n["Ox"], n["Oy"]), (n["Dx"], n["Dy"])
 
 
-def _dead(n: Numbers, distance: Decimal) -> Scene:
+def _dead_position_scene(n: Numbers, distance: Decimal) -> LinkageScene:
     """The driven link comes to where coupler and rocker are in line: the distance is the driver's, rad."""
     sense = n["sense"]
     at = float(n["critical"] + sense * n["back"])
-    linkage = four_bar(n["a"], n["b"], n["c"], _pivots(n), float(n["side"]), at)
-    return Scene(linkage, float(n["critical"] + sense * distance))
+    linkage = four_bar_linkage(n["a"], n["b"], n["c"], _pivots(n), float(n["side"]), at)
+    return LinkageScene(linkage, float(n["critical"] + sense * distance))
 
 
-def _line(n: Numbers, distance: Decimal) -> Scene:
+def _collinear_scene(n: Numbers, distance: Decimal) -> LinkageScene:
     """The crank starts, and is sketched, near where three of its points are in line."""
     q = float(n["critical"] + n["sense"] * distance)
-    return Scene(four_bar(n["a"], n["b"], n["c"], _pivots(n), float(n["side"]), q), q)
+    return LinkageScene(four_bar_linkage(n["a"], n["b"], n["c"], _pivots(n), float(n["side"]), q), q)
 
 
-def _outer(n: Numbers, share: Decimal) -> Scene:
+def _outer_tangent_scene(n: Numbers, share: Decimal) -> LinkageScene:
     """D is nearer to A than b + c by a share of it."""
-    return _tangent(n, (n["b"] + n["c"]) * (1 - share))
+    return _tangent_scene(n, (n["b"] + n["c"]) * (1 - share))
 
 
-def _inner(n: Numbers, share: Decimal) -> Scene:
+def _inner_tangent_scene(n: Numbers, share: Decimal) -> LinkageScene:
     """D is farther from A than |b - c| by a share of it."""
-    return _tangent(n, abs(n["b"] - n["c"]) * (1 + share))
+    return _tangent_scene(n, abs(n["b"] - n["c"]) * (1 + share))
 
 
-def _tangent(n: Numbers, base: Decimal) -> Scene:
+def _tangent_scene(n: Numbers, base: Decimal) -> LinkageScene:
     """D lies from A along (ux, uy), at this distance."""
     pivots = (n["Ox"], n["Oy"]), (n["Ax"] + n["ux"] * base, n["Ay"] + n["uy"] * base)
     o, d = (_point(place) for place in pivots)
     a, b, c, q = float(n["a"]), float(n["b"]), float(n["c"]), float(n["q"])
     places = [q + off for off in (-1.2, -0.8, -0.5, -0.3, 0.3, 0.5, 0.8, 1.2)]
-    shapes = {at: shape(o + a * complex(math.cos(at), math.sin(at)), b, d, c) for at in places}
-    return Scene(four_bar(n["a"], n["b"], n["c"], pivots, float(n["side"]), max(places, key=shapes.__getitem__)), q)
+    shapes = {at: transmission_sine(o + a * complex(math.cos(at), math.sin(at)), b, d, c) for at in places}
+    return LinkageScene(
+        four_bar_linkage(n["a"], n["b"], n["c"], pivots, float(n["side"]), max(places, key=shapes.__getitem__)), q
+    )
 
 
-def _stone(n: Numbers, share: Decimal) -> Scene:
+def _block_over_pivot_scene(n: Numbers, share: Decimal) -> LinkageScene:
     """The stone comes near the pivot of its slotted link, along (ux, uy), to a share of the crank's length."""
     C = n["Ax"] + n["a"] * share * n["ux"], n["Ay"] + n["a"] * share * n["uy"]
     q = float(n["q"])
-    return Scene(slotted(n["a"], ((n["Ox"], n["Oy"]), C), n["far"], q + 1.0), q, "K", "A")
+    return LinkageScene(slotted_lever_linkage(n["a"], ((n["Ox"], n["Oy"]), C), n["far"], q + 1.0), q, "K", "A")
 
 
-def _short(n: Numbers, share: Decimal) -> Scene:
+def _short_rod_scene(n: Numbers, share: Decimal) -> LinkageScene:
     """A rod longer than its crank by a share of it, and the crank as near to upright as that makes it matter."""
     q = float(n["critical"] + n["lean"] * share.sqrt())
-    return Scene(slider(n["r"], n["r"] * (1 + share), (n["Ox"], n["Oy"]), 0.7), q, "B", "A")
+    return LinkageScene(crank_slider_linkage(n["r"], n["r"] * (1 + share), (n["Ox"], n["Oy"]), 0.7), q, "B", "A")
 
 
-def _long(n: Numbers, ratio: Decimal) -> Scene:
-    return Scene(slider(n["r"], n["r"] * ratio, (n["Ox"], n["Oy"]), 0.7), float(n["q"]), "B", "A")
+def _long_rod_scene(n: Numbers, ratio: Decimal) -> LinkageScene:
+    return LinkageScene(crank_slider_linkage(n["r"], n["r"] * ratio, (n["Ox"], n["Oy"]), 0.7), float(n["q"]), "B", "A")
 
 
-def _size(n: Numbers, size: Decimal) -> Scene:
+def _size_scene(n: Numbers, size: Decimal) -> LinkageScene:
     """A four-bar or a crank-slider of so many metres."""
     q, pivot = float(n["q"]), (n["Ox"] * size, n["Oy"] * size)
     if "r" in n:
-        return Scene(slider(n["r"] * size, n["l"] * size, pivot, 0.7), q, "B", "A")
+        return LinkageScene(crank_slider_linkage(n["r"] * size, n["l"] * size, pivot, 0.7), q, "B", "A")
     pivots = pivot, (n["Dx"] * size, n["Dy"] * size)
-    return Scene(four_bar(n["a"] * size, n["b"] * size, n["c"] * size, pivots, float(n["side"]), 0.7), q)
+    return LinkageScene(four_bar_linkage(n["a"] * size, n["b"] * size, n["c"] * size, pivots, float(n["side"]), 0.7), q)
 
 
-def _fold(n: Numbers, distance: Decimal) -> Scene:
+def _fold_scene(n: Numbers, distance: Decimal) -> LinkageScene:
     """A group of class III near where it loses two of its assemblies."""
-    return Scene(triad(n), float(n["critical"] + n["sense"] * distance), "Q", "C")
+    return LinkageScene(triad_linkage(n), float(n["critical"] + n["sense"] * distance), "Q", "C")
 
 
-FAMILIES: tuple[Family, ...] = (
-    Family("dead-position", "Dead position of the driven four-bar", _dead, NEAR, fixed=True),
-    Family("change-point", "Change point of a parallelogram", _dead, NEAR, fixed=True),
-    Family("outer-tangent", "Circles touching from outside, d → b + c", _outer, NEAR, "share"),
-    Family("inner-tangent", "Circles touching from inside, d → |b - c|", _inner, NEAR, "share"),
-    Family("stone-over-pivot", "Stone over the pivot of its slotted link", _stone, NEAR, "share"),
-    Family("short-rod", "Rod hardly longer than its crank", _short, NEAR[:12], "share"),
-    Family("long-rod", "Rod much longer than its crank", _long, LONGER, "ratio"),
-    Family("size", "Size", _size, SIZES, "m"),
-    Family("three-in-line", "Start with three points in line", _line, NEAR),
-    Family("two-assemblies-lost", "Class III group losing two assemblies", _fold, NEAR, fixed=True),
+FAMILIES: tuple[LinkageFamily, ...] = (
+    LinkageFamily("dead-position", "Dead position of the driven four-bar", _dead_position_scene, NEAR, fixed=True),
+    LinkageFamily("change-point", "Change point of a parallelogram", _dead_position_scene, NEAR, fixed=True),
+    LinkageFamily("outer-tangent", "Circles touching from outside, d → b + c", _outer_tangent_scene, NEAR, "share"),
+    LinkageFamily("inner-tangent", "Circles touching from inside, d → |b - c|", _inner_tangent_scene, NEAR, "share"),
+    LinkageFamily(
+        "stone-over-pivot", "Stone over the pivot of its slotted link", _block_over_pivot_scene, NEAR, "share"
+    ),
+    LinkageFamily("short-rod", "Rod hardly longer than its crank", _short_rod_scene, NEAR[:12], "share"),
+    LinkageFamily("long-rod", "Rod much longer than its crank", _long_rod_scene, LONGER, "ratio"),
+    LinkageFamily("size", "Size", _size_scene, SIZES, "m"),
+    LinkageFamily("three-in-line", "Start with three points in line", _collinear_scene, NEAR),
+    LinkageFamily("two-assemblies-lost", "Class III group losing two assemblies", _fold_scene, NEAR, fixed=True),
 )
-BY_NAME = {family.name: family for family in FAMILIES}
+FAMILIES_BY_NAME = {family.name: family for family in FAMILIES}
