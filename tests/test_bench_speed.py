@@ -67,7 +67,7 @@ def once(monkeypatch):
 def test_what_misses_its_target_is_timed_again_and_the_least_of_all_turns_is_kept(reduced, missing, turns, monkeypatch):
     seconds, ticks = iter(range(1000, 0, -1)), iter(range(1000))  # each turn is quicker than the one before
     monkeypatch.setattr(
-        measured, "times", lambda runs, n, least: {name: [next(seconds) for _ in range(n)] for name in runs}
+        measured, "time_runs", lambda runs, n, least: {name: [next(seconds) for _ in range(n)] for name in runs}
     )
 
     class Judged(SimpleNamespace):
@@ -98,7 +98,7 @@ def test_the_verdict():
     assert found == (
         "six-bar, 1 x 360: 1.50 times the code by hand, target 1.3",
         "press, 360 positions: 10.0 times the six-bar, target 8.7",
-        "sweep of six-bar: 900000 mechanisms a minute, target 1000000",
+        "sweep of six-bar: 900000 mechanisms per minute, target 1000000",
         "growth with links: exponent 1.070, target 1 +- 0.05",
         "kinepy, shaper: 20.0 times as long, target 30",
     )

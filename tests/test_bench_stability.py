@@ -226,7 +226,7 @@ def test_bounds_that_are_too_narrow_are_found_out(monkeypatch):
     monkeypatch.setattr(stability, "bound_values", boasting)
     found = measure_stability(["stone-over-pivot"], methods=(), reduced=True)
     assert found.lies("stone-over-pivot", PRODUCT) == 0.1
-    assert "stone-over-pivot: 2 of 2 outside their bounds at 0.1" in found.failures
+    assert "stone-over-pivot: 2 of 2 outside their error bounds at 0.1" in found.failures
 
 
 def test_bounds_that_are_too_wide_are_found_out(monkeypatch):

@@ -67,7 +67,7 @@ def test_the_verdict():
     whole = Searches((RATE,), (*ten[:9], far), {})
     assert whole.failures == () and whole.near == 9
     slow = replace(whole, rates=(replace(RATE, per_second=60_000.0),))
-    assert slow.failures == ("crank-rocker, generations of 100: 60000 candidates a second, target 100000",)
+    assert slow.failures == ("crank-rocker, generations of 100: 60000 candidates per second, target 100000",)
     assert replace(slow, reduced=True).failures == ()  # twice as wide in a reduced run
     unmet = replace(FOUND, missed=1e-3)
     assert replace(whole, found=(*ten[:8], far, unmet)).failures == (
@@ -83,9 +83,9 @@ def test_a_path_far_above_the_least_known_or_found_late_is_a_miss():
     assert one.failures == ()
     assert two.failures == ("line: 8 of 10 seeds within 1 % of the least known",)
     slow = replace(one, paths=(*ten[:9], late))
-    assert slow.failures == ("line: 30 s of the processor, target 20",)
+    assert slow.failures == ("line: 30 s of processor time, target 20",)
     above = replace(one, paths=(*ten[:9], replace(path, printed=0.09)))
-    assert above.failures == ("line: 1 of 10 seeds above the best linkage printed",)
+    assert above.failures == ("line: 1 of 10 seeds above the best published linkage",)
 
 
 def test_the_command_writes_its_numbers_and_its_chart(tmp_path, monkeypatch):

@@ -262,11 +262,11 @@ def test_every_saving_is_one(tmp_path, monkeypatch):
 def test_what_saves_nothing_is_said_so():
     spared, wasted = (Saving(name, "solutions", n, 5, (1.0, 1.0)) for name, n in (("groups", 4), ("closed", 5)))
     found = Savings("shaper", "A shaper", (spared, wasted))
-    assert found.failures == ("closed form where there is one",)
+    assert found.failures == ("closed form where available",)
     assert found.tables[0].columns[-1].values == ["", "saves nothing"]
     figure = savings_charts(found)["savings.png"]
     names = [tick.get_text() for tick in figure.axes[0].get_yticklabels()]
-    assert names == ["groups on the way only", "closed form where there is one"]
+    assert names == ["only the groups required", "closed form where available"]
 
 
 # ---------------------------------------------------------------------------------------------- writing of long cycles

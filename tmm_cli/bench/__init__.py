@@ -1,4 +1,4 @@
-"""Measurements of the product against other ways to compute the same; nothing else needs them."""
+"""Measurements of the product against other ways to compute the same results; used by `tmm bench` only."""
 
 from tmm_cli.interfaces import lazy
 

@@ -1,4 +1,4 @@
-"""`tmm bench accuracy`: time a position against largest error, for every method on every linkage."""
+"""Measurement of `tmm bench accuracy`: time per position against largest error, for every method and linkage."""
 
 from __future__ import annotations
 
@@ -35,7 +35,9 @@ Solver = Callable[[Real], MethodAnswers]
 
 @dataclass(frozen=True)
 class AccuracyRow:
-    """One method on one linkage. microseconds: a position, None where time means nothing; errors: nan is not given."""
+    """One method on one linkage. microseconds: per position, None if the time has no meaning; errors: nan if not
+    computed.
+    """
 
     linkage: str
     method: str
@@ -47,13 +49,15 @@ class AccuracyRow:
 
 @dataclass(frozen=True)
 class Accuracy(Measurement):
-    """The whole measurement. absent: rivals that are not installed, or cannot do a linkage, and why."""
+    """Results of the measurement. absent: rivals that are not installed or cannot compute a linkage, with the
+    reason.
+    """
 
     rows: tuple[AccuracyRow, ...]
     positions: int
     repeats: int
 
-    met: ClassVar[str] = "all targets met: positions within 1e-14, the rest within 1e-13"
+    met: ClassVar[str] = "all targets met: positions within 1e-14, all other quantities within 1e-13"
 
     @property
     def linkages(self) -> tuple[str, ...]:
@@ -61,7 +65,7 @@ class Accuracy(Measurement):
 
     @property
     def failures(self) -> tuple[str, ...]:
-        """Where the product misses its targets."""
+        """Targets that the product misses."""
         return tuple(
             f"{row.linkage}: {row.method}: {quantity}: error {row.errors[quantity]:.2g}, target {TARGETS[quantity]:.0e}"
             for row in self.rows
@@ -71,14 +75,16 @@ class Accuracy(Measurement):
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON: what is not given or not timed is null, an infinite error (the method failed) is "inf"."""
+        """Return the content of the JSON file: null if not computed or not timed, "inf" for an infinite error (method
+        failed).
+        """
         content = super().to_dict() | {"targets": TARGETS}
         for row in content["rows"]:
             row["errors"] = {key: _plain(value) for key, value in row["errors"].items()}
         return content
 
     def lines(self) -> list[Sequence[object]]:
-        """A line a linkage and method."""
+        """Return the CSV rows, one for each linkage and method, with a header."""
         header = ("linkage", "method", "family", "setting", "us_per_position", *QUANTITIES)
         return [
             header,
@@ -97,12 +103,12 @@ class Accuracy(Measurement):
 
     @property
     def tables(self) -> tuple[Table, ...]:
-        """One a linkage."""
+        """One table for each linkage."""
         return tuple(
             text_table(
                 "accuracy",
-                f"Errors over the largest value in the cycle: {name}",
-                ("method", "µs a position", *QUANTITY_TITLES.values()),
+                f"Errors relative to the largest value in the cycle: {name}",
+                ("method", "µs per position", *QUANTITY_TITLES.values()),
                 [
                     (
                         row.method,
@@ -122,7 +128,7 @@ def _plain(value: float) -> float | str | None:
 
 
 def sample_coordinates(case: Case, count: int) -> Real:
-    """Places of the driver over a turn, close together, none of them a special one."""
+    """Return `count` driver coordinates over a turn at equal steps, none of them a special position."""
     return case.start + case.law.sense * 2 * np.pi * (np.arange(count) + 0.3717) / count
 
 
@@ -133,7 +139,9 @@ def measure_accuracy(
     methods: Iterable[Method] | None = None,
     progress: Callable[[str], None] = lambda __: None,
 ) -> Accuracy:
-    """Errors of all methods against 50 digits; their times, taken by turns in one process, median of the repeats."""
+    """Measure the errors of all methods against 50 digits, and their times, alternately in one process (median of
+    repeats).
+    """
     chosen = tuple(methods or (FEWER if reduced else METHODS))
     rivals, missing = installed()
     absent = [f"{name}: not installed" for name in missing]

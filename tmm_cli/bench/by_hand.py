@@ -1,9 +1,9 @@
-"""Three mechanisms by hand: what an engineer who needs just this one mechanism writes in NumPy, and no more.
+"""Three mechanisms coded by hand: what an engineer who needs just one mechanism writes in NumPy.
 
-Kinematics of all joints and centres of mass, all reactions with inertia and weights, and the balancing moment; for
-places q (rad) of a crank that turns evenly at w (rad/s). Dimensions are numbers or arrays (variants, 1). Against these
-the general calculator is timed, and results have its names; the formulas are those of any course, and each value is
-written once.
+Kinematics of all joints and centres of mass, all reactions with inertia and weights, and the balancing moment; at
+crank angles q (rad) for a constant crank speed w (rad/s). Dimensions are numbers or arrays (variants, 1). The general
+calculator is timed against this code, and the results have its names; the formulas are those of any course, and each
+value is computed once.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ G = 9.81
 
 
 def cross(a: Any, b: Any) -> Any:
-    """z component of a x b."""
+    """Return the z component of a x b."""
     return a.real * b.imag - a.imag * b.real
 
 
@@ -43,7 +43,9 @@ def crank_slider(
     w: float,
     F: float,
 ) -> dict[str, Any]:
-    """Crank OA, rod AB with its centre of mass at the share s of its length, slider on the x axis; S1 at O."""
+    """Compute a crank-slider: crank OA, rod AB with its centre of mass at the fraction s of its length, slider on the x
+    axis; S1 at O.
+    """
     c, sn = np.cos(q), np.sin(q)
     w2 = w * w
     yA = r * sn
@@ -92,10 +94,10 @@ def crank_slider(
 def six_bar(
     q: Any, *, a: Any, b: Any, c: Any, d: Any, e: Any, y: float, S2: complex, w: float, m: Any, J: Any, F: float
 ) -> dict[str, Any]:
-    """Crank OA = a, coupler AB = b, rocker DB = c, OD = d, rod BF = e, slider on the level y.
+    """Compute a six-bar: crank OA = a, coupler AB = b, rocker DB = c, OD = d, rod BF = e, slider at the height y.
 
-    Centres of mass: of the crank at its middle, of the coupler at S2 (its axes, as a share of b), of the rocker at 0.4
-    of DB, of the rod at its middle, of the slider at F. m and J: masses and moments of inertia of links 1 to 5.
+    Centres of mass: of the crank at its middle, of the coupler at S2 (in its axes, as a fraction of b), of the rocker
+    at 0.4 of DB, of the rod at its middle, of the slider at F. m and J: masses and moments of inertia of links 1 to 5.
     """
     w2 = w * w
     A = a * (np.cos(q) + 1j * np.sin(q))
@@ -177,10 +179,11 @@ def six_bar(
 def shaper(
     q: Any, *, a: Any, f: Any, c: Any, e: Any, y: float, S5: complex, at: complex, w: float, m: Any, J: Any, F: float
 ) -> dict[str, Any]:
-    """Crank OA = a, OC = f down, slotted link CD = c, rod DE = e, ram on the level y; stone hinged to the crank in A.
+    """Compute a shaper: crank OA = a, OC = f downwards, slotted link CD = c, rod DE = e, ram at the height y; sliding
+    block hinged to the crank at A.
 
-    Centres of mass: crank at 0.3, slotted link and rod at their middles, stone in A, ram at S5 from E. The force F acts
-    at `at` from E. m and J: of links 1 to 5.
+    Centres of mass: crank at 0.3, slotted link and rod at their middles, sliding block at A, ram at S5 from E. The
+    force F acts at `at` from E. m and J: of links 1 to 5.
     """
     w2 = w * w
     A = a * (np.cos(q) + 1j * np.sin(q))
@@ -217,12 +220,12 @@ def shaper(
     RE = P5 + F + 1j * N  # on the rod from the ram
     couple5 = -(cross(S5, P5) + cross(at, F + 0j * N))  # of the guide on the ram, about E
     RD = -(P4 + RE)  # on the rod from the slotted link
-    # slotted link and stone: the stone turns with it, so its couple passes through the slot
-    R32 = -(M3 + M2 + cross(CS3, P3) + cross(CD, -RD)) / rho  # on the link from the stone, across the slot
+    # slotted link and sliding block: the block rotates with it, so its couple is transmitted by the slot
+    R32 = -(M3 + M2 + cross(CS3, P3) + cross(CD, -RD)) / rho  # on the link from the sliding block, across the slot
     Q = 1j * u * R32
     couple2 = M2  # likewise
     RC = -(P3 - RD + Q)
-    RA = Q - P2  # on the stone from the crank
+    RA = Q - P2  # on the sliding block from the crank
     T = -cross(OS1, P1) + cross(A, RA)
     RO = RA - P1
     return {
@@ -258,7 +261,7 @@ Arguments = Callable[[Linkage], dict[str, Any]]
 
 @dataclass(frozen=True)
 class HandCodedMechanism:
-    """A mechanism in both ways. code: by hand; longer: links that variants have longer."""
+    """A mechanism in both forms. code: the function written by hand; longer: links that are longer in the variants."""
 
     name: str
     code: Callable[..., dict[str, Any]]
@@ -266,14 +269,14 @@ class HandCodedMechanism:
     longer: tuple[str, ...]
 
     def linkage(self) -> Linkage:
-        """The reference of that name, its loads constant: the code by hand knows no tables and no strokes."""
+        """Reference of that name with constant loads: the code by hand has no tables and no strokes."""
         found = reference(self.name).case.linkage
         (load,) = found.loads
         force = load.force * (1 if load.table is None else load.table.values[0])
         return replace(found, loads=(replace(load, force=force, table=None, when="always"),))
 
     def variants(self, count: int, seed: int = 1) -> list[Linkage]:
-        """Linkages whose moving links are up to 3 % longer; the first is the reference itself."""
+        """Return linkages whose moving links are up to 3 % longer; the first is the reference itself."""
         first, random = self.linkage(), np.random.default_rng(seed)
         found = [first]
         for _ in range(count - 1):
@@ -287,12 +290,12 @@ class HandCodedMechanism:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """What the code by hand gives."""
+        """Names of the results of the code by hand."""
         first = self.linkage()
         return tuple(self.by_hand([first])(np.array([first.sketch.at])))
 
     def ours(self, linkages: Sequence[Linkage]) -> Batch:
-        """The product, asked for what the code by hand gives."""
+        """Return the product's function for the same results."""
 
         def asked(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
             found = read_all(motion, reactions)
@@ -301,7 +304,7 @@ class HandCodedMechanism:
         return prepare_batch(linkages, asked)
 
     def by_hand(self, linkages: Sequence[Linkage]) -> Callable[[Real], dict[str, Any]]:
-        """The code by hand with its arguments: numbers, or (variants, 1)."""
+        """Return the code by hand with its arguments: numbers, or arrays (variants, 1)."""
         each = [self.arguments(linkage) for linkage in linkages]
         first = each[0]
         arguments = {

@@ -17,12 +17,12 @@ from tmm_cli.bench.linkage_families import FAMILIES_BY_NAME
 from tmm_cli.bench.methods.case import QUANTITIES
 from tmm_cli.bench.stability import PRODUCT, Stability, StabilityRow
 
-LEAST_ERROR, LARGEST_ERROR = 1e-20, 1e4  # of the error axis; what lies beyond is drawn on its edge
-PROJECT_ERROR = 0.05  # what a course project allows
+LEAST_ERROR, LARGEST_ERROR = 1e-20, 1e4  # ends of the error axis; values beyond are drawn at its edge
+PROJECT_ERROR = 0.05  # error allowed in a course project
 PURPLE = "#7a3d99"
 FAMILIES: dict[str, tuple[str, dict[str, Any]]] = {
     "closed": ("groups (tmm), class II in closed form", {"marker": "*", "ms": 13, "color": RED, "zorder": 9}),
-    "taped": ("the same, written on a tape", {"marker": "*", "ms": 13, "color": RED, "mfc": "white", "zorder": 9}),
+    "taped": ("the same, as a traced program", {"marker": "*", "ms": 13, "color": RED, "mfc": "white", "zorder": 9}),
     "newton": ("Newton on loop closure, tolerances 1e-2 to 1e-15", {"marker": "o", "ms": 4, "color": BLUE}),
     "multibody": ("whole Jacobian, Lagrange multipliers", {"marker": "s", "ms": 6, "color": GREEN, "zorder": 8}),
     "differences": ("central differences, steps 0.1 to 1e-8 rad", {"marker": "v", "ms": 4.5, "color": ORANGE}),
@@ -35,12 +35,14 @@ LINED = ("newton", "differences")  # methods that differ in one setting
 
 
 def accuracy_charts(accuracy: Accuracy) -> dict[str, Figure]:
-    """One a linkage, by the names of their files."""
+    """Return the charts of `tmm bench accuracy`, one for each linkage, by file name."""
     return {f"accuracy-{name}.png": draw_accuracy(accuracy, name) for name in accuracy.linkages}
 
 
 def draw_accuracy(accuracy: Accuracy, linkage: str) -> Figure:
-    """The chart of one linkage, A4."""
+    """Draw the chart of one linkage, A4: a panel for each quantity, time per position across, largest relative error
+    upwards.
+    """
     rows = [row for row in accuracy.rows if row.linkage == linkage]
     caption = (
         "largest relative error over the cycle against 50 digits; time with all reactions, "
@@ -58,7 +60,7 @@ def draw_accuracy(accuracy: Accuracy, linkage: str) -> Figure:
         set_error_axis(axes, range(-20, 5, 4))
         axes.set_yticks([10.0**k for k in range(-20, 5)], minor=True)
         left, below = number % 3 == 0, number > 1
-        label_axes(axes, QUANTITY_TITLES[quantity], "µs a position" * below, "largest relative error" * left)
+        label_axes(axes, QUANTITY_TITLES[quantity], "µs per position" * below, "largest relative error" * left)
         for family in FAMILIES:
             _draw_family(axes, [row for row in rows if row.family == family], quantity)
         for row in rows:
@@ -85,7 +87,7 @@ def _draw_family(axes: Any, rows: list[AccuracyRow], quantity: Any) -> None:
     y = [float(np.clip(row.errors[quantity], LEAST_ERROR, LARGEST_ERROR)) for row in there]
     axes.plot(x, y, lw=0.9, clip_on=False, **style)
     if there[0].family == "differences" and quantity != "positions":
-        for k in (0, -1):  # the line comes down with the step and goes up again with rounding
+        for k in (0, -1):  # errors decrease with the step and increase again by rounding
             axes.annotate(
                 f"{there[k].setting:g}".replace("e-0", "e-"),
                 (x[k], y[k]),
@@ -100,7 +102,7 @@ def _draw_family(axes: Any, rows: list[AccuracyRow], quantity: Any) -> None:
 
 
 def _draw_legend(figure: Figure, rows: list[AccuracyRow]) -> None:
-    """In the place of a sixth panel."""
+    """Draw the legend in place of the sixth panel."""
     there = {row.family for row in rows}
     handles = [
         Line2D([], [], lw=0.9 if family in LINED else 0, label=label, **style)
@@ -120,8 +122,11 @@ def _draw_legend(figure: Figure, rows: list[AccuracyRow]) -> None:
     )
 
 
-PANELS = 5  # on a sheet; the sixth place is the key's
-STABILITY_LEAST_ERROR, STABILITY_LARGEST_ERROR = 1e-19, 1e4  # of the error axis; what lies beyond is drawn on its edge
+PANELS = 5  # on a sheet; the sixth place is for the key
+STABILITY_LEAST_ERROR, STABILITY_LARGEST_ERROR = (
+    1e-19,
+    1e4,
+)  # ends of the error axis; values beyond are drawn at its edge
 STYLES: dict[str, tuple[str, dict[str, Any]]] = {
     PRODUCT: ("tmm, with its bound", {"marker": "*", "ms": 8, "color": RED, "lw": 1.6, "zorder": 9}),
     "closed": ("groups (tmm) in float64 alone", {"marker": ".", "ms": 4, "color": "#e58a83", "lw": 1.0}),
@@ -138,22 +143,22 @@ STYLES: dict[str, tuple[str, dict[str, Any]]] = {
 }
 VERDICTS = {
     "right": ("right", "#ffffff"),
-    "said": ("no answer, or a bound as wide as it is off", "#9aa0a6"),
-    "wrong": ("wrong, and it does not say so", "#d93025"),
+    "said": ("failure reported, or within a wide error bound", "#9aa0a6"),
+    "wrong": ("wrong result without report", "#d93025"),
 }
 DISTANCES = {
-    "rad": "distance of the driver, rad",
-    "share": "distance as a share of the length",
+    "rad": "distance of the driver coordinate, rad",
+    "share": "distance as a fraction of the length",
     "ratio": "l / r",
     "m": "size, m",
 }
 
 
 def stability_charts(stability: Stability) -> dict[str, Figure]:
-    """Sheets of A4 with five families each, by the names of their files."""
+    """Return the charts of `tmm bench stability`, A4 sheets with five families each, by file name."""
     families = stability.families
     pages = [families[k : k + PANELS] for k in range(0, len(families), PANELS)]
-    title = "Near what kills a method ({page} of {pages})"
+    title = "Errors near critical positions ({page} of {pages})"
     return {
         f"stability-{number}.png": _draw_sheet(stability, chosen, title.format(page=number, pages=len(pages)))
         for number, chosen in enumerate(pages, 1)
@@ -163,9 +168,9 @@ def stability_charts(stability: Stability) -> dict[str, Figure]:
 def _draw_sheet(stability: Stability, families: tuple[str, ...], title: str) -> Figure:
     shown = [method for method in STYLES if method in stability.methods]
     caption = (
-        "Above: largest error of the answers given, positions to balancing moment, over the largest value. Below: of "
-        f"{max(row.scenes for row in stability.rows)} linkages at each distance the share that it gets right, does not "
-        "and says so, gets wrong."
+        "Above: largest error of the results, from positions to balancing moment, relative to the largest value. "
+        f"Below: of {max(row.scenes for row in stability.rows)} linkages at each distance, the shares with right "
+        "results, reported failures and wrong results."
     )
     figure = make_page(title, caption)
     for number, family in enumerate(families):
@@ -183,7 +188,7 @@ def _line_style(method: str) -> dict[str, Any]:
 
 
 def _rows_of_family(rows: list[StabilityRow], family: str) -> list[StabilityRow]:
-    """Rows from left to right: the worst distance on the right, sizes and ratios as they grow."""
+    """Return the rows from left to right: the worst distance on the right, sizes and ratios increasing."""
     return sorted(rows, key=lambda row: row.distance, reverse=FAMILIES_BY_NAME[family].unit in ("rad", "share"))
 
 
@@ -213,7 +218,9 @@ def _draw_errors(axes: Any, stability: Stability, family: str, shown: list[str],
 
 
 def _draw_outcomes(axes: Any, stability: Stability, family: str, shown: list[str]) -> None:
-    """A row a method, a column a distance: its colours mixed by the shares of the linkages."""
+    """Draw a row for each method and a column for each distance, in colours mixed by the shares of right and wrong
+    results.
+    """
     there = [method for method in shown if stability.of(family, method)]
     rows = [_rows_of_family(stability.of(family, method), family) for method in there]
     picture = np.array([[_outcome_colour(row) for row in line] for line in rows])
@@ -239,7 +246,7 @@ def _outcome_colour(row: StabilityRow) -> tuple[float, ...]:
 
 def _draw_key(figure: Figure, shown: list[str]) -> None:
     handles: list[Any] = [Line2D([], [], label=STYLES[method][0], **_line_style(method)) for method in shown]
-    handles.insert(1, Line2D([], [], color=RED, lw=1.2, ls=":", label="the bound that tmm prints"))
+    handles.insert(1, Line2D([], [], color=RED, lw=1.2, ls=":", label="error bound printed by tmm"))
     for label, colour in VERDICTS.values():
         handles.append(Patch(facecolor=colour, edgecolor="#808080", lw=0.5, label=label))
     figure.legend(

@@ -1,4 +1,7 @@
-"""Groups made up for measuring: variants of a six-bar with forces, answers drawn to 1 %, right or with mistakes in."""
+"""Measurement of `tmm bench grading`: time of grading a group and its growth, and share of mistakes named correctly.
+
+The groups are simulated: variants of a six-bar with forces, answers drawn to 1 %, correct or with mistakes.
+"""
 
 from __future__ import annotations
 
@@ -41,20 +44,20 @@ from tmm_cli.mechanics.numerics import Real, Vector
 from tmm_cli.problem import read_text
 from tmm_cli.reports import Table
 
-DRAWING_ERROR = 0.01  # of the largest value: how far off answers are at most
-VISIBLE_FACTOR = 4  # times that a mistake must move an answer, or nobody could see it
+DRAWING_ERROR = 0.01  # fraction of the largest value: largest error of a drawn answer
+VISIBLE_FACTOR = 4  # multiple of the drawing error by which a visible mistake changes an answer
 BOUNDS = {"OA": (90.0, 110.0, "mm"), "AB": (340.0, 360.0, "mm"), "n1": (80.0, 110.0, "rpm")}
 
 
 @cache
 def grading_task_text() -> str:
-    """The task's file."""
+    """Return the text of the task file."""
     return (files("tmm_cli.bench") / "data" / "grading" / "six-bar.yaml").read_text(encoding="utf-8")
 
 
 @dataclass(frozen=True, eq=False)
 class StudentGroup:
-    """Students with variants of their own; what is right for them."""
+    """Simulated students, each with a variant, and the correct answers."""
 
     task: Task
     table: VariantTable
@@ -68,20 +71,22 @@ class StudentGroup:
 
     @cached_property
     def with_mistake(self) -> Vector:
-        """What each mistake makes of the sheets, (cases, students, answers)."""
+        """Answers that result from each mistake, shape (mistakes, students, answers)."""
         with np.errstate(all="ignore"):
             return np.stack([predicted(self.family, self.right.asked, [case]) for case in self.cases])
 
     @cached_property
     def seen(self) -> Real:
-        """Which mistakes can be seen on whose sheets, (cases, students)."""
+        """True where a mistake is visible in the answers of a student, shape (mistakes, students)."""
         with np.errstate(all="ignore"):
             moved = np.max(np.abs(self.with_mistake - self.right.value) / self.right.scale, axis=2)
         found: Real = np.isfinite(moved) & (moved >= VISIBLE_FACTOR * DRAWING_ERROR)
         return found
 
     def mistakes(self, n: int, count: int) -> tuple[int, ...]:
-        """So many of different kinds that can be seen on the sheet of a student, kinds alike often."""
+        """Return `count` random mistakes of different kinds that are visible in the answers of student n; kinds equally
+        frequent.
+        """
         kinds: dict[type[Mistake], list[int]] = {}
         for c in np.flatnonzero(self.seen[:, n]).tolist():
             kinds.setdefault(type(self.cases[c]), []).append(c)
@@ -90,7 +95,7 @@ class StudentGroup:
         return tuple(int(self.random.choice(own[k])) for k in chosen)
 
     def sheets(self, made: Sequence[tuple[int, ...]]) -> Vector:
-        """Answers with these mistakes in, drawn."""
+        """Return the answers with these mistakes (one tuple for each student), with drawing errors."""
         value = self.right.value.copy()
         for n, own in enumerate(made):
             if len(own) == 1:
@@ -102,9 +107,9 @@ class StudentGroup:
         return self.drawn(value)
 
     def drawn(self, value: Vector, rows: Real | None = None) -> Vector:
-        """Answers as they are measured off a plan of these values; exact ones are counted, not measured.
+        """Return the values with drawing errors, as measured in a plan; exact quantities are counted and stay exact.
 
-        rows: whose they are, all students when left out.
+        rows: the students of the values; all if None.
         """
         scale = self.right.scale if rows is None else self.right.scale[rows]
         vector, exact = (
@@ -120,7 +125,7 @@ class StudentGroup:
 
 
 def make_students(count: int, seed: int = 1) -> StudentGroup:
-    """So many students."""
+    """Simulate `count` students."""
     task = read_task(read_text(grading_task_text(), "six-bar.yaml"))
     random = np.random.default_rng(seed)
     columns = [[f"{x:.2f} {unit}" for x in random.uniform(low, high, count)] for low, high, unit in BOUNDS.values()]
@@ -131,7 +136,7 @@ def make_students(count: int, seed: int = 1) -> StudentGroup:
 
 
 def solve_family(task: Task, table: VariantTable) -> VariantFamily:
-    """All variants of a table, solved together."""
+    """Solve all variants of a table together."""
     dimensions, numbers = numbers_of(task, table, list(table.rows))
     ((rows, family),) = split_families(lambda own: task.make(table.names, dimensions, own), numbers)
     if not isinstance(family, VariantFamily) or len(rows) < len(table.rows):
@@ -140,9 +145,9 @@ def solve_family(task: Task, table: VariantTable) -> VariantFamily:
 
 
 def write_submissions(group: StudentGroup, sheets: Vector, folder: Path, first: int = 0) -> None:
-    """The task, the table of variants, and a file of each student, as they are handed in.
+    """Write the task, the table of variants, and a file for each student, as they are handed in.
 
-    first: students who are there already.
+    first: number of students already written.
     """
     (folder / "submissions").mkdir(parents=True, exist_ok=True)
     (folder / "task.yaml").write_text(grading_task_text(), encoding="utf-8")
@@ -165,27 +170,27 @@ def _submission_rows(task: Task, values: Sequence[complex]) -> Iterator[Sequence
         yield asked.quantity.name, position, task.units.symbol(asked.quantity.dimension), *own
 
 
-# `tmm bench grading`: how long a group takes and how that grows, and how often mistakes are named rightly.
+# Figures of `tmm bench grading`.
 
 
 STUDENTS, REDUCED_STUDENTS = (2_000, 10_000), (300,)
 FULL_STUDENTS = 100_000  # students of a full run
-TARGET_STUDENTS = 10_000  # that the targets are for
-PART_STUDENTS = 1_000  # students made up at once
-SECONDS, BEGINNING = 60.0 / 10_000, 3.0  # s of a student; s that any run takes
-MEMORY, SOLVING, GROWTH = 1000.0, 5.0, 1.1  # MB of all processes; % of the processors' time; power of the students
-ONE, TWO = 0.2, 0.05  # of the students have a sheet with one mistake, with two
+TARGET_STUDENTS = 10_000  # to which the targets apply
+PART_STUDENTS = 1_000  # students simulated at once
+SECONDS, BEGINNING = 60.0 / 10_000, 3.0  # s per student; s of any run
+MEMORY, SOLVING, GROWTH = 1000.0, 5.0, 1.1  # MB of all processes; % of the processor time; exponent of the students
+ONE, TWO = 0.2, 0.05  # shares of the students with one mistake, with two
 SHEETS, REDUCED_SHEETS = 1000, 60
 CHAINS, REDUCED_CHAINS = 500, 40
 CANDIDATES, REDUCED_CANDIDATES, PER_SECOND = 10_000, 2_000, 10_000.0
-LOOKS = 0.05  # s between looks at the memory
+LOOKS = 0.05  # s between observations of the memory
 
 
 @dataclass(frozen=True)
 class GradingFigure:
-    """One figure, and the most or the least that it may be.
+    """A measured figure and its bound, `most` or `least`.
 
-    absolute: a time by itself, that a slower or busier machine does not keep; a reduced run only shows it.
+    absolute: a time that depends on the speed and load of the machine; a reduced run only reports it.
     """
 
     what: str
@@ -200,7 +205,7 @@ class GradingFigure:
             return ""
         if self.bound == "most":
             fails = self.found > self.target * slack
-        elif self.target <= 100:  # per cent: what is left to 100 may be as much more
+        elif self.target <= 100:  # per cent: the remainder to 100 is widened
             fails = self.found < 100 - (100 - self.target) * slack
         else:
             fails = self.found < self.target / slack
@@ -212,7 +217,7 @@ class GradingFigure:
 
 @dataclass(frozen=True)
 class GradingMeasurement(Measurement):
-    """The whole measurement."""
+    """Results of the measurement."""
 
     figures: tuple[GradingFigure, ...]
 
@@ -223,7 +228,7 @@ class GradingMeasurement(Measurement):
 
     @property
     def tables(self) -> tuple[Table, ...]:
-        title = "Grading a group of a six-bar with forces, 12 answers each, drawn to 1 %"
+        title = "Grading of a group: six-bar with forces, 12 answers each, drawn to 1 %"
         signs = {"most": "≤", "least": "≥"}
         rows = [
             (
@@ -240,14 +245,14 @@ class GradingMeasurement(Measurement):
 def measure_grading(
     *, reduced: bool = False, full: bool = False, progress: Callable[[str], None] = lambda _: None
 ) -> GradingMeasurement:
-    """All figures; full: of 100 000 students too."""
+    """Measure all figures; full: also with 100 000 students."""
     sheets = REDUCED_SHEETS if reduced else SHEETS
     figures: list[GradingFigure] = []
     made = make_students(sheets)
     for count in range(3):
         progress(f"diagnosis of {count} mistakes")
         figures += measure_diagnosis(made, count)
-    progress("following errors")
+    progress("error carried forward")
     figures.append(measure_carried_errors(make_students(REDUCED_CHAINS if reduced else CHAINS, seed=2)))
     progress("variants")
     figures.append(measure_variant_selection(REDUCED_CANDIDATES if reduced else CANDIDATES))
@@ -256,7 +261,7 @@ def measure_grading(
 
 
 def measure_diagnosis(group: StudentGroup, count: int) -> Iterator[GradingFigure]:
-    """Sheets with so many mistakes in: how many are explained by them, and how many by what was not made."""
+    """Yield the shares of answers with `count` mistakes that are explained by these, and by mistakes not made."""
     students = range(len(group.family))
     made = [group.mistakes(n, count) for n in students]
     value = group.sheets(made)
@@ -272,18 +277,21 @@ def measure_diagnosis(group: StudentGroup, count: int) -> Iterator[GradingFigure
     share = 100 / len(students)
     if count == 0:
         fails = np.any(group.right.error(written) > group.right.allowed, axis=1)
-        yield GradingFigure("right sheets with an answer marked wrong, %", len(students), share * np.sum(fails), 0.0)
-        yield GradingFigure("right sheets accused of a mistake, %", len(students), share * wrongly, 0.0)
+        yield GradingFigure("correct sheets with an answer marked wrong, %", len(students), share * np.sum(fails), 0.0)
+        yield GradingFigure("correct sheets with a mistake claimed, %", len(students), share * wrongly, 0.0)
         return
     least, most = ((95.0, 1.0), (80.0, 2.0))[count - 1]
     told = ("sheets with one mistake, {how}, %", "sheets with two mistakes, {how}, %")[count - 1]
-    yield GradingFigure(told.format(how="named rightly"), len(students), share * rightly, least, "least")
+    yield GradingFigure(told.format(how="named correctly"), len(students), share * rightly, least, "least")
     yield GradingFigure(told.format(how="named wrongly"), len(students), share * wrongly, most)
-    yield GradingFigure(told.format(how="with another one named too"), len(students), share * (beside - wrongly))
+    yield GradingFigure(told.format(how="with another mistake also claimed"), len(students), share * (beside - wrongly))
 
 
 def measure_carried_errors(group: StudentGroup) -> GradingFigure:
-    """Chains in which one answer is far off and all later ones are right given it: how many lose its points alone."""
+    """Measure error carried forward: share of students who lose the points of one answer only.
+
+    One answer of each is far off, and all later answers follow correctly from it.
+    """
     right, chance = group.right, group.random
     count = len(group.family)
     drawn, source = group.drawn(right.value), np.full(count, -1)
@@ -310,27 +318,27 @@ def measure_carried_errors(group: StudentGroup) -> GradingFigure:
         {k for k in np.flatnonzero(wrong[n]).tolist() if (n, k) not in follows} == {int(source[n])}
         for n in range(count)
     )
-    told = "chains that lose the points of one answer alone, %"
+    told = "students who lose the points of one answer only, %"
     return GradingFigure(told, count, 100 * alone / count, 100.0, "least")
 
 
 def measure_variant_selection(count: int) -> GradingFigure:
-    """Candidates for variants judged as sound or not, in a second of one core."""
+    """Measure how many candidates for variants are judged feasible or not in a second on one core."""
     variety = Variety(make_students(1).task)
     random = np.random.default_rng(1)
     picks = np.stack([random.integers(0, len(values), count) for values in variety.numbers], axis=1)
     per_second = 0.0
-    for first in range(0, count, CHUNK):  # the least time of a candidate: what else the machine does adds to it
+    for first in range(0, count, CHUNK):  # the least time counts: other work of the machine only adds to it
         start = CLOCK()
         found = variety.judged(picks[first : first + CHUNK])
         per_second = max(per_second, len(found.why) / (CLOCK() - start))
     return GradingFigure(
-        "candidates for variants judged in a second", count, per_second, PER_SECOND, "least", absolute=True
+        "candidates for variants judged per second", count, per_second, PER_SECOND, "least", absolute=True
     )
 
 
 def measure_command(sizes: Sequence[int], progress: Callable[[str], None]) -> Iterator[GradingFigure]:
-    """Groups of these sizes graded by the command, from files to files."""
+    """Measure the command for groups of these sizes, from files to files."""
     times = []
     for students in sizes:
         progress(f"{students} students")
@@ -345,30 +353,32 @@ def measure_command(sizes: Sequence[int], progress: Callable[[str], None]) -> It
             run = _run_command(Path(folder))
         times.append(run.first + run.others)
         limit = SECONDS * students + (BEGINNING if students < TARGET_STUDENTS else 0)
-        least = min(run.seconds, run.first + run.others / 2)  # what else the machine does counts in the former alone
+        least = min(run.seconds, run.first + run.others / 2)  # other work of the machine counts in the former only
         yield GradingFigure("graded with all outputs on two cores, s", students, least, limit, absolute=True)
-        yield GradingFigure("the same by the clock, s", students, run.seconds)
-        yield GradingFigure("the same, s of all processors", students, times[-1])
+        yield GradingFigure("the same, wall-clock time, s", students, run.seconds)
+        yield GradingFigure("the same, processor time, s", students, times[-1])
         yield GradingFigure(
             "memory of all processes, MB", students, run.memory, MEMORY if students <= TARGET_STUDENTS else None
         )
         yield GradingFigure(
-            "solving the variants, % of the time of processors", students, 100 * solving / times[-1], SOLVING
+            "solving the variants, % of the processor time", students, 100 * solving / times[-1], SOLVING
         )
     for k in range(1, len(sizes)):
         power = math.log(times[k] / times[k - 1]) / math.log(sizes[k] / sizes[k - 1])
-        yield GradingFigure("time grows as the number of students to the power", sizes[k], power, GROWTH)
+        yield GradingFigure("exponent of the growth of time with students", sizes[k], power, GROWTH)
 
 
 def _draw_mistakes(group: StudentGroup) -> list[tuple[int, ...]]:
-    """Mistakes of a group as groups are: most of the sheets have none."""
+    """Return mistakes for a typical group: most students make none."""
     draws = group.random.random(len(group.family))
     return [group.mistakes(n, 2 if x < TWO else 1 if x < TWO + ONE else 0) for n, x in enumerate(draws.tolist())]
 
 
 @dataclass
 class _CommandRun:
-    """A command that runs: s by the clock, s of the processor for its first process and for the others, MB of all."""
+    """Resources of a command: wall-clock time (s), processor time (s) of its first process and of the others, memory
+    (MB).
+    """
 
     seconds: float = math.nan
     first: float = math.nan
@@ -377,7 +387,7 @@ class _CommandRun:
 
 
 def _run_command(folder: Path) -> _CommandRun:
-    """`tmm grade` by two processes."""
+    """Run `tmm grade` with two processes."""
     call = ["-m", "tmm_cli", "grade", "task.yaml", "--variants", "variants.csv", "--submissions", "submissions"]
     environment = {**os.environ, "PYTHONPATH": str(Path(tmm_cli.__file__).parents[1])}
     run, begun, start = _CommandRun(), os.times(), time.perf_counter()
@@ -398,7 +408,7 @@ def _run_command(folder: Path) -> _CommandRun:
 
 
 def _observe_process(run: _CommandRun, process: int) -> None:
-    """What a running process takes, where the system tells."""
+    """Update the resources of a running process, if the system reports them."""
     try:
         own = Path(f"/proc/{process}")
         run.first = sum(map(int, own.joinpath("stat").read_text().rpartition(")")[2].split()[11:13])) / os.sysconf(
@@ -408,4 +418,4 @@ def _observe_process(run: _CommandRun, process: int) -> None:
         pages = sum(int(Path(f"/proc/{one}/statm").read_text().split()[1]) for one in (process, *children))
         run.memory = float(np.fmax(run.memory, pages * os.sysconf("SC_PAGE_SIZE") / 2**20))
     except (OSError, ValueError, AttributeError, IndexError):
-        pass  # it has ended, or there is no such place
+        pass  # it has ended, or the system has no /proc

@@ -16,12 +16,14 @@ CHAIN_CRANK, COUPLER, ROCKER, BEYOND = (
     0.3,
     0.2,
     0.9,
-)  # m; the next coupler hangs at that share of its rocker's length
+)  # m; the next coupler is attached at that fraction of the rocker length
 AT = 1.0  # rad, the crank in the sketch
 
 
 def dyad_chain(dyads: int) -> Linkage:
-    """A crank and so many RRR groups, each on the rocker of the one before it: 2 dyads + 1 moving links."""
+    """Make a crank and a chain of RRR groups, each attached to the rocker of the previous one: 2 dyads + 1 moving
+    links.
+    """
     links = {
         FRAME: Link(FRAME, {"O": 0j}),
         "1": Link("1", {"O": 0j, "P0": CHAIN_CRANK + 0j}, 0.5, 1e-4, CHAIN_CRANK / 2 + 0j),
@@ -56,15 +58,15 @@ def dyad_chain(dyads: int) -> Linkage:
     return Linkage(links, tuple(hinges), (), driver, Sketch(AT, points, angles))
 
 
-# Scenes as they approach what kills a method: families of linkages, each by its distance from the place of failure.
+# Families of linkages near a critical position, each by the distance from it.
 #
-# A scene is made from exact decimals (numbers of a linkage, a critical place of the driver in 50 digits, a distance);
-# what is rounded to float64 here is the data that every method is given, and that the answers in 50 digits are for
-# (tests/write_stability_references.py writes them). What a rounding does to a distance is therefore no method's error.
+# A scene is made from exact decimals (numbers of a linkage, a critical driver coordinate to 50 digits, a distance),
+# which are rounded to float64. The rounded data are the input of every method, and the answers to 50 digits are for
+# them (tests/write_stability_references.py writes them). So the rounding of a distance is no error of a method.
 
 
 Numbers = Mapping[str, Decimal]
-NEAR = tuple(Decimal(10) ** -k for k in range(1, 16))  # rad, or shares of a length
+NEAR = tuple(Decimal(10) ** -k for k in range(1, 16))  # rad, or fractions of a length
 LONGER = tuple(Decimal(10) ** k for k in range(1, 13))
 SIZES = tuple(Decimal(10) ** k for k in (0, 1, -1, 3, -3, 5, -5, 7, -7, 9, -9))
 DecimalPoint = tuple[Decimal, Decimal]
@@ -73,7 +75,7 @@ CRANK = Driver("1", "turn", "O", 10.0)  # rad/s
 
 @dataclass(frozen=True)
 class LinkageScene:
-    """A linkage, the place q of its driver (rad), and what is watched there: a point of a link and a pair."""
+    """A linkage, the driver coordinate q (rad), and the observed point of a link and pair."""
 
     linkage: Linkage
     q: float
@@ -83,9 +85,12 @@ class LinkageScene:
 
 @dataclass(frozen=True)
 class LinkageFamily:
-    """Scenes of one kind. distances: from the harmless one to the worst.
+    """Scenes of one kind.
 
-    unit: what the distance is; fixed: whether the linkage is the same at every distance, its driver alone moves.
+    Attributes:
+        distances: distances from the critical position, from the harmless one to the worst.
+        unit: unit of the distance.
+        fixed: True if only the driver coordinate depends on the distance, and not the linkage.
     """
 
     name: str
@@ -97,7 +102,7 @@ class LinkageFamily:
 
 
 def _bar(name: str, ends: tuple[str, str], length: float, mass: float) -> Link:
-    """An even bar along its x axis."""
+    """Make a uniform bar along its x axis."""
     points = {ends[0]: 0j, ends[1]: complex(length)}
     return Link(name, points, mass, mass * length * length / 12, complex(length / 2))
 
@@ -107,7 +112,9 @@ def _point(place: DecimalPoint) -> complex:
 
 
 def intersect_circles(A: complex, b: float, D: complex, c: float, side: float) -> complex:
-    """Where circles about A and D meet, on the left of AD for side 1; for sketches, so nothing is gained by care."""
+    """Return an intersection of circles about A and D, to the left of AD for side 1; for sketches, without care for
+    rounding.
+    """
     base = D - A
     d = abs(base)
     x = (d * d + b * b - c * c) / (2 * d)
@@ -115,7 +122,7 @@ def intersect_circles(A: complex, b: float, D: complex, c: float, side: float) -
 
 
 def transmission_sine(A: complex, b: float, D: complex, c: float) -> float:
-    """Sine of the transmission angle, 0 where the circles do not meet."""
+    """Return the sine of the transmission angle, 0 where the circles do not intersect."""
     cosine = (b * b + c * c - abs(D - A) ** 2) / (2 * b * c)
     return math.sqrt(max(1 - cosine * cosine, 0.0))
 
@@ -123,7 +130,10 @@ def transmission_sine(A: complex, b: float, D: complex, c: float) -> float:
 def four_bar_linkage(
     a: Decimal, b: Decimal, c: Decimal, pivots: tuple[DecimalPoint, DecimalPoint], side: float, at: float
 ) -> Linkage:
-    """Crank OA = a, coupler AB = b, rocker DB = c under a moment; B is on the left of AD for side 1; at: the sketch."""
+    """Make a four-bar with crank OA = a, coupler AB = b, rocker DB = c under a moment.
+
+    side: 1 for B to the left of AD. at: crank angle of the sketch.
+    """
     la, lb, lc = float(a), float(b), float(c)
     o, d = (_point(place) for place in pivots)
     A = o + la * complex(math.cos(at), math.sin(at))
@@ -144,7 +154,7 @@ def four_bar_linkage(
 
 
 def crank_slider_linkage(r: Decimal, length: Decimal, pivot: DecimalPoint, at: float) -> Linkage:
-    """Crank OA = r, rod AB, piston on the level of O with a force on it."""
+    """Make a central crank-slider with crank OA = r, rod AB and a force on the piston."""
     lr, ll = float(r), float(length)
     o = _point(pivot)
     A = o + lr * complex(math.cos(at), math.sin(at))
@@ -162,7 +172,10 @@ def crank_slider_linkage(r: Decimal, length: Decimal, pivot: DecimalPoint, at: f
 
 
 def slotted_lever_linkage(a: Decimal, pivots: tuple[DecimalPoint, DecimalPoint], far: Decimal, at: float) -> Linkage:
-    """Crank OA = a, stone at A, slotted link on pivot C with a point K at `far` from it, on A's side, and a moment."""
+    """Make a slotted-lever mechanism: crank OA = a, sliding block at A, slotted link on the pivot C under a moment.
+
+    far: distance of its point K from C, on the side of A.
+    """
     la, lk = float(a), float(far)
     o, c = (_point(place) for place in pivots)
     A = o + la * complex(math.cos(at), math.sin(at))
@@ -180,7 +193,7 @@ def slotted_lever_linkage(a: Decimal, pivots: tuple[DecimalPoint, DecimalPoint],
 
 
 def triad_linkage(n: Numbers) -> Linkage:
-    """Crank OA, ternary link PQR on three legs AP, CQ, DR; a moment on leg CQ."""
+    """Make a crank OA and a ternary link PQR on three legs AP, CQ, DR, with a moment on leg CQ."""
     at = float(n["at"])
     z = {key: complex(float(n[key + "x"]), float(n[key + "y"])) for key in "OCDQRPqr"}
     la, leg = float(n["a"]), float(n["leg"])
@@ -214,7 +227,7 @@ def _pivots(n: Numbers) -> tuple[DecimalPoint, DecimalPoint]:
 
 
 def _dead_position_scene(n: Numbers, distance: Decimal) -> LinkageScene:
-    """The driven link comes to where coupler and rocker are in line: the distance is the driver's, rad."""
+    """Return a four-bar near a position with coupler and rocker in line; distance: of the driver coordinate, rad."""
     sense = n["sense"]
     at = float(n["critical"] + sense * n["back"])
     linkage = four_bar_linkage(n["a"], n["b"], n["c"], _pivots(n), float(n["side"]), at)
@@ -222,23 +235,25 @@ def _dead_position_scene(n: Numbers, distance: Decimal) -> LinkageScene:
 
 
 def _collinear_scene(n: Numbers, distance: Decimal) -> LinkageScene:
-    """The crank starts, and is sketched, near where three of its points are in line."""
+    """Return a four-bar whose sketch and start are near a position with three collinear points of the crank and
+    coupler.
+    """
     q = float(n["critical"] + n["sense"] * distance)
     return LinkageScene(four_bar_linkage(n["a"], n["b"], n["c"], _pivots(n), float(n["side"]), q), q)
 
 
 def _outer_tangent_scene(n: Numbers, share: Decimal) -> LinkageScene:
-    """D is nearer to A than b + c by a share of it."""
+    """Return a four-bar with the distance AD less than b + c by this share of it."""
     return _tangent_scene(n, (n["b"] + n["c"]) * (1 - share))
 
 
 def _inner_tangent_scene(n: Numbers, share: Decimal) -> LinkageScene:
-    """D is farther from A than |b - c| by a share of it."""
+    """Return a four-bar with the distance AD greater than |b - c| by this share of it."""
     return _tangent_scene(n, abs(n["b"] - n["c"]) * (1 + share))
 
 
 def _tangent_scene(n: Numbers, base: Decimal) -> LinkageScene:
-    """D lies from A along (ux, uy), at this distance."""
+    """Return a four-bar with D at this distance from A in the direction (ux, uy)."""
     pivots = (n["Ox"], n["Oy"]), (n["Ax"] + n["ux"] * base, n["Ay"] + n["uy"] * base)
     o, d = (_point(place) for place in pivots)
     a, b, c, q = float(n["a"]), float(n["b"]), float(n["c"]), float(n["q"])
@@ -250,14 +265,16 @@ def _tangent_scene(n: Numbers, base: Decimal) -> LinkageScene:
 
 
 def _block_over_pivot_scene(n: Numbers, share: Decimal) -> LinkageScene:
-    """The stone comes near the pivot of its slotted link, along (ux, uy), to a share of the crank's length."""
+    """Return a slotted-lever mechanism whose sliding block is near the pivot, at a share of the crank length."""
     C = n["Ax"] + n["a"] * share * n["ux"], n["Ay"] + n["a"] * share * n["uy"]
     q = float(n["q"])
     return LinkageScene(slotted_lever_linkage(n["a"], ((n["Ox"], n["Oy"]), C), n["far"], q + 1.0), q, "K", "A")
 
 
 def _short_rod_scene(n: Numbers, share: Decimal) -> LinkageScene:
-    """A rod longer than its crank by a share of it, and the crank as near to upright as that makes it matter."""
+    """Return a crank-slider whose rod is longer than the crank by this share, near the upright crank where this
+    matters.
+    """
     q = float(n["critical"] + n["lean"] * share.sqrt())
     return LinkageScene(crank_slider_linkage(n["r"], n["r"] * (1 + share), (n["Ox"], n["Oy"]), 0.7), q, "B", "A")
 
@@ -267,7 +284,7 @@ def _long_rod_scene(n: Numbers, ratio: Decimal) -> LinkageScene:
 
 
 def _size_scene(n: Numbers, size: Decimal) -> LinkageScene:
-    """A four-bar or a crank-slider of so many metres."""
+    """Return a four-bar or a crank-slider scaled to this size (m)."""
     q, pivot = float(n["q"]), (n["Ox"] * size, n["Oy"] * size)
     if "r" in n:
         return LinkageScene(crank_slider_linkage(n["r"] * size, n["l"] * size, pivot, 0.7), q, "B", "A")
@@ -276,7 +293,7 @@ def _size_scene(n: Numbers, size: Decimal) -> LinkageScene:
 
 
 def _fold_scene(n: Numbers, distance: Decimal) -> LinkageScene:
-    """A group of class III near where it loses two of its assemblies."""
+    """Return a group of class III near a position in which two of its assemblies coincide."""
     return LinkageScene(triad_linkage(n), float(n["critical"] + n["sense"] * distance), "Q", "C")
 
 
@@ -286,9 +303,9 @@ FAMILIES: tuple[LinkageFamily, ...] = (
     LinkageFamily("outer-tangent", "Circles touching from outside, d → b + c", _outer_tangent_scene, NEAR, "share"),
     LinkageFamily("inner-tangent", "Circles touching from inside, d → |b - c|", _inner_tangent_scene, NEAR, "share"),
     LinkageFamily(
-        "stone-over-pivot", "Stone over the pivot of its slotted link", _block_over_pivot_scene, NEAR, "share"
+        "stone-over-pivot", "Sliding block over the pivot of its slotted link", _block_over_pivot_scene, NEAR, "share"
     ),
-    LinkageFamily("short-rod", "Rod hardly longer than its crank", _short_rod_scene, NEAR[:12], "share"),
+    LinkageFamily("short-rod", "Rod slightly longer than its crank", _short_rod_scene, NEAR[:12], "share"),
     LinkageFamily("long-rod", "Rod much longer than its crank", _long_rod_scene, LONGER, "ratio"),
     LinkageFamily("size", "Size", _size_scene, SIZES, "m"),
     LinkageFamily("three-in-line", "Start with three points in line", _collinear_scene, NEAR),

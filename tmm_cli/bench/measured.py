@@ -1,4 +1,4 @@
-"""What measurements share: their clock, the machine they ran on, targets that are met or missed."""
+"""Common parts of measurements: clock, description of the machine, targets."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from tmm_cli.reports import Column, Table
 
 SLACK_WHEN_REDUCED = 2.0
 TURNS, REDUCED_TURNS = 41, 15
-ADDITIONAL_RUNS = 3  # so many times what misses its target is timed once more
-LEAST_DURATION = 2e-3  # s: what is quicker is repeated in one turn
-# the processor's time, which does not count what other programs take, where it is counted finely enough
+ADDITIONAL_RUNS = 3  # additional series for a missed target
+LEAST_DURATION = 2e-3  # s: quicker runs are repeated within a turn
+# processor time, which excludes other programs, where its resolution is sufficient
 CLOCK = process_time if get_clock_info("process_time").resolution < 1e-6 else perf_counter
 
 Name = TypeVar("Name")
 
 
 def describe_machine() -> dict[str, str]:
-    """What it was measured on."""
+    """Return the versions and the system of the measurement."""
     return {
         "tmm": __version__,
         "python": platform.python_version(),
@@ -36,13 +36,13 @@ def describe_machine() -> dict[str, str]:
 
 
 def target_slack(reduced: bool) -> float:
-    """How much wider than stated the targets are."""
+    """Return the factor by which targets are widened: 2 in a reduced run, otherwise 1."""
     return SLACK_WHEN_REDUCED if reduced else 1.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class Measurement(ABC):
-    """A whole measurement. absent: what could not be measured, and why."""
+    """Results of a measurement. absent: what could not be measured, and why."""
 
     reduced: bool = False
     absent: tuple[str, ...] = ()
@@ -53,41 +53,42 @@ class Measurement(ABC):
     @property
     @abstractmethod
     def failures(self) -> tuple[str, ...]:
-        """Targets that are missed."""
+        """Missed targets."""
 
     @property
     @abstractmethod
     def tables(self) -> tuple[Table, ...]:
-        """What a terminal shows."""
+        """Tables shown in the terminal."""
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What is said before the verdict."""
+        """Remarks shown before the verdict."""
         return self.absent
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON."""
+        """Return the content of the JSON file."""
         return asdict(self) | {"failures": list(self.failures)}
 
     def lines(self) -> list[Sequence[object]]:
-        """What is written as CSV, the header first; none: the table that is shown, if it is one."""
+        """Return the CSV rows, the header first; if empty, a single table is written instead."""
         return []
 
 
 def text_table(name: str, title: str, headers: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
-    """A table of words."""
+    """Make a table of texts."""
     return Table(name, title, tuple(Column(header, [row[k] for row in rows]) for k, header in enumerate(headers)))
 
 
 def csv_cell(value: float | None, digits: int = 3) -> str:
-    """A number of a CSV file; nothing where it is not given."""
+    """Write a number for a CSV file; empty if None or nan."""
     return "" if value is None or math.isnan(value) else f"{value:.{digits}g}"
 
 
 def time_runs(runs: Mapping[Name, Callable[[], Any]], turns: int, least: float = 0.0) -> dict[Name, list[float]]:
-    """Seconds of each by turns, so that what disturbs the machine disturbs all alike; one more turn warms up.
+    """Time the runs alternately (s), so that disturbances of the machine affect all alike, after one run for warming
+    up.
 
-    What takes less than `least` (s) is repeated within its turn.
+    A run that takes less than `least` (s) is repeated within its turn.
     """
     often = {}
     for name, run in runs.items():
@@ -107,10 +108,10 @@ def time_runs(runs: Mapping[Name, Callable[[], Any]], turns: int, least: float =
 
 
 class TimedResult(Protocol):
-    """What is found from times, and may have a target."""
+    """A result of timing, with or without a target."""
 
     def missed(self, slack: float) -> str:
-        """What is missed when its target is so many times as wide; nothing when it is met."""
+        """Describe the target missed, widened by the factor `slack`; empty if it is met."""
 
 
 AnyTimedResult = TypeVar("AnyTimedResult", bound=TimedResult)
@@ -119,10 +120,10 @@ AnyTimedResult = TypeVar("AnyTimedResult", bound=TimedResult)
 def time_until_met(
     runs: Mapping[str, Callable[[], Any]], find: Callable[[dict[str, float]], AnyTimedResult], reduced: bool
 ) -> AnyTimedResult:
-    """What is found from the least seconds of each run: from the turn that was disturbed least.
+    """Return find(least times of all runs), with additional turns while its target is missed.
 
-    Whatever else the machine does only adds to a time, so the least of all turns comes down to the truth. Where a
-    target is missed, full turns are added up to 3 times; what is still missed then is missed by the product.
+    Other work of the machine only adds to a time, so the least of all turns approaches the true time. If a target is
+    missed, up to 3 full series are added; a target still missed then is missed by the product.
     """
     least = dict.fromkeys(runs, math.inf)
     for turns in (REDUCED_TURNS if reduced else TURNS, *[TURNS] * ADDITIONAL_RUNS):

@@ -1,4 +1,7 @@
-"""Linkages with answers in 50 digits, which ship with the package (tests/write_bench_references.py writes them)."""
+"""Reference linkages and scenes with answers to 50 digits, which are package data.
+
+tests/write_bench_references.py and tests/write_stability_references.py write the data.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +27,7 @@ REFERENCE_NAMES = ("crank-slider", "crank-rocker", "shaper", "six-bar", "press-c
 
 @dataclass(frozen=True)
 class Reference:
-    """A case, places q of its driver (rad) and what is true there (longdouble, as many digits as it has)."""
+    """A case, driver coordinates q (rad), and the true answers there (longdouble, to its full accuracy)."""
 
     case: Case
     q: Real
@@ -32,7 +35,7 @@ class Reference:
 
 
 def make_case(name: str, results: Results) -> Case:
-    """What methods are given of a problem that was solved to kinematics at least."""
+    """Make the input of the methods from results that include kinematics."""
     return Case(name, results.linkage, results.structure, results.kernels, results.start, results.strokes)
 
 
@@ -43,13 +46,13 @@ def _read_data(name: str) -> dict[str, Any]:
 
 
 def problem_tree(name: str) -> Tree:
-    """The problem file of a reference, as it was read."""
+    """Return the problem file of a reference, as read."""
     return read_text(_read_data(name)["problem"], f"{name}.yaml")
 
 
 @cache
 def reference(name: str) -> Reference:
-    """A reference by its name."""
+    """Return a reference by its name."""
     content = _read_data(name)
     results = solve(build_problem(problem_tree(name)), "kinematics")
     x, v, a, forces = (
@@ -64,12 +67,12 @@ def reference(name: str) -> Reference:
 
 
 def to_longdouble(written: Sequence[Any]) -> Any:
-    """Numbers of 50 digits, or vectors of two of them, in longdouble."""
+    """Convert numbers of 50 digits, or vectors of two of them, to longdouble."""
     found = np.array(written, dtype=np.longdouble)
     return found if found.ndim == 1 else found[:, 0] + 1j * found[:, 1]
 
 
-# The scenes of `tmm bench stability` with their answers in 50 digits, which ship with the package.
+# Scenes of `tmm bench stability` with their answers to 50 digits.
 
 
 KEYS: dict[Compared, str] = {
@@ -83,9 +86,10 @@ KEYS: dict[Compared, str] = {
 
 @dataclass(frozen=True)
 class KnownScene:
-    """A scene and what is true there, longdouble: of its watched point and pair.
+    """A scene and the true values (longdouble) of its observed point and pair.
 
-    largest: what errors are counted in, the larger of the value here and in the harmless scene of the same numbers.
+    largest: reference values of errors, the larger of the value here and in the first, harmless scene of the same
+    numbers.
     """
 
     family: LinkageFamily
@@ -98,7 +102,7 @@ class KnownScene:
 
 @dataclass(frozen=True)
 class FamilyMember:
-    """Numbers of a family's linkage, and the answers at every distance."""
+    """Numbers of a linkage of a family, and the answers at every distance."""
 
     numbers: Numbers
     scenes: tuple[Mapping[str, Any], ...]
@@ -106,7 +110,7 @@ class FamilyMember:
 
 @cache
 def family_members(family: str) -> tuple[FamilyMember, ...]:
-    """What the file of a family holds."""
+    """Return the content of the data file of a family."""
     text = (files("tmm_cli.bench") / "data" / "stability" / f"{family}.json").read_text(encoding="utf-8")
     return tuple(
         FamilyMember({key: Decimal(value) for key, value in seed["numbers"].items()}, tuple(seed["scenes"]))
@@ -115,7 +119,12 @@ def family_members(family: str) -> tuple[FamilyMember, ...]:
 
 
 def known_scenes(family: str, chosen: int | None = None, every: int = 1) -> Iterator[KnownScene]:
-    """All scenes of a family, or of its first so many seeds; every second distance and so on, the last one always."""
+    """Yield the scenes of a family.
+
+    Args:
+        chosen: number of members, the first ones; all if None.
+        every: step through the distances; the last one is always included.
+    """
     of = FAMILIES_BY_NAME[family]
     for number, seed in enumerate(family_members(family)[:chosen]):
         true = [{quantity: to_longdouble([scene[key]])[0] for quantity, key in KEYS.items()} for scene in seed.scenes]

@@ -34,7 +34,7 @@ STAGES = (assembling, sketch_matching, mechanism, motion, pipeline, pressure_ang
 
 @dataclass
 class SolutionCount:
-    """How many solutions there were."""
+    """Numbers of solutions."""
 
     places: int = 0
     velocities: int = 0
@@ -47,7 +47,7 @@ class SolutionCount:
 
 @contextmanager
 def count_solutions() -> Iterator[SolutionCount]:
-    """Count what is solved meanwhile."""
+    """Count the solutions within this context."""
     count = SolutionCount()
     put: list[tuple[Any, str, Any]] = []
 
@@ -78,7 +78,7 @@ def count_solutions() -> Iterator[SolutionCount]:
 
 @contextmanager
 def _replace_in_stages(name: str, other: Any) -> Iterator[None]:
-    """Every stage finds something else under a name meanwhile."""
+    """Replace a name in every stage within this context."""
     put = [(stage, getattr(stage, name)) for stage in STAGES if hasattr(stage, name)]
     try:
         for stage, _ in put:
@@ -91,7 +91,7 @@ def _replace_in_stages(name: str, other: Any) -> Iterator[None]:
 
 @contextmanager
 def with_all_orders() -> Iterator[None]:
-    """Every stage computes accelerations."""
+    """Make every stage compute accelerations within this context."""
     given = sequence.link_states
 
     def whole(linkage: Any, kernels: Any, q: Any, order: int = 2, **named: Any) -> Any:
@@ -103,24 +103,24 @@ def with_all_orders() -> Iterator[None]:
 
 @contextmanager
 def without_closed_forms() -> Iterator[None]:
-    """Every group is solved by Newton's method."""
+    """Solve every group by Newton's method within this context."""
     with _replace_in_stages("CLOSED_FORM_SOLVERS", ()):
         yield
 
 
 MEASURED = "shaper"  # the problem of `tmm new`
-NEGLIGIBLE_MASS = 1e-300  # kg: a link so light carries all its loads, and they are nothing
+NEGLIGIBLE_MASS = 1e-300  # kg: all loads of such a link are computed, and are negligible
 REPEATS, FEW_REPEATS = 7, 3
-POSITIONS, FEW_POSITIONS = 3601, 721  # over the cycle, for what grows with their number
+POSITIONS, FEW_POSITIONS = 3601, 721  # over the cycle, for savings that grow with their number
 
 SAVING_TITLES = {
-    "structure": "structure alone is counted",
-    "groups": "groups on the way only",
-    "positions": "positions asked for only",
-    "orders": "accelerations where needed",
-    "massless": "massless links carry nothing",
-    "closed": "closed form where there is one",
-    "drawings": "drawings when asked for",
+    "structure": "structure by counting alone",
+    "groups": "only the groups required",
+    "positions": "only the positions requested",
+    "orders": "accelerations only where needed",
+    "massless": "no loads on massless links",
+    "closed": "closed form where available",
+    "drawings": "drawings only on request",
 }
 COUNTED_NAMES = {"solutions": "solutions", "loads": "loads", "pictures": "pictures"}
 
@@ -129,7 +129,7 @@ Workload = Callable[[], Any]
 
 @dataclass(frozen=True)
 class Saving:
-    """One saving. with_, without: how many of what it saves (COUNTED); seconds of each, the best of several runs."""
+    """One saving. with_, without: counts of what it saves (COUNTED_NAMES); seconds: of each, least of several runs."""
 
     name: str
     counts: str
@@ -142,7 +142,7 @@ class Saving:
         return self.with_ < self.without
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data, times in s."""
+        """Return the content of the JSON file, times in s."""
         return {
             "name": self.name,
             "counts": self.counts,
@@ -156,7 +156,7 @@ class Saving:
 
 @dataclass(frozen=True)
 class Savings(Measurement):
-    """The whole measurement on a problem."""
+    """Results of the measurement on a problem."""
 
     problem: str
     title: str
@@ -164,11 +164,11 @@ class Savings(Measurement):
 
     @property
     def failures(self) -> tuple[str, ...]:
-        """What saves nothing."""
+        """Savings without effect."""
         return tuple(SAVING_TITLES[saving.name] for saving in self.found if not saving.holds)
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON."""
+        """Return the content of the JSON file."""
         return {
             "problem": self.problem,
             "savings": [saving.to_dict() for saving in self.found],
@@ -177,16 +177,16 @@ class Savings(Measurement):
 
     @property
     def tables(self) -> tuple[Table, ...]:
-        """A row a saving: what was counted and how long it took, with it and without."""
+        """Table with a row for each saving: counts and times with it and without."""
         found = self.found
         note = (
-            "A solution is a group at one place of the driver, or a round of Newton's method there; "
-            "its velocities and its accelerations are one more each."
+            "A solution is a group at one driver position, or an iteration of Newton's method there; "
+            "its velocities and its accelerations count as one more each."
         )
         return (
             Table(
                 "savings",
-                "What is saved by computing no more than what is asked for",
+                "Savings by computing only what is requested",
                 (
                     Column("saving", [SAVING_TITLES[s.name] for s in found]),
                     Column("counted", [COUNTED_NAMES[s.counts] for s in found]),
@@ -203,7 +203,7 @@ class Savings(Measurement):
 
 
 def measure_savings(*, reduced: bool = False, progress: Callable[[str], None] = lambda __: None) -> Savings:
-    """Every saving, on the problem that `tmm new` writes."""
+    """Measure every saving on the problem that `tmm new` writes."""
     problem = build_problem(read_text(template_text(MEASURED), f"{MEASURED}.yaml"))
     found = []
     for saving in iterate_savings(problem, reduced):
@@ -213,7 +213,7 @@ def measure_savings(*, reduced: bool = False, progress: Callable[[str], None] = 
 
 
 def iterate_savings(problem: Problem, reduced: bool) -> Iterator[Saving]:
-    """Every saving, each with the work that is done with it, and without."""
+    """Yield every saving, each from the work with it and without it."""
     repeats = FEW_REPEATS if reduced else REPEATS
     results = with_forces(solve(problem, "kinematics"), cycle=False)
     linkage, kernels = problem.linkage, results.kernels
@@ -247,7 +247,9 @@ def iterate_savings(problem: Problem, reduced: bool) -> Iterator[Saving]:
 
 
 def compare_work(name: str, one: Workload, other: Workload, repeats: int, counts: str = "solutions") -> Saving:
-    """Both ways, run alternately: the time of each at its best, and solutions, or how many of what the work gives."""
+    """Run both alternately: least time of each, and number of solutions, or what the work returns if counts is another
+    name.
+    """
     numbers, best = [0, 0], [math.inf, math.inf]
     for __ in range(repeats):
         for k, work in enumerate((one, other)):
@@ -260,24 +262,24 @@ def compare_work(name: str, one: Workload, other: Workload, repeats: int, counts
 
 
 def _structure_results(problem: Problem) -> object:
-    """Structure with the range of the driver, from which a crank is told from a rocker."""
+    """Return the structure results with the range of the driver, which distinguishes a crank from a rocker."""
     results = solve(problem, "structure")
     return results.driver_range, results.roles
 
 
 def _analyse_at(results: Results, q: Real) -> object:
-    """Kinematics and forces at some places."""
+    """Compute kinematics and forces at q."""
     return with_forces(replace(results, motion=motion_at_positions(results, q)), cycle=False)
 
 
 def _quality_results(problem: Problem) -> object:
-    """All that needs no accelerations: range, strokes, dead positions, pressure angles."""
+    """Return everything that needs no accelerations: range, strokes, dead positions, roles of links."""
     results = solve(problem, "structure").mechanism
     return results.driver_range, results.strokes, results.dead, results.roles
 
 
 def _with_light_links(linkage: Linkage, mass: float) -> Linkage:
-    """The same with masses of the last moving link alone; the others weigh nothing, or all but nothing."""
+    """Return the linkage with the last moving link as it is and the mass `mass` of all others."""
     last = linkage.moving[-1]
     links = {
         name: link if name == last else replace(link, mass=mass, inertia=mass) for name, link in linkage.links.items()
@@ -286,7 +288,9 @@ def _with_light_links(linkage: Linkage, mass: float) -> Linkage:
 
 
 def _count_loads(results: Results, linkage: Linkage) -> int:
-    """The number of forces and couples that weights and inertia give, with the force plan and lever under them."""
+    """Return the number of weight and inertia forces and couples, after computing force plan and Zhukovsky lever with
+    them.
+    """
     assert results.motion is not None
     motion = replace(results.motion, linkage=linkage, finer=None, where=None)
     inputs = replace(results.inputs, linkage=linkage)
@@ -295,5 +299,5 @@ def _count_loads(results: Results, linkage: Linkage) -> int:
 
 
 def _count_pictures(results: Results) -> int:
-    """How many pictures are made."""
+    """Return the number of pictures made."""
     return sum(1 for __ in sheet_files(with_forces(results)))

@@ -1,9 +1,10 @@
-"""Published path problems of four-bar linkages, as problem files.
+"""Measurement of `tmm bench synthesis`: rate of evaluation, and searches from several seeds.
 
-Points, timing, bounds and the linkages that others found are read from public copies of the sources named: HCDJ and
-FOUR_BAR keep those of the papers, PHCPACK those of an exact task. HCDJ wants the crank to be the shortest link. Lengths
-that may be zero there begin a little above; of paths whose bounds are not told there, bounds hold the linkage printed.
-In the 25 points one (5.05, 6.84) may be a slip of the pen for 5.45, but stays as it is read.
+Published path problems of four-bar linkages are given as problem files. Points, timing, bounds and published solutions
+are from public copies of the sources named: HCDJ and FOUR_BAR contain those of the papers, PHCPACK those of an exact
+task. HCDJ requires the crank to be the shortest link. Lengths whose bounds there start at zero start a little above
+zero here; where no bounds are given, they are chosen to include the published solution. One of the 25 points,
+(5.05, 6.84), may be a misprint of 5.45, but is kept as printed.
 """
 
 from __future__ import annotations
@@ -31,12 +32,19 @@ TURN: Final = (0.0, 360.0)
 
 @dataclass(frozen=True)
 class PathProblem:
-    """lengths: bounds of crank, coupler, rocker and frame; offsets: of the coupler's point in its own axes; places: of
-    the crank's pivot, where it is free; tilted: the frame may lie at any angle; at: of the crank from the frame (deg),
-    from a free first angle where `phase`; apart: between fixed pivots, where the frame is given; shortest: the crank is
-    the shortest link, no double crank is wanted. Distances are root mean squares (mm): printed of the best linkage that
-    the source prints, worked out from its lengths, zero where it goes through all points, None where none that a crank
-    drives is printed; least the least known of all runs of this search.
+    """A published path problem.
+
+    Attributes:
+        lengths: bounds of crank, coupler, rocker and frame.
+        offsets: bounds of the coupler point in the axes of the coupler.
+        places: bounds of the crank pivot, if it is free.
+        tilted: True if the frame may have any angle.
+        at: crank angles from the frame (deg), counted from a free first angle if `phase`.
+        apart: distance of the fixed pivots, if it is given.
+        shortest: the crank must be the shortest link; no double crank.
+        printed: root-mean-square distance (mm) of the best published linkage, computed from its lengths; zero if it
+            passes through all points; None if no published linkage is driven by a crank.
+        least: least distance (mm) found in all runs of this search.
     """
 
     name: str
@@ -58,7 +66,7 @@ class PathProblem:
         return 6 - bool(self.apart) + 2 * (self.places is not None) + self.tilted + self.phase
 
     def text(self) -> str:
-        """The problem file."""
+        """Text of the problem file."""
         vary = dict.fromkeys(("crank", "coupler", "rocker", "frame"), self.lengths)
         vary |= {"along": self.offsets, "aside": self.offsets}
         if self.apart:
@@ -89,7 +97,7 @@ links:
   3: {{points: [D, B], length: rocker}}
 driver: {{link: 1, speed: n1, turns: ccw}}
 sketch:
-  at: 0  # B to the left of AD, as in the linkages printed
+  at: 0  # B to the left of AD, as in the published linkages
   B:
     - x0 + frame*cos(tilt) - frame*sin(tilt) + crank*sin(tilt + phase)
     - y0 + frame*sin(tilt) + frame*cos(tilt) - crank*cos(tilt + phase)
@@ -183,23 +191,23 @@ PROBLEMS: Final = (
 )  # fmt: skip
 
 
-# `tmm bench synthesis`: candidates a second of the optimal synthesis, how near its search comes to the best known.
+# Rate of evaluation of the optimal synthesis, and deviation of its search from the best known.
 
 
 SEARCHED = "crank-rocker"  # whose search is measured
 SEARCH_NAMES = (SEARCHED, "six-bar", "shaper", "press-class-iii")
-GENERATIONS = (300, 1000, 4000, 16_000)  # sizes, beside that of the search itself
-PER_SECOND = {SEARCHED: 100_000.0, "press-class-iii": 20_000.0}  # candidates, at the size that the search uses
-NEAR = 1e-3  # of the best known
-NEAR_PATH, SECONDS = 1e-2, 20.0  # of the least known path; the processor's time for it
-MET = 1e-6  # of a distance printed, or mm: it is met
-REDUCED_PATHS = ("arc of 5 points, timed", "semicircle of 6 points, timed")  # which take little
+GENERATIONS = (300, 1000, 4000, 16_000)  # sizes, in addition to that of the search
+PER_SECOND = {SEARCHED: 100_000.0, "press-class-iii": 20_000.0}  # candidates, at the generation size of the search
+NEAR = 1e-3  # relative to the best known
+NEAR_PATH, SECONDS = 1e-2, 20.0  # relative to the least known distance; processor time, s
+MET = 1e-6  # relative to a published distance, or mm
+REDUCED_PATHS = ("arc of 5 points, timed", "semicircle of 6 points, timed")  # which take little time
 SEEDS, REDUCED_SEEDS, OF_TEN = 10, 3, 9
 
 
 @dataclass(frozen=True)
 class SearchRate:
-    """Candidates a second in generations of a size, in the least time of several turns."""
+    """Candidates per second in generations of one size, from the least time of several turns."""
 
     problem: str
     parameters: int
@@ -214,15 +222,14 @@ class SearchRate:
         if self.target is None or self.per_second >= self.target / slack:
             return ""
         size = f"{self.problem}, generations of {self.generation}"
-        return f"{size}: {self.per_second:.0f} candidates a second, target {self.target:.0f}"
+        return f"{size}: {self.per_second:.0f} candidates per second, target {self.target:.0f}"
 
 
 @dataclass(frozen=True)
 class SearchOutcome:
-    """What a seed led to: its objective exactly, by how much constraints are missed (shares), processor's time (s).
+    """Result of one seed: exact objective, violation of constraints (relative), processor times (s).
 
-    off: above the best known, as a share of it. history: candidates so far, and how far the best of them is off,
-    where it got better.
+    off: relative excess over the best known objective. history: number of candidates and excess, at each improvement.
     """
 
     seed: int
@@ -241,9 +248,14 @@ class SearchOutcome:
 
 @dataclass(frozen=True)
 class PathOutcome:
-    """What a seed led to on a published path problem: root mean square distance (mm), how far it is above the least
-    known (a share; where that is zero, of the points' spread), whether independent starts agree, processor's time (s),
-    the distance of the best linkage printed.
+    """Result of one seed on a published path problem.
+
+    Attributes:
+        distance: root-mean-square distance, mm.
+        off: excess over the least known distance, relative to it (to the spread of the points if it is zero).
+        agree: True if independent starts agree.
+        seconds: processor time.
+        printed: distance of the best published linkage, mm.
     """
 
     problem: str
@@ -262,7 +274,7 @@ class PathOutcome:
 
 @dataclass(frozen=True)
 class Searches(Measurement):
-    """The whole measurement. known: what the long runs found (`known`)."""
+    """Results of the measurement. known: results of the long runs, see best_known."""
 
     rates: tuple[SearchRate, ...]
     found: tuple[SearchOutcome, ...]
@@ -275,12 +287,12 @@ class Searches(Measurement):
 
     @property
     def wanted(self) -> int:
-        """How many seeds must come near: 9 of 10; of a reduced run all but one."""
+        """Number of seeds that must come near: 9 of 10; in a reduced run all but one."""
         return OF_TEN if len(self.found) == SEEDS else len(self.found) - 1
 
     @property
     def failures(self) -> tuple[str, ...]:
-        """Targets that are missed; of a reduced run, by more than twice."""
+        """Missed targets; in a reduced run, those missed by more than a factor of two."""
         slow = tuple(filter(None, (rate.missed(target_slack(self.reduced)) for rate in self.rates)))
         slow += tuple(filter(None, (self._far(name) for name in dict.fromkeys(path.problem for path in self.paths))))
         if self.near >= self.wanted:
@@ -289,20 +301,22 @@ class Searches(Measurement):
         return (*slow, f"{near} of the best known, target {self.wanted}")
 
     def _far(self, name: str) -> str:
-        """Where more than one seed of ten ends far above the least known path, or takes long."""
+        """Path problems on which more than one seed of ten ends far above the least known distance, or takes too
+        long.
+        """
         own = [path for path in self.paths if path.problem == name]
         near, longest = sum(path.near for path in own), max(path.seconds for path in own)
         if near < len(own) - len(own) // SEEDS:
             return f"{name}: {near} of {len(own)} seeds within {100 * NEAR_PATH:g} % of the least known"
         above = sum(p.printed is not None and p.distance > p.printed * (1 + MET) + MET for p in own)
         if above:
-            return f"{name}: {above} of {len(own)} seeds above the best linkage printed"
+            return f"{name}: {above} of {len(own)} seeds above the best published linkage"
         if longest > SECONDS * target_slack(self.reduced):
-            return f"{name}: {longest:.0f} s of the processor, target {SECONDS:g}"
+            return f"{name}: {longest:.0f} s of processor time, target {SECONDS:g}"
         return ""
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON."""
+        """Return the content of the JSON file."""
         found = [asdict(one) | {"near": one.near} for one in self.found]
         return super().to_dict() | {"found": found, "near": self.near, "wanted": self.wanted}
 
@@ -314,7 +328,7 @@ class Searches(Measurement):
             "of {runs} runs of {evaluations} candidates"
         )
         rates = text_table(
-            "rates", "Candidates a second at the evaluation, one thread: least time of several turns",
+            "rates", "Rate of evaluation, one thread: least time of several turns",
             ("problem", "parameters", "constraints", "positions", "operations", "generation",
              "candidates/s", "at least"),
             [(r.problem, str(r.parameters), str(r.constraints), str(r.positions), str(r.operations), str(r.generation),
@@ -342,25 +356,27 @@ class Searches(Measurement):
 
 @cache
 def search_problem_text(name: str) -> str:
-    """A problem file that ships with the package."""
+    """Return the text of a problem file in the package data."""
     return (files("tmm_cli.bench") / "data" / "synthesis" / f"{name}.yaml").read_text(encoding="utf-8")
 
 
 @cache
 def best_known() -> dict[str, Any]:
-    """The best known of SEARCHED and the long runs that found it (tests/write_synthesis_best.py writes them)."""
+    """Return the best known solution of SEARCHED and the long runs that found it (from
+    tests/write_synthesis_best.py).
+    """
     source = (files("tmm_cli.bench") / "data" / "synthesis" / "best.json").read_text(encoding="utf-8")
     found: dict[str, Any] = json.loads(source)
     return found
 
 
 def load_candidates(name: str) -> Candidates:
-    """The task of a problem by its name, ready for evaluation."""
+    """Return the task of a problem, ready for evaluation."""
     return Candidates(read_task(read_text(search_problem_text(name), f"{name}.yaml")))
 
 
 def measure_searches(*, reduced: bool = False, progress: Callable[[str], None] = lambda _: None) -> Searches:
-    """Speed of evaluation on every problem, then the search from several seeds on one."""
+    """Measure the rate of evaluation on every problem, then the search from several seeds on one."""
     rates: list[SearchRate] = []
     for name in SEARCH_NAMES:
         progress(name)
@@ -377,7 +393,7 @@ def measure_searches(*, reduced: bool = False, progress: Callable[[str], None] =
 
 
 def _run_path_searches(reduced: bool, progress: Callable[[str], None]) -> Iterator[PathOutcome]:
-    """Published path problems, from several seeds; of a reduced run some of them from one."""
+    """Yield the results of the published path problems from several seeds; in a reduced run some of them from one."""
     for problem in PROBLEMS:
         if reduced and problem.name not in REDUCED_PATHS:
             continue
@@ -387,7 +403,7 @@ def _run_path_searches(reduced: bool, progress: Callable[[str], None]) -> Iterat
 
 
 def run_path_search(problem: PathProblem, seed: int) -> PathOutcome:
-    """What the ordinary search leads to."""
+    """Return the result of the search with its ordinary settings."""
     search = Candidates(read_task(read_text(problem.text(), f"{problem.name}.yaml")))
     search.task = replace(search.task, seed=seed)
     start = CLOCK()
@@ -400,7 +416,7 @@ def run_path_search(problem: PathProblem, seed: int) -> PathOutcome:
 
 
 def measure_rates(name: str, reduced: bool) -> list[SearchRate]:
-    """Candidates a second, evenly spread over the bounds, by the size of generations."""
+    """Measure candidates per second, evenly distributed within the bounds, for several generation sizes."""
     search = load_candidates(name)
     chance = np.random.default_rng(1)
     sizes = (search.population, *GENERATIONS[: 2 if reduced else None])
@@ -408,12 +424,12 @@ def measure_rates(name: str, reduced: bool) -> list[SearchRate]:
 
 
 def _time_generations(name: str, search: Candidates, generations: Real, reduced: bool) -> SearchRate:
-    """generations (2, size, parameters) by turns: the way of candidates that come again is known already."""
+    """Time generations (2, size, parameters) alternately: the program of repeated candidates would already be known."""
     _, size, parameters = generations.shape
     target = PER_SECOND.get(name) if size == search.population else None
     turn = cycle(generations)
     operations = search.coarse.program.operations if isinstance(search.coarse, TracedVariants) else 0
-    constraints = len(search.constraints) - 1  # without that the crank turns fully
+    constraints = len(search.constraints) - 1  # without the one that the crank makes full turns
 
     def found(least: dict[str, float]) -> SearchRate:
         positions, per_second = search.task.positions, size / least[""]
@@ -423,7 +439,7 @@ def _time_generations(name: str, search: Candidates, generations: Real, reduced:
 
 
 def run_search(search: Candidates, seed: int, known: float) -> SearchOutcome:
-    """Search and polish from a seed, at the ordinary settings of the task."""
+    """Search and refine from a seed, with the ordinary settings of the task."""
     times = [CLOCK()]
 
     def watch(at: int, of: int) -> None:

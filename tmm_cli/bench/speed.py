@@ -27,13 +27,17 @@ from tmm_cli.sweep import SweptMechanisms, grid_points, read_axes
 POSITIONS = (12, 360, 36_000)
 VARIANTS = (100, 10_000)
 OF_VARIANTS = 12  # positions of each variant
-OF_LINKS = 72  # positions of each chain: of 360 the longest chain fills the cache, and that is measured then
-TARGETS = {(1, 360): 1.3, (1, 36_000): 1.0, (10_000, 12): 1.3}  # ours over by hand, by (variants, positions)
-RIVALS = {"pylinkage": 3.0, "kinepy": 30.0}  # theirs over ours, at least
-EXPONENT = 0.05  # growth may differ so much from linear
+OF_LINKS = 72  # positions of each chain: with 360 the longest chain would fill the cache
+TARGETS = {
+    (1, 360): 1.3,
+    (1, 36_000): 1.0,
+    (10_000, 12): 1.3,
+}  # largest ratio of tmm to code by hand, by (variants, positions)
+RIVALS = {"pylinkage": 3.0, "kinepy": 30.0}  # least ratio of the program to tmm
+EXPONENT = 0.05  # allowed difference of the exponent from 1
 
 DYADS = (1, 2, 3, 5, 8, 12, 18, 24, 30)
-GROWING = {  # what grows, and the numbers that are measured
+GROWING = {  # what increases, and its numbers
     "links": ("moving links", DYADS),
     "positions": ("positions", (360, 1000, 3000, 9000, 18_000, 36_000, 72_000)),
     "variants": ("variants", (30, 100, 300, 1000, 3000, 10_000)),
@@ -42,7 +46,9 @@ GROWING = {  # what grows, and the numbers that are measured
 
 @dataclass(frozen=True)
 class Race:
-    """One mechanism in both ways: nanoseconds a position, the least of the turns; preparing (ms) is once a linkage."""
+    """Time per position (ns, least of all turns) of the product and of code written by hand; preparing (ms): once a
+    linkage.
+    """
 
     mechanism: str
     variants: int
@@ -57,7 +63,7 @@ class Race:
 
     @property
     def target(self) -> float | None:
-        """At most this ratio; None where none is set."""
+        """Largest allowed ratio; None if there is no target."""
         return TARGETS.get((self.variants, self.positions))
 
     def missed(self, slack: float) -> str:
@@ -69,7 +75,7 @@ class Race:
 
 @dataclass(frozen=True)
 class Growth:
-    """Seconds for so many links, positions or variants; they grow as t0 + c n^exponent."""
+    """Times (s) for increasing numbers of links, positions or variants; they grow as t0 + c n^exponent."""
 
     what: str
     numbers: tuple[int, ...]
@@ -84,7 +90,7 @@ class Growth:
 
 @dataclass(frozen=True)
 class RivalRace:
-    """Another program on a mechanism: nanoseconds a position of both, the product giving what the other gives."""
+    """Time per position (ns) of another program and of the product for the same quantities."""
 
     name: str
     mechanism: str
@@ -97,7 +103,7 @@ class RivalRace:
 
     @property
     def target(self) -> float:
-        """At least this ratio."""
+        """Least required ratio."""
         return RIVALS[self.name]
 
     def missed(self, slack: float) -> str:
@@ -108,7 +114,7 @@ class RivalRace:
 
 @dataclass(frozen=True)
 class SpeedMeasurement(Measurement):
-    """The whole measurement."""
+    """Results of the measurement."""
 
     races: tuple[Race, ...]
     growths: tuple[Growth, ...]
@@ -118,12 +124,12 @@ class SpeedMeasurement(Measurement):
 
     @property
     def failures(self) -> tuple[str, ...]:
-        """Targets that are missed; of a reduced run, by more than twice."""
+        """Missed targets; in a reduced run, those missed by more than a factor of two."""
         found: tuple[TimedResult, ...] = (*self.races, *self.iterated, *self.sweeps, *self.growths, *self.rivals)
         return tuple(filter(None, (one.missed(target_slack(self.reduced)) for one in found)))
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON."""
+        """Return the content of the JSON file."""
         return super().to_dict() | {
             "races": [asdict(r) | {"ratio": r.ratio, "target": r.target} for r in self.races],
             "iterated": [r.to_dict() for r in self.iterated],
@@ -135,7 +141,7 @@ class SpeedMeasurement(Measurement):
     def tables(self) -> tuple[Table, ...]:
         races = text_table(
             "races",
-            "Nanoseconds a position with all reactions, against NumPy written by hand for this mechanism",
+            "Time per position with all reactions, ns: tmm against NumPy code written by hand for the mechanism",
             ("mechanism", "variants", "positions", "tmm", "by hand", "ratio", "at most", "preparing once, ms"),
             [
                 (
@@ -153,7 +159,7 @@ class SpeedMeasurement(Measurement):
         )
         growths = text_table(
             "growths",
-            "How time grows: t0 + c n^exponent",
+            "Growth of time, t0 + c n^exponent",
             ("with", "n", "ms", "exponent"),
             [
                 (
@@ -167,7 +173,7 @@ class SpeedMeasurement(Measurement):
         )
         rivals = text_table(
             "rivals",
-            "Other programs, nanoseconds a position of 360",
+            "Other programs: time per position, ns, for 360 positions",
             ("program", "mechanism", "its time", "tmm", "times as long", "at least"),
             [
                 (r.name, r.mechanism, f"{r.theirs:.0f}", f"{r.ours:.0f}", f"{r.ratio:.1f}", f"{r.target:g}")
@@ -179,7 +185,7 @@ class SpeedMeasurement(Measurement):
 
 
 def measure_speed(*, reduced: bool = False, progress: Callable[[str], None] = lambda __: None) -> SpeedMeasurement:
-    """All in one process, by turns, so that what disturbs the machine disturbs all alike."""
+    """Measure everything alternately in one process, so that disturbances of the machine affect all alike."""
     races: list[Race] = []
     for mechanism in MECHANISMS:
         progress(mechanism.name)
@@ -203,7 +209,7 @@ def measure_speed(*, reduced: bool = False, progress: Callable[[str], None] = la
 
 
 def race_mechanism(mechanism: HandCodedMechanism, reduced: bool) -> list[Race]:
-    """A mechanism with one and with many variants, ours and by hand by turns."""
+    """Time a mechanism with one and with many variants, by the product and by hand alternately."""
     kinds = [(1, n) for n in POSITIONS] + [(v, OF_VARIANTS) for v in VARIANTS if not (reduced and v == 100)]
     return [_time_race(mechanism, variants, positions, reduced) for variants, positions in kinds]
 
@@ -225,10 +231,10 @@ def _time_race(mechanism: HandCodedMechanism, variants: int, positions: int, red
 
 
 def measure_growth(what: str, reduced: bool) -> Growth:
-    """Times of a chain of dyads with growing numbers of links, of the six-bar with growing positions or variants.
+    """Time a chain of dyads with increasing numbers of links, or the six-bar with increasing positions or variants.
 
-    Of the balancing moment, for which all groups are walked forward and backward; what is large is the work, not the
-    results, which would soon measure the memory.
+    Only the balancing moment is requested, for which all groups are solved forward and backward: so the work grows, and
+    not the results, which would soon make memory the limit.
     """
     numbers = GROWING[what][1][:-1] if reduced else GROWING[what][1]
     six_bar = next(m for m in MECHANISMS if m.name == "six-bar")
@@ -259,7 +265,7 @@ def _make_call(batch: Batch, positions: int) -> Callable[[], Any]:
 
 
 def fit_exponent(numbers: Sequence[int], seconds: Sequence[float]) -> float:
-    """p of the best t0 + c n^p, t0 >= 0, by least squares of relative deviations."""
+    """Return p of the best fit t0 + c n^p, t0 >= 0, by least squares of relative deviations."""
     n, t = np.asarray(numbers, float), np.asarray(seconds, float)
     best, found = np.inf, 1.0
     for p in np.arange(0.5, 1.5005, 0.001):
@@ -274,7 +280,7 @@ def fit_exponent(numbers: Sequence[int], seconds: Sequence[float]) -> float:
 
 
 def race_rivals(reduced: bool, progress: Callable[[str], None]) -> tuple[tuple[RivalRace, ...], tuple[str, ...]]:
-    """Rivals that are installed, on the mechanisms that they can do, at 360 positions."""
+    """Time the installed rivals on the mechanisms that they can compute, at 360 positions."""
     there, missing = installed()
     absent = [f"{name}: not installed" for name in missing]
     found = []
@@ -306,14 +312,15 @@ def _race_rival(
 ITERATED = ("press-class-iii",)
 ITERATED_POSITIONS = (360, 36_000)
 OF_SIX_BAR = 360  # positions
-ITERATED_TARGETS = {360: 2.0 / 0.23, 36_000: 1.0 / 0.23}  # 2 us and 1 us a position where the six-bar takes 0.23
+ITERATED_TARGETS = {360: 2.0 / 0.23, 36_000: 1.0 / 0.23}  # 2 us and 1 us per position where the six-bar takes 0.23
 
 
 @dataclass(frozen=True)
 class IteratedRace:
-    """A linkage with a group that is found by iteration: nanoseconds a position, its own and the six-bar's of 360.
+    """A linkage with a group solved by iteration: time per position (ns) of its own, and of the six-bar at 360
+    positions.
 
-    rest: share of the positions that the tape leaves to the ordinary stages.
+    rest: share of the positions that are left to the ordinary stages.
     """
 
     mechanism: str
@@ -328,7 +335,7 @@ class IteratedRace:
 
     @property
     def target(self) -> float:
-        """At most this ratio."""
+        """Largest allowed ratio."""
         return ITERATED_TARGETS[self.positions]
 
     def missed(self, slack: float) -> str:
@@ -338,12 +345,12 @@ class IteratedRace:
         return f"{kind}: {self.ratio:.1f} times the six-bar, target {self.target:.1f}"
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON."""
+        """Return the content of the JSON file."""
         return asdict(self) | {"ratio": self.ratio, "target": self.target}
 
 
 def race_iterated(name: str, reduced: bool) -> list[IteratedRace]:
-    """Times of a linkage round its cycle, with all that `everything` holds."""
+    """Time a linkage over its cycle with all quantities, alternately with the six-bar, whose groups are dyads."""
     batch, six_bar = (
         prepare_batch(_linkage_with_constant_loads(name)),
         prepare_batch(_linkage_with_constant_loads("six-bar")),
@@ -362,7 +369,7 @@ def race_iterated(name: str, reduced: bool) -> list[IteratedRace]:
 
 
 def _linkage_with_constant_loads(name: str) -> Linkage:
-    """A reference whose loads are constant, as those of the other races are."""
+    """Return the linkage of a reference with constant loads, like those of the other races."""
     found = reference(name).case.linkage
     loads = tuple(
         replace(x, force=x.force * (1 if x.table is None else x.table.values[0]), table=None, when="always")
@@ -372,10 +379,10 @@ def _linkage_with_constant_loads(name: str) -> Linkage:
 
 
 def iterated_table(rows: Sequence[IteratedRace]) -> Table:
-    """What a terminal shows."""
+    """Make the table shown in the terminal."""
     return text_table(
         "iterated",
-        "Groups of class III, nanoseconds a position with all reactions, against the six-bar",
+        "Groups of class III against the six-bar: time per position with all reactions, ns",
         ("mechanism", "positions", "tmm", "six-bar", "ratio", "at most", "left to the stages"),
         [
             (
@@ -392,15 +399,15 @@ def iterated_table(rows: Sequence[IteratedRace]) -> Table:
     )
 
 
-SWEPT = {"six-bar": "OA=80..120"}  # problems of 12 positions, and over what
+SWEPT = {"six-bar": "OA=80..120"}  # problem of 12 positions, and its range
 SWEPT_QUANTITIES = ("H,k,pressure,M_b,R_34",)
-SWEPT_MECHANISMS, REDUCED_MECHANISMS = 20_000, 2_000  # of a sweep: as many as are one job of a long one
+SWEPT_MECHANISMS, REDUCED_MECHANISMS = 20_000, 2_000  # of a sweep: as many as in one job of a long sweep
 A_MINUTE = 1e6
 
 
 @dataclass(frozen=True)
 class SweepRate:
-    """A sweep of so many mechanisms of so many positions each: mechanisms a minute; preparing (ms) is once."""
+    """A sweep: number of mechanisms, positions of each, mechanisms per minute on one core; preparing (ms): once."""
 
     mechanism: str
     mechanisms: int
@@ -410,21 +417,21 @@ class SweepRate:
 
     @property
     def target(self) -> float:
-        """At least so many mechanisms a minute."""
+        """Least required number of mechanisms per minute."""
         return A_MINUTE
 
     def missed(self, slack: float) -> str:
         if self.a_minute >= self.target / slack:
             return ""
-        return f"sweep of {self.mechanism}: {self.a_minute:.0f} mechanisms a minute, target {self.target:.0f}"
+        return f"sweep of {self.mechanism}: {self.a_minute:.0f} mechanisms per minute, target {self.target:.0f}"
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON."""
+        """Return the content of the JSON file."""
         return asdict(self) | {"target": self.target}
 
 
 def time_sweep(name: str, reduced: bool) -> SweepRate:
-    """How the command computes the points of a sweep, of which every one works."""
+    """Time the points of a sweep as `tmm sweep` computes them; all of them are feasible."""
     count = REDUCED_MECHANISMS if reduced else SWEPT_MECHANISMS
     start = perf_counter()
     tree = problem_tree(name)
@@ -441,10 +448,10 @@ def time_sweep(name: str, reduced: bool) -> SweepRate:
 
 
 def sweep_table(rows: Sequence[SweepRate]) -> Table:
-    """What a terminal shows."""
+    """Make the table shown in the terminal."""
     return text_table(
         "sweeps",
-        f"Mechanisms that a sweep goes through in a minute on one core, with {SWEPT_QUANTITIES[0]}",
+        f"Mechanisms per minute of a sweep on one core, with {SWEPT_QUANTITIES[0]}",
         ("mechanism", "mechanisms", "positions of each", "a minute", "at least", "preparing once, ms"),
         [
             (

@@ -1,8 +1,9 @@
-"""`tmm bench stability`: what every method says as it comes near what kills it, and whether it says so.
+"""Measurement of `tmm bench stability`: results of every method near critical positions, and whether failures are
+reported.
 
-An answer is wrong when it is off by more than 1e-6 of the largest value, or by 10 times what the method itself states
-(Newton's tolerance, the 5 % of the drawing board); the product's own when it is off by more than its own bound. A
-method says so by raising, by nan, or by not converging; ours by a bound that is wide enough too.
+A result is wrong if its error exceeds 1e-6 of the largest value, or 10 times the error that the method itself states
+(tolerance of Newton's method, 5 % of the drawing board); one of the product if it exceeds its own error bound. A method
+reports a failure by an exception, by nan, or by not converging; the product also by a sufficiently wide bound.
 """
 
 from __future__ import annotations
@@ -26,10 +27,10 @@ from tmm_cli.mechanics.numerics import ROUNDOFF, Real
 from tmm_cli.reports import Table
 
 PRODUCT = "tmm"
-WRONG, TIMES = 1e-6, 10.0  # of the largest value; of what a method states itself
-BOARD_ERROR = 0.05  # what the drawing board states
-LARGEST_WIDTH, TARGET = 100.0, 0.9  # a bound so many times the true error is too wide; the share that may not be
-REFERENCE_ERROR = 1e-40  # of the largest value: what is not known of the truth
+WRONG, TIMES = 1e-6, 10.0  # fraction of the largest value; multiple of the error that a method states
+BOARD_ERROR = 0.05  # stated error of the drawing board
+LARGEST_WIDTH, TARGET = 100.0, 0.9  # largest ratio of bound to true error, and the least share of bounds within it
+REFERENCE_ERROR = 1e-40  # fraction of the largest value: error of the reference values
 SEEDS_WHEN_REDUCED, EVERY_WHEN_REDUCED = 2, 4
 WHEN_REDUCED = ("closed", "newton-2", "newton-6", "newton-12", "differences-4", "single", "extended")
 TEXTBOOK_METHODS = (
@@ -44,9 +45,10 @@ Solver = Callable[[Real], MethodAnswers]
 
 @dataclass(frozen=True)
 class SceneOutcome:
-    """One method in one scene: the errors of its answers (shares of the largest), and what to think of it.
+    """One method in one scene: errors of its results (fractions of the largest values), and the verdict.
 
-    why: how it said so. For ours, widths: bound over true error of every number, nan where there is no bound.
+    why: how it reported a failure. Product only: bound, and widths: bound over true error of each number, nan without
+    bound.
     """
 
     method: str
@@ -59,9 +61,9 @@ class SceneOutcome:
 
 @dataclass(frozen=True)
 class StabilityRow:
-    """One method at one distance: of so many scenes how many it answers rightly, says that it cannot, gets wrong.
+    """One method at one distance: numbers of scenes with right results, reported failures (said) and wrong results.
 
-    errors: the largest of the answers it gave; bound: the largest of ours, a share of the largest value.
+    errors: largest errors of its results; bound: largest bound of the product, as a fraction of the largest value.
     """
 
     family: str
@@ -77,19 +79,19 @@ class StabilityRow:
 
     @property
     def error(self) -> float:
-        """The worst of all quantities; nan when it gave none."""
+        """Largest error of all quantities; nan if there are none."""
         found = [error for error in self.errors.values() if not np.isnan(error)]
         return max(found, default=float("nan"))
 
 
 @dataclass(frozen=True)
 class Stability(Measurement):
-    """The whole measurement. widths: of all bounds of ours, over the true errors."""
+    """Results of the measurement. widths: ratios of all bounds of the product to the true errors."""
 
     rows: tuple[StabilityRow, ...]
     widths: tuple[float, ...]
 
-    met: ClassVar[str] = "all targets met: every value within its bound or not given"
+    met: ClassVar[str] = "all targets met: every value within its error bound, or not printed"
 
     @property
     def families(self) -> tuple[str, ...]:
@@ -100,23 +102,25 @@ class Stability(Measurement):
         return tuple(dict.fromkeys(row.method for row in self.rows))
 
     def of(self, family: str, method: str) -> list[StabilityRow]:
-        """Rows from the harmless distance to the worst."""
+        """Return the rows from the harmless distance to the worst."""
         return [row for row in self.rows if (row.family, row.method) == (family, method)]
 
     def lies(self, family: str, method: str) -> float | None:
-        """The distance at which a method first gives a wrong answer without saying so; None when it never does."""
+        """Return the distance at which a method first gives a wrong result without reporting it; None if it never
+        does.
+        """
         return next((row.distance for row in self.of(family, method) if row.wrong), None)
 
     @property
     def sharp(self) -> float:
-        """Share of our bounds that are at most 100 times the true error."""
+        """Share of the bounds of the product that are at most 100 times the true error."""
         return float(np.mean(np.array(self.widths) <= LARGEST_WIDTH)) if self.widths else float("nan")
 
     @property
     def failures(self) -> tuple[str, ...]:
-        """Where the product misses its targets."""
+        """Targets that the product misses."""
         lies = [
-            f"{row.family}: {row.wrong} of {row.scenes} outside their bounds at {row.distance:g}"
+            f"{row.family}: {row.wrong} of {row.scenes} outside their error bounds at {row.distance:g}"
             for row in self.rows
             if row.method == PRODUCT and row.wrong
         ]
@@ -127,7 +131,7 @@ class Stability(Measurement):
         return tuple(lies)
 
     def to_dict(self) -> dict[str, Any]:
-        """JSON: an error that was not given is null."""
+        """Return the content of the JSON file: null for an error that was not computed."""
         rows = [
             vars(row) | {"errors": {q: _plain(e) for q, e in row.errors.items()}, "bound": _plain(row.bound)}
             for row in self.rows
@@ -152,7 +156,7 @@ class Stability(Measurement):
             return "never" if distance is None else f"{distance:.0e}".replace("e-0", "e-")
 
         rows = [(method, *(first(family, method) for family in self.families)) for method in self.methods]
-        title = "Where each method first gives a wrong answer without saying so"
+        title = "Distance at which each method first gives a wrong result without reporting it"
         return (text_table("stability", title, ("method", *self.families), rows),)
 
     @property
@@ -173,7 +177,12 @@ def measure_stability(
     own: bool = True,
     progress: Callable[[str], None] = lambda __: None,
 ) -> Stability:
-    """All methods in all scenes; reduced: fewer scenes and methods. own: the product with its bounds too."""
+    """Apply all methods to all scenes.
+
+    Args:
+        reduced: fewer scenes and methods.
+        own: include the product with its error bounds.
+    """
     fewer = [method for method in RIVALS if method.name in WHEN_REDUCED or method in TEXTBOOK_METHODS]
     chosen = tuple(methods if methods is not None else fewer if reduced else RIVALS)
     rows: list[StabilityRow] = []
@@ -195,7 +204,7 @@ def measure_stability(
 def _prepare_scenes(
     scenes: Iterable[KnownScene], methods: tuple[Method, ...], absent: dict[str, None]
 ) -> Iterator[tuple[KnownScene, Case, dict[Method, Solver | Exception]]]:
-    """Scenes with what is made ready of their linkage, once where it is the same at all distances."""
+    """Yield scenes with prepared methods, prepared once where the linkage is the same at all distances."""
     for __, group in groupby(scenes, key=lambda at: (at.seed, None if at.family.fixed else at.distance)):
         of_one = list(group)
         case = Case.of(of_one[0].scene.linkage)
@@ -213,7 +222,7 @@ def _prepare_scenes(
 
 
 def error_limit(method: Method) -> float:
-    """The share of the largest value beyond which an answer of the method is wrong."""
+    """Return the error, as a fraction of the largest value, beyond which a result of the method is wrong."""
     stated = (
         BOARD_ERROR
         if method.family == "board"
@@ -225,7 +234,7 @@ def error_limit(method: Method) -> float:
 
 
 def judge_method(method: Method, solver: Solver | Exception, at: KnownScene) -> SceneOutcome:
-    """What a method answers in a scene, or why it does not: its errors and what to think of them."""
+    """Return the errors and the verdict of a method in a scene."""
     nothing: dict[Compared, float] = dict.fromkeys(QUANTITIES, float("nan"))
     try:
         if isinstance(solver, Exception):
@@ -256,7 +265,9 @@ def _watched_value(found: MethodAnswers, quantity: Compared, at: KnownScene) -> 
 
 
 def judge_product(case: Case, at: KnownScene) -> SceneOutcome:
-    """What the product prints, and its bounds: a value outside its own is a lie; without a bound none is printed."""
+    """Return the errors and the verdict of the product: wrong if a value is outside its bound; not printed without a
+    bound.
+    """
     q = np.array([at.scene.q])
     results = solve_bare_linkage(case.linkage, q, case.structure, case.kernels)
     values, digits = bound_values(results)
@@ -285,7 +296,7 @@ def judge_product(case: Case, at: KnownScene) -> SceneOutcome:
             off = float(abs(mine - (sense if quantity == "reactions" else 1) * exact))
             within = within and off <= bound + REFERENCE_ERROR * at.largest[quantity]
             floor = max(off, ROUNDOFF * abs(float(exact)), REFERENCE_ERROR * at.largest[quantity])
-            widths.append(bound / floor if bound else 1.0)  # a part that is nothing for certain
+            widths.append(bound / floor if bound else 1.0)  # a component that is exactly zero
             total += off * off
             widest = max(widest, bound / at.largest[quantity])
         errors[quantity] = float(np.sqrt(total)) / at.largest[quantity]
@@ -293,7 +304,7 @@ def judge_product(case: Case, at: KnownScene) -> SceneOutcome:
         return SceneOutcome(PRODUCT, "wrong", errors, "", widest, tuple(widths))
     if not given:
         return SceneOutcome(PRODUCT, "said", errors, "nan", widest or float("nan"), tuple(widths))
-    far = max(errors.values()) > WRONG  # the bound says it
+    far = max(errors.values()) > WRONG  # reported by the bound
     return SceneOutcome(PRODUCT, "said" if far else "right", errors, "bound" if far else "", widest, tuple(widths))
 
 

@@ -17,12 +17,12 @@ MECHANISM_COLOURS = {"crank-slider": BLUE, "six-bar": RED, "shaper": GREEN}
 
 
 def speed_charts(speed: SpeedMeasurement) -> dict[str, Figure]:
-    """By the names of their files."""
+    """Return the charts of `tmm bench speed` by file name."""
     return {"speed.png": draw_speed(speed)}
 
 
 def draw_speed(speed: SpeedMeasurement) -> Figure:
-    """All of the measurement on one sheet."""
+    """Draw all results on one sheet."""
     caption = (
         "all joints, centres of mass, reactions, balancing moment; least of many turns in one "
         "process; tmm {tmm}, Python {python}, NumPy {numpy}, {system}"
@@ -46,7 +46,7 @@ def _draw_times(axes: Any, speed: SpeedMeasurement) -> None:
         )
     set_log_axes(axes)
     axes.legend(fontsize=8, frameon=False)
-    label_axes(axes, "Time a position", "positions", "ns a position")
+    label_axes(axes, "Time per position", "positions", "ns per position")
 
 
 def _draw_ratios(axes: Any, speed: SpeedMeasurement) -> None:
@@ -64,7 +64,7 @@ def _draw_ratios(axes: Any, speed: SpeedMeasurement) -> None:
     axes.set_ylim(0, 1.25 * max([1.3, *(r.ratio for r in speed.races)]))
     axes.set_xticks(range(len(kinds)), [f"{variants} x {positions}" for variants, positions in kinds], fontsize=8)
     axes.legend(fontsize=8, frameon=False, ncol=3, loc="upper left")
-    label_axes(axes, "Ratio, and what is allowed", "variants x positions", "tmm / by hand")
+    label_axes(axes, "Ratio, with its limit", "variants x positions", "tmm / by hand")
 
 
 def _draw_growth(axes: Any, growth: Growth) -> None:
@@ -82,16 +82,14 @@ SAVINGS_SHEET_SHARE = 0.75  # of the height of a landscape sheet
 
 
 def savings_charts(measured: Savings) -> dict[str, Figure]:
-    """By the names of their files."""
+    """Return the charts of `tmm bench savings` by file name."""
     return {"savings.png": draw_savings(measured)}
 
 
 def draw_savings(measured: Savings) -> Figure:
-    """Bars of both shares, a pair a saving, with the numbers beside them."""
+    """Draw a pair of bars for each saving, with the numbers beside them."""
     shown = measured.found
-    figure = make_page(
-        "What is saved by computing no more than what is asked for", measured.title[:90], SAVINGS_SHEET_SHARE
-    )
+    figure = make_page("Savings by computing only what is requested", measured.title[:90], SAVINGS_SHEET_SHARE)
     axes = figure.add_subplot()
     at = np.arange(len(shown))
     counts = [s.with_ / s.without for s in shown]
@@ -112,7 +110,7 @@ def draw_savings(measured: Savings) -> Figure:
     axes.axvline(1.0, color=INK, lw=0.8)
     axes.grid(True, axis="x", color="#d8d8d8", lw=0.5)
     axes.set_axisbelow(True)
-    axes.set_xlabel("what is left", fontsize=9)
+    axes.set_xlabel("remaining share", fontsize=9)
     figure.legend(loc="upper right", bbox_to_anchor=(0.98, 0.985), fontsize=8, ncol=2, framealpha=0.9)
     figure.subplots_adjust(left=0.27, right=0.98, top=0.88, bottom=0.09)
     return figure
@@ -124,22 +122,22 @@ def _short_time(seconds: float) -> str:
 
 SEARCH_COLOURS = dict(zip(SEARCH_NAMES, (RED, BLUE, GREEN, ORANGE), strict=True))
 SEARCH_MARKERS = dict(zip(SEARCH_NAMES, "osD^", strict=True))
-LEAST_DEVIATION = 1e-7  # %: what is nearer is drawn there
+LEAST_DEVIATION = 1e-7  # %: smaller deviations are drawn here
 SEARCH_SHEET_SHARE = 0.62  # of the height of a landscape sheet
 
 
 def search_charts(measured: Searches) -> dict[str, Figure]:
-    """By the names of their files."""
+    """Return the charts of `tmm bench synthesis` by file name."""
     return {"synthesis.png": draw_searches(measured)}
 
 
 def draw_searches(measured: Searches) -> Figure:
-    """Both panels on half a sheet."""
+    """Draw both panels on half a sheet."""
     caption = (
         "five lengths of a crank-rocker, three constraints, 72 positions; one thread; tmm {tmm}, "
         "Python {python}, NumPy {numpy}, {system}"
     )
-    title = "Optimal synthesis: how quickly candidates are evaluated, how near the search comes"
+    title = "Optimal synthesis: rate of evaluation, and deviation of the search from the best known"
     figure = make_page(title, caption.format(**measured.machine), SEARCH_SHEET_SHARE)
     grid = figure.add_gridspec(1, 2, left=0.065, right=0.98, top=0.8, bottom=0.12, wspace=0.2)
     _draw_rates(figure.add_subplot(grid[0, 0]), measured)
@@ -161,7 +159,7 @@ def _draw_rates(axes: Any, measured: Searches) -> None:
             label=label,
         )
     aimed = [(r.generation, r.target / 1e3) for r in measured.rates if r.target is not None]
-    label = "target, at the size that the search uses"
+    label = "target, at the generation size of the search"
     axes.plot(*zip(*aimed, strict=True), "_", ms=18, mew=1.8, color=INK, label=label)
     sizes = sorted({r.generation for r in measured.rates if r.problem == SEARCHED})
     axes.set_xscale("log")
@@ -170,7 +168,7 @@ def _draw_rates(axes: Any, measured: Searches) -> None:
     axes.set_xlim(sizes[0] / 1.5, sizes[-1] * 1.5)
     axes.set_ylim(0, 1.45 * max(r.per_second for r in measured.rates) / 1e3)
     axes.legend(fontsize=8, frameon=False, loc="upper right")
-    label_axes(axes, "Candidates a second", "candidates in a generation", "thousand candidates a second")
+    label_axes(axes, "Candidates per second", "candidates per generation", "thousand candidates per second")
 
 
 def _draw_deviations(axes: Any, measured: Searches) -> None:
@@ -190,7 +188,7 @@ def _draw_deviations(axes: Any, measured: Searches) -> None:
         )
         end, low = f.evaluations / 1e3, max(100 * f.off, LEAST_DEVIATION)
         axes.plot([end, 1.06 * last], [max(off[-1], LEAST_DEVIATION), low], ":", lw=0.8, color=colour)
-        polished = "polished on exact peaks, 1e-7 % and nearer" if n == 0 else None
+        polished = "refined on exact peaks, 1e-7 % and nearer" if n == 0 else None
         axes.plot([1.06 * last], [low], "*", ms=10, color=colour, label=polished, clip_on=False, zorder=5)
     axes.axhline(100 * NEAR, color=INK, lw=1.2, label="target, 0.1 %")
     axes.set_yscale("log")

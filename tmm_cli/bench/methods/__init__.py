@@ -1,1 +1,1 @@
-"""Rival methods, measured against the product."""
+"""Methods of computation, those of the product and others, in a common form."""

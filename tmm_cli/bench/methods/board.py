@@ -1,10 +1,10 @@
-"""The drawing board: what a student finds with ruler and compasses, every constructed point read to a grid on paper.
+"""The drawing board: a student with ruler and compasses, every constructed point read to a grid on paper.
 
-Scales are those of the product's own sheets, position by position. Group by group, in the order in which they are
-drawn: points of the mechanism, ends of the velocity plan, of the acceleration plan; then the force polygons, last group
-first. A construction starts from what was drawn before it, so errors of paper go on as they do there: directions come
-from drawn links, normal accelerations from measured velocities, arms of moments from the drawing. Pivots on the frame
-and lengths of links are laid off true. I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 4, 5 and 13.
+Scales are those of the product's own sheets, at each position. The groups are drawn in order: points of the mechanism,
+ends of the velocity plan, of the acceleration plan; then the force polygons, the last group first. A construction
+starts from what was drawn before it, so errors propagate as on paper: directions come from drawn links, normal
+accelerations from measured velocities, arms of moments from the drawing. Pivots on the frame and lengths of links are
+laid off exactly. I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 4, 5 and 13.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ from tmm_cli.mechanics.plans import Plan, acceleration_plan, force_plans, sheet_
 
 
 def snap_to_grid(value: Vector, grid: Real) -> Vector:
-    """Vectors read to a grid."""
+    """Round vectors to a grid."""
     return grid * (np.round(value.real / grid) + 1j * np.round(value.imag / grid))
 
 
 @dataclass(frozen=True)
 class BoardScales:
-    """SI a millimetre at every position: of the mechanism (m), the velocity, acceleration and force plans."""
+    """Scales (SI units per mm) at every position: of the mechanism (m), the velocity, acceleration and force plans."""
 
     x: Real
     v: Real
@@ -54,7 +54,7 @@ class BoardScales:
 
     @classmethod
     def of(cls, case: Case, motion: Motion, reactions: Reactions) -> BoardScales:
-        """Those that the product's sheets would have."""
+        """Return the scales of the product's sheets."""
         count = range(len(motion.q))
         fixed = [case.linkage.local(FRAME, h.point) for h in case.linkage.hinges if FRAME in h.links]
         moving = [motion.named(point).x for point in case.linkage.moving_points]
@@ -75,7 +75,7 @@ def _scale(plan: Plan) -> float:
 
 @dataclass(frozen=True)
 class PolygonSolver(WrappedSolver):
-    """A group whose forces are read off its polygon; grid in N."""
+    """Solver whose reactions are read from the force polygon; grid in N."""
 
     grid: Real
 
@@ -90,7 +90,9 @@ class PolygonSolver(WrappedSolver):
 
 @dataclass(frozen=True)
 class Board:
-    """A drawing of all positions; grids: of x (m), and of v and a a unit of the driver's speed and its square."""
+    """A drawing of all positions; grids: of positions (m), and of v and a per unit of the driver speed and its
+    square.
+    """
 
     case: Case
     x: Real
@@ -98,7 +100,7 @@ class Board:
     a: Real
 
     def _ends(self, link: str) -> tuple[str, str] | None:
-        """The two points that are farthest apart on a link: the drawing shows its direction by them."""
+        """Return the two points of a link farthest apart, which show its direction in the drawing."""
         points = self.case.linkage.links[link].points
         fixed = self.case.linkage.links[FRAME].points
         pairs = [(one, other) for one in points for other in points if one != other and points[one] != points[other]]
@@ -106,7 +108,7 @@ class Board:
         return max(pairs, key=lambda p: (p[0] in fixed, abs(points[p[0]] - points[p[1]])), default=None)
 
     def _partner(self, link: str, known: Mapping[str, object]) -> tuple[str, float] | None:
-        """A link on which this one slides, and its angle from it (rad)."""
+        """Return the link on which this one slides, and its angle from it (rad)."""
         for slide in self.case.linkage.slides:
             if slide.runner == link and slide.carrier in known:
                 return slide.carrier, slide.turned
@@ -115,18 +117,18 @@ class Board:
         return None
 
     def _order(self, links: tuple[str, ...]) -> list[str]:
-        """Links that show their own direction first."""
+        """Return the links, those that show their own direction first."""
         return sorted(links, key=lambda link: self._ends(link) is None)
 
     def _fixed(self, point: str) -> bool:
         return point in self.case.linkage.links[FRAME].points
 
     def _point(self, link: str) -> complex:
-        """A point of a link that is drawn, in its axes."""
+        """Return a drawn point of a link, in its axes."""
         return next(iter(self.case.linkage.links[link].points.values()), 0j)
 
     def draw(self, links: tuple[str, ...], found: Poses, known: Poses) -> dict[str, Pose]:
-        """Poses as the drawing shows them."""
+        """Return the poses as drawn."""
         drawn = dict(known)
         for link in self._order(links):
             pose, ends = found[link], self._ends(link)
@@ -144,7 +146,7 @@ class Board:
         return drawn
 
     def lay_off(self, links: tuple[str, ...], found: Rates, poses: Poses, known: Rates) -> dict[str, Rate]:
-        """Rates as the velocity plan shows them."""
+        """Return the rates as in the velocity plan."""
         drawn = dict(known)
         for link in self._order(links):
             rate, pose, ends = found[link], poses[link], self._ends(link)
@@ -160,7 +162,7 @@ class Board:
         return drawn
 
     def normals(self, links: tuple[str, ...], poses: Poses, rates: Rates) -> dict[str, Rate]:
-        """Rates whose normal accelerations w^2 l are vectors of the grid."""
+        """Return rates whose normal accelerations w^2 l are vectors of the grid."""
         laid = dict(rates)
         for link in links:
             ends = self._ends(link)
@@ -174,7 +176,7 @@ class Board:
     def accelerate(
         self, links: tuple[str, ...], found: Accels, poses: Poses, rates: Rates, known: Accels
     ) -> dict[str, Accel]:
-        """Accelerations as their plan shows them."""
+        """Return the accelerations as in the acceleration plan."""
         drawn = dict(known)
         for link in self._order(links):
             accel, pose, w, ends = found[link], poses[link], rates[link].w, self._ends(link)
@@ -191,7 +193,7 @@ class Board:
         return drawn
 
     def motion(self, q: Real) -> tuple[Motion, tuple[Placement, ...]]:
-        """All positions drawn."""
+        """Return the motion with all positions drawn."""
         linkage = self.case.linkage
         drives = drives_at(linkage, q)
         frame = frame_state(q)
@@ -218,7 +220,7 @@ class Board:
 
 
 def prepare_board(millimetres: float, case: Case) -> Callable[[Real], MethodAnswers]:
-    """The board on which points are read to so many millimetres."""
+    """Return the drawing board on which points are read to so many millimetres."""
 
     def at(q: Real) -> MethodAnswers:
         exact = compute_motion(case.linkage, case.kernels, q, case.law)

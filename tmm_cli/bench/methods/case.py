@@ -1,4 +1,4 @@
-"""What every method is given, and what it gives back: the common form in which methods are measured side by side."""
+"""Input and output of the methods: the common form in which they are compared."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ QUANTITIES: tuple[Compared, ...] = ("positions", "velocities", "accelerations", 
 
 
 class MethodUnable(Exception):  # noqa: N818 - no error, but what a method says of itself
-    """A method has no way to compute this linkage."""
+    """The method cannot compute this linkage."""
 
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A linkage that is assembled, and how it is driven; lower pairs only.
+    """An assembled linkage with its driver; lower pairs only.
 
-    start: the driver's place at t = 0 (rad or m); strokes: needed where loads act on working strokes only.
+    start: driver coordinate at t = 0 (rad or m); strokes: required if loads act in working strokes only.
     """
 
     name: str
@@ -41,7 +41,7 @@ class Case:
 
     @classmethod
     def of(cls, linkage: Linkage, name: str = "", start: float = 0.0, strokes: Strokes | None = None) -> Case:
-        """A linkage assembled as its sketch shows it. Raises what assembly raises."""
+        """Assemble a linkage as sketched. Raises the errors of `assemble`."""
         structure = analyse_structure(linkage)
         return cls(name, linkage, structure, assemble(linkage, structure), start, strokes)
 
@@ -52,13 +52,13 @@ class Case:
 
     @cached_property
     def size(self) -> float:
-        """The farthest two points of one link, m: what gaps of length are measured against."""
+        """Greatest distance of two points of one link, m: the unit of gaps."""
         return max(link_extent(self.linkage, link) for link in self.linkage.links) or 1.0
 
     def motion(
         self, q: Real, poses: Mapping[str, Pose], first: Mapping[str, Rate], second: Mapping[str, Accel]
     ) -> Motion:
-        """A motion from the states of all links, whatever found them; first and second are derivatives by q."""
+        """Make a motion from the states of all links; first and second are derivatives with respect to q."""
         law, every = self.law, np.ones(np.shape(q), dtype=bool)
         acceleration = np.full(np.shape(q), float(law.sense * law.acceleration))
         return Motion(
@@ -78,11 +78,11 @@ class Case:
         )
 
     def loads(self, motion: Motion) -> tuple[AppliedLoad, ...]:
-        """All that acts on the links of a motion besides reactions."""
+        """Return all forces on the links of a motion except reactions."""
         return collect_loads(motion, self.strokes)
 
     def wrenches(self, motion: Motion) -> dict[str, Wrench]:
-        """The same, added up about the origin of each link."""
+        """Return these forces summed about the origin of each link."""
         nothing = np.zeros(np.shape(motion.q))
         on = {name: Wrench(nothing + 0j, nothing) for name in self.linkage.links}
         for load in self.loads(motion):
@@ -93,10 +93,10 @@ class Case:
 
 @dataclass(frozen=True)
 class MethodAnswers:
-    """What a method found at every position, SI; None is what it does not give.
+    """Results of a method at every position, SI; None if it does not compute a quantity. Arrays are (positions,).
 
-    positions (m), velocities (m/s), accelerations (m/s2) of moving points by their names; reactions (N) on the second
-    link of each pair by its name; balancing moment (N m) or force (N) of the first driver. Arrays are (positions,).
+    positions (m), velocities (m/s), accelerations (m/s2) of moving points by name; reactions (N) on the second link of
+    each pair by name; balancing moment (N m) or force (N) of the first driver.
     """
 
     positions: Mapping[str, Vector] | None = None
@@ -106,17 +106,17 @@ class MethodAnswers:
     balancing: Real | None = None
 
     def series(self, quantity: Compared) -> Mapping[str, Vector] | None:
-        """One quantity by name; the balancing moment under the name of its quantity."""
+        """Return one quantity by name; the balancing moment under the name of its quantity."""
         found = getattr(self, quantity)
         return {quantity: found} if quantity == "balancing" and found is not None else found
 
 
 @dataclass(frozen=True)
 class Method:
-    """A way to compute a case. `prepare` does what is done once a linkage and gives what is done at places q.
+    """A method of computation. `prepare` is called once for a linkage and returns a function of q.
 
-    family: methods that differ in one setting only; timed: whether its time means anything; alone: of another program
-    its own call, without what puts its answers into the common form.
+    family: name shared by methods that differ in one setting; timed: False if its time has no meaning; alone: call of
+    another program without conversion of its results.
     """
 
     name: str
@@ -127,14 +127,14 @@ class Method:
     alone: Callable[[Case], Callable[[Real], object]] | None = None
 
     def solve(self, case: Case, q: Real) -> MethodAnswers:
-        """All in one."""
+        """Prepare the case and evaluate it at q."""
         return self.prepare(case)(np.atleast_1d(np.asarray(q)))
 
 
 def answers_of_motion(
     case: Case, motion: Motion, reactions: Mapping[str, Vector] | None, balancing: Real | None
 ) -> MethodAnswers:
-    """The answers that a motion holds, with forces found from it."""
+    """Return the results from a motion and separately computed forces."""
     points = {name: motion.named(name) for name in case.linkage.moving_points}
     return MethodAnswers(
         {name: point.x for name, point in points.items()},
@@ -146,7 +146,7 @@ def answers_of_motion(
 
 
 def answers_of_plan(case: Case, motion: Motion, plan: Reactions) -> MethodAnswers:
-    """The answers that a motion and its force plan hold."""
+    """Return the results from a motion and its force plan."""
     forces = {r.pair.name: r.onto(r.pair.j) for r in plan.all}
     return answers_of_motion(case, motion, forces, plan.balance.generalized)
 
@@ -154,9 +154,9 @@ def answers_of_plan(case: Case, motion: Motion, plan: Reactions) -> MethodAnswer
 def relative_errors(
     found: MethodAnswers, exact: MethodAnswers, quantities: Iterable[Compared] = QUANTITIES
 ) -> dict[Compared, float]:
-    """The largest error of each quantity over the largest value of the same point or pair in the cycle; nan: not given.
+    """Return the largest error of each quantity relative to the largest value of the same point or pair in the cycle.
 
-    Errors of a method that fails somewhere (nan) are infinite.
+    nan if the quantity is not computed; infinite if the method fails in some position (nan).
     """
     worst: dict[Compared, float] = {}
     for quantity in quantities:

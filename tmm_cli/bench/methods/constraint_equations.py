@@ -40,7 +40,7 @@ from tmm_cli.mechanics.structure import Pair
 
 @dataclass(frozen=True)
 class PairEquations:
-    """Two rows a pair, then the driver's if it is one of them. size (m): what lengths are counted in."""
+    """Two rows for each pair, then that of the driver if `driven`. size (m): unit of lengths."""
 
     linkage: Linkage
     pairs: tuple[Pair, ...]
@@ -49,21 +49,23 @@ class PairEquations:
 
     @cached_property
     def constraints(self) -> tuple[PairConstraint, ...]:
-        """What each pair, and the driver, asks of its links."""
+        """Constraint equations of the pairs and of the driver."""
         found = tuple(PAIR_CONSTRAINTS[pair.kind](pair, self.linkage) for pair in self.pairs)
         return (*found, DriverConstraint.of(self.linkage.driver, self.linkage)) if self.driven else found
 
     @cached_property
     def scale(self) -> Real:
-        """What makes each row a pure number."""
+        """Factors that make each row dimensionless."""
         return np.array([1 / self.size if length else 1.0 for c in self.constraints for length in c.lengths])
 
     def residuals(self, poses: Poses, drives: DriverStates) -> Real:
-        """What each row is short of zero, (positions, rows)."""
+        """Return the residuals, shape (positions, rows)."""
         return np.stack([row for c in self.constraints for row in c.residuals(poses, drives)], axis=-1) * self.scale
 
     def matrix(self, poses: Poses) -> Real:
-        """Derivatives by x, y and angle of each moving link, (positions, rows, 3 links)."""
+        """Return the derivatives with respect to x, y and angle of each moving link, shape (positions, rows, 3
+        links).
+        """
         first = {name: 3 * k for k, name in enumerate(self.linkage.moving)}
         J = np.zeros((len(poses[self.linkage.driver.link].x), len(self.scale), 3 * len(first)))
         for number, constraint in enumerate(self.constraints):
@@ -75,11 +77,11 @@ class PairEquations:
         return J * self.scale[:, None]
 
     def velocity_terms(self, poses: Poses, rates: Rates) -> Real:
-        """Second derivatives when no link accelerates, (positions, rows)."""
+        """Return the second derivatives with all link accelerations zero, shape (positions, rows)."""
         return np.stack([row for c in self.constraints for row in c.velocity_terms(poses, rates)], axis=-1) * self.scale
 
     def reactions(self, poses: Poses, multipliers: Real) -> dict[str, Vector]:
-        """Multipliers as forces on the second link of each pair, N."""
+        """Return the multipliers as forces on the second link of each pair, N."""
         found: dict[str, Vector] = {}
         pushes = list(np.moveaxis(multipliers * self.scale, -1, 0))
         for number, (pair, constraint) in enumerate(zip(self.pairs, self.constraints, strict=False)):
@@ -89,34 +91,36 @@ class PairEquations:
 
 
 def columns_by_link(linkage: Linkage, parts: Mapping[str, tuple[Vector, Real]]) -> Real:
-    """A vector and a number of each moving link, of its origin and its angle, in the columns of the matrix."""
+    """Stack a vector (of the origin) and a number (of the angle) of each moving link in the columns of the matrix."""
     found = [part for at, around in map(parts.__getitem__, linkage.moving) for part in (at.real, at.imag, around)]
     return np.stack(found, axis=-1)
 
 
-# Newton's method on the closure of a whole linkage, started from the nearest of places that were followed once.
+# Newton's method on the closure of the whole linkage, from the nearest node of a trace that is made once.
 
 
-MOST_ITERATIONS = 12  # of Newton's method at most; more help nothing where it converges at all
+MOST_ITERATIONS = 12  # of Newton's method; more do not help where it converges at all
 TRACED_POSITIONS = 36  # in a turn of the driver, or over the length of the linkage to both sides of the sketch
-LEAST_GAP = 1e-11  # a gap below this that no longer halves is rounding
+LEAST_GAP = 1e-11  # a residual below this that is no longer halved is rounding
 
 
 class LinkageClosure(Protocol):
-    """The equations of a linkage in coordinates X (positions, unknowns) of its own choice, without dimension."""
+    """Interface of the equations of a linkage in coordinates X (positions, unknowns), dimensionless."""
 
     def residuals(self, X: Real, q: Real) -> Real:
-        """What each equation is short of zero, (positions, unknowns)."""
+        """Return the residuals, shape (positions, unknowns)."""
 
     def matrix(self, X: Real, q: Real) -> Real:
-        """Their derivatives by the coordinates, (positions, unknowns, unknowns)."""
+        """Return the derivatives with respect to the coordinates, shape (positions, unknowns, unknowns)."""
 
     def sketched(self, poses: dict[str, Pose], q: Real) -> Real:
-        """The coordinates of given poses."""
+        """Return the coordinates of given poses."""
 
 
 def close_positions(closure: LinkageClosure, X: Real, q: Real, tolerance: float) -> Real:
-    """Newton's method, each position until its gaps are within the tolerance, or are rounding; else it is nan."""
+    """Apply Newton's method until the residuals of each position are within the tolerance or rounding; otherwise
+    nan.
+    """
     active, last = np.ones(len(q), dtype=bool), np.full(len(q), np.inf)
     for _ in range(MOST_ITERATIONS):
         residuals = closure.residuals(X, q)
@@ -134,14 +138,14 @@ def close_positions(closure: LinkageClosure, X: Real, q: Real, tolerance: float)
 
 @dataclass(frozen=True)
 class TracedCoordinates:
-    """Coordinates of a closure along the driver's way, at growing places q."""
+    """Coordinates of a closure at increasing driver coordinates q."""
 
     q: Real
     X: Real
     cycle: float | None
 
     def near(self, q: Real) -> Real:
-        """Those of the nearest node."""
+        """Return the coordinates of the nearest node."""
         within = q if self.cycle is None else self.q[0] + np.mod(q - self.q[0], self.cycle)
         right = np.clip(np.searchsorted(self.q, within), 1, len(self.q) - 1)
         nearer = np.where(within - self.q[right - 1] < self.q[right] - within, right - 1, right)
@@ -149,7 +153,9 @@ class TracedCoordinates:
 
 
 def trace_coordinates(case: Case, closure: LinkageClosure) -> TracedCoordinates:
-    """A walk from the sketch to both sides, as far as the linkage goes; half a turn each way for a crank."""
+    """Trace the coordinates from the sketch to both sides, as far as the linkage moves; half a turn each way for a
+    crank.
+    """
     at = case.linkage.sketch.at
     here = np.array([at])
     poses = dict(compute_motion(case.linkage, case.kernels, here, case.law).poses)
@@ -164,7 +170,7 @@ def trace_coordinates(case: Case, closure: LinkageClosure) -> TracedCoordinates:
 
 
 def _trace_one_way(closure: LinkageClosure, X: Real, at: float, step: float) -> list[tuple[float, Real]]:
-    """Places and coordinates one step after the other, until it no longer closes."""
+    """Return driver and closure coordinates step by step, until the closure fails."""
     found: list[tuple[float, Real]] = []
     with np.errstate(all="ignore"):
         for k in range(1, TRACED_POSITIONS // 2 + 1):
@@ -176,17 +182,17 @@ def _trace_one_way(closure: LinkageClosure, X: Real, at: float, step: float) -> 
     return found
 
 
-# Newton's method on loop closure: joint coordinates along a tree of pairs, each pair beside it closes a loop.
+# Newton's method on loop closure: joint coordinates along a spanning tree of pairs; each other pair closes a loop.
 #
 # R. L. Norton, Design of Machinery, ch. 4 and 7; J. Garcia de Jalon, E. Bayo, Kinematic and Dynamic Simulation of
-# Multibody Systems, ch. 2 (relative coordinates). There are two equations a loop. One matrix gives places,
+# Multibody Systems, ch. 2 (relative coordinates). There are two equations per loop. One matrix gives positions,
 # velocities, accelerations and, transposed, the forces in the cut pairs; forces in the tree then follow from its
 # leaves to its root.
 
 
 @dataclass(frozen=True)
 class TreeBranch:
-    """A pair of the tree: it joins link `own` to one that is nearer to the frame."""
+    """A pair of the spanning tree, which joins the link `own` to one nearer to the frame."""
 
     pair: Pair
     own: str
@@ -197,19 +203,19 @@ class TreeBranch:
 
     @property
     def runs(self) -> bool:
-        """Whether the own link is the runner of a sliding pair (else it is the carrier)."""
+        """True if the own link is the runner of a prismatic pair, False if it is the carrier."""
         return self.pair.slide is not None and self.pair.slide.runner == self.own
 
 
 @dataclass(frozen=True)
 class LoopEquations:
-    """Coordinates: one a moving link, the angle or run in the pair that joins it to the tree; the driver's is given."""
+    """Loop closure in joint coordinates: the angle or run in the pair that joins each moving link to the tree."""
 
     case: Case
 
     @cached_property
     def tree(self) -> tuple[TreeBranch, ...]:
-        """Branches from the frame outward, drivers first where there is a choice."""
+        """Branches from the frame outwards, drivers first where possible."""
         structure = self.case.structure
         driving = [structure.driving_pair(driver) for driver in structure.drivers]
         pairs = sorted(structure.pairs, key=lambda pair: pair not in driving)
@@ -223,38 +229,38 @@ class LoopEquations:
 
     @cached_property
     def cut(self) -> tuple[Pair, ...]:
-        """Pairs beside the tree."""
+        """Pairs outside the tree."""
         inside = [branch.pair for branch in self.tree]
         return tuple(pair for pair in self.case.structure.pairs if pair not in inside)
 
     @cached_property
     def rows(self) -> PairEquations:
-        """Their equations."""
+        """Equations of these pairs."""
         return PairEquations(self.case.linkage, self.cut, size=self.case.size)
 
     @cached_property
     def given(self) -> int:
-        """The driver's coordinate."""
+        """Index of the driver coordinate."""
         pair = self.case.structure.driving_pair(self.case.linkage.driver)
         return next(k for k, branch in enumerate(self.tree) if branch.pair == pair)
 
     @cached_property
     def free(self) -> list[int]:
-        """The unknown ones."""
+        """Indices of the unknown coordinates."""
         return [k for k in range(len(self.tree)) if k != self.given]
 
     @cached_property
     def paths(self) -> Mapping[str, frozenset[int]]:
-        """Which coordinates move each link."""
+        """Indices of the coordinates that move each link."""
         found: dict[str, frozenset[int]] = {FRAME: frozenset()}
         for k, branch in enumerate(self.tree):
             found[branch.own] = found[branch.before] | {k}
         return found
 
-    # places
+    # positions
 
     def all(self, X: Real, q: Real) -> list[Real]:
-        """Unknowns and driver in the order of the tree."""
+        """Return unknowns and driver coordinate in the order of the tree."""
         columns = list(np.moveaxis(X, -1, 0))
         columns.insert(self.given, q)
         return columns
@@ -301,9 +307,10 @@ class LoopEquations:
         return (self.rows.matrix(poses) @ self.transformation(poses))[..., self.free]
 
     def transformation(self, poses: Poses) -> Real:
-        """What a unit of each coordinate, the driver's too, does to x, y and angle of the links that it moves.
+        """Return the derivatives of x, y and angle of the links with respect to the coordinates, that of the driver
+        included.
 
-        (positions, 3 links, coordinates): matrix R of Garcia de Jalon and Bayo.
+        Shape (positions, 3 links, coordinates): matrix R of Garcia de Jalon and Bayo.
         """
         R = np.zeros((len(poses[FRAME].x), 3 * len(self.tree), len(self.tree)))
         for k, branch in enumerate(self.tree):
@@ -323,7 +330,7 @@ class LoopEquations:
         return poses[link].at(self.case.linkage.local(link, pair.point))
 
     def states(self, poses: Poses, speeds: list[Real], bends: list[Real]) -> tuple[dict[str, Rate], dict[str, Accel]]:
-        """Rates and accelerations of all links from those of the coordinates."""
+        """Return rates and accelerations of all links from those of the coordinates."""
         _, rest, still = frame_state(poses[FRAME].x)
         first, second = {FRAME: rest}, {FRAME: still}
         for branch, s1, s2 in zip(self.tree, speeds, bends, strict=True):
@@ -340,7 +347,7 @@ class LoopEquations:
                 u = GuideGeometry.at(slide, poses).u
                 sense = 1 if branch.runs else -1
                 v = v + sense * s1 * u
-                # Coriolis; a carrier sees its runner's point run backward through its own points
+                # Coriolis; relative to its own points, the carrier sees the point of the runner move backwards
                 a = a + sense * (2j * w * s1 * u + s2 * u)
             first[branch.own] = Rate.through(v, w, arm)
             second[branch.own] = Accel.through(a, e, w, arm)
@@ -349,7 +356,7 @@ class LoopEquations:
     # forces
 
     def forces(self, poses: Poses, J: Real, Q: Real, on: Mapping[str, Wrench]) -> tuple[dict[str, Vector], Real]:
-        """Reactions on the second link of each pair, and what balances the driver."""
+        """Return the reactions on the second link of each pair, and the balancing moment or force of the driver."""
         cut = solve(np.swapaxes(J[..., self.free], -1, -2), -Q[..., self.free])
         balancing = -(Q[:, self.given] + np.einsum("nr,nr->n", J[..., self.given], cut))
         borne = {link: wrench.force for link, wrench in on.items()}
@@ -366,13 +373,15 @@ class LoopEquations:
 
 @lru_cache(maxsize=8)
 def _traced_loops(case: Case) -> tuple[LoopEquations, TracedCoordinates]:
-    """The walk along the driver's way, once for all tolerances."""
+    """Trace the coordinates over the range of the driver, once for all tolerances."""
     loops = LoopEquations(case)
     return loops, trace_coordinates(case, loops)
 
 
 def prepare_loops(tolerance: float, case: Case) -> Callable[[Real], MethodAnswers]:
-    """The method that stops when every loop closes within the tolerance, a share of the linkage's size (or rad)."""
+    """Return the method that stops when every loop closes within the tolerance (fraction of the linkage size, or
+    rad).
+    """
     loops, nodes = _traced_loops(case)
 
     def at(q: Real) -> MethodAnswers:
@@ -395,12 +404,12 @@ def prepare_loops(tolerance: float, case: Case) -> Callable[[Real], MethodAnswer
     return at
 
 
-TOLERANCE = 0.0  # until gaps are rounding
+TOLERANCE = 0.0  # until residuals are rounding
 
 
 @dataclass(frozen=True)
 class MultibodyEquations:
-    """Coordinates x, y, angle of every moving link in their order; rows: two a pair, the driver's last."""
+    """Coordinates x, y, angle of every moving link; two rows for each pair, that of the driver last."""
 
     case: Case
 
@@ -410,11 +419,11 @@ class MultibodyEquations:
 
     @cached_property
     def first(self) -> dict[str, int]:
-        """Where the three coordinates of each link begin."""
+        """Index of the first coordinate of each link."""
         return {name: 3 * k for k, name in enumerate(self.case.linkage.moving)}
 
     def poses(self, X: Real) -> dict[str, Pose]:
-        """Poses of all links, the frame's too."""
+        """Return the poses of all links, including the frame."""
         found = {FRAME: frame_state(X[:, 0])[0]}
         for name, k in self.first.items():
             found[name] = Pose(X[:, k] + 1j * X[:, k + 1], unit(X[:, k + 2]), X[:, k + 2])
@@ -431,7 +440,7 @@ class MultibodyEquations:
 
 
 def prepare_multibody(case: Case) -> Callable[[Real], MethodAnswers]:
-    """One linear system a position and order: J^T for the forces, J for all else."""
+    """Return the method with one linear system for each position and order: J^T for the forces, J otherwise."""
     body = MultibodyEquations(case)
     nodes = trace_coordinates(case, body)
 

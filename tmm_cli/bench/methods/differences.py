@@ -1,7 +1,7 @@
-"""Velocities and accelerations by central differences of positions; positions are the closed form's.
+"""Velocities and accelerations by central differences of positions, which are in closed form.
 
 f' = (f(q + h) - f(q - h)) / 2h with the error h^2 f'''/6, f'' = (f(q + h) - 2 f(q) + f(q - h)) / h^2 with h^2 f''''/12;
-rounding adds its unit over h and over h^2. Forces are found from what the differences give.
+rounding adds its unit over h and over h^2. Forces are computed from these.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from tmm_cli.mechanics.numerics import Real
 
 
 def prepare_differences(step: float, case: Case) -> Callable[[Real], MethodAnswers]:
-    """The method with one step of the driver (rad, or the linkage's size for a driver that slides)."""
+    """Return the method with this step of the driver (rad, or for a sliding driver a fraction of the linkage size)."""
     h = step * (1.0 if case.linkage.driver.kind == "turn" else case.size)
 
     def answer(q: Real) -> MethodAnswers:
@@ -27,11 +27,11 @@ def prepare_differences(step: float, case: Case) -> Callable[[Real], MethodAnswe
         here, less, more = (
             compute_motion(case.linkage, case.kernels, at, case.law, 0, blank=False) for at in (q, back, on)
         )
-        half = (on - back) / 2  # as it was rounded
+        half = (on - back) / 2  # the step as rounded
         first, second = {}, {}
         for name, pose in here.poses.items():
             behind, ahead = less.poses[name], more.poses[name]
-            # angles against the middle one, so that a full turn between them does no harm
+            # angles relative to the middle one, so that full turns have no effect
             a, b = np.angle(behind.z * np.conj(pose.z)), np.angle(ahead.z * np.conj(pose.z))
             first[name] = Rate((ahead.x - behind.x) / (2 * half), (b - a) / (2 * half))
             second[name] = Accel((ahead.x - 2 * pose.x + behind.x) / half**2, (a + b) / half**2)

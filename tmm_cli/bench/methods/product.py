@@ -1,6 +1,5 @@
-"""The product's own way, closed-form groups with forces walked backward through them: in float64, and other numbers.
-
-The others are float32, and double-doubles.
+"""The product's method, groups in closed form and forces group by group, in several precisions and as a traced
+program.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from tmm_cli.mechanics.structure import Group, Pair
 
 
 def convert_precision(value: Any, real: type) -> Any:
-    """All numbers in records, tuples and arrays as `real` or its complex counterpart; widening is exact."""
+    """Convert all numbers in records, tuples and arrays to `real` or its complex counterpart; widening is exact."""
     if isinstance(value, (bool, int, str, Group, Pair)) or value is None:
         return value
     if isinstance(value, np.ndarray):
@@ -45,7 +44,7 @@ def convert_precision(value: Any, real: type) -> Any:
 
 @dataclass(frozen=True)
 class ConvertedSolver(WrappedSolver):
-    """A group whose work is done in another precision, whatever it is given."""
+    """A solver whose input and output are converted to another precision."""
 
     real: type
 
@@ -54,19 +53,21 @@ class ConvertedSolver(WrappedSolver):
 
 
 def prepare_double(case: Case) -> Callable[[Real], MethodAnswers]:
-    """Groups of class II are closed, those of higher classes are found by Newton's method from a track of theirs."""
+    """Return the method in float64: groups of class II in closed form, higher classes by Newton's method from their
+    trace.
+    """
     return _prepare_precision(case, np.float64)
 
 
 def prepare_single(case: Case) -> Callable[[Real], MethodAnswers]:
-    """Data, groups and forces in float32; only sums of loads and the last products with the speed are in float64."""
+    """Return the method in float32; only sums of loads and the last products with the speed are in float64."""
     linkage = convert_precision(case.linkage, np.float32)
     kernels = tuple(ConvertedSolver(k.group, k.size, _round_start(k.rebind(linkage)), np.float32) for k in case.kernels)
     return _prepare_precision(replace(case, linkage=linkage, kernels=kernels), np.float32)
 
 
 def _round_start(kernel: GroupSolver) -> GroupSolver:
-    """A group of a higher class starts from rounded places too."""
+    """Round the initial guesses of a group of higher class."""
     if isinstance(kernel, NewtonSolver):
         return replace(
             kernel, start=convert_precision(kernel.start, np.float32), trace=convert_precision(kernel.trace, np.float32)
@@ -75,7 +76,7 @@ def _round_start(kernel: GroupSolver) -> GroupSolver:
 
 
 def prepare_extended(case: Case) -> Callable[[Real], MethodAnswers]:
-    """Everything in double-doubles, from the same numbers; answers in longdouble, as the truth is."""
+    """Return the method in double-doubles, from the same numbers; results in longdouble, as the reference values."""
     linkage = as_double_doubles(case.linkage)
     wide = _prepare_precision(
         replace(case, linkage=linkage, kernels=tuple(k.rebind(linkage) for k in case.kernels)), to_double_double
@@ -91,17 +92,17 @@ def _longdouble(value: DoubleDouble) -> Any:
 def _prepare_precision(case: Case, real: Callable[[Any], Any]) -> Callable[[Real], MethodAnswers]:
     def at(q: Real) -> MethodAnswers:
         motion = compute_motion(case.linkage, case.kernels, real(q), case.law)
-        motion = replace(motion, rate=real(motion.rate))  # else its square is rounded to float64
+        motion = replace(motion, rate=real(motion.rate))  # otherwise its square would be rounded to float64
         return answers_of_plan(case, motion, solve_reactions(motion, case.structure, case.loads(motion)))
 
     return at
 
 
-# The product's own way for many positions: the groups written on a tape and played back.
+# The product's method for many positions: the groups as a traced program, which is replayed.
 
 
 def make_batch(case: Case, *, forces: bool = True) -> Batch:
-    """What the common form of answers holds, and nothing else: QUANTITY.NAME, and "balancing"."""
+    """Make a batch of the quantities of the common form only: QUANTITY.NAME, and "balancing"."""
 
     def asked(motion: Motion, plan: Reactions | None) -> Mapping[str, Any]:
         found: dict[str, Any] = {}
@@ -117,10 +118,10 @@ def make_batch(case: Case, *, forces: bool = True) -> Batch:
 
 
 def prepare_traced(case: Case) -> Callable[[Real], MethodAnswers]:
-    """Writes the tape. Raises Unable for what cannot be written on one."""
+    """Return the method as a traced program. Raises MethodUnable for linkages that cannot be traced."""
     played = make_batch(case)
     if played.program is None:
-        raise MethodUnable("laws of cams, friction and passive constraints cannot be written on a tape")
+        raise MethodUnable("cam laws, friction and redundant constraints cannot be traced")
     kinds = ("positions", "velocities", "accelerations", "reactions")
     names = {kind: [name for name in played.program.outputs if name.startswith(f"{kind}.")] for kind in kinds}
 

@@ -1,4 +1,4 @@
-"""Ways to compute a linkage, the product's own and its rivals, in one form: a new one is a file and a line here."""
+"""Register of the methods, those of the product and its rivals: a new one is a module and a line here."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def method_family(
     *,
     timed: bool = True,
 ) -> tuple[Method, ...]:
-    """Methods that differ in one setting."""
+    """Return methods that differ in one setting."""
     return tuple(Method(f"{name}-{key}", name, partial(prepare, at), at, timed) for key, at in settings.items())
 
 

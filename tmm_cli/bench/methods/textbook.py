@@ -1,4 +1,4 @@
-"""Formulas of the textbooks for one mechanism, as students type them in: a four-bar or a central crank-slider.
+"""Textbook formulas for one mechanism, as students type them in: a four-bar or a central crank-slider.
 
 The law of cosines (two inverse cosines for the angles of the diagonal), and the tangent of half the angle from
 Freudenstein's equation. R. L. Norton, Design of Machinery, ch. 4 (4.5), 6 (6.7) and 7 (7.3); F. Freudenstein, Trans.
@@ -21,7 +21,7 @@ Angles = Callable[[Real, int], tuple[Real, Real]]
 
 @dataclass(frozen=True)
 class TextbookFourBar:
-    """Pivots O and D, lengths a, b, c of crank OA, coupler AB, rocker DB, and how fast the crank turns (rad/s)."""
+    """Pivots O and D, lengths a, b, c of crank OA, coupler AB and rocker DB, and speed of the crank (rad/s)."""
 
     O: complex  # noqa: E741
     D: complex
@@ -31,7 +31,7 @@ class TextbookFourBar:
     w: float
 
     def cosines(self, q: Real, sign: int) -> tuple[Real, Real]:
-        """Directions of coupler and rocker (rad), B on the left of AD for sign 1."""
+        """Return the directions of coupler and rocker (rad), with B to the left of AD for sign 1."""
         base = self.D - self.O - self.a * unit(q)
         f = np.abs(base)
         at_a = np.arccos((self.b**2 + f**2 - self.c**2) / (2 * self.b * f))
@@ -40,7 +40,7 @@ class TextbookFourBar:
         return along + sign * at_a, along + np.pi - sign * at_d
 
     def freudenstein(self, q: Real, sign: int) -> tuple[Real, Real]:
-        """The same by K1 to K5 and the roots of two quadratic equations in the tangents of half the angles."""
+        """Return the same directions from K1 to K5 and two quadratic equations in the tangents of half the angles."""
         d, along = abs(self.D - self.O), np.angle(self.D - self.O)
         a, b, c, t = self.a, self.b, self.c, np.cos(q - along)
         k1, k2, k3 = d / a, d / c, (a * a - b * b + c * c + d * d) / (2 * a * c)
@@ -51,7 +51,7 @@ class TextbookFourBar:
         return along + coupler, along + rocker
 
     def solved(self, q: Real, angles: tuple[Real, Real]) -> MethodAnswers:
-        """Points A and B from the angles of the links, B on the rocker."""
+        """Return the points A and B from the angles of the links, B on the rocker."""
         a, b, c, w = self.a, self.b, self.c, self.w
         three, four = angles
         w3 = a * w * np.sin(four - q) / (b * np.sin(three - four))
@@ -70,7 +70,7 @@ class TextbookFourBar:
 
 @dataclass(frozen=True)
 class TextbookCrankSlider:
-    """Crank OA = a and rod AB = b, the guide through O in the direction `along` (rad)."""
+    """Crank OA = a and rod AB = b, guide through O in the direction `along` (rad)."""
 
     O: complex  # noqa: E741
     a: float
@@ -79,19 +79,19 @@ class TextbookCrankSlider:
     w: float
 
     def cosines(self, q: Real, sign: int) -> tuple[Real, Real]:
-        """The rod's direction (rad) by an inverse sine; it is given twice as a four-bar's two links are."""
+        """Return the direction of the rod (rad) by an inverse sine; twice, for the two links of a four-bar."""
         lean = np.arcsin(-self.a * np.sin(q - self.along) / self.b)
         rod = self.along + (lean if sign > 0 else np.pi - lean)
         return rod, rod
 
     def freudenstein(self, q: Real, sign: int) -> tuple[Real, Real]:
-        """By the tangent of half the angle: s t^2 - 2 t + s = 0 with s its sine."""
+        """Return the direction from the tangent of half the angle: s t^2 - 2 t + s = 0 with s its sine."""
         s = -self.a * np.sin(q - self.along) / self.b
         rod = self.along + _half_angle(s, -2 + 0 * s, s, -sign)
         return rod, rod
 
     def solved(self, q: Real, angles: tuple[Real, Real]) -> MethodAnswers:
-        """Points A and B from the rod's angle."""
+        """Return the points A and B from the angle of the rod."""
         a, b, w = self.a, self.b, self.w
         crank, rod = a * unit(q), b * unit(angles[0])
         unwrapped, lean = q - self.along, angles[0] - self.along
@@ -105,13 +105,13 @@ class TextbookCrankSlider:
 
 
 def _half_angle(a: Real, b: Real, c: Real, sign: int) -> Real:
-    """2 arctan of a root of a t^2 + b t + c = 0."""
+    """Return 2 arctan of a root of a t^2 + b t + c = 0."""
     angle: Real = 2 * np.arctan((-b + sign * np.sqrt(b * b - 4 * a * c)) / (2 * a))
     return angle
 
 
 def recognise(case: Case) -> TextbookFourBar | TextbookCrankSlider:
-    """The mechanism; Unable where there is no formula for it in the book."""
+    """Return the mechanism. Raises MethodUnable if the book has no formula for it."""
     linkage = case.linkage
     driver, types = linkage.driver, [group.type for group in case.structure.groups]
     w = driver.sense * driver.rate
@@ -142,7 +142,9 @@ def _prepare(
 
 
 def _sketched_side(mechanism: TextbookFourBar | TextbookCrankSlider, points: Mapping[str, complex]) -> int:
-    """The assembly of the sketch: 1 with B on the left of AD, of a slider with B before A along the guide."""
+    """Return the assembly of the sketch: 1 with B to the left of AD, or for a slider with B ahead of A along the
+    guide.
+    """
     rod = points["B"] - points["A"]
     if isinstance(mechanism, TextbookCrankSlider):
         return 1 if dot(rod, unit(mechanism.along)) > 0 else -1
@@ -150,10 +152,10 @@ def _sketched_side(mechanism: TextbookFourBar | TextbookCrankSlider, points: Map
 
 
 def cosines(case: Case) -> Callable[[Real], MethodAnswers]:
-    """By the law of cosines."""
+    """Return the method by the law of cosines."""
     return _prepare(case, lambda mechanism: mechanism.cosines)
 
 
 def freudenstein(case: Case) -> Callable[[Real], MethodAnswers]:
-    """By Freudenstein's equation."""
+    """Return the method by Freudenstein's equation."""
     return _prepare(case, lambda mechanism: mechanism.freudenstein)

@@ -1,4 +1,4 @@
-"""kinepy: positions by closed form, accelerations by second differences over time, forces from those."""
+"""kinepy: positions in closed form, accelerations by second differences over time, forces from these."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import Real, Vector, cross, unit
 
-STEP = 2 * np.pi / 360  # rad: places are at most so far apart, since differences over time are taken between them
+STEP = 2 * np.pi / 360  # rad: largest step, since differences over time are taken between positions
 SAME = 1e-6  # of the linkage's size
 
 
 def prepare(case: Case) -> Callable[[Real], MethodAnswers]:
-    """Its answers in the common form, for places q at equal steps. Raises Unable."""
+    """Return its results in the common form, for q at equal steps. Raises MethodUnable."""
     model = _Model(case)
 
     def at(q: Real) -> MethodAnswers:
@@ -32,17 +32,17 @@ def prepare(case: Case) -> Callable[[Real], MethodAnswers]:
 
 
 def alone(case: Case) -> Callable[[Real], object]:
-    """Its `solve_dynamics` and nothing else: it has one route, in NumPy. Raises Unable."""
+    """Return its `solve_dynamics` alone: its only route, in NumPy. Raises MethodUnable."""
     return _Model(case).solve
 
 
 class _Model:
-    """The linkage in kinepy's terms, SI."""
+    """The linkage as a kinepy model, SI."""
 
     def __init__(self, case: Case) -> None:
         driver = case.linkage.driver
         if driver.kind != "turn" or case.linkage.others:
-            raise MethodUnable("the driver must be one crank here")
+            raise MethodUnable("the driver must be a single crank")
         kinepy.units.set_unit_system(kinepy.units.SI)
         self.case, self.system = case, kinepy.System()
         self.solids: dict[str, Any] = {FRAME: self.system.ground}
@@ -71,17 +71,17 @@ class _Model:
         gravity = self.case.linkage.gravity
         self.system.add_gravity(_xy(gravity))
         self._loaded: tuple[float, float, int] | None = None
-        with redirect_stdout(io.StringIO()):  # it tells what it does
+        with redirect_stdout(io.StringIO()):  # it prints its progress
             self.system.pilot(self.crank)
             self.system.block(self.crank)
             try:
                 self.system.compile()
             except Exception as error:
-                raise MethodUnable(f"it does not compile this: {type(error).__name__}") from None
+                raise MethodUnable(f"the program cannot build this linkage: {type(error).__name__}") from None
         self._choose()
 
     def _choose(self) -> None:
-        """The assemblies that the sketch shows."""
+        """Choose the assemblies of the sketch."""
         case = self.case
         q = case.start + STEP * np.arange(5)
         true = compute_motion(case.linkage, case.kernels, q, case.law)
@@ -92,17 +92,17 @@ class _Model:
             found = self.positions()
             if all(np.max(np.abs(found[p] - true.named(p).x)) < SAME * case.size for p in case.linkage.moving_points):
                 return
-        raise MethodUnable("it does not solve this linkage")
+        raise MethodUnable("the program does not solve this linkage")
 
     def solve(self, q: Real) -> tuple[slice, float]:
-        """Everything at places q at equal steps, two more at the ends, whose values it loses.
+        """Solve for q at equal steps, with two more positions at the ends, whose values kinepy loses.
 
-        Gives which of its places are those that are asked for, and the seconds between two.
+        Returns the slice of the requested positions, and the time step (s).
         """
         key = (float(q[0]), float(q[1] - q[0]), len(q))
         if key != self._loaded:
             step = key[1]
-            self._times = max(1, int(np.ceil(abs(step) / STEP - 1e-9)))  # places between two that are asked for
+            self._times = max(1, int(np.ceil(abs(step) / STEP - 1e-9)))  # steps between two requested positions
             step /= self._times
             self._grid = q[0] + step * np.arange(-1, (len(q) - 1) * self._times + 2)
             motion = compute_motion(self.case.linkage, self.case.kernels, self._grid, self.case.law)  # loads are data
@@ -113,7 +113,7 @@ class _Model:
         return slice(1, -1, self._times), self._dt
 
     def load(self, acting: list[tuple[str, complex, Vector, Real]]) -> None:
-        """Loads of the task, instead of those before."""
+        """Apply the loads of the case instead of earlier ones."""
         for name in self.solids:
             self.solids[name].external_actions.externals.clear()
         for link, at, force, moment in acting:
@@ -123,7 +123,7 @@ class _Model:
                 self.solids[link].add_torque(moment)
 
     def positions(self) -> dict[str, Vector]:
-        """Places of the named points."""
+        """Return the positions of the named points."""
         found = {}
         for point in self.case.linkage.moving_points:
             link = self.case.linkage.owner(point)
@@ -132,7 +132,7 @@ class _Model:
         return found
 
     def answers(self, chosen: slice, dt: float) -> MethodAnswers:
-        """What it has found, with its own differences for velocities and accelerations."""
+        """Return its results, with its own differences for velocities and accelerations."""
         x = self.positions()
         v = {name: _between((at[2:] - at[:-2]) / (2 * dt)) for name, at in x.items()}
         a = {name: _between((at[2:] + at[:-2] - 2 * at[1:-1]) / (dt * dt)) for name, at in x.items()}
@@ -141,7 +141,7 @@ class _Model:
         return MethodAnswers(one, two, three, reactions, -np.asarray(self.crank.torque)[chosen])
 
     def _force(self, name: str) -> Vector:
-        """On the pair's second link; kinepy gives what acts on the first."""
+        """Return the reaction on the second link of a pair; kinepy gives the one on the first."""
         joint = self.joints[name]
         pair = self.case.structure.pair(name)
         if pair.slide is None:

@@ -1,4 +1,4 @@
-"""pylinkage: kinematics of linkages made of a crank and of RRR and RRP groups, step by step from one position on."""
+"""pylinkage: kinematics of linkages of a crank and RRR and RRP groups, step by step from one position to the next."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tmm_cli.mechanics.structure import Group, Pair
 
 
 def prepare(case: Case) -> Callable[[Real], MethodAnswers]:
-    """Its answers in the common form, for places q at equal steps. Raises Unable."""
+    """Return its results in the common form, for q at equal steps. Raises MethodUnable."""
     simulated, names = _simulated(case)
     own = [(k, name) for k, name in enumerate(names) if name in case.linkage.moving_points]
 
@@ -32,19 +32,20 @@ def prepare(case: Case) -> Callable[[Real], MethodAnswers]:
 
 
 def alone(case: Case) -> Callable[[Real], object]:
-    """Its own call and nothing else. Raises Unable."""
+    """Return its own call alone. Raises MethodUnable."""
     return _simulated(case)[0]
 
 
 def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list[str]]:
-    """Positions, velocities, accelerations (places, joints, 2) at equal steps of the crank, and the joints' names.
+    """Return a function for positions, velocities, accelerations (positions, joints, 2) at equal steps, and joint
+    names.
 
-    This is the fastest route that its documentation has: the solver that numba compiles, called directly with arrays
-    that are made once (pylinkage.solver).
+    This is the fastest route in its documentation: the solver compiled by numba, called directly with arrays that are
+    made once (pylinkage.solver).
     """
     driver = case.linkage.driver
     if driver.kind != "turn" or case.linkage.others:
-        raise MethodUnable("a crank is the only driver")
+        raise MethodUnable("the driver must be a single crank")
     start = compute_motion(case.linkage, case.kernels, np.array([case.start]), case.law)
     places = {point: complex(start.named(point).x[0]) for point in case.linkage.moving_points}
     parts: dict[str, Any] = {}
@@ -53,7 +54,7 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
     arm = case.linkage.links[driver.link].points
     ends = [point for point in arm if point != driver.joint]
     if len(ends) != 1:
-        raise MethodUnable("a crank has one end")
+        raise MethodUnable("the crank must have one end point")
     radius = abs(arm[ends[0]] - arm[driver.joint])
     crank = parts[ends[0]] = Crank(parts[driver.joint], radius, 0.0, case.start, name=ends[0])
     guides: list[Any] = []
@@ -64,7 +65,7 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
     made: dict[tuple[float, float], tuple[Any, tuple[Any, ...]]] = {}
 
     def arrays(first: float, step: float) -> tuple[Any, tuple[Any, ...]]:
-        """Joints one step before the first place, and what else its solver is given."""
+        """Return the joints one step before the first position, and the other arguments of its solver."""
         before = compute_motion(case.linkage, case.kernels, np.array([first - step]), case.law)
         for name in set(case.linkage.moving_points) & set(parts):
             at = complex(before.named(name).x[0])
@@ -96,17 +97,17 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
 
 
 def _add(group: Group, case: Case, parts: dict[str, Any], guides: list[Any], places: Mapping[str, complex]) -> None:
-    """The inner hinge of a group."""
+    """Add the internal hinge of a group."""
     local = case.linkage.local
     if group.type not in ("RRR", "RRP"):
-        raise MethodUnable(f"it has no group {group.title} of type {group.type or 'of class III'}")
+        raise MethodUnable(f"the program does not support group {group.title} of type {group.type or 'of class III'}")
     point = group.inner[0].point
     x, y = places[point].real, places[point].imag
 
     def reach(pair: Pair) -> tuple[Any, float]:
         own = pair.i if pair.i in group.links else pair.j
         if pair.point not in parts:
-            raise MethodUnable(f"{group.title} hangs on a point that is not a joint before")
+            raise MethodUnable(f"{group.title} depends on a point that is not an earlier joint")
         return parts[pair.point], float(abs(local(own, pair.point) - local(own, point)))
 
     turning = [pair for pair in group.outer if pair.kind == "R"]
@@ -116,7 +117,7 @@ def _add(group: Group, case: Case, parts: dict[str, Any], guides: list[Any], pla
         return
     slide = next(pair.slide for pair in group.outer if pair.slide is not None)
     if slide.carrier != FRAME or slide.at != local(slide.runner, point):
-        raise MethodUnable("it knows guides through hinges only")
+        raise MethodUnable("guides must pass through hinges")
     one, r = reach(turning[0])
     line = [slide.through, slide.through + unit(slide.direction)]
     ends = [Ground(p.real, p.imag, name=f"guide {slide.name} {k}") for k, p in enumerate(line)]
