@@ -37,7 +37,7 @@ def lasting(folder, n):
 def test_several_processes_write_the_same_files_in_the_same_order():
     results = moved("sine")
     assert len(sheet_jobs(results)) >= LEAST_JOBS
-    assert list(sheet_files(results, way=run_on_all_cores)) == list(sheet_files(results))
+    assert list(sheet_files(results, runner=run_on_all_cores)) == list(sheet_files(results))
 
 
 def test_large_sheets_are_the_same_whoever_draws_and_writes_them():

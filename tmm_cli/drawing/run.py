@@ -39,7 +39,7 @@ DrawingJob = Callable[[], NamedDrawings]  # may be pickled
 
 def all_sheets(results: Results) -> NamedDrawings:
     """Yield every sheet with the stem of its file: structure, whole cycle, then each detailed position."""
-    return chain.from_iterable(part() for part in sheet_jobs(results))
+    return chain.from_iterable(job() for job in sheet_jobs(results))
 
 
 def sheet_jobs(results: Results) -> list[DrawingJob]:
@@ -47,18 +47,18 @@ def sheet_jobs(results: Results) -> list[DrawingJob]:
     if results.motion is None:
         return [partial(_draw_mechanism, results)]
     chosen = detailed_positions(results)
-    size = math.ceil(len(chosen) / MOST_POSITION_PARTS) or 1
+    per_job = math.ceil(len(chosen) / MOST_POSITION_PARTS) or 1
     of_positions = [
-        partial(_draw_positions, results, chosen[first : first + size]) for first in range(0, len(chosen), size)
+        partial(_draw_positions, results, chosen[first : first + per_job]) for first in range(0, len(chosen), per_job)
     ]
     return [partial(_draw_mechanism, results), *of_positions]
 
 
 def _draw_mechanism(results: Results) -> NamedDrawings:
-    found = sketch_scene(results)
-    if found is not None:
-        yield "structure", scheme_sheet(results.problem.title, *found).finish()
-        yield from draw_groups(results.problem.title, *found, results.roles)
+    sketch = sketch_scene(results)
+    if sketch is not None:
+        yield "structure", scheme_sheet(results.problem.title, *sketch).finish()
+        yield from draw_groups(results.problem.title, *sketch, results.roles)
     if results.motion is None:
         return
     yield from draw_problem_synthesis(results)
@@ -80,7 +80,7 @@ def _draw_positions(results: Results, chosen: Sequence[int]) -> NamedDrawings:
 
 
 def sheet_files(
-    results: Results, say: Callable[[str], None] = lambda note: None, way: JobRunner = run_in_process
+    results: Results, say: Callable[[str], None] = lambda note: None, runner: JobRunner = run_in_process
 ) -> Iterable[tuple[str, bytes]]:
     """Yield every sheet in every format of a run, as (file name, content).
 
@@ -91,7 +91,7 @@ def sheet_files(
     """
     for remark in position_remarks(results):
         say(remark)
-    yield from files_of_parts(sheet_jobs(results), say, way)
+    yield from files_of_parts(sheet_jobs(results), say, runner)
 
 
 def position_remarks(results: Results) -> Iterable[str]:
@@ -101,12 +101,12 @@ def position_remarks(results: Results) -> Iterable[str]:
 
 
 def _default_position_note(results: Results, k: int) -> str:
-    number, size = results.numbers[k], float(balancing_magnitude(results)[k])
-    if size == 0:
+    number, balance = results.numbers[k], float(balancing_magnitude(results)[k])
+    if balance == 0:
         return _("note: the file has no positions.detail; position {number} is drawn in detail").format(number=number)
     turns = results.linkage.driver.kind == "turn"
     units, dimension = results.problem.units, MOMENT if turns else FORCE
-    told = f"{numeral(units.from_si(size, dimension), '.4g')} {units.spelt(dimension)}"
+    shown_balance = f"{numeral(units.from_si(balance, dimension), '.4g')} {units.spelt(dimension)}"
     return (
         _(
             "note: the file has no positions.detail; position {number}, with the largest balancing moment, is "
@@ -117,4 +117,4 @@ def _default_position_note(results: Results, k: int) -> str:
             "note: the file has no positions.detail; position {number}, with the largest balancing force, is "
             "drawn in detail: {size}"
         )
-    ).format(number=number, size=told)
+    ).format(number=number, size=shown_balance)

@@ -75,7 +75,7 @@ def write_dxf(drawing: Drawing) -> bytes:
 def escape_codes(text: str) -> str:
     r"""Return the text with DXF control codes (%%c, ^I, \U+0416 and the like) made harmless."""
     text = "".join(letter if letter.isprintable() else " " for letter in text)
-    return re.sub(r"%(?=%)|\\(?=[UM]\+)", lambda found: found[0] + CODE_BREAKER, text).replace("^", "^ ")
+    return re.sub(r"%(?=%)|\\(?=[UM]\+)", lambda match: match[0] + CODE_BREAKER, text).replace("^", "^ ")
 
 
 def _add_shape(space: Modelspace, mark: LineMark | AreaMark | CircleMark) -> None:
@@ -103,7 +103,10 @@ def _add_shape(space: Modelspace, mark: LineMark | AreaMark | CircleMark) -> Non
 
 
 def _pen_attributes(colour: str, width: float) -> dict[str, object]:
-    return {**_colour_attributes(colour), "lineweight": min(LINE_WEIGHTS, key=lambda known: abs(known - 100 * width))}
+    return {
+        **_colour_attributes(colour),
+        "lineweight": min(LINE_WEIGHTS, key=lambda standard: abs(standard - 100 * width)),
+    }
 
 
 def _colour_attributes(colour: str) -> dict[str, object]:

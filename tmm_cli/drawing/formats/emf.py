@@ -91,18 +91,18 @@ class _RecordWriter:
                 yield from self._pen(None, 0.0)
                 yield from self._letters(mark)
 
-    def _places(self, places: Vector) -> NDArray[np.int16]:
-        return _rounded(np.column_stack([places.real, self.height - places.imag]) * UNITS_PER_MM)
+    def _places(self, points: Vector) -> NDArray[np.int16]:
+        return _rounded(np.column_stack([points.real, self.height - points.imag]) * UNITS_PER_MM)
 
     def _polylines(self, lines: Iterable[Vector]) -> Iterable[bytes]:
         return (_points_record(DRAW_POLYLINE, self._places(line)) for line in lines)
 
     def _letters(self, mark: TextMark) -> Iterable[bytes]:
-        places, codes = glyph_outline(mark.text, bold=mark.bold, italic=mark.italic)
-        if not len(places):
+        outline, codes = glyph_outline(mark.text, bold=mark.bold, italic=mark.italic)
+        if not len(outline):
             return
         start, along = baseline(mark)
-        placed = start + mark.size * along * places
+        placed = start + mark.size * along * outline
         path = Path(np.column_stack([placed.real, placed.imag]), codes)
         turned = Affine2D().scale(UNITS_PER_MM, -UNITS_PER_MM).translate(0, UNITS_PER_MM * self.height)
         polygons = [np.asarray(polygon) for polygon in path.to_polygons(turned)]
@@ -143,27 +143,27 @@ class _RecordWriter:
             yield _record(SELECT_OBJECT, "I", handle)
 
 
-def _dash_polyline(places: Vector, dashes: Sequence[float]) -> Iterable[Vector]:
+def _dash_polyline(points: Vector, dashes: Sequence[float]) -> Iterable[Vector]:
     """Yield a polyline, or its dashes if `dashes` (mm, lengths drawn and skipped alternately) is not empty."""
-    if not dashes or len(places) < 2:
-        yield places
+    if not dashes or len(points) < 2:
+        yield points
         return
-    lengths = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(places)))])
+    lengths = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(points)))])
     turns = int(np.ceil(lengths[-1] / sum(dashes)))
     ends = np.concatenate([[0.0], np.cumsum(np.tile(dashes, turns))])
     for start, end in zip(ends[:-1:2], ends[1::2], strict=True):
         if start < lengths[-1]:
             inner = (lengths > start) & (lengths < end)
             at = np.concatenate([[start], lengths[inner], [min(end, lengths[-1])]])
-            yield np.interp(at, lengths, places.real) + 1j * np.interp(at, lengths, places.imag)
+            yield np.interp(at, lengths, points.real) + 1j * np.interp(at, lengths, points.imag)
 
 
-def _rounded(places: NDArray[Any]) -> NDArray[np.int16]:
-    return np.asarray(np.clip(np.rint(places), -32768, 32767), "<i2")
+def _rounded(points: NDArray[Any]) -> NDArray[np.int16]:
+    return np.asarray(np.clip(np.rint(points), -32768, 32767), "<i2")
 
 
 def _colour_number(name: str) -> int:
-    red, green, blue = (round(255 * part) for part in to_rgb(name))
+    red, green, blue = (round(255 * channel) for channel in to_rgb(name))
     return red | green << 8 | blue << 16
 
 

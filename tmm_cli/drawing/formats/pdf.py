@@ -34,7 +34,7 @@ HEAD_BYTES, MAXP_BYTES = 54, 32  # lengths of these tables
 CHECKSUM_BASE = 0xB1B0AFBA  # what the sum of a font is subtracted from
 
 
-def subset_font(path: str, wanted: Sequence[int]) -> bytes:
+def subset_font(path: str, glyphs: Sequence[int]) -> bytes:
     """Return the TrueType font at `path` reduced to these glyphs, in this order.
 
     Glyphs that are components of composite glyphs are appended after the requested ones.
@@ -42,7 +42,7 @@ def subset_font(path: str, wanted: Sequence[int]) -> bytes:
     tables = _read_tables(path)
     offsets = np.frombuffer(tables["loca"], ">u4" if tables["head"][51] else ">u2").astype(int)
     offsets *= 1 if tables["head"][51] else 2
-    order, shapes = list(wanted), list[bytes]()
+    order, shapes = list(glyphs), list[bytes]()
     for glyph in order:  # grows while its parts are met
         shape = bytearray(tables["glyf"][offsets[glyph] : offsets[glyph + 1]])
         for at in _component_offsets(shape):
@@ -155,8 +155,8 @@ class _PdfObjects:
 
     def closed(self, root: int) -> bytes:
         """Return the whole file, with its cross-reference table; `root` is the number of the catalogue object."""
-        *places, end = accumulate(map(len, self.parts))
-        table = b"".join(b"%010d 00000 n \n" % place for place in places)
+        *offsets, end = accumulate(map(len, self.parts))
+        table = b"".join(b"%010d 00000 n \n" % place for place in offsets)
         form = b"xref\n0 %d\n0000000000 65535 f \n%btrailer\n<</Size %d/Root %d 0 R>>\nstartxref\n%d\n%%%%EOF\n"
         return b"".join([*self.parts, form % (len(self.parts), table, len(self.parts), root, end)])
 
@@ -169,9 +169,9 @@ class _FontCodes:
 
     def encode(self, text: str, slant: Slant) -> tuple[int, str]:
         """Return the number of the font of this slant and the hexadecimal codes of the letters."""
-        own = self.codes.setdefault(slant, {})
+        codes = self.codes.setdefault(slant, {})
         return list(self.codes).index(slant), "".join(
-            f"{own.setdefault(x, len(own) + 1):04x}" for x in replace_missing(text)
+            f"{codes.setdefault(x, len(codes) + 1):04x}" for x in replace_missing(text)
         )
 
 
@@ -189,13 +189,13 @@ def _add_font(file: _PdfObjects, slant: Slant, codes: Iterable[str]) -> int:
         f"/CapHeight {CAPITAL_HEIGHT}/StemV {STEM_WIDTH}/FontFile2 {embedded} 0 R>>"
     )
     widths = " ".join(f"{1000 * letter_advance(letter, *slant):.2f}" for letter in letters)
-    own = file.add(
+    descendant = file.add(
         f"<</Type/Font/Subtype/CIDFontType2/BaseFont/{name}/CIDToGIDMap/Identity/W[1[{widths}]]"
         f"/CIDSystemInfo<</Registry(Adobe)/Ordering(Identity)/Supplement 0>>/FontDescriptor {descriptor} 0 R>>"
     )
     characters = file.add(_stream(_character_map(letters)))
     return file.add(
-        f"<</Type/Font/Subtype/Type0/BaseFont/{name}/Encoding/Identity-H/DescendantFonts[{own} 0 R]"
+        f"<</Type/Font/Subtype/Type0/BaseFont/{name}/Encoding/Identity-H/DescendantFonts[{descendant} 0 R]"
         f"/ToUnicode {characters} 0 R>>"
     )
 
@@ -224,13 +224,13 @@ def _bytes(content: str | bytes) -> bytes:
 
 def _page_content(drawing: Drawing, fonts: _FontCodes) -> str:
     """Return the page operators of all marks; pen and colour operators are written only when they change."""
-    told: dict[str, str] = {}
+    current: dict[str, str] = {}
     lines = [ROUND_LINES]
     for mark in drawing.marks:
         states, shape = _mark_operators(mark, fonts)
         for kind, state in states:
-            if told.get(kind) != state:
-                told[kind] = state
+            if current.get(kind) != state:
+                current[kind] = state
                 lines.append(f"{state}\n")
         lines.append(shape)
     return "".join(lines)
@@ -271,11 +271,11 @@ def _fill_state(colour: str) -> tuple[str, str]:
 
 @cache
 def _rgb(colour: str) -> str:
-    return " ".join(f"{part:.4g}" for part in to_rgb(colour))
+    return " ".join(f"{channel:.4g}" for channel in to_rgb(colour))
 
 
-def _path_operators(places: Sequence[complex]) -> str:
-    first, *others = map(_format_point, places)
+def _path_operators(points: Sequence[complex]) -> str:
+    first, *others = map(_format_point, points)
     return f"{first} m\n" + "".join(f"{place} l\n" for place in others)
 
 
@@ -283,8 +283,8 @@ def _circle_operators(centre: complex, radius: float) -> str:
     """Return the operators of a circle made of four Bézier curves."""
     lines = [f"{_format_point(centre + radius)} m\n"]
     for k in range(4):
-        way = radius * 1j**k
-        handles = (way * (1 + CIRCLE_HANDLE * 1j), way * (CIRCLE_HANDLE + 1j), way * 1j)
+        axis_point = radius * 1j**k
+        handles = (axis_point * (1 + CIRCLE_HANDLE * 1j), axis_point * (CIRCLE_HANDLE + 1j), axis_point * 1j)
         lines.append(" ".join(_format_point(centre + handle) for handle in handles) + " c\n")
     return "".join(lines)
 

@@ -38,7 +38,7 @@ AGG: Any = backend_agg  # matplotlib does not say its types
 def write_png(drawing: Drawing) -> bytes:
     """Write a drawing as a PNG image on white paper."""
     width, height = (round(side / 25.4 * DPI) for side in drawing.paper)
-    renderer, told = _renderer_and_buffer(width, height)
+    renderer, rows = _renderer_and_buffer(width, height)
     pixels = np.asarray(renderer.buffer_rgba())
     pixels[:] = 255
     to_pixels = Affine2D().scale(DPI / 25.4)
@@ -48,7 +48,7 @@ def write_png(drawing: Drawing) -> bytes:
                 _draw_shape(mark, renderer, to_pixels)
         else:
             _draw_texts([mark for mark in marks if isinstance(mark, TextMark)], colour, renderer, to_pixels)
-    return _encode_png(pixels, told)
+    return _encode_png(pixels, rows)
 
 
 @lru_cache(2)
@@ -82,8 +82,8 @@ def _set_pen(context: GraphicsContextBase, colour: str, wide: float) -> None:
     context.set_linewidth(wide / POINT)
 
 
-def _path(places: Sequence[complex], *, closed: bool = False) -> Path:
-    array = np.array([*places, places[0]] if closed else places)
+def _path(points: Sequence[complex], *, closed: bool = False) -> Path:
+    array = np.array([*points, points[0]] if closed else points)
     return Path(np.column_stack([array.real, array.imag]), closed=closed)
 
 
@@ -92,32 +92,32 @@ def _draw_texts(marks: Sequence[TextMark], colour: str, renderer: RendererBase, 
     placed, codes = [], []
     for mark in marks:
         start, along = baseline(mark)
-        places, own = glyph_outline(mark.text, bold=mark.bold, italic=mark.italic)
-        placed.append(start + mark.size * along * places)
-        codes.append(own)
-    every = np.concatenate(placed)
+        outline, letter_codes = glyph_outline(mark.text, bold=mark.bold, italic=mark.italic)
+        placed.append(start + mark.size * along * outline)
+        codes.append(letter_codes)
+    points = np.concatenate(placed)
     context = renderer.new_gc()
     context.set_foreground(colour)
     context.set_linewidth(0.0)
     context.set_snap(False)  # else letters of upright and level lines (l, E, F) may lose them between pixels
-    path = Path(np.column_stack([every.real, every.imag]), np.concatenate(codes))
+    path = Path(np.column_stack([points.real, points.imag]), np.concatenate(codes))
     renderer.draw_path(context, path, to_pixels, to_rgb(colour))
     context.restore()
 
 
-def _encode_png(pixels: NDArray[Any], told: NDArray[Any]) -> bytes:
+def _encode_png(pixels: NDArray[Any], rows: NDArray[Any]) -> bytes:
     """Encode an image as PNG without its alpha channel, in half the time of the usual libraries."""
     height, width, __ = pixels.shape
     for k in range(3):
-        told[0, 1 + k :: 3] = pixels[0, :, k]
-        np.subtract(pixels[1:, :, k], pixels[:-1, :, k], out=told[1:, 1 + k :: 3])
+        rows[0, 1 + k :: 3] = pixels[0, :, k]
+        np.subtract(pixels[1:, :, k], pixels[:-1, :, k], out=rows[1:, 1 + k :: 3])
     per_metre = round(DPI / 0.0254)
     return b"".join(
         (
             b"\x89PNG\r\n\x1a\n",
             _chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)),
             _chunk(b"pHYs", struct.pack(">IIB", per_metre, per_metre, 1)),
-            _chunk(b"IDAT", zlib.compress(told.data, COMPRESSION)),
+            _chunk(b"IDAT", zlib.compress(rows.data, COMPRESSION)),
             _chunk(b"IEND", b""),
         )
     )

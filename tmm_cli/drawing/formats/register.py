@@ -52,7 +52,7 @@ def drawing_files(drawn: NamedDrawings, say: Callable[[str], None] = lambda note
 def files_of_parts(
     parts: Sequence[Callable[[], NamedDrawings]],
     say: Callable[[str], None] = lambda note: None,
-    way: JobRunner = run_in_process,
+    runner: JobRunner = run_in_process,
 ) -> Iterable[tuple[str, bytes]]:
     """Yield the files of sheets that are drawn in parts, each of which is one job.
 
@@ -65,18 +65,18 @@ def files_of_parts(
         Pairs of file name and content.
     """
     boxes: set[str] = set()
-    for written, lost in way([partial(_write_part, part) for part in parts]):
+    for written, lost in runner([partial(_write_part, job) for job in parts]):
         boxes |= lost
         yield from written
     for note in missing_character_notes(boxes):
         say(note)
 
 
-def _write_part(part: Callable[[], NamedDrawings]) -> tuple[FormatFiles, set[str]]:
+def _write_part(job: Callable[[], NamedDrawings]) -> tuple[FormatFiles, set[str]]:
     """Draw one part; return its files and the characters that the font lacks."""
-    every = list(part())
-    lost = missing_characters("".join(text for __, sheet in every for text in sheet.texts()))
-    return [(f"{stem}.{kind}", FORMATS[kind](sheet)) for stem, sheet in every for kind in RUN_FORMATS], lost
+    drawings = list(job())
+    lost = missing_characters("".join(text for __, sheet in drawings for text in sheet.texts()))
+    return [(f"{stem}.{kind}", FORMATS[kind](sheet)) for stem, sheet in drawings for kind in RUN_FORMATS], lost
 
 
 def missing_character_notes(texts: Iterable[str]) -> Iterable[str]:

@@ -51,10 +51,10 @@ def svg_element(mark: Mark, height: float) -> str:
             bold = ' font-weight="bold"' if mark.bold else ""
             italic = ' font-style="italic"' if mark.italic else ""
             text = COLLAPSED_SPACES.sub(lambda gap: "\N{NO-BREAK SPACE}" * len(gap[0]), mark.text)
-            told = escape(text.translate(NOT_XML), quote=False)
+            escaped = escape(text.translate(NOT_XML), quote=False)
             return (
                 f'<text x="{x}" y="{y}" dy="{BASELINE_SHARE:g}em" font-size="{mark.size:.4g}" fill="{mark.colour}" '
-                f'text-anchor="{ANCHOR[mark.align]}"{bold}{italic}{turn}>{told}</text>'
+                f'text-anchor="{ANCHOR[mark.align]}"{bold}{italic}{turn}>{escaped}</text>'
             )
 
 
@@ -63,8 +63,8 @@ def _fill_attributes(face: str, edge: str | None, width: float) -> str:
     return f'fill="{face}"{outline}'
 
 
-def _format_points(places: Iterable[complex], height: float) -> str:
-    return " ".join(_format_point(place, height) for place in places)
+def _format_points(points: Iterable[complex], height: float) -> str:
+    return " ".join(_format_point(place, height) for place in points)
 
 
 def _format_point(place: complex, height: float) -> str:

@@ -74,7 +74,9 @@ class LargeSheet(Drawing):
     pictures: tuple[tuple[complex, SheetPicture], ...] = ()
 
 
-def large_sheets(choice: SheetChoice, paper: str, way: JobRunner = run_in_process) -> Iterator[tuple[str, LargeSheet]]:
+def large_sheets(
+    choice: SheetChoice, paper: str, runner: JobRunner = run_in_process
+) -> Iterator[tuple[str, LargeSheet]]:
     """Yield the large sheets of a project with the stems of their files, numbered from 1.
 
     What does not fit on one sheet continues on the next. The structure sheet, which has no scale, gets the smallest
@@ -93,10 +95,12 @@ def large_sheets(choice: SheetChoice, paper: str, way: JobRunner = run_in_proces
     jobs = [
         partial(_fit_smallest_paper, number, choice, [paper] if number else smaller) for number in range(len(SUBJECTS))
     ]
-    found = list(way(jobs))
-    count = sum(len(pages) for *__, pages in found)
-    every = [(subject, size, pictures, page) for subject, (size, pictures, pages) in enumerate(found) for page in pages]
-    for number, (subject, size, pictures, page) in enumerate(every, 1):
+    arranged = list(runner(jobs))
+    count = sum(len(pages) for *__, pages in arranged)
+    sheets = [
+        (subject, size, pictures, page) for subject, (size, pictures, pages) in enumerate(arranged) for page in pages
+    ]
+    for number, (subject, size, pictures, page) in enumerate(sheets, 1):
         field, name = drawing_field(size, problem.title_texts.block), SUBJECTS[subject][0]
         titles = TitleBlockTexts(problem.title_texts, problem.title, _(choice.title(subject)), number, count)
         stem = f"sheet-{number:0{len(str(count))}}-{name}"
@@ -111,15 +115,15 @@ def _fit_smallest_paper(
     If none does, the last one is used. If the page stays thin, the next smaller format is tried.
     """
     for paper in papers:
-        size, pictures, pages = found = _arrange_on_paper(paper, number, choice)
+        size, pictures, pages = arrangement = _arrange_on_paper(paper, number, choice)
         if len(pages) < 2:
             break
     field = drawing_field(size, choice.results.problem.title_texts.block)
     smaller = next((name for name in PAPERS if PAPERS[name] < size), None)
     if smaller is None or len(pages) != 1 or _least_page_area((pictures, pages)) > FULL_ENOUGH * field.area:
-        return found
+        return arrangement
     tried = _arrange_on_paper(smaller, number, choice)
-    return tried if len(tried[2]) == 1 else found
+    return tried if len(tried[2]) == 1 else arrangement
 
 
 def _arrange_on_paper(paper: str, number: int, choice: SheetChoice) -> tuple[Size, list[SheetPicture], list[Page]]:
@@ -131,20 +135,20 @@ def _arrange_fullest(
     number: int, choice: SheetChoice, paper: Size, field: PackingField
 ) -> tuple[list[SheetPicture], list[Page]]:
     """Arrange the drawings of a subject; if a page stays thin, try again with a lower limit of height."""
-    found = _arrange_sheet(number, choice, paper, field, field.height - DRAWING_GAP)
+    arrangement = _arrange_sheet(number, choice, paper, field, field.height - DRAWING_GAP)
     for high in (field.height - field.taken[1] - DRAWING_GAP, *(share * field.height for share in FLAT_HEIGHTS)):
-        if _least_page_area(found) > THIN_BELOW * field.area:
+        if _least_page_area(arrangement) > THIN_BELOW * field.area:
             break
-        if any(one.paper[1] > high for one in found[0]):
+        if any(picture.paper[1] > high for picture in arrangement[0]):
             flat = _arrange_sheet(number, choice, paper, field, high)
-            found = min(found, flat, key=lambda one: (len(one[1]), -_least_page_area(one)))
-    return found
+            arrangement = min(arrangement, flat, key=lambda picture: (len(picture[1]), -_least_page_area(picture)))
+    return arrangement
 
 
-def _least_page_area(found: tuple[list[SheetPicture], list[Page]]) -> float:
+def _least_page_area(arrangement: tuple[list[SheetPicture], list[Page]]) -> float:
     """Return the area (mm²) of the drawings on the emptiest page."""
-    pictures, pages = found
-    return min((page_area([one.paper for one in pictures], page) for page in pages), default=0.0)
+    pictures, pages = arrangement
+    return min((page_area([picture.paper for picture in pictures], page) for page in pages), default=0.0)
 
 
 def drawing_field(paper: Size, block: str) -> PackingField:
@@ -170,11 +174,18 @@ def _arrange_sheet(
         The drawings, and for each page the numbers of the drawings on it.
     """
     shrunk, most = max(paper) / max(PAPERS["A1"]), (field.width - DRAWING_GAP, high)
-    asked = [(source, choice, most) for source in CONTENTS if source.sheet == number]
-    parts = [_draw_first(*one, shrunk) for one in asked]
-    lengths, every = [len(part) for part in parts], [piece for part in parts for piece in part]
-    order = reading_order((one[0], piece.drawn.stem) for one, part in zip(asked, parts, strict=True) for piece in part)
-    pieces = [every[k] for k in order]
+    requests = [(source, choice, most) for source in CONTENTS if source.sheet == number]
+    parts = [_draw_first(*request, shrunk) for request in requests]
+    lengths, all_pieces = (
+        [len(source_pieces) for source_pieces in parts],
+        [piece for source_pieces in parts for piece in source_pieces],
+    )
+    order = reading_order(
+        (request[0], piece.drawn.stem)
+        for request, source_pieces in zip(requests, parts, strict=True)
+        for piece in source_pieces
+    )
+    pieces = [all_pieces[k] for k in order]
 
     def drawn(rooms: Sequence[float]) -> list[SheetPiece]:
         """Draw the pieces again in other rooms, source by source."""
@@ -182,18 +193,21 @@ def _arrange_sheet(
         old, new = [pieces[k] for k in back], [rooms[k] for k in back]
         starts = accumulate(lengths, initial=0)
         slices = [slice(start, start + length) for start, length in zip(starts, lengths, strict=False)]
-        again = [_redraw(*one, old[own], new[own]) for one, own in zip(asked, slices, strict=True)]
-        found = [piece for part in again for piece in part]
-        return [found[k] for k in order]
+        again = [
+            _redraw(*request, old[own_slice], new[own_slice])
+            for request, own_slice in zip(requests, slices, strict=True)
+        ]
+        redrawn = [piece for source_pieces in again for piece in source_pieces]
+        return [redrawn[k] for k in order]
 
     rooms, pages = initial_rooms(pieces, field, shrunk)
     free = [k for k, piece in enumerate(pieces) if not piece.length]
     begin = shrink_rooms(pieces, rooms, SHRINK_SHARE, free)
-    for wanted in (
+    for wanted_rooms in (
         share_out_pages(pieces, begin, pages, field, shrunk)[0],
         grow_rooms(pieces, begin, pages, field, shrunk),
     ):
-        larger = drawn(wanted)
+        larger = drawn(wanted_rooms)
         held = fill_pages(_paper_sizes(larger), field)
         if held is not None and len(held) <= len(pages):
             pieces, pages = larger, held
@@ -216,10 +230,10 @@ def _arrange_sheet(
         if all(room <= (1.0 if thin else NOTABLE_GROWTH) * old for room, old in zip(rooms, before, strict=True)):
             break
         larger = drawn(rooms)
-        found = _accept_larger(pieces, larger, pages, field)
+        accepted = _accept_larger(pieces, larger, pages, field)
         pieces = [  # what had no room is tried half as much larger
-            one if one is new else replace(one, most=(old + room) / 2)
-            for one, new, old, room in zip(found, larger, before, rooms, strict=True)
+            request if request is new else replace(request, most=(old + room) / 2)
+            for request, new, old, room in zip(accepted, larger, before, rooms, strict=True)
         ]
     pages = evenest_pages(_paper_sizes(pieces), pages, field)
     return [piece.drawn for piece in _tidy_pages(pieces, pages, field, drawn)], pages
@@ -255,14 +269,14 @@ def _accept_larger(
     pieces: Sequence[SheetPiece], larger: Sequence[SheetPiece], pages: Sequence[Page], field: PackingField
 ) -> list[SheetPiece]:
     """Replace pieces by their larger versions, one after another, as long as the page still holds them."""
-    found = list(pieces)
+    accepted = list(pieces)
     for page, (led, tidy, enough) in product(pages, PACKING_RULES):
-        if page_area(_paper_sizes(found), page) < enough * field.area:
+        if page_area(_paper_sizes(accepted), page) < enough * field.area:
             for number in page:
-                tried = [*found[:number], larger[number], *found[number + 1 :]]
+                tried = [*accepted[:number], larger[number], *accepted[number + 1 :]]
                 if pack_boxes(add_gaps(_paper_sizes(tried), page), field, led=led, tidy=tidy) is not None:
-                    found = tried
-    return found
+                    accepted = tried
+    return accepted
 
 
 def _paper_sizes(pieces: Sequence[SheetPiece]) -> list[Size]:
@@ -275,11 +289,11 @@ def arrange_as_drawn(pictures: Sequence[SheetPicture], field: PackingField) -> l
     Raises:
         ProblemError: A drawing is larger than the field.
     """
-    for one in pictures:
-        if pack_boxes(add_gaps([one.paper], [0]), field) is None:
+    for picture in pictures:
+        if pack_boxes(add_gaps([picture.paper], [0]), field) is None:
             text = _("drawing {name} is larger than the sheet")
-            raise ProblemError(text.format(name=one.stem), allowed=_("a larger paper size"))
-    return fill_pages([one.paper for one in pictures], field) or []
+            raise ProblemError(text.format(name=picture.stem), allowed=_("a larger paper size"))
+    return fill_pages([picture.paper for picture in pictures], field) or []
 
 
 def _draw_first(source: DrawingSource, choice: SheetChoice, most: Size, shrunk: float) -> list[SheetPiece]:
@@ -292,10 +306,12 @@ def _draw_first(source: DrawingSource, choice: SheetChoice, most: Size, shrunk: 
     if usual is None:
         least, largest = LETTER_LIMITS
         return [
-            SheetPiece(one, one.longest / shrunk, least * one.longest, largest * one.longest, letters=True)
-            for one in pictures
+            SheetPiece(
+                picture, picture.longest / shrunk, least * picture.longest, largest * picture.longest, letters=True
+            )
+            for picture in pictures
         ]
-    return [SheetPiece(one, usual, 0.0 if one.figure else LEAST_PAPER) for one in pictures]
+    return [SheetPiece(picture, usual, 0.0 if picture.figure else LEAST_PAPER) for picture in pictures]
 
 
 def _redraw(
@@ -312,15 +328,15 @@ def _draw_source(
     source: DrawingSource, choice: SheetChoice, most: Size, rooms: Iterable[float | None]
 ) -> list[SheetPicture]:
     """Draw a source, each drawing in its room (mm, longest side; None: as it comes)."""
-    every, found = iter(source.drawings(choice)), list[SheetPicture]()
+    drawings, pictures = iter(source.drawings(choice)), list[SheetPicture]()
     for room in rooms:
         with drawing_within(PictureSpace(room, most)):
-            drawn = next(every, None)
+            drawn = next(drawings, None)
         if drawn is None:
             break
         if isinstance(drawn[1], SheetPicture):
-            found.append(replace(drawn[1], stem=drawn[0]))
-    return found
+            pictures.append(replace(drawn[1], stem=drawn[0]))
+    return pictures
 
 
 def frame_pictures(
@@ -328,11 +344,14 @@ def frame_pictures(
 ) -> LargeSheet:
     """Arrange pictures on a field and add the frame and the title block."""
     sizes = [(picture.paper[0] + DRAWING_GAP, picture.paper[1] + DRAWING_GAP) for picture in pictures]
-    places = spread_boxes(arrange_boxes(sizes, field) or [], sizes, field)
+    corners = spread_boxes(arrange_boxes(sizes, field) or [], sizes, field)
     low, high = frame_corners(paper)
     corner = complex(low.real + FRAME_GAP, high.imag - FRAME_GAP)
-    placed = [(corner + complex(x, -y - one.paper[1]), one) for (x, y), one in zip(places, pictures, strict=True)]
-    marks = [mark for at, one in placed for mark in one.moved(at).marks]
+    placed = [
+        (corner + complex(x, -y - placed_picture.paper[1]), placed_picture)
+        for (x, y), placed_picture in zip(corners, pictures, strict=True)
+    ]
+    marks = [mark for at, placed_picture in placed for mark in placed_picture.moved(at).marks]
     block = title_block(titles, complex(high.real, low.imag))
     return LargeSheet(paper, (*marks, sheet_frame(paper), *block), tuple(placed))
 
@@ -346,11 +365,11 @@ def parse_formats(text: str) -> list[str]:
     Raises:
         ProblemError: A format is unknown, or its library is not installed.
     """
-    wanted = parse_names(text, FORMATS, "--as", _("unknown drawing format"))
-    if "dxf" in wanted and find_spec("ezdxf") is None:
+    names = parse_names(text, FORMATS, "--as", _("unknown drawing format"))
+    if "dxf" in names and find_spec("ezdxf") is None:
         text = _("DXF files need the package ezdxf, which is not installed")
         raise ProblemError(text, allowed="pip install 'tmm-cli[cad]'")
-    return wanted
+    return names
 
 
 def refuse_plans(count: int) -> None:
@@ -374,7 +393,7 @@ def large_sheet_files(
     paper: str,
     formats: Sequence[str],
     say: Callable[[str], None],
-    way: JobRunner = run_in_process,
+    runner: JobRunner = run_in_process,
     *,
     every: bool,
 ) -> Iterator[tuple[str, bytes]]:
@@ -395,13 +414,13 @@ def large_sheet_files(
     refuse_plans(len(choice.plans))
     if choice.moves and not choice.loaded:
         say(_("note: there are no weights and no loads, so the sheet of forces is omitted"))
-    sheets = dict(large_sheets(choice, paper, way))
+    sheets = dict(large_sheets(choice, paper, runner))
     jobs: list[tuple[str, Callable[[], bytes]]] = []
     for name in formats:
         if name in WITH_PAGES:
             jobs.append((f"sheets.{name}", partial(WITH_PAGES[name], *sheets.values())))
         else:
             jobs += [(f"{stem}.{name}", partial(FORMATS[name], sheet)) for stem, sheet in sheets.items()]
-    yield from zip((file for file, __ in jobs), way([job for __, job in jobs]), strict=True)
+    yield from zip((file for file, __ in jobs), runner([job for __, job in jobs]), strict=True)
     for note in missing_character_notes(text for sheet in sheets.values() for text in sheet.texts()):
         say(note)

@@ -106,7 +106,7 @@ class DrawingSource:
         if not choice.shows(self.sheet):
             return ()
         if self.over:
-            return (found for here in getattr(choice, self.over) for found in self.draw(here))
+            return (drawing for position in getattr(choice, self.over) for drawing in self.draw(position))
         return self.draw(choice.results)
 
 

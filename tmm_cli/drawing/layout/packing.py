@@ -56,18 +56,20 @@ def pack_boxes(
     Returns:
         Upper left corners (from the left, and down from the top), or None if no packing was found.
     """
-    found = _packings(sizes, field, RANDOM_ORDERS, led=led, tidy=tidy)
-    return next((places for places in found if not tidy or not _count_out_of_order(places)), None)
+    packings = _packings(sizes, field, RANDOM_ORDERS, led=led, tidy=tidy)
+    return next((corners for corners in packings if not tidy or not _count_out_of_order(corners)), None)
 
 
 def arrange_boxes(sizes: Sequence[Size], field: PackingField) -> list[Size] | None:
     """Pack boxes so that they are met about in order when reading to the right and down; None if impossible."""
     for led in (True, False):
-        found = [
-            places for tidy in (True, False) for places in _packings(sizes, field, THOROUGH_ORDERS, led=led, tidy=tidy)
+        packings = [
+            corners
+            for tidy in (True, False)
+            for corners in _packings(sizes, field, THOROUGH_ORDERS, led=led, tidy=tidy)
         ]
-        if found:
-            return min(found, key=lambda places: (_count_out_of_order(places), _disorder(places, sizes, field)))
+        if packings:
+            return min(packings, key=lambda corners: (_count_out_of_order(corners), _disorder(corners, sizes, field)))
     return None
 
 
@@ -77,24 +79,24 @@ def _packings(sizes: Sequence[Size], field: PackingField, mixed: int, *, led: bo
         return
     turned = PackingField(field.height, field.width, field.taken[::-1])
     for order in _orders(sizes, mixed, 1 if led else 0, tidy=tidy):
-        places = _place_in_order(sizes, order, field)
-        if places is not None:
-            yield places
-        places = _place_in_order([(height, width) for width, height in sizes], order, turned)
-        if places is not None:
-            yield [(x, y) for y, x in places]
+        corners = _place_in_order(sizes, order, field)
+        if corners is not None:
+            yield corners
+        corners = _place_in_order([(height, width) for width, height in sizes], order, turned)
+        if corners is not None:
+            yield [(x, y) for y, x in corners]
 
 
-def _count_out_of_order(places: Sequence[Size]) -> int:
+def _count_out_of_order(corners: Sequence[Size]) -> int:
     """Count pairs of boxes of which the later one lies both above and to the left of the earlier one."""
-    return sum(late[0] <= early[0] and late[1] <= early[1] for early, late in combinations(places, 2))
+    return sum(late[0] <= early[0] and late[1] <= early[1] for early, late in combinations(corners, 2))
 
 
-def _disorder(places: Sequence[Size], sizes: Sequence[Size], field: PackingField) -> float:
+def _disorder(corners: Sequence[Size], sizes: Sequence[Size], field: PackingField) -> float:
     """Return how much boxes precede earlier ones on the way right and down, weighted by the distance in order."""
     middles = [
         (x + width / 2) / field.width + (y + height / 2) / field.height
-        for (x, y), (width, height) in zip(places, sizes, strict=True)
+        for (x, y), (width, height) in zip(corners, sizes, strict=True)
     ]
     return sum(
         (late - early) * max(middles[early] - middles[late], 0.0) for early, late in combinations(range(len(sizes)), 2)
@@ -103,9 +105,9 @@ def _disorder(places: Sequence[Size], sizes: Sequence[Size], field: PackingField
 
 def _orders(sizes: Sequence[Size], mixed: int, kept: int, *, tidy: bool) -> Iterator[Sequence[int]]:
     """Yield orders for placing boxes: as given, then large ones first, then random; the first `kept` stay first."""
-    every = range(len(sizes))
-    first, rest, chance = every[:kept], every[kept:], Random(len(sizes))
-    yield every
+    numbers = range(len(sizes))
+    first, rest, chance = numbers[:kept], numbers[kept:], Random(len(sizes))
+    yield numbers
     if tidy:
         for __ in range(mixed):
             near = {k: k + ORDER_SHIFT * chance.random() for k in rest}
@@ -125,7 +127,7 @@ def _orders(sizes: Sequence[Size], mixed: int, kept: int, *, tidy: bool) -> Iter
 def _place_in_order(sizes: Sequence[Size], order: Sequence[int], field: PackingField) -> list[Size] | None:
     """Place each box as far up, then as far left as possible; the skyline is the lower edge of those placed."""
     skyline: list[SkylineStep] = [(0.0, field.width, 0.0)]
-    places = [(0.0, 0.0)] * len(sizes)
+    corners = [(0.0, 0.0)] * len(sizes)
     for k in order:
         width, height = sizes[k]
         highest, place = math.inf, 0.0
@@ -138,9 +140,9 @@ def _place_in_order(sizes: Sequence[Size], order: Sequence[int], field: PackingF
                 highest, place = top, start
         if highest == math.inf:
             return None
-        places[k] = (place, highest)
+        corners[k] = (place, highest)
         skyline = _lower_skyline(skyline, place, place + width, highest + height)
-    return places
+    return corners
 
 
 def _skyline_top(skyline: Sequence[SkylineStep], number: int, end: float, most: float) -> float:
@@ -158,18 +160,18 @@ def _skyline_top(skyline: Sequence[SkylineStep], number: int, end: float, most: 
 
 def _lower_skyline(skyline: Sequence[SkylineStep], start: float, end: float, down: float) -> list[SkylineStep]:
     """Return the skyline after placing a box whose lower edge is at `down`."""
-    found: list[SkylineStep] = []
+    steps: list[SkylineStep] = []
     for left, right, depth in skyline:
         if left < start - 1e-9:
-            found.append((left, min(right, start), depth))
+            steps.append((left, min(right, start), depth))
         if left <= start + 1e-9 < right:
-            found.append((start, end, down))
+            steps.append((start, end, down))
         if right > end + 1e-9:
-            found.append((max(left, end), right, depth))
-    return found
+            steps.append((max(left, end), right, depth))
+    return steps
 
 
-def spread_boxes(places: Sequence[Size], sizes: Sequence[Size], field: PackingField) -> list[Size]:
+def spread_boxes(corners: Sequence[Size], sizes: Sequence[Size], field: PackingField) -> list[Size]:
     """Distribute the free space of an arrangement, first horizontally, then vertically.
 
     All corners are scaled by one factor, so boxes that did not overlap still do not.
@@ -178,12 +180,12 @@ def spread_boxes(places: Sequence[Size], sizes: Sequence[Size], field: PackingFi
         low, high = 1.0, 4.0
         while high - low > 1e-4:
             factor = (low + high) / 2
-            if all(field.holds(_stretch(at, axis, factor), size) for at, size in zip(places, sizes, strict=True)):
+            if all(field.holds(_stretch(at, axis, factor), size) for at, size in zip(corners, sizes, strict=True)):
                 low = factor
             else:
                 high = factor
-        places = [_stretch(at, axis, low) for at in places]
-    return list(places)
+        corners = [_stretch(at, axis, low) for at in corners]
+    return list(corners)
 
 
 def _stretch(at: Size, axis: int, factor: float) -> Size:
@@ -294,7 +296,9 @@ def _rectangle(low: complex, high: complex) -> LineMark:
     return LineMark((low, low + across, high, high - across, low), DARK_COLOUR, MAIN_LINE, layer="frame", z=8.0)
 
 
-def _ruled_lines(axis: str, every: Sequence[tuple[float, float, float]], width: float) -> list[LineMark]:
+def _ruled_lines(axis: str, positions: Sequence[tuple[float, float, float]], width: float) -> list[LineMark]:
     """Return ruling lines at positions along one axis (at, from, to) of the given width."""
-    ends = [(complex(at, a), complex(at, b)) if axis == "x" else (complex(a, at), complex(b, at)) for at, a, b in every]
+    ends = [
+        (complex(at, a), complex(at, b)) if axis == "x" else (complex(a, at), complex(b, at)) for at, a, b in positions
+    ]
     return [LineMark(pair, DARK_COLOUR, width, layer="frame", z=8.0) for pair in ends]

@@ -101,26 +101,26 @@ def initial_rooms(pieces: Sequence[SheetPiece], field: PackingField, shrunk: flo
     Raises:
         ProblemError: The paper is too small.
     """
-    few, found = MOST_PAGES, None
+    few, best = MOST_PAGES, None
     for share in size_shares():
         rooms = [piece.about(min(max(share * shrunk * piece.usual, piece.least), piece.most)) for piece in pieces]
         pages = fill_pages(sizes_in_rooms(pieces, rooms), field)
         if pages is not None and len(pages) < few:
-            few, found = len(pages), (rooms, pages)
-        if found is not None and share < LEAST_SHARE:
+            few, best = len(pages), (rooms, pages)
+        if best is not None and share < LEAST_SHARE:
             break
-    if found is None:
+    if best is None:
         text = _("a drawing does not fit on the sheet even at its smallest size")
         raise ProblemError(text, allowed=_("a larger paper size"))
-    return found
+    return best
 
 
 def shrink_rooms(
-    pieces: Sequence[SheetPiece], rooms: Sequence[float], share: float, which: Container[int]
+    pieces: Sequence[SheetPiece], rooms: Sequence[float], share: float, chosen: Container[int]
 ) -> list[float]:
     """Multiply the rooms of the pieces in `which` by `share`, but not below their least rooms."""
     return [
-        piece.fitted(max(share * room, min(room, piece.least))) if k in which else room
+        piece.fitted(max(share * room, min(room, piece.least))) if k in chosen else room
         for k, (piece, room) in enumerate(zip(pieces, rooms, strict=True))
     ]
 
@@ -170,19 +170,21 @@ def _fill_evenly(sizes: Sequence[Size], field: PackingField, count: int, *, back
 def page_partitions(sizes: Sequence[Size], pages: list[Page], field: PackingField) -> Iterator[list[Page]]:
     """Yield these pages, then other partitions into as many pages: in order, the most even first, then mixed."""
     yield pages
-    every, count = range(len(sizes)), len(pages)
+    numbers, count = range(len(sizes)), len(pages)
     if count < 2 or math.comb(len(sizes) - 1, count - 1) > MOST_PARTITIONS:
         return
 
     @cache
     def held(start: int, end: int) -> bool:
-        page = [*every[start:end]]
+        page = [*numbers[start:end]]
         return page_area(sizes, page) <= field.area and pack_boxes(add_gaps(sizes, page), field) is not None
 
-    found = ([0, *cuts, len(sizes)] for cuts in combinations(every[1:], count - 1))
-    others = [[[*every[start:end]] for start, end in pairwise(cuts)] for cuts in found]
-    others.sort(key=lambda way: max(page_area(sizes, page) for page in way))
-    yield from islice((way for way in others if all(held(page[0], page[-1] + 1) for page in way)), PARTITIONS_TRIED)
+    cut_lists = ([0, *cuts, len(sizes)] for cuts in combinations(numbers[1:], count - 1))
+    others = [[[*numbers[start:end]] for start, end in pairwise(cuts)] for cuts in cut_lists]
+    others.sort(key=lambda partition: max(page_area(sizes, page) for page in partition))
+    yield from islice(
+        (partition for partition in others if all(held(page[0], page[-1] + 1) for page in partition)), PARTITIONS_TRIED
+    )
     mixed = _fill_evenly(sizes, field, count, back=True)
     if mixed is not None and len(mixed) == count:
         yield mixed
@@ -191,7 +193,8 @@ def page_partitions(sizes: Sequence[Size], pages: list[Page], field: PackingFiel
 def evenest_pages(sizes: Sequence[Size], pages: list[Page], field: PackingField) -> list[Page]:
     """Return the partition into as many pages whose emptiest page is fullest."""
     return max(
-        page_partitions(sizes, pages, field), key=lambda way: min((page_area(sizes, page) for page in way), default=0.0)
+        page_partitions(sizes, pages, field),
+        key=lambda partition: min((page_area(sizes, page) for page in partition), default=0.0),
     )
 
 
@@ -217,28 +220,28 @@ def _fill_in_order(sizes: Sequence[Size], field: PackingField, most: float, *, b
 
 
 def share_out_pages(
-    pieces: Sequence[SheetPiece], given: Sequence[float], pages: list[Page], field: PackingField, shrunk: float
+    pieces: Sequence[SheetPiece], start_rooms: Sequence[float], pages: list[Page], field: PackingField, shrunk: float
 ) -> tuple[list[float], list[Page]]:
     """Enlarge rooms and repartition the pieces so that the emptiest page is as full as possible."""
-    best, most = (list(given), pages), -1.0
+    best, most = (list(start_rooms), pages), -1.0
 
-    def better(found: Iterable[list[Page]], enough: float) -> bool:
+    def better(partitions: Iterable[list[Page]], enough: float) -> bool:
         """Return True if one of these partitions has a fuller emptiest page."""
         nonlocal best, most
         before = most
-        for way in found:
-            rooms = grow_rooms(pieces, given, way, field, shrunk)
+        for partition in partitions:
+            rooms = grow_rooms(pieces, start_rooms, partition, field, shrunk)
             sizes = sizes_in_rooms(pieces, rooms)
-            least = min((page_area(sizes, page) for page in way), default=0.0)
+            least = min((page_area(sizes, page) for page in partition), default=0.0)
             if least > most:
-                best, most = (rooms, way), least
+                best, most = (rooms, partition), least
             if least > enough * field.area:
                 break
         return most > before
 
-    better(page_partitions(sizes_in_rooms(pieces, given), pages, field), EVEN_ENOUGH)
+    better(page_partitions(sizes_in_rooms(pieces, start_rooms), pages, field), EVEN_ENOUGH)
     while most < THIN_BELOW * field.area and better(
-        pages_with_moved_piece(sizes_in_rooms(pieces, given), best[1], field), THIN_BELOW
+        pages_with_moved_piece(sizes_in_rooms(pieces, start_rooms), best[1], field), THIN_BELOW
     ):
         pass
     return best
@@ -249,11 +252,13 @@ def pages_with_moved_piece(sizes: Sequence[Size], pages: list[Page], field: Pack
     thin = min(range(len(pages)), key=lambda number: page_area(sizes, pages[number]), default=0)
     for other, page in enumerate(pages):
         for piece, back in product(page if other != thin else (), (None, *pages[thin])):
-            way = list(pages)
-            way[thin] = sorted([*(k for k in pages[thin] if k != back), piece])
-            way[other] = sorted([*(k for k in page if k != piece), *(() if back is None else (back,))])
-            if way[other] and all(pack_boxes(add_gaps(sizes, way[n]), field) is not None for n in (thin, other)):
-                yield way
+            partition = list(pages)
+            partition[thin] = sorted([*(k for k in pages[thin] if k != back), piece])
+            partition[other] = sorted([*(k for k in page if k != piece), *(() if back is None else (back,))])
+            if partition[other] and all(
+                pack_boxes(add_gaps(sizes, partition[n]), field) is not None for n in (thin, other)
+            ):
+                yield partition
 
 
 def packs_in_order(sizes: Sequence[Size], page: Page, field: PackingField) -> bool:
@@ -262,27 +267,31 @@ def packs_in_order(sizes: Sequence[Size], page: Page, field: PackingField) -> bo
 
 
 def tidier_rooms(
-    pieces: Sequence[SheetPiece], given: Sequence[float], page: Page, field: PackingField
+    pieces: Sequence[SheetPiece], start_rooms: Sequence[float], page: Page, field: PackingField
 ) -> Iterator[list[float]]:
     """Yield rooms with one or two drawings, or all tables, reduced so that the page packs in order and stays full."""
     tables = [k for k in page if pieces[k].letters]
     single = [tables, *([k] for k in page if k not in tables)]
-    for share, which in product(SHRINK_SHARES, [*single, *([*a, *b] for a, b in combinations(single, 2))]):
-        rooms = shrink_rooms(pieces, given, share, which)
+    for share, chosen in product(SHRINK_SHARES, [*single, *([*a, *b] for a, b in combinations(single, 2))]):
+        rooms = shrink_rooms(pieces, start_rooms, share, chosen)
         sizes = sizes_in_rooms(pieces, rooms)
         if page_area(sizes, page) > THIN_BELOW * field.area and packs_in_order(sizes, page, field):
             yield rooms
 
 
 def grow_rooms(
-    pieces: Sequence[SheetPiece], given: Sequence[float], pages: Sequence[Page], field: PackingField, shrunk: float
+    pieces: Sequence[SheetPiece],
+    start_rooms: Sequence[float],
+    pages: Sequence[Page],
+    field: PackingField,
+    shrunk: float,
 ) -> list[float]:
     """Enlarge rooms as long as every page holds its pieces, those farthest below their usual size first.
 
     Pieces keep their order and the first one its corner, unless that would leave too much of the page empty. Letters
     of tables stay about equal.
     """
-    rooms = list(given)
+    rooms = list(start_rooms)
     for page, (led, tidy, enough) in product(pages, PACKING_RULES):
         growing = set(page)
         while growing and page_area(sizes_in_rooms(pieces, rooms), page) < enough * field.area:

@@ -59,7 +59,7 @@ def draw_table(
 ) -> SheetPicture:
     """Draw a table with letters as large as its room allows."""
     cells = [
-        [cut_text(one, 1.0, WIDEST_TEXT) if isinstance(one, str) else one for one in row] for row in (heads, *rows)
+        [cut_text(cell, 1.0, WIDEST_TEXT) if isinstance(cell, str) else cell for cell in row] for row in (heads, *rows)
     ]
     columns = [max(script_width(row[k], 1.0) for row in cells) + TEXT_AIR for k in range(len(heads))]
     parts = max(math.ceil(len(rows) / MOST_ROWS), 1)
@@ -69,11 +69,11 @@ def draw_table(
     longest = longest_for(LETTER_SIZE * max(across, up))
     size = longest / max(across, up)
     marks: list[Mark] = []
-    for part in range(parts):
-        here = [cells[0], *cells[1 + part * most : 1 + (part + 1) * most]]
+    for number in range(parts):
+        part_cells = [cells[0], *cells[1 + number * most : 1 + (number + 1) * most]]
         marks += [
-            mark.moved(part * size * step + 0j)
-            for mark in _draw_table_part(here, [size * wide for wide in columns], size)
+            mark.moved(number * size * step + 0j)
+            for mark in _draw_table_part(part_cells, [size * wide for wide in columns], size)
         ]
     return render_picture(marks, title, longest, notes=notes)
 
@@ -104,9 +104,9 @@ def _draw_table_part(cells: Sequence[Sequence[Words]], columns: Sequence[float],
             at = complex(start + TEXT_AIR / 2 * size, y - row / 2)
             if numbers:
                 at = complex(end - TEXT_AIR / 2 * size - script_width(line[k], size), y - row / 2)
-            for off, letters, own in placed_pieces(line[k], size):
+            for off, letters, letter_size in placed_pieces(line[k], size):
                 if letters:
-                    marks.append(TextMark(at + off, letters, own, DARK_COLOUR))
+                    marks.append(TextMark(at + off, letters, letter_size, DARK_COLOUR))
     return marks
 
 
@@ -128,11 +128,11 @@ QuantityColumn = tuple[str | Symbol, Any, Dimension]
 
 def draw_structure_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
     """Yield the tables of links and of kinematic pairs."""
-    for found in walk(results, ("links", "pairs")):
-        rows = [[str(column.values[k]) for column in found.columns] for k in range(found.rows)]
+    for report in walk(results, ("links", "pairs")):
+        rows = [[str(column.values[k]) for column in report.columns] for k in range(report.rows)]
         yield (
-            f"table-{found.name}",
-            draw_table(found.title, [translated(column.header) for column in found.columns], rows),
+            f"table-{report.name}",
+            draw_table(report.title, [translated(column.header) for column in report.columns], rows),
         )
 
 
@@ -146,11 +146,11 @@ def draw_motion_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
     speeds += [(Symbol("ω", name), link.omega, ANGULAR_SPEED) for name, link in links.items()]
     more = [(Symbol("a", name), np.abs(point.a), ACCELERATION) for name, point in points.items()]
     more += [(Symbol("ε", name), link.epsilon, ANGULAR_ACCELERATION) for name, link in links.items()]
-    for stem, title, every in (
+    for stem, title, quantities in (
         ("speeds", _("Speeds of points, angular speeds of links"), speeds),
         ("accelerations", _("Accelerations of points, angular accelerations of links"), more),
     ):
-        moving = [column for column in every if np.any(np.nan_to_num(column[1]) != 0)]
+        moving = [column for column in quantities if np.any(np.nan_to_num(column[1]) != 0)]
         each = math.ceil(len(moving) / math.ceil(len(moving) / MOST_COLUMNS)) if moving else 1
         for start in range(0, len(moving), each):
             yield f"table-{stem}", table_over_positions(results, title, moving[start : start + each])
@@ -182,25 +182,27 @@ def table_over_positions(results: Results, title: str, columns: Sequence[Quantit
     crank = results.linkage.driver.kind == "turn"
     cycle = 2 * np.pi * motion.linkage.turns
     place: QuantityColumn = ("φ", np.mod(motion.q, cycle), ANGLE) if crank else ("s", motion.q, LENGTH)
-    every = [place, *columns]
+    quantities = [place, *columns]
     heads: list[Words] = [_("No.")]
-    heads += [(name, f", {typeset_unit(units.spelt(kind))}" if units.spelt(kind) else "") for name, __, kind in every]
+    heads += [
+        (name, f", {typeset_unit(units.spelt(kind))}" if units.spelt(kind) else "") for name, __, kind in quantities
+    ]
     chosen = range(0, len(results.numbers), math.ceil(len(results.numbers) / MOST_POSITIONS))
-    cells = [format_column(values, dimension, units, chosen) for __, values, dimension in every]
+    cells = [format_column(values, dimension, units, chosen) for __, values, dimension in quantities]
     rows = [[str(results.numbers[k]), *(column[n] for column in cells)] for n, k in enumerate(chosen)]
     return draw_table(title, heads, rows)
 
 
-def draw_forces_table(here: Position) -> Iterator[tuple[str, Drawing]]:
+def draw_forces_table(position: Position) -> Iterator[tuple[str, Drawing]]:
     """Yield the table of all forces (magnitude, angle from x) and moments at a position."""
-    results, k = here.results, here.k
+    results, k = position.results, position.k
     reactions, units = results.reactions, results.problem.units
     if reactions is None:
         return
-    given = LoadedPosition.at(here.motion, reactions, k).given()
-    forces = [(one.symbol, one.force) for one in given if not one.couple]
+    loads = LoadedPosition.at(position.motion, reactions, k).given()
+    forces = [(load.symbol, load.force) for load in loads if not load.couple]
     forces += [(reaction_symbol(r.by, r.on), complex(r.force[k])) for r in reactions.all]
-    moments = [(one.symbol, one.moment) for one in given if one.couple]
+    moments = [(load.symbol, load.moment) for load in loads if load.couple]
     largest = max((abs(force) for __, force in forces), default=0.0)
     rows: list[list[Words]] = [[name, *_polar_cells(force, largest, units), ""] for name, force in forces]
     rows += [
@@ -212,10 +214,10 @@ def draw_forces_table(here: Position) -> Iterator[tuple[str, Drawing]]:
         _("angle from x, °"),
         _("moment, {unit}").format(unit=typeset_unit(units.spelt(MOMENT))),
     ]
-    place = driver_caption(results, float(here.motion.q[k]))
+    place = driver_caption(results, float(position.motion.q[k]))
     title = _("Forces in position {number}, {place}").format(number=results.numbers[k], place=place)
     notes = [_("R with the numbers of two links: force of the first link on the second")]
-    yield here.stem("table-forces"), draw_table(title, heads, rows, notes)
+    yield position.stem("table-forces"), draw_table(title, heads, rows, notes)
 
 
 def _polar_cells(force: complex, largest: float, units: UnitSystem) -> tuple[str, str]:
@@ -228,15 +230,15 @@ def _polar_cells(force: complex, largest: float, units: UnitSystem) -> tuple[str
 
 def format_column(values: Any, dimension: Dimension, units: UnitSystem, rows: Iterable[int]) -> list[str]:
     """Format values (SI) in the units of the file, with the decimals of the largest; "-" for undefined ones."""
-    shown = np.broadcast_to(np.asarray(values, float), (max(np.size(values), 1),)) / units.factor(dimension)
-    picked = np.array([shown[k if len(shown) > 1 else 0] for k in rows])
-    known = shown[np.isfinite(shown)]
-    largest = float(np.max(np.abs(known), initial=0.0))
+    in_units = np.broadcast_to(np.asarray(values, float), (max(np.size(values), 1),)) / units.factor(dimension)
+    picked = np.array([in_units[k if len(in_units) > 1 else 0] for k in rows])
+    finite = in_units[np.isfinite(in_units)]
+    largest = float(np.max(np.abs(finite), initial=0.0))
     decimals = SIGNIFICANT_FIGURES - 1 - math.floor(math.log10(largest)) if largest else 0
     form = f".{SIGNIFICANT_FIGURES}g"
     if -MOST_DECIMALS < decimals <= MOST_DECIMALS:
         needed = (
-            n for n in range(decimals) if np.allclose(np.round(known, n), known, rtol=0, atol=10.0**-decimals / 2)
+            n for n in range(decimals) if np.allclose(np.round(finite, n), finite, rtol=0, atol=10.0**-decimals / 2)
         )
         decimals = next(needed, max(decimals, 0))
         form, picked = f".{decimals}f", np.round(picked, decimals) + 0.0  # no zero with a sign
@@ -253,27 +255,27 @@ def draw_law_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
     if running is None or results.motion is None:
         return
     units = results.problem.units
-    for found in walk(results, ("dynamics",)):
+    for report in walk(results, ("dynamics",)):
         columns = [
-            terminal_cells(replace(column, digits=SIGNIFICANT_FIGURES), units, range(found.rows))
-            for column in found.columns
+            terminal_cells(replace(column, digits=SIGNIFICANT_FIGURES), units, range(report.rows))
+            for column in report.columns
         ]
-        heads = [translated(column.header) for column in found.columns]
-        rows = [[*told, typeset_unit(unit)] for *told, unit in zip(*columns, strict=True)]
-        yield "table-dynamics", draw_table(found.title, heads, rows)
+        heads = [translated(column.header) for column in report.columns]
+        rows = [[*texts, typeset_unit(unit)] for *texts, unit in zip(*columns, strict=True)]
+        yield "table-dynamics", draw_table(report.title, heads, rows)
     yield "table-law", table_over_positions(results, _("Law of motion of the driver"), _law_columns(results))
 
 
 def _law_columns(results: Results) -> list[QuantityColumn]:
     running, motion = results.steady, results.motion
     assert running is not None and motion is not None
-    law, way = running.steady.law, running.way(motion.q)
+    law, travel = running.steady.law, running.way(motion.q)
     machine, sense = running.steady.machine, running.sense
     return [
-        (Symbol("J"), machine.inertia(way), INERTIA),
-        (Symbol("M"), sense * machine.moment(way), MOMENT),
-        (CourseSymbol("M_d"), sense * law.driving(way), MOMENT),
-        (_("A, J"), running.steady.work(way), NUMBER),
+        (Symbol("J"), machine.inertia(travel), INERTIA),
+        (Symbol("M"), sense * machine.moment(travel), MOMENT),
+        (CourseSymbol("M_d"), sense * law.driving(travel), MOMENT),
+        (_("A, J"), running.steady.work(travel), NUMBER),
         (Symbol("ω"), motion.rate, ANGULAR_SPEED),
         (Symbol("ε"), motion.acceleration, ANGULAR_ACCELERATION),
         (_("t, s"), motion.time, NUMBER),

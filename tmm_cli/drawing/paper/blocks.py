@@ -77,7 +77,7 @@ class NoteBlock:
             [script_width(note, NOTE_SIZE * POINT) for note in self.notes]
             + [len(beside) * (across + PART_GAP) - PART_GAP]
         )
-        rows = max((len(part) for part in beside), default=0)
+        rows = max((len(rows_beside) for rows_beside in beside), default=0)
         under = NOTE_LINE * len(self.notes)
         size = complex(wide + 2 * BLOCK_EDGE, BLOCK_EDGE + under + TABLE_ROW * rows + (1.0 if rows and under else 0.0))
         texts = [
@@ -85,9 +85,9 @@ class NoteBlock:
             for k, note in enumerate(self.notes)
         ]
         lines = []
-        for number, part in enumerate(beside):
+        for number, rows_beside in enumerate(beside):
             left = BLOCK_EDGE + number * (across + PART_GAP)
-            for k, row in enumerate(part):
+            for k, row in enumerate(rows_beside):
                 y = TABLE_ROW * (rows - k - 0.5) + BLOCK_EDGE / 2
                 texts += list(self._cells(row, complex(left, y), columns))
                 if row.head:
@@ -107,9 +107,9 @@ def split_rows(rows: Sequence[TableRow], parts: int) -> Iterator[list[TableRow]]
     each = math.ceil(len(rows) / parts)
     head: list[TableRow] = []
     for start in range(0, len(rows), each or 1):
-        part = list(rows[start : start + each])
-        yield part if part[0].head else [*head, *part]
-        head = [row for row in (*head, *part) if row.head][-1:]
+        rows_here = list(rows[start : start + each])
+        yield rows_here if rows_here[0].head else [*head, *rows_here]
+        head = [row for row in (*head, *rows_here) if row.head][-1:]
 
 
 def block_positions(low: complex, high: complex, size: complex) -> Vector:
@@ -131,18 +131,18 @@ def count_covered(crowd: Vector, at: Vector, size: complex, about: Vector | floa
     """Count the points that a block would cover, or approach within `about` mm, at each candidate position."""
     off = crowd[None, :] - at[:, None] - size / 2
     near = (np.abs(off.real) < size.real / 2 + about) & (np.abs(off.imag) < size.imag / 2 + about)
-    found: Vector = np.count_nonzero(near, axis=1)
-    return found
+    counts: Vector = np.count_nonzero(near, axis=1)
+    return counts
 
 
 def least_covering_block(block: NoteBlock, low: complex, high: complex, crowd: Vector) -> tuple[BlockShape, complex]:
     """Return the layout and position of a block in a field at which it covers least."""
     best: tuple[int, BlockShape, complex] | None = None
     for shape in block.shapes():
-        places = block_positions(low, high, shape.size)
-        counts = count_covered(crowd, places, shape.size)
-        if len(places) and (best is None or counts.min() < best[0]):
-            best = int(counts.min()), shape, complex(places[counts.argmin()])
+        positions = block_positions(low, high, shape.size)
+        counts = count_covered(crowd, positions, shape.size)
+        if len(positions) and (best is None or counts.min() < best[0]):
+            best = int(counts.min()), shape, complex(positions[counts.argmin()])
     if best is None:  # larger than the field in each of its shapes
         return next(block.shapes()), low
     return best[1:]
@@ -160,15 +160,15 @@ def free_block_position(
         crowd: Points of the drawing, mm.
         fits: Returns True if the sheet holds a drawing of this width and height (mm).
     """
-    found: list[tuple[bool, float, BlockShape, complex]] = []
+    candidates: list[tuple[bool, float, BlockShape, complex]] = []
     for shape in block.shapes():
-        places = block_positions(low, high, shape.size)
-        free = places[count_covered(crowd, places, shape.size) == 0] if len(places) else places
+        positions = block_positions(low, high, shape.size)
+        free = positions[count_covered(crowd, positions, shape.size) == 0] if len(positions) else positions
         size = high - low
         if len(free):
             return shape, complex(free[0])
         below = complex(max(size.real, shape.size.real), size.imag + BLOCK_CLEARANCE + shape.size.imag)
-        found.append(
+        candidates.append(
             (
                 not fits(below.real, below.imag),
                 below.real * below.imag,
@@ -178,8 +178,8 @@ def free_block_position(
         )
         beside = complex(size.real + BLOCK_CLEARANCE + shape.size.real, max(size.imag, shape.size.imag))
         at = complex(high.real + BLOCK_CLEARANCE, high.imag - shape.size.imag)
-        found.append((not fits(beside.real, beside.imag), beside.real * beside.imag, shape, at))
-    *__, shape, at = min(found, key=lambda one: one[:2])
+        candidates.append((not fits(beside.real, beside.imag), beside.real * beside.imag, shape, at))
+    *__, shape, at = min(candidates, key=lambda candidate: candidate[:2])
     return shape, at
 
 
@@ -200,13 +200,13 @@ class FigureExtent:
     off: list[Vector] = field(default_factory=list)
     about: list[Vector] = field(default_factory=list)
 
-    def spots(self, places: Sequence[complex] | Vector, about: float, off: complex = 0j) -> None:
+    def spots(self, points: Sequence[complex] | Vector, about: float, off: complex = 0j) -> None:
         """Add the finite ones of these points (SI), with a clearance and an offset (mm)."""
-        found = np.asarray(places, complex)
-        found = found[np.isfinite(found)]
-        self.places.append(found)
-        self.off.append(np.full(len(found), off))
-        self.about.append(np.full(len(found), about))
+        finite = np.asarray(points, complex)
+        finite = finite[np.isfinite(finite)]
+        self.places.append(finite)
+        self.off.append(np.full(len(finite), off))
+        self.about.append(np.full(len(finite), about))
 
     def line(self, start: complex, end: complex, about: float, off: complex = 0j) -> None:
         """Add a straight line between two points (SI)."""
@@ -238,13 +238,13 @@ def choose_scale(figure: FigureExtent, block: NoteBlock, also: Sequence[float] =
     Returns:
         Paper, scale and origin. On a large sheet the scale follows from the room there.
     """
-    places, off, about = (np.concatenate(part) for part in (figure.places, figure.off, figure.about))
+    points, off, about = (np.concatenate(arrays) for arrays in (figure.places, figure.off, figure.about))
     if on_large_sheet():
-        return _tight_layout(places, off, about)
+        return _tight_layout(points, off, about)
     sizes = [shape.size for shape in block.shapes()]
     alone: PaperLayout | None = None
-    for mu in round_scales(extent(places.tolist())[0], also):
-        at = places / mu + off
+    for mu in round_scales(extent(points.tolist())[0], also):
+        at = points / mu + off
         low = complex((at.real - about).min(), (at.imag - about).min())
         size = complex((at.real + about).max(), (at.imag + about).max()) - low
         for paper in (LANDSCAPE, PORTRAIT) if size.real > size.imag else (PORTRAIT, LANDSCAPE):
@@ -255,21 +255,21 @@ def choose_scale(figure: FigureExtent, block: NoteBlock, also: Sequence[float] =
             alone = alone or PaperLayout(paper, mu, start - low + free / 2)
             for shift in FIGURE_SHIFTS:
                 origin = start - low + complex(shift.real * free.real, shift.imag * free.imag)
-                for one in sizes:
-                    spots = block_positions(start, end, one)
-                    if len(spots) and not count_covered(at + origin, spots, one, about).all():
+                for block_size in sizes:
+                    spots = block_positions(start, end, block_size)
+                    if len(spots) and not count_covered(at + origin, spots, block_size, about).all():
                         return PaperLayout(paper, mu, origin)
         if alone is not None and mu > MOST_REDUCTION * alone.mu:
             return alone
     raise AssertionError("some scale is large enough")
 
 
-def _tight_layout(places: Vector, off: Vector, about: Vector) -> PaperLayout:
+def _tight_layout(points: Vector, off: Vector, about: Vector) -> PaperLayout:
     """Return the layout at the scale of a large sheet, on paper no larger than the figure."""
     longest = longest_for(max(LANDSCAPE))
-    __, across, up, ___ = extent(places.tolist())
+    __, across, up, ___ = extent(points.tolist())
     mu = round_scale(across, up, longest, longest)
-    at = places / mu + off
+    at = points / mu + off
     low = complex((at.real - about).min(), (at.imag - about).min())
     size = complex((at.real + about).max(), (at.imag + about).max()) - low
     start, end = drawing_area((0.0, 0.0))
@@ -278,17 +278,17 @@ def _tight_layout(places: Vector, off: Vector, about: Vector) -> PaperLayout:
 
 
 def scaleless_layout(
-    places: Sequence[complex], pad: float, least: float, below: Callable[[float], float] = lambda width: 0
+    points: Sequence[complex], pad: float, least: float, below: Callable[[float], float] = lambda width: 0
 ) -> PaperLayout:
     """Return the layout of a drawing without scale on a large sheet.
 
     Args:
-        places: Points of the drawing.
+        points: Points of the drawing.
         pad: Clearance about them, mm.
         least: Least width of the paper, mm.
         below: Height (mm) to be kept free below the drawing, as a function of the width.
     """
-    size, across, up, __ = extent(list(places) or [0j])
+    size, across, up, __ = extent(list(points) or [0j])
     factor = longest_for(max(LANDSCAPE)) / (size or 1.0)
     low, high = drawing_area((0.0, 0.0))
     figure = max(factor * across, 1.0), max(factor * up, 1.0)  # one without width has a scale too

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 
-def convex_hull(places: list[complex]) -> list[complex]:
+def convex_hull(corners: list[complex]) -> list[complex]:
     """Return the corners of the convex hull; only the two ends if all points are collinear."""
-    places = list(dict.fromkeys(complex(round(p.real, 6), round(p.imag, 6)) for p in places if np.isfinite(p)))
-    if len(places) < 3:
-        return places or [complex(np.nan, np.nan)]
-    ordered = sorted(places, key=lambda p: (p.real, p.imag))
+    corners = list(dict.fromkeys(complex(round(p.real, 6), round(p.imag, 6)) for p in corners if np.isfinite(p)))
+    if len(corners) < 3:
+        return corners or [complex(np.nan, np.nan)]
+    ordered = sorted(corners, key=lambda p: (p.real, p.imag))
 
     def half(points: list[complex]) -> list[complex]:
         chain: list[complex] = []
@@ -58,19 +58,19 @@ def text_squares(middle: complex, along: complex, width: float, height: float) -
     return [middle + share * reach * along for share in np.linspace(-1, 1, max(2, math.ceil(width / height)))]
 
 
-def nearest_in_boxes(boxes: Boxes, places: NDArray[Any]) -> NDArray[Any]:
-    """Return the point of each box that is nearest to the corresponding one of `places`."""
+def nearest_in_boxes(boxes: Boxes, points: NDArray[Any]) -> NDArray[Any]:
+    """Return the point of each box that is nearest to the corresponding one of `points`."""
     left, right, low, high = boxes.T
-    found: NDArray[Any] = np.clip(places.real, left, right) + 1j * np.clip(places.imag, low, high)
-    return found
+    nearest: NDArray[Any] = np.clip(points.real, left, right) + 1j * np.clip(points.imag, low, high)
+    return nearest
 
 
-def box_distances(boxes: Boxes, places: Sequence[complex] | NDArray[Any]) -> NDArray[Any]:
+def box_distances(boxes: Boxes, points: Sequence[complex] | NDArray[Any]) -> NDArray[Any]:
     """Return the distance of every point from every box, shape (boxes, points)."""
-    z, (left, right, low, high) = np.asarray(places, complex), boxes.T[:, :, None]
+    z, (left, right, low, high) = np.asarray(points, complex), boxes.T[:, :, None]
     across = np.maximum(np.maximum(left - z.real, z.real - right), 0)
-    found: NDArray[Any] = np.hypot(across, np.maximum(np.maximum(low - z.imag, z.imag - high), 0))
-    return found
+    distances: NDArray[Any] = np.hypot(across, np.maximum(np.maximum(low - z.imag, z.imag - high), 0))
+    return distances
 
 
 def lengths_inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> NDArray[Any]:
@@ -78,61 +78,64 @@ def lengths_inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> ND
     if not len(boxes) or not len(starts):
         return np.zeros((len(boxes), len(starts)))
     first, last = shares_inside(boxes, starts, ends)
-    found: NDArray[Any] = np.maximum(last - first, 0) * np.abs(ends - starts)
-    return found
+    lengths: NDArray[Any] = np.maximum(last - first, 0) * np.abs(ends - starts)
+    return lengths
 
 
 def shares_inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return the parameters (0 to 1) at which every segment enters and leaves every box; exit < entry if it misses."""
-    way = ends - starts
+    span = ends - starts
     left, right, low, high = boxes.T[:, :, None]
     first: Any = 0.0
     last: Any = 1.0
-    for least, most, at, step in ((left, right, starts.real, way.real), (low, high, starts.imag, way.imag)):
+    for least, most, at, step in ((left, right, starts.real, span.real), (low, high, starts.imag, span.imag)):
         per = 1 / np.where(np.abs(step) < LEAST_STEP, LEAST_STEP, step)
-        one, other = (least - at) * per, (most - at) * per
-        first, last = np.maximum(first, np.minimum(one, other)), np.minimum(last, np.maximum(one, other))
+        start_share, other = (least - at) * per, (most - at) * per
+        first, last = (
+            np.maximum(first, np.minimum(start_share, other)),
+            np.minimum(last, np.maximum(start_share, other)),
+        )
     return first, last
 
 
-def stretches_outside(places: Sequence[complex], boxes: Boxes) -> Iterator[tuple[complex, ...]]:
+def stretches_outside(points: Sequence[complex], boxes: Boxes) -> Iterator[tuple[complex, ...]]:
     """Yield the parts of a polyline that lie in none of the boxes."""
-    z = np.asarray(places, complex)
+    z = np.asarray(points, complex)
     left, right, low, high = boxes.T
     across, up = (left < z.real.max()) & (right > z.real.min()), (low < z.imag.max()) & (high > z.imag.min())
     boxes = boxes[across & up]
     if not len(boxes):
-        yield tuple(places)
+        yield tuple(points)
         return
     starts, ways = z[:-1], np.diff(z)
     firsts, lasts = shares_inside(boxes, starts, starts + ways)
     stretch: list[complex] = []
-    for k, (start, way) in enumerate(zip(starts.tolist(), ways.tolist(), strict=True)):
+    for k, (start, span) in enumerate(zip(starts.tolist(), ways.tolist(), strict=True)):
         met, free = np.flatnonzero(lasts[:, k] > firsts[:, k]), 0.0
         for first, last in sorted(zip(firsts[met, k].tolist(), lasts[met, k].tolist(), strict=True)):
             if first > free:
-                yield (*(stretch or [start + free * way]), start + first * way)
+                yield (*(stretch or [start + free * span]), start + first * span)
             elif len(stretch) > 1:
                 yield tuple(stretch)
             stretch, free = [], max(free, last)
         if free < 1:
-            stretch = [*(stretch or [start + free * way]), start + way]
+            stretch = [*(stretch or [start + free * span]), start + span]
     if stretch:
         yield tuple(stretch)
 
 
 def segments_cross(starts: NDArray[Any], ends: NDArray[Any], firsts: NDArray[Any], lasts: NDArray[Any]) -> NDArray[Any]:
     """Return whether each segment crosses each of the other ones, shape (segments, others)."""
-    way, other = (ends - starts)[:, None], lasts - firsts
+    span, other = (ends - starts)[:, None], lasts - firsts
 
     def side(along: NDArray[Any], off: NDArray[Any]) -> NDArray[Any]:
-        found: NDArray[Any] = (along.conj() * off).imag
-        return found
+        cross_products: NDArray[Any] = (along.conj() * off).imag
+        return cross_products
 
-    parted = side(way, firsts - starts[:, None]) * side(way, lasts - starts[:, None]) < 0
+    parted = side(span, firsts - starts[:, None]) * side(span, lasts - starts[:, None]) < 0
     back = side(other, starts[:, None] - firsts) * side(other, ends[:, None] - firsts) < 0
-    found: NDArray[Any] = parted & back
-    return found
+    crossed: NDArray[Any] = parted & back
+    return crossed
 
 
 def shared_areas(boxes: Boxes, others: Boxes) -> NDArray[Any]:
@@ -140,8 +143,8 @@ def shared_areas(boxes: Boxes, others: Boxes) -> NDArray[Any]:
     left, right, low, high = boxes.T[:, :, None]
     across = np.minimum(right, others[:, 1]) - np.maximum(left, others[:, 0])
     up = np.minimum(high, others[:, 3]) - np.maximum(low, others[:, 2])
-    found: NDArray[Any] = np.maximum(across, 0) * np.maximum(up, 0)
-    return found
+    areas: NDArray[Any] = np.maximum(across, 0) * np.maximum(up, 0)
+    return areas
 
 
 def distance_to_segment(place: complex, start: complex, end: complex) -> float:
@@ -151,9 +154,9 @@ def distance_to_segment(place: complex, start: complex, end: complex) -> float:
     return abs(place - start - min(max(share, 0.0), 1.0) * span)
 
 
-def distances_to_segments(places: NDArray[Any], starts: NDArray[Any], ends: NDArray[Any]) -> NDArray[Any]:
+def distances_to_segments(points: NDArray[Any], starts: NDArray[Any], ends: NDArray[Any]) -> NDArray[Any]:
     """Return the distance of every point from every line segment, shape (points, segments)."""
-    span, off = ends - starts, places[:, None] - starts
+    span, off = ends - starts, points[:, None] - starts
     share = np.clip((off * span.conj()).real / np.maximum(np.abs(span) ** 2, LEAST_STEP), 0, 1)
-    found: NDArray[Any] = np.abs(off - share * span)
-    return found
+    distances: NDArray[Any] = np.abs(off - share * span)
+    return distances

@@ -55,11 +55,11 @@ class ChartAxis:
 
     def on(self, values: Any) -> NDArray[Any]:
         """Return the positions of values (mm); on a logarithmic axis values below its end are put at the end."""
-        found = np.asarray(values, dtype=float)
+        scaled = np.asarray(values, dtype=float)
         if self.logarithmic:
             with np.errstate(divide="ignore", invalid="ignore"):
-                found = np.maximum(np.log10(found), self.low)
-        return self.start + (found - self.low) / self.mu
+                scaled = np.maximum(np.log10(scaled), self.low)
+        return self.start + (scaled - self.low) / self.mu
 
     def ticks(self, apart: float) -> list[tuple[float, str]]:
         """Return round values at least `apart` mm from each other, with their texts."""
@@ -84,9 +84,9 @@ def round_up(least: float, steps: Sequence[float] = ROUND_SCALES) -> float:
 
 def finite_limits(values: Sequence[Any]) -> tuple[float, float]:
     """Return the smallest and the largest finite value; (0, 1) if there is none."""
-    every = np.concatenate([np.zeros(0), *(np.ravel(np.asarray(v, dtype=float)) for v in values)])
-    every = every[np.isfinite(every)]
-    return (float(every.min()), float(every.max())) if every.size else (0.0, 1.0)
+    joined = np.concatenate([np.zeros(0), *(np.ravel(np.asarray(v, dtype=float)) for v in values)])
+    joined = joined[np.isfinite(joined)]
+    return (float(joined.min()), float(joined.max())) if joined.size else (0.0, 1.0)
 
 
 def filling_axis(low: float, high: float, start: float, length: float) -> ChartAxis:
@@ -128,13 +128,13 @@ def logarithmic_axis(low: float, high: float, start: float, length: float) -> Ch
 
 def equal_scales(axes: tuple[ChartAxis, ChartAxis], ends: Sequence[tuple[float, float]]) -> tuple[ChartAxis, ChartAxis]:
     """Return both axes at one round scale, with the ranges `ends` centred on them."""
-    spans = [_widen_range(*own) for own in ends]
+    spans = [_widen_range(*limits) for limits in ends]
     mu = round_up(max((high - low) / axis.length for axis, (low, high) in zip(axes, spans, strict=True)))
-    one, other = (
+    first_axis, other = (
         replace(axis, low=(low + high - mu * axis.length) / 2, mu=mu)
         for axis, (low, high) in zip(axes, spans, strict=True)
     )
-    return one, other
+    return first_axis, other
 
 
 def _widen_range(low: float, high: float) -> tuple[float, float]:
@@ -272,7 +272,9 @@ def draw_chart(
         bottom = top - TEXT_ROW * (len(rows) + 0.3) - height
         axes = x, _plot_axis(plot, bottom, height)
         if same_scale:
-            axes = equal_scales(axes, [finite_limits([getattr(c, way) for c in plot.curves]) for way in ("xs", "ys")])
+            axes = equal_scales(
+                axes, [finite_limits([getattr(c, coordinate) for c in plot.curves]) for coordinate in ("xs", "ys")]
+            )
         panel = Panel(sheet, *axes)
         panel.grid()
         _write_head(panel, plot, rows, top)
@@ -349,14 +351,14 @@ class Panel:
     def fill(self, plot: PlotContent) -> None:
         """Draw the curves and their jumps."""
         for curve in plot.curves:
-            places = self.at(curve.xs, curve.ys)
+            points = self.at(curve.xs, curve.ys)
             if curve.dots:
-                for place in np.atleast_1d(places):
+                for place in np.atleast_1d(points):
                     self.sheet.circle(complex(place), DOT_RADIUS, curve.colour, curve.colour, 0.3, 4)
                 continue
-            self.sheet.line(places.tolist(), curve.colour, curve.width, curve.style, blocks=False)
+            self.sheet.line(points.tolist(), curve.colour, curve.width, curve.style, blocks=False)
             if plot.jumps:
-                kept = places[np.isfinite(places)][::LABEL_SAMPLING].tolist()
+                kept = points[np.isfinite(points)][::LABEL_SAMPLING].tolist()
                 for start, end in pairwise(kept):
                     self.sheet.ground.line(start, end)
         for jump in plot.jumps:
@@ -432,11 +434,11 @@ def _draw_spans(panels: Sequence[Panel], spans: Sequence[tuple[float, float, str
             continue
         middle = complex((low + high) / 2, height)
         first.text(middle, text, "center")
-        for way, place in ((-1, low), (1, high)):
+        for side, place in ((-1, low), (1, high)):
             first.line(complex(place, height - 1.2), complex(place, height + 1.2), DARK_COLOUR, 0.6)
             if abs(place - middle.real) - half > 3:
                 tip = complex(place, height)
-                first.line(middle + way * half, tip, THIN_COLOUR, 0.6)
+                first.line(middle + side * half, tip, THIN_COLOUR, 0.6)
                 first.sheet.area(
-                    [tip, tip - way * 2 + 0.4j, tip - way * 2 - 0.4j], THIN_COLOUR, "none", z=1, blocks=False
+                    [tip, tip - side * 2 + 0.4j, tip - side * 2 - 0.4j], THIN_COLOUR, "none", z=1, blocks=False
                 )

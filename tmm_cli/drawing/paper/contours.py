@@ -21,7 +21,7 @@ def contour_lines(values: NDArray[Any], level: float) -> list[NDArray[Any]]:
     values: shape (columns, rows).
     """
     lines = contour_generator(z=np.ma.masked_invalid(values.T)).lines(level)
-    return [places[:, 0] + 1j * places[:, 1] for places in map(np.asarray, lines)]
+    return [points[:, 0] + 1j * points[:, 1] for points in map(np.asarray, lines)]
 
 
 def region_borders(inside: NDArray[Any], share: BorderShare) -> list[NDArray[Any]]:
@@ -41,7 +41,7 @@ def region_polygons(inside: NDArray[Any], share: BorderShare) -> Iterator[list[c
         for first, last in ends.reshape(-1, 2).tolist():
             yield [complex(first, j), complex(last, j), complex(last, j + 1), complex(first, j + 1)]
     for i, j in _mixed_cells(inside):
-        crossed = {one: place for one, _, place in _crossings(inside, i, j, share)}
+        crossed = {first_node: place for first_node, _, place in _crossings(inside, i, j, share)}
         corners: list[complex] = []
         for a, b in CORNERS:
             node = (i + a, j + b)
@@ -58,25 +58,27 @@ def hatch_polygons(pieces: Sequence[Sequence[complex]], pitch: float) -> list[tu
         corners = np.asarray(piece) / along  # lines are level there
         heights = corners.imag
         for k in range(int(np.ceil(heights.min() / pitch)), int(np.floor(heights.max() / pitch)) + 1):
-            places = []
-            for one, other in zip(corners, np.roll(corners, -1), strict=True):
-                if (one.imag <= k * pitch) != (other.imag <= k * pitch):
-                    places.append(float(one.real + (other - one).real * (k * pitch - one.imag) / (other - one).imag))
-            places.sort()
-            spans.setdefault(k, []).extend(zip(places[::2], places[1::2], strict=True))
-    found = []
-    for k, own in spans.items():
+            crossings = []
+            for corner, other in zip(corners, np.roll(corners, -1), strict=True):
+                if (corner.imag <= k * pitch) != (other.imag <= k * pitch):
+                    crossings.append(
+                        float(corner.real + (other - corner).real * (k * pitch - corner.imag) / (other - corner).imag)
+                    )
+            crossings.sort()
+            spans.setdefault(k, []).extend(zip(crossings[::2], crossings[1::2], strict=True))
+    lines = []
+    for k, intervals in spans.items():
         last: list[float] = []
-        for start, end in sorted(own):
+        for start, end in sorted(intervals):
             if last and start <= last[1] + SAME_POINTS * pitch:
                 last[1] = max(last[1], end)
                 continue
             if last:
-                found.append((last[0] * along + k * pitch * across, last[1] * along + k * pitch * across))
+                lines.append((last[0] * along + k * pitch * across, last[1] * along + k * pitch * across))
             last = [start, end]
         if last:
-            found.append((last[0] * along + k * pitch * across, last[1] * along + k * pitch * across))
-    return found
+            lines.append((last[0] * along + k * pitch * across, last[1] * along + k * pitch * across))
+    return lines
 
 
 def _mixed_cells(inside: NDArray[Any]) -> list[list[int]]:
@@ -91,10 +93,10 @@ def _crossings(
     """Yield the sides of a cell that the border crosses: first node, second node, point of crossing."""
     for k, (a, b) in enumerate(CORNERS):
         c, d = CORNERS[(k + 1) % 4]
-        one, other = (i + a, j + b), (i + c, j + d)
-        if above[one] != above[other]:
-            low, high = min(one, other), max(one, other)
-            yield one, other, complex(*low) + share(low, high) * (complex(*high) - complex(*low))
+        first_node, other = (i + a, j + b), (i + c, j + d)
+        if above[first_node] != above[other]:
+            low, high = min(first_node, other), max(first_node, other)
+            yield first_node, other, complex(*low) + share(low, high) * (complex(*high) - complex(*low))
 
 
 def _join_pieces(pieces: Sequence[tuple[complex, complex]]) -> list[NDArray[Any]]:
@@ -103,14 +105,14 @@ def _join_pieces(pieces: Sequence[tuple[complex, complex]]) -> list[NDArray[Any]
     for n, piece in enumerate(pieces):
         for end in piece:
             at.setdefault(end, []).append(n)
-    left, found = set(range(len(pieces))), []
-    starts = [n for own in at.values() if len(own) == 1 for n in own]
+    left, lines = set(range(len(pieces))), []
+    starts = [n for piece_numbers in at.values() if len(piece_numbers) == 1 for n in piece_numbers]
     for first in [*starts, *range(len(pieces))]:
         if first not in left:
             continue
         left.discard(first)
-        one, other = pieces[first]
-        line = [other, one] if len(at[other]) == 1 else [one, other]
+        first_end, other = pieces[first]
+        line = [other, first_end] if len(at[other]) == 1 else [first_end, other]
         while True:
             after = next((n for n in at[line[-1]] if n in left), None)
             if after is None:
@@ -118,5 +120,5 @@ def _join_pieces(pieces: Sequence[tuple[complex, complex]]) -> list[NDArray[Any]
             left.discard(after)
             a, b = pieces[after]
             line.append(b if a == line[-1] else a)
-        found.append(np.array(line))
-    return found
+        lines.append(np.array(line))
+    return lines

@@ -85,22 +85,22 @@ def _draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str
     def cost(side: complex, offset: float, stand: str) -> float:
         first, last, middle, v = lines(side, offset, stand)
         outer = 0.0 if inner else 2 * ARROWHEAD_ROOM
-        low_run, high_run = (tail if stand == one else outer for one in ("before", "after"))
+        low_run, high_run = (tail if stand == position else outer for position in ("before", "after"))
         stretch = first - (low_run + 1) * u, last + (high_run + 1) * u
-        found = 4.0 * sum(distance_to_segment(z, *stretch) < LETTER_CLEARANCE for z in sheet.ground.rivals)
+        price = 4.0 * sum(distance_to_segment(z, *stretch) < LETTER_CLEARANCE for z in sheet.ground.rivals)
         legs = [(z, foot + 2 * EXTENSION_OVERHANG * side) for z, foot in ((start, first), (end, last))]
-        found += count_beside(crowd, *stretch, 1.5) + sheet.ground.crossed([*legs, stretch])
-        found += 0.5 * sum(count_beside(crowd, z + 4 * side, foot, 0.8) for z, foot in ((start, first), (end, last)))
+        price += count_beside(crowd, *stretch, 1.5) + sheet.ground.crossed([*legs, stretch])
+        price += 0.5 * sum(count_beside(crowd, z + 4 * side, foot, 0.8) for z, foot in ((start, first), (end, last)))
         squares = np.array([*text_squares(middle, v, width, height), first, last])
         prices = sheet.ground.price(boxes_about(squares, height, height))
-        found += float(prices[:-2].sum() + HEAD_SHARE * prices[-2:].sum())
-        return found + least(offset, stand)
+        price += float(prices[:-2].sum() + HEAD_SHARE * prices[-2:].sum())
+        return price + least(offset, stand)
 
     choices = [(1j * u * s, o, stand) for o in LINE_OFFSETS for s in (1, -1) for stand in stands]
     (side, offset, stand), price = choices[0], cost(*choices[0])
     for choice in choices[1:]:
-        if least(*choice[1:]) < price and (own := cost(*choice)) < price:
-            (side, offset, stand), price = choice, own
+        if least(*choice[1:]) < price and (total := cost(*choice)) < price:
+            (side, offset, stand), price = choice, total
     first, last, middle, v = lines(side, offset, stand)
     for z, foot in ((start, first), (end, last)):
         if abs(foot - z) > 2.5:
@@ -140,7 +140,9 @@ def _draw_angle(sheet: DrawingSheet, vertex: complex, first: complex, last: comp
     ways = [(z - vertex) / abs(z - vertex) for z in (first, last)]
     if right:
         corner = 5.4  # beyond the edge of a stone
-        sheet.line([vertex + corner * way for way in (ways[0], sum(ways), ways[1])], DARK_COLOUR, 0.8, z=3.2)
+        sheet.line(
+            [vertex + corner * direction for direction in (ways[0], sum(ways), ways[1])], DARK_COLOUR, 0.8, z=3.2
+        )
         return
     turn = float(np.angle(ways[1] / ways[0]))
     if abs(turn) * LARGEST_RADIUS < LEAST_LENGTH:
@@ -148,12 +150,12 @@ def _draw_angle(sheet: DrawingSheet, vertex: complex, first: complex, last: comp
     room = 0.85 * min(abs(first - vertex), abs(last - vertex))
     radius = float(min(max(9.0, 7.0 / abs(turn)), max(room, 6.0), LARGEST_RADIUS))
     angles = float(np.angle(ways[0])) + np.linspace(0, turn, 30)
-    places = [vertex + radius * complex(z) for z in np.exp(1j * angles)]
-    sheet.line(places, DARK_COLOUR, 0.7, z=2.6)
-    for tail, tip in ((places[8], places[0]), (places[-9], places[-1])):
+    arc = [vertex + radius * complex(z) for z in np.exp(1j * angles)]
+    sheet.line(arc, DARK_COLOUR, 0.7, z=2.6)
+    for tail, tip in ((arc[8], arc[0]), (arc[-9], arc[-1])):
         if abs(turn) * radius > 7:
             sheet.arrow(tip + (tail - tip) / abs(tail - tip) * 2.2, tip, DARK_COLOUR, 0.5, 4.5)
-    sheet.label(name, places[len(places) // 2], 9, NAME_COLOUR, "italic")
+    sheet.label(name, arc[len(arc) // 2], 9, NAME_COLOUR, "italic")
 
 
 # A scale with numbers of positions beside the way of an output, straight or about a pivot.
@@ -195,16 +197,16 @@ class Ruler:
         """Return the point of the path at `run` mm."""
         return replace(self, off=0.0).at(run)
 
-    def away(self, places: Vector) -> Vector:
+    def away(self, points: Vector) -> Vector:
         """Return the distances (mm) of points from the path, positive on the side of the ruler."""
-        off = places - self.base
+        off = points - self.base
         if self.radius == 0:
             return self.side * np.asarray(dot(1j * self.along, off))
         return self.side * np.asarray(abs(off) - self.radius)
 
-    def run(self, places: Vector | complex) -> Real:
+    def run(self, points: Vector | complex) -> Real:
         """Return the coordinates (mm) of points of the path along the ruler."""
-        off = places - self.base
+        off = points - self.base
         if self.radius == 0:
             return np.asarray(dot(self.along, off))
         return self.radius * np.asarray(np.angle(off / self.along))
@@ -225,14 +227,14 @@ class RulerNumber:
     strong: bool = False
 
 
-def fit_ruler(way: Sequence[complex], line: complex, pivot: complex | None) -> Ruler:
+def fit_ruler(points: Sequence[complex], line: complex, pivot: complex | None) -> Ruler:
     """Return a ruler for the points of a path (mm), along a line or about a pivot."""
-    found = [place for place in way if np.isfinite(place)]
+    finite = [place for place in points if np.isfinite(place)]
     if pivot is None:
-        middle = sum(found) / len(found)
-        return Ruler(found[0] + line * float(dot(line, middle - found[0])), line, 1.0)
-    angles = np.unwrap([cmath.phase(place - pivot) for place in found])
-    return Ruler(pivot, cmath.rect(1, float(angles.max() + angles.min()) / 2), 1.0, abs(found[0] - pivot))
+        middle = sum(finite) / len(finite)
+        return Ruler(finite[0] + line * float(dot(line, middle - finite[0])), line, 1.0)
+    angles = np.unwrap([cmath.phase(place - pivot) for place in finite])
+    return Ruler(pivot, cmath.rect(1, float(angles.max() + angles.min()) / 2), 1.0, abs(finite[0] - pivot))
 
 
 def numbers_height(ruler: Ruler, numbers: Sequence[RulerNumber]) -> float:
@@ -257,7 +259,7 @@ def least_crowded_ruler(ruler: Ruler, numbers: Sequence[RulerNumber], lines: Vec
     inner = numbers_height(ruler, [number for number in numbers if not number.outer])
     least = PATH_CLEARANCE + (inner + TICK_LENGTH + 2 * NUMBER_GAP if inner else 0.0)
     choices = [replace(ruler, off=side * (least + more)) for more in RULER_OFFSETS for side in (-1.0, 1.0)]
-    return min(choices, key=lambda one: count_under_ruler(one, numbers, lines) + abs(one.off) / 3)
+    return min(choices, key=lambda candidate: count_under_ruler(candidate, numbers, lines) + abs(candidate.off) / 3)
 
 
 def ruler_reach(ruler: Ruler, numbers: Sequence[RulerNumber]) -> float:
@@ -269,8 +271,8 @@ def count_under_ruler(ruler: Ruler, numbers: Sequence[RulerNumber], lines: Vecto
     """Count the drawn points (mm) in the area of the ruler; inf if it does not fit inside a circular path."""
     if ruler.radius and ruler.radius + ruler.off < ruler_reach(ruler, numbers) + PATH_CLEARANCE:
         return math.inf
-    runs, own, far = [number.run for number in numbers], ruler.run(lines), ruler.away(lines)
-    inside = (own > min(runs) - PATH_CLEARANCE) & (own < max(runs) + PATH_CLEARANCE)
+    runs, coordinates, far = [number.run for number in numbers], ruler.run(lines), ruler.away(lines)
+    inside = (coordinates > min(runs) - PATH_CLEARANCE) & (coordinates < max(runs) + PATH_CLEARANCE)
     inner = numbers_height(ruler, [number for number in numbers if not number.outer])
     inside &= (far > abs(ruler.off) - inner - TICK_LENGTH - NUMBER_GAP) & (
         far < abs(ruler.off) + ruler_reach(ruler, numbers)
@@ -280,11 +282,11 @@ def count_under_ruler(ruler: Ruler, numbers: Sequence[RulerNumber], lines: Vecto
 
 def gather_numbers(numbers: Sequence[RulerNumber]) -> list[RulerNumber]:
     """Combine numbers that coincide on paper; an extreme position keeps its place."""
-    found = []
-    for __, here in in_place((complex(number.run, number.outer), number) for number in numbers):
-        place = next((number for number in here if number.strong), here[0])
-        found.append(replace(place, text=", ".join(number.text for number in here)))
-    return found
+    gathered = []
+    for __, coincident in in_place((complex(number.run, number.outer), number) for number in numbers):
+        place = next((number for number in coincident if number.strong), coincident[0])
+        gathered.append(replace(place, text=", ".join(number.text for number in coincident)))
+    return gathered
 
 
 def draw_ruler(sheet: DrawingSheet, ruler: Ruler, numbers: Sequence[RulerNumber]) -> None:
@@ -310,21 +312,21 @@ def draw_ruler(sheet: DrawingSheet, ruler: Ruler, numbers: Sequence[RulerNumber]
                 sheet.label(number.text, tip, NUMBER_SIZE, colour)
 
 
-def spread_intervals(wanted: Sequence[float], sizes: Sequence[float]) -> list[float]:
+def spread_intervals(middles: Sequence[float], sizes: Sequence[float]) -> list[float]:
     """Return the middles of intervals of these sizes, in order and without overlap, nearest to the wanted middles."""
     heaps: list[tuple[float, list[int]]] = []  # where each heap of touching intervals begins
-    for k in range(len(wanted)):
+    for k in range(len(middles)):
         heap = [k]
         while True:
             ends = np.cumsum([0.0, *(sizes[n] for n in heap)])
-            start = float(np.mean([wanted[n] - sizes[n] / 2 - end for n, end in zip(heap, ends, strict=False)]))
+            start = float(np.mean([middles[n] - sizes[n] / 2 - end for n, end in zip(heap, ends, strict=False)]))
             if not heaps or heaps[-1][0] + sum(sizes[n] for n in heaps[-1][1]) <= start + 1e-9:
                 break
             heap = [*heaps.pop()[1], *heap]
         heaps.append((start, heap))
-    found = []
+    spread = []
     for start, heap in heaps:
         for n in heap:
-            found.append(start + sizes[n] / 2)
+            spread.append(start + sizes[n] / 2)
             start += sizes[n]
-    return found
+    return spread

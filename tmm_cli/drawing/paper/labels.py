@@ -104,9 +104,9 @@ class LabelCandidates:
     led: NDArray[Any]
     price: NDArray[Any]
 
-    def part(self, which: slice | NDArray[Any]) -> LabelCandidates:
+    def part(self, selection: slice | NDArray[Any]) -> LabelCandidates:
         """Return the selected candidates."""
-        return LabelCandidates(*(getattr(self, one.name)[which] for one in fields(self)))
+        return LabelCandidates(*(getattr(self, column.name)[selection] for column in fields(self)))
 
 
 class LabelPlacer:
@@ -133,9 +133,9 @@ class LabelPlacer:
 
     def _look_farther(self, numbers: Sequence[int]) -> None:
         """Evaluate the next ring of candidates of several labels at once."""
-        found = [next(self.tiers[k]) for k in numbers]
-        feet, middles, price = (np.concatenate(part) for part in zip(*found, strict=True))
-        lengths = [len(tier[0]) for tier in found]
+        rings = [next(self.tiers[k]) for k in numbers]
+        feet, middles, price = (np.concatenate(arrays) for arrays in zip(*rings, strict=True))
+        lengths = [len(tier[0]) for tier in rings]
         whose = np.repeat(np.array(numbers), lengths)
         wide, high = self.sizes[whose].T
         boxes = boxes_about(middles, wide, high)
@@ -144,20 +144,20 @@ class LabelPlacer:
         led = away > LEADER_FROM
         ends = np.where(led, feet + off * (1 - LEADER_GAP / np.maximum(away, LEADER_GAP)), feet)
         price = price + LEADER_PRICE * led + self.raster.price(boxes) + self._mistaken(whose, middles, boxes, away, led)
-        places, stops = LabelCandidates(middles, boxes, feet, ends, led, price), np.cumsum([0, *lengths])
+        candidates, stops = LabelCandidates(middles, boxes, feet, ends, led, price), np.cumsum([0, *lengths])
         for k, start, stop in zip(numbers, stops[:-1], stops[1:], strict=True):
-            self.known[k].append(self._clear(places.part(slice(start, stop))))
+            self.known[k].append(self._clear(candidates.part(slice(start, stop))))
 
     def more(self, k: int) -> bool:
         """Return True if a label has candidates that are not evaluated yet."""
         return len(self.known[k]) < (len(LINE_DISTANCES) if self.labels[k].line else len(RING_CANDIDATES))
 
-    def _clear(self, places: LabelCandidates) -> LabelCandidates:
+    def _clear(self, candidates: LabelCandidates) -> LabelCandidates:
         """Keep the cheapest candidates with leaders, and add the price of what the leaders cross."""
-        if not places.led.any():
-            return places
-        best = np.argsort(places.price, kind="stable")[:LEADERS_KEPT]
-        kept = places.part(best)
+        if not candidates.led.any():
+            return candidates
+        best = np.argsort(candidates.price, kind="stable")[:LEADERS_KEPT]
+        kept = candidates.part(best)
         both = np.concatenate([kept.feet, kept.ends])
         lines = self.ground.solid.near((both.real.min(), both.real.max(), both.imag.min(), both.imag.max()))
         crossed = segments_cross(kept.feet, kept.ends, *lines.T).sum(axis=1)
@@ -171,13 +171,15 @@ class LabelPlacer:
         nearer = np.zeros(len(middles), bool)
         if len(self.rivals) and not led.all():  # a leader says what is meant
             off = box_distances(boxes, self.rivals)
-            own = np.abs(np.array([label.anchor for label in self.labels])[whose][:, None] - self.rivals) <= SAME_PLACE
-            nearer = np.where(own, np.inf, off).min(axis=1) < away + 0.8
+            is_anchor = (
+                np.abs(np.array([label.anchor for label in self.labels])[whose][:, None] - self.rivals) <= SAME_PLACE
+            )
+            nearer = np.where(is_anchor, np.inf, off).min(axis=1) < away + 0.8
         for k in {int(k) for k in whose if self.labels[k].line is not None}:
-            line, here = self.labels[k].line, whose == k
+            line, on_line = self.labels[k].line, whose == k
             others = [other for other in self.ground.lines if other != line]
-            near = distances_to_segments(middles[here], *np.array([line, *others]).T)
-            nearer[here] = near[:, 1:].min(axis=1, initial=np.inf) < near[:, 0] + 0.5
+            near = distances_to_segments(middles[on_line], *np.array([line, *others]).T)
+            nearer[on_line] = near[:, 1:].min(axis=1, initial=np.inf) < near[:, 0] + 0.5
         return np.where(nearer, np.where(led, 0.0, AMBIGUITY_PRICE), 0.0)
 
     def best(self, k: int, taken: Boxes, leaders: NDArray[Any]) -> tuple[float, LabelCandidates]:
@@ -193,15 +195,15 @@ class LabelPlacer:
                 if not self.more(k):
                     break
                 self._look_farther([k])
-            places = self.known[k][number]
-            cost = places.price + overlap_price(places.boxes, taken)
+            candidates = self.known[k][number]
+            cost = candidates.price + overlap_price(candidates.boxes, taken)
             if len(leaders):
-                cost += LINE_PRICE * (lengths_inside(places.boxes, *leaders.T) > 0).sum(axis=1)
-            if places.led.any():
-                cost += LINE_PRICE * (lengths_inside(taken, places.feet, places.ends) > 0).sum(axis=0)
+                cost += LINE_PRICE * (lengths_inside(candidates.boxes, *leaders.T) > 0).sum(axis=1)
+            if candidates.led.any():
+                cost += LINE_PRICE * (lengths_inside(taken, candidates.feet, candidates.ends) > 0).sum(axis=0)
             least = int(np.argmin(cost))
             if best is None or cost[least] < best[0]:
-                best = float(cost[least]), places.part(slice(least, least + 1))
+                best = float(cost[least]), candidates.part(slice(least, least + 1))
         assert best is not None
         return best
 
@@ -228,11 +230,11 @@ def place_labels(ground: OccupiedArea, labels: Sequence[Label]) -> list[PlacedLa
         moved = False
         for k in [k for k in order if costs[k] > ACCEPTED_COST]:
             boxes[k], leaders[k] = np.nan, np.nan
-            costs[k], found = placer.best(k, boxes[~np.isnan(boxes[:, 0])], leaders[~np.isnan(leaders[:, 0])])
-            moved = moved or abs(found.middles[0] - middles[k]) > SAME_PLACE
-            middles[k], boxes[k] = complex(found.middles[0]), found.boxes[0]
-            if found.led[0]:
-                leaders[k] = found.feet[0], found.ends[0]
+            costs[k], candidate = placer.best(k, boxes[~np.isnan(boxes[:, 0])], leaders[~np.isnan(leaders[:, 0])])
+            moved = moved or abs(candidate.middles[0] - middles[k]) > SAME_PLACE
+            middles[k], boxes[k] = complex(candidate.middles[0]), candidate.boxes[0]
+            if candidate.led[0]:
+                leaders[k] = candidate.feet[0], candidate.ends[0]
         if not moved:
             break
     return [
@@ -279,14 +281,14 @@ def candidates_beside(label: Label, width: float, height: float) -> Iterator[Can
 
 def gather_coincident(placed: Iterable[tuple[complex, Item]]) -> list[tuple[complex, list[Item]]]:
     """Group items whose points (mm) coincide on paper."""
-    found: list[tuple[complex, list[Item]]] = []
+    groups: list[tuple[complex, list[Item]]] = []
     for at, item in placed:
-        same = next((items for place, items in found if abs(place - at) < SAME_PLACE), None)
+        same = next((items for place, items in groups if abs(place - at) < SAME_PLACE), None)
         if same is None:
-            found.append((at, [item]))
+            groups.append((at, [item]))
         else:
             same.append(item)
-    return found
+    return groups
 
 
 def text_extent(text: Words, size: float) -> tuple[float, float]:

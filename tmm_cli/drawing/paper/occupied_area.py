@@ -31,11 +31,11 @@ class Segments:
     found: NDArray[Any] = field(default_factory=lambda: np.zeros((0, 2), complex))
     reach: NDArray[Any] = field(default_factory=lambda: np.zeros((4, 0)))  # left, right, low, high of each
 
-    def path(self, places: Sequence[complex]) -> None:
+    def path(self, points: Sequence[complex]) -> None:
         """Add a polyline, or the outline of a figure."""
         self.fresh += [
             (start, end)
-            for start, end in pairwise(places)
+            for start, end in pairwise(points)
             if abs(end - start) < LONGEST_LINE  # of what is not finite it is not
         ]
 
@@ -51,10 +51,10 @@ class Segments:
 
     def near(self, field: Box) -> NDArray[Any]:
         """Return the segments that may enter a box."""
-        every, (left, right, low, high) = self.all, field
+        segments, (left, right, low, high) = self.all, field
         first, last, under, over = self.reach
-        found: NDArray[Any] = every[(last >= left) & (first <= right) & (over >= low) & (under <= high)]
-        return found
+        near: NDArray[Any] = segments[(last >= left) & (first <= right) & (over >= low) & (under <= high)]
+        return near
 
     def points(self, step: float = SAMPLE_STEP) -> NDArray[Any]:
         """Return points along all segments, about `step` mm apart."""
@@ -62,8 +62,8 @@ class Segments:
         counts = np.maximum(2, (np.abs(ends - starts) / step).astype(int))
         whose = np.repeat(np.arange(len(counts)), counts)
         number = np.arange(len(whose)) - np.repeat(np.cumsum(counts) - counts, counts)
-        found: NDArray[Any] = starts[whose] + (ends - starts)[whose] * number / (counts[whose] - 1)
-        return found
+        points: NDArray[Any] = starts[whose] + (ends - starts)[whose] * number / (counts[whose] - 1)
+        return points
 
 
 @dataclass
@@ -92,16 +92,16 @@ class OccupiedArea:
     def written(self) -> NDArray[Any]:
         """Points in all texts."""
         left, right, low, high = np.reshape(np.array(self.boxes), (-1, 4)).T
-        found: NDArray[Any] = np.linspace(left, right, 5)[:, None] + 1j * np.linspace(low, high, 2)
-        return found.ravel()
+        points: NDArray[Any] = np.linspace(left, right, 5)[:, None] + 1j * np.linspace(low, high, 2)
+        return points.ravel()
 
     def line(self, start: complex, end: complex) -> None:
         """Add a solid line."""
         self.solid.path([start, end])
 
-    def path(self, places: Sequence[complex]) -> None:
+    def path(self, points: Sequence[complex]) -> None:
         """Add a solid polyline, or the outline of a figure."""
-        self.solid.path(places)
+        self.solid.path(points)
 
     def spot(self, place: complex, radius: float = 1.0) -> None:
         """Add a circle."""
@@ -131,12 +131,12 @@ class OccupiedArea:
         solid, faint = self.solid.near(room), self.faint.near(room)
         lengths = lengths_inside(wide, *np.concatenate([solid, faint]).T)
         inside, thin = lengths[:, : len(solid)].sum(axis=1), lengths[:, len(solid) :].sum(axis=1)
-        found: NDArray[Any] = LINE_PRICE * (inside > 0) + LINE_PRICE_PER_MM * inside + FAINT_PRICE_PER_MM * thin
-        found += overlap_price(boxes, np.array(self.boxes))
+        prices: NDArray[Any] = LINE_PRICE * (inside > 0) + LINE_PRICE_PER_MM * inside + FAINT_PRICE_PER_MM * thin
+        prices += overlap_price(boxes, np.array(self.boxes))
         left, right, low, high = boxes.T
         beyond = (left < self.low.real) | (right > self.high.real) | (low < self.low.imag) | (high > self.high.imag)
-        found += OUTSIDE_PRICE * beyond
-        return found
+        prices += OUTSIDE_PRICE * beyond
+        return prices
 
 
 def overlap_price(boxes: Boxes, others: Boxes) -> NDArray[Any]:
@@ -144,8 +144,8 @@ def overlap_price(boxes: Boxes, others: Boxes) -> NDArray[Any]:
     if not len(others):
         return np.zeros(len(boxes))
     areas = shared_areas(widen(boxes, TEXT_AIR), others)
-    found: NDArray[Any] = (TEXT_PRICE * (areas > 0) + TEXT_PRICE_PER_MM2 * areas).sum(axis=1)
-    return found
+    prices: NDArray[Any] = (TEXT_PRICE * (areas > 0) + TEXT_PRICE_PER_MM2 * areas).sum(axis=1)
+    return prices
 
 
 SQUARE_SIDE = 0.5  # mm: side of a square of the raster
@@ -175,8 +175,8 @@ class PriceRaster:
         self.sums = np.zeros((across + 1, up + 1), np.int64)
         np.cumsum(np.cumsum(squares, axis=1, out=squares), axis=0, out=self.sums[1:, 1:])
 
-    def _squares(self, places: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-        off = (places - self.low) / self.cell
+    def _squares(self, points: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+        off = (points - self.low) / self.cell
         return np.floor(off.real).astype(int), np.floor(off.imag).astype(int)
 
     def _edges(self, boxes: Boxes) -> NDArray[Any]:
@@ -185,15 +185,15 @@ class PriceRaster:
         off = (boxes - np.array([x, x, y, y])) / self.cell
         off[:, ::2], off[:, 1::2] = np.floor(off[:, ::2]), np.ceil(off[:, 1::2])
         across, up = self.shape
-        found: NDArray[Any] = np.clip(off, 0, np.array([across, across, up, up])).astype(int)
-        return found
+        edges: NDArray[Any] = np.clip(off, 0, np.array([across, across, up, up])).astype(int)
+        return edges
 
     def price(self, boxes: Boxes) -> NDArray[Any]:
         """Return the price of what texts in these boxes cover: lines, texts, the edge of the field."""
         left, right, low, high = self._edges(widen(boxes, RASTER_AIR)).T
         sums = self.sums
-        found = sums[right, high] - sums[left, high] - sums[right, low] + sums[left, low]
-        lines, texts, faint = found % TEXT_UNIT // SOLID_UNIT, found // TEXT_UNIT, found % SOLID_UNIT
+        counts = sums[right, high] - sums[left, high] - sums[right, low] + sums[left, low]
+        lines, texts, faint = counts % TEXT_UNIT // SOLID_UNIT, counts // TEXT_UNIT, counts % SOLID_UNIT
         price: NDArray[Any] = LINE_PRICE * (lines > 0) + RASTER_STEP * (
             LINE_PRICE_PER_MM * lines + FAINT_PRICE_PER_MM * faint
         )

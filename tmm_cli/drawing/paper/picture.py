@@ -151,8 +151,8 @@ def render_picture(
 
 def bounding_corners(marks: Iterable[Mark]) -> tuple[complex, complex]:
     """Return the lower left and upper right corners of marks, mm."""
-    places = [place for mark in marks for place in mark_corners(mark)] or [0j]
-    xs, ys = [z.real for z in places], [z.imag for z in places]
+    points = [place for mark in marks for place in mark_corners(mark)] or [0j]
+    xs, ys = [z.real for z in points], [z.imag for z in points]
     return complex(min(xs), min(ys)), complex(max(xs), max(ys))
 
 
@@ -164,24 +164,24 @@ def mark_corners(mark: Mark) -> Sequence[complex]:
         case AreaMark():
             return mark.corners
         case CircleMark():
-            return [mark.centre + mark.radius * way for way in (1, 1j, -1, -1j)]
+            return [mark.centre + mark.radius * direction for direction in (1, 1j, -1, -1j)]
         case TextMark():
             return text_corners(mark)
 
 
 def points_covered(marks: Iterable[Mark]) -> Vector:
     """Return closely spaced points (mm) on lines and in texts."""
-    found = [np.zeros(0, complex)]
+    points = [np.zeros(0, complex)]
     for mark in marks:
         low, high = bounding_corners([mark])
         if isinstance(mark, LineMark):
-            found += [
+            points += [
                 a + (b - a) * np.linspace(0, 1, 2 + int(abs(b - a) / POINT_SPACING)) for a, b in pairwise(mark.places)
             ]
         elif isinstance(mark, TextMark):
             size = high - low
             across, up = (np.linspace(0, length, 2 + int(length / POINT_SPACING)) for length in (size.real, size.imag))
-            found.append((low + across[:, None] + 1j * up).ravel())
+            points.append((low + across[:, None] + 1j * up).ravel())
         else:
-            found.append(np.array([low, high, (low + high) / 2]))
-    return np.concatenate(found)
+            points.append(np.array([low, high, (low + high) / 2]))
+    return np.concatenate(points)

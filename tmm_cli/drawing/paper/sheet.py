@@ -91,10 +91,10 @@ class DrawingSheet:
             paper: Width and height (mm) of a sheet whose scale is set later.
             room: Layout chosen beforehand; it overrides the others.
         """
-        found = [p for p in points if np.isfinite(p)] or [0j]
-        __, across, up, middle = extent(found)
+        finite = [p for p in points if np.isfinite(p)] or [0j]
+        __, across, up, middle = extent(finite)
         self.caption, self.remarks = caption, list[str]()
-        self.paper, self.mu = (room.paper, room.mu) if room else choose_paper(found, pad, paper)
+        self.paper, self.mu = (room.paper, room.mu) if room else choose_paper(finite, pad, paper)
         self.free = room.free if room else paper is not None
         self.figure = room.figure if room else None if paper else (across / self.mu, up / self.mu)
         self.ground = OccupiedArea(*drawing_area(self.paper))
@@ -116,10 +116,10 @@ class DrawingSheet:
         width, height = self.paper
         edge = 1j * (height - MARGIN - STRIP + 5)
         self.line([MARGIN + edge, width - MARGIN + edge], DARK_COLOUR, 0.6, blocks=False)
-        told, size = fit_one_line(title, 12 * POINT, width - 2 * MARGIN, bold=True)
-        self.text(complex(MARGIN, height - MARGIN - 2), told, size / POINT, weight="bold")
-        told, size = fit_one_line(self.caption, 9 * POINT, width - 2 * MARGIN)
-        self.text(complex(MARGIN, height - MARGIN - 8), told, size / POINT, colour="#404040")
+        shortened, size = fit_one_line(title, 12 * POINT, width - 2 * MARGIN, bold=True)
+        self.text(complex(MARGIN, height - MARGIN - 2), shortened, size / POINT, weight="bold")
+        shortened, size = fit_one_line(self.caption, 9 * POINT, width - 2 * MARGIN)
+        self.text(complex(MARGIN, height - MARGIN - 8), shortened, size / POINT, colour="#404040")
 
     def on(self, value: complex) -> complex:
         """Return the point on paper (mm) of a value (SI)."""
@@ -158,17 +158,17 @@ class DrawingSheet:
     ) -> None:
         """Write a text of `size` points at a point (mm), rotated by `turn` degrees; never read as mathematics."""
         bold, italic, along = weight == "bold", style == "italic", complex(unit(np.radians(turn)))
-        one = isinstance(text, str)
-        start = complex(at) if one else at - ALIGN_SHARE[ha] * script_width(text, size * POINT) * along
-        for off, letters, own in placed_pieces(text, size * POINT):
+        plain = isinstance(text, str)
+        start = complex(at) if plain else at - ALIGN_SHARE[ha] * script_width(text, size * POINT) * along
+        for off, letters, letter_size in placed_pieces(text, size * POINT):
             line = "".join(letter if letter.isprintable() else " " for letter in letters)
             if line.strip():
-                align: Align = ha if one else "left"
-                self.marks.append(TextMark(start + off * along, line, own, colour, align, bold, italic, turn))
+                align: Align = ha if plain else "left"
+                self.marks.append(TextMark(start + off * along, line, letter_size, colour, align, bold, italic, turn))
         wide, high = label_extent(text, size)
         middle = complex(at) + (0.5 - ALIGN_SHARE[ha]) * (wide - 0.6) * along
-        places = text_squares(middle, along, wide, high) if turn else []
-        self.ground.boxes += [box_about(place, high, high) for place in places] or [box_about(middle, wide, high)]
+        squares = text_squares(middle, along, wide, high) if turn else []
+        self.ground.boxes += [box_about(place, high, high) for place in squares] or [box_about(middle, wide, high)]
 
     def label(
         self, text: Words, anchor: complex, size: float = 9, colour: str = DARK_COLOUR, style: str = "normal"
@@ -179,7 +179,7 @@ class DrawingSheet:
 
     def line(
         self,
-        places: Sequence[complex],
+        points: Sequence[complex],
         colour: str = DARK_COLOUR,
         width: float = 1.0,
         style: Style = "-",
@@ -192,7 +192,7 @@ class DrawingSheet:
 
         faint: the line is interrupted by texts.
         """
-        for stretch in finite_stretches(places):
+        for stretch in finite_stretches(points):
             if faint:
                 self.faint.append(len(self.marks))
             self.marks.append(LineMark(stretch, colour, width * POINT, style, self.layer, z))
@@ -265,7 +265,7 @@ class DrawingSheet:
             mark = self.marks[number]
             assert isinstance(mark, LineMark)
             self.marks[number : number + 1] = [
-                replace(mark, places=part) for part in stretches_outside(mark.places, boxes)
+                replace(mark, places=stretch) for stretch in stretches_outside(mark.places, boxes)
             ]
         self.faint.clear()
 
@@ -299,21 +299,27 @@ class DrawingSheet:
         self.area([at, at + wide, at + shape.size, at + high], "white", THIN_COLOUR, 0.6, 8, blocks=False)
         for start, end in shape.lines:
             self.line([at + start, at + end], THIN_COLOUR, 0.5, z=8.5, blocks=False)
-        for one in shape.texts:
-            colour = GREY_TEXT if one.head else DARK_COLOUR
-            self.text(at + one.at, one.words, one.size, colour=colour, ha="right" if one.right else "left")
+        for block_text in shape.texts:
+            colour = GREY_TEXT if block_text.head else DARK_COLOUR
+            self.text(
+                at + block_text.at,
+                block_text.words,
+                block_text.size,
+                colour=colour,
+                ha="right" if block_text.right else "left",
+            )
         self.ground.boxes.append((at.real, (at + wide).real, at.imag, (at + high).imag))
         self.block = NoteBlock()
 
 
-def finite_stretches(places: Sequence[complex]) -> Iterator[tuple[complex, ...]]:
+def finite_stretches(points: Sequence[complex]) -> Iterator[tuple[complex, ...]]:
     """Yield the parts of a polyline between non-finite points."""
-    array = np.asarray(places, complex)
+    array = np.asarray(points, complex)
     finite = np.isfinite(array)
     for stretch in [array] if finite.all() else np.split(array, np.flatnonzero(~finite)):  # mostly there is one
-        found = stretch[np.isfinite(stretch)]
-        if len(found) > 1:
-            yield tuple(found.tolist())
+        kept = stretch[np.isfinite(stretch)]
+        if len(kept) > 1:
+            yield tuple(kept.tolist())
 
 
 def draw_hatching(sheet: DrawingSheet, start: complex, end: complex, outward: complex) -> None:
@@ -344,14 +350,14 @@ def divide_into_cells(
 
 def leave_field(inner: complex, outer: complex, low: complex, high: complex) -> complex:
     """Return the point where the segment from a point inside a field to another one leaves the field."""
-    way, share = outer - inner, 1.0
+    span, share = outer - inner, 1.0
     for at, step, least, most in (
-        (inner.real, way.real, low.real, high.real),
-        (inner.imag, way.imag, low.imag, high.imag),
+        (inner.real, span.real, low.real, high.real),
+        (inner.imag, span.imag, low.imag, high.imag),
     ):
         if abs(step) > 1e-12:
             share = min(share, ((most if step > 0 else least) - at) / step)
-    return inner + max(share, 0.0) * way
+    return inner + max(share, 0.0) * span
 
 
 def scale_words(symbol: str, mu: float, unit: str) -> tuple[Symbol, str]:
@@ -361,7 +367,7 @@ def scale_words(symbol: str, mu: float, unit: str) -> tuple[Symbol, str]:
 
 def with_unit(words: str, dimension: Dimension, units: UnitSystem) -> str:
     """Return the title of an axis with the unit of its quantity."""
-    return ", ".join(part for part in (words, typeset_unit(units.spelt(dimension))) if part)
+    return ", ".join(piece for piece in (words, typeset_unit(units.spelt(dimension))) if piece)
 
 
 def file_safe_name(name: str) -> str:

@@ -35,17 +35,17 @@ def font_file(bold: bool = False, italic: bool = False) -> Path:
 @cache
 def load_font(bold: bool = False, italic: bool = False) -> FT2Font:
     """Load a font completely into memory; forked processes would share the position in an open file."""
-    found = FT2Font(BytesIO(font_file(bold, italic).read_bytes()))
-    found.set_size(FONT_UNITS, 72)
-    return found
+    font = FT2Font(BytesIO(font_file(bold, italic).read_bytes()))
+    font.set_size(FONT_UNITS, 72)
+    return font
 
 
 @cache
 def _letter(letter: str, bold: bool, italic: bool) -> tuple[float, NDArray[Any], NDArray[Any]]:
     """Return advance, outline points (x + iy from the baseline) and matplotlib path codes of a letter of size 1."""
     glyph = load_font(bold, italic).load_char(ord(replace_missing(letter)))
-    places, codes = load_font(bold, italic).get_path()
-    return float(glyph.linearHoriAdvance) / 65536 / FONT_UNITS, (places[:, 0] + 1j * places[:, 1]) / FONT_UNITS, codes
+    points, codes = load_font(bold, italic).get_path()
+    return float(glyph.linearHoriAdvance) / 65536 / FONT_UNITS, (points[:, 0] + 1j * points[:, 1]) / FONT_UNITS, codes
 
 
 def letter_advance(letter: str, bold: bool = False, italic: bool = False) -> float:
@@ -66,13 +66,13 @@ def text_width(text: str, size: float, *, bold: bool = False, italic: bool = Fal
 @lru_cache(1000)
 def glyph_outline(text: str, *, bold: bool = False, italic: bool = False) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return outline points (from the left end of the baseline) and matplotlib path codes of a text of size 1."""
-    along, places, codes = 0.0, [], []
+    along, points, codes = 0.0, [], []
     for letter in text:
-        advance, own, its_codes = _letter(letter, bold, italic)
-        places.append(own + along)
+        advance, letter_points, its_codes = _letter(letter, bold, italic)
+        points.append(letter_points + along)
         codes.append(its_codes)
         along += advance
-    return np.concatenate(places), np.concatenate(codes)
+    return np.concatenate(points), np.concatenate(codes)
 
 
 def text_start(mark: TextMark) -> complex:
@@ -103,14 +103,14 @@ def _font_letters() -> frozenset[int]:
 
 def replace_missing(text: str) -> str:
     """Return the text with a box in place of every character that the font lacks."""
-    known = _font_letters()
-    return "".join(letter if ord(letter) in known else MISSING_GLYPH for letter in text)
+    available = _font_letters()
+    return "".join(letter if ord(letter) in available else MISSING_GLYPH for letter in text)
 
 
 def missing_characters(text: str) -> set[str]:
     """Return the characters that the font lacks and boxes replace."""
-    known = _font_letters()
-    return {letter for letter in text if ord(letter) not in known}
+    available = _font_letters()
+    return {letter for letter in text if ord(letter) not in available}
 
 
 Words = str | Symbol | tuple[str | Symbol, ...]
@@ -122,43 +122,43 @@ INDEX_BELOW, INDEX_ABOVE = -0.30, 0.36  # how far their middle is off that of th
 def split_symbols(words: Words) -> tuple[str | Symbol, ...]:
     """Return the texts and symbols of which words consist, with typographic minus signs."""
     several = words if isinstance(words, tuple) else (words,)
-    return tuple(signed(typeset(part)) if isinstance(part, str) else part for part in several)
+    return tuple(signed(typeset(piece)) if isinstance(piece, str) else piece for piece in several)
 
 
 def plain_text(words: Words) -> str:
     """Return words on one line, with indices written like a^n_BA."""
     return "".join(
-        part
-        if isinstance(part, str)
-        else part.letter + (f"^{part.above}" if part.above else "") + (f"_{part.below}" if part.below else "")
-        for part in split_symbols(words)
+        piece
+        if isinstance(piece, str)
+        else piece.letter + (f"^{piece.above}" if piece.above else "") + (f"_{piece.below}" if piece.below else "")
+        for piece in split_symbols(words)
     )
 
 
 def placed_pieces(words: Words, size: float) -> Iterator[tuple[complex, str, float]]:
     """Yield the pieces of a text: offset from its left end, letters, and their size."""
     at = 0.0
-    for part in split_symbols(words):
-        if isinstance(part, str):
-            yield complex(at), part, size
+    for piece in split_symbols(words):
+        if isinstance(piece, str):
+            yield complex(at), piece, size
         else:
-            yield complex(at), part.letter, size
-            foot, small = at + text_width(part.letter, size), INDEX_SIZE * size
-            for text, off in ((part.below, INDEX_BELOW), (part.above, INDEX_ABOVE)):
+            yield complex(at), piece.letter, size
+            foot, small = at + text_width(piece.letter, size), INDEX_SIZE * size
+            for text, off in ((piece.below, INDEX_BELOW), (piece.above, INDEX_ABOVE)):
                 if text:
                     yield complex(foot, off * size), text, small
-        at += script_width(part, size)
+        at += script_width(piece, size)
 
 
 @lru_cache(10_000)
 def script_width(words: Words, size: float) -> float:
     """Return the width of words with indices, in the unit of their size."""
     return sum(
-        text_width(part, size)
-        if isinstance(part, str)
-        else text_width(part.letter, size)
-        + INDEX_SIZE * max(text_width(part.below, size), text_width(part.above, size))
-        for part in split_symbols(words)
+        text_width(piece, size)
+        if isinstance(piece, str)
+        else text_width(piece.letter, size)
+        + INDEX_SIZE * max(text_width(piece.below, size), text_width(piece.above, size))
+        for piece in split_symbols(words)
     )
 
 
@@ -173,31 +173,31 @@ def wrap_symbols(words: Words, size: float, most: float, hanging: str = "") -> t
     wide = 0.0
     *tokens, before, last = ((), (), *_split_at_spaces(words))
     for token in (*tokens, (*before, *last)):
-        own = script_width(token, size)
-        if line and wide + own > most:
+        token_width = script_width(token, size)
+        if line and wide + token_width > most:
             lines.append(_join_texts(line))
             line, wide = [hanging], script_width(hanging, size)
         line += token
-        wide += own
+        wide += token_width
     return (*lines, _join_texts(line))
 
 
 def _join_texts(line: Iterable[str | Symbol]) -> tuple[str | Symbol, ...]:
     """Join consecutive texts into one."""
-    found: list[str | Symbol] = []
-    for part in line:
-        if found and isinstance(part, str) and isinstance(found[-1], str):
-            found[-1] += part
+    joined: list[str | Symbol] = []
+    for piece in line:
+        if joined and isinstance(piece, str) and isinstance(joined[-1], str):
+            joined[-1] += piece
         else:
-            found.append(part)
-    return tuple(found)
+            joined.append(piece)
+    return tuple(joined)
 
 
 def _split_at_spaces(words: Words) -> Iterator[tuple[str | Symbol, ...]]:
     """Yield the words between spaces, each with the space before it."""
     token: list[str | Symbol] = []
-    for part in split_symbols(words):
-        first, *others = part.split(" ") if isinstance(part, str) else [part]
+    for piece in split_symbols(words):
+        first, *others = piece.split(" ") if isinstance(piece, str) else [piece]
         token.append(first)
         for other in others:
             yield tuple(token)
@@ -228,12 +228,12 @@ def cut_text(text: str, size: float, room: float, *, bold: bool = False) -> str:
 
 def wrap_text(text: str, size: float, room: float, most: int, *, bold: bool = False) -> list[str]:
     """Break a text into at most `most` lines of about equal length within the room (mm); the last one is cut."""
-    found = narrower = _fill_lines(text, size, room, most, bold)
-    while 1 < len(narrower) == len(found) and " ".join(narrower) == " ".join(found):
-        found = narrower
-        room = max(text_width(line, size, bold=bold) for line in found) - NARROWING * size
+    lines = narrower = _fill_lines(text, size, room, most, bold)
+    while 1 < len(narrower) == len(lines) and " ".join(narrower) == " ".join(lines):
+        lines = narrower
+        room = max(text_width(line, size, bold=bold) for line in lines) - NARROWING * size
         narrower = _fill_lines(text, size, room, most, bold)
-    return found
+    return lines
 
 
 def _fill_lines(text: str, size: float, room: float, most: int, bold: bool) -> list[str]:
@@ -258,11 +258,11 @@ def cell_text(
         (s for s in (size, 0.87 * size, LEAST_TEXT_SHARE * size) if _fits_cell(text, s, room, lines, bold)),
         LEAST_TEXT_SHARE * size,
     )
-    found = wrap_text(text, smaller, room, lines, bold=bold)
+    fitted = wrap_text(text, smaller, room, lines, bold=bold)
     x = low.real + CELL_GAP + ALIGN_SHARE[align] * room
-    top = (low + high).imag / 2 + LINE_SPACING * smaller * (len(found) - 1) / 2
-    places = [complex(x, top - LINE_SPACING * smaller * k) for k in range(len(found))]
-    return [TextMark(at, line, smaller, DARK_COLOUR, align, bold) for at, line in zip(places, found, strict=True)]
+    top = (low + high).imag / 2 + LINE_SPACING * smaller * (len(fitted) - 1) / 2
+    anchors = [complex(x, top - LINE_SPACING * smaller * k) for k in range(len(fitted))]
+    return [TextMark(at, line, smaller, DARK_COLOUR, align, bold) for at, line in zip(anchors, fitted, strict=True)]
 
 
 def fit_one_line(text: str, size: float, room: float, *, bold: bool = False) -> tuple[str, float]:
@@ -277,5 +277,5 @@ def fit_one_line(text: str, size: float, room: float, *, bold: bool = False) -> 
 
 def _fits_cell(text: str, size: float, room: float, lines: int, bold: bool) -> bool:
     words = " ".join(text.split())[: int(8 * room * lines / size) + 1]
-    found = wrap_text(words, size, room, lines, bold=bold)
-    return " ".join(found) == words
+    fitted = wrap_text(words, size, room, lines, bold=bold)
+    return " ".join(fitted) == words

@@ -47,34 +47,39 @@ LEAST_SYMBOLS = 0.7  # size of symbols: smaller ones cannot be read
 
 def draw_assemblies(results: Results) -> Iterable[tuple[str, Drawing]]:
     """Yield the sheets with the stems of their files; groups with many assemblies get more than one sheet."""
-    for stem, here, group in name_assembly_files(results.assemblies or ()):
-        every = list(enumerate(group.assemblies, 1))
-        for first in range(0, len(every), ASSEMBLIES_PER_SHEET):
+    for stem, configuration, group in name_assembly_files(results.assemblies or ()):
+        numbered = list(enumerate(group.assemblies, 1))
+        for first in range(0, len(numbered), ASSEMBLIES_PER_SHEET):
             name = stem if first == 0 else f"{stem}-sheet-{first // ASSEMBLIES_PER_SHEET + 1}"
-            yield name, assemblies_sheet(results, here, group, every[first : first + ASSEMBLIES_PER_SHEET]).finish()
+            yield (
+                name,
+                assemblies_sheet(
+                    results, configuration, group, numbered[first : first + ASSEMBLIES_PER_SHEET]
+                ).finish(),
+            )
 
 
 def assemblies_sheet(
-    results: Results, here: Assemblies, group: GroupAssemblies, every: Sequence[tuple[int, Assembly]]
+    results: Results, configuration: Assemblies, group: GroupAssemblies, numbered: Sequence[tuple[int, Assembly]]
 ) -> DrawingSheet:
     """Draw a sheet of numbered assemblies; the scale also suits the assemblies of the group on other sheets."""
-    shown = _drawn_pairs(results.structure, group)
-    structure = replace(results.structure, pairs=shown)
+    pairs = _drawn_pairs(results.structure, group)
+    structure = replace(results.structure, pairs=pairs)
     links = [*group.group.links, *_adjacent_links(group)]
     scenes = {
-        n: MechanismScene(results.linkage, structure, {**here.poses, **a.poses})
+        n: MechanismScene(results.linkage, structure, {**configuration.poses, **a.poses})
         for n, a in enumerate(group.assemblies, 1)
     }
     boxes = {n: _assembly_box(scene, links) for n, scene in scenes.items()}
-    sizes = [size for __, size in boxes.values()]
-    largest = complex(max(size.real for size in sizes), max(size.imag for size in sizes))
-    mu, paper, places = _choose_cells(len(every), largest)
-    where = describe_position(results.problem, here.q, here.number)
+    sizes = [box for __, box in boxes.values()]
+    largest = complex(max(box.real for box in sizes), max(box.imag for box in sizes))
+    mu, paper, corners = _choose_cells(len(numbered), largest)
+    where = describe_position(results.problem, configuration.q, configuration.number)
     title = _("Real assemblies of {group}, {place}").format(group=group.group.title, place=where)
     sheet = DrawingSheet(results.problem.title, title, paper=paper)
     sheet.mu = mu
     look = STRUCTURAL.sized(max(LEAST_SYMBOLS, min(symbol_scale(sheet, scene, links) for scene in scenes.values())))
-    for (n, assembly), (low, high) in zip(every, places, strict=False):
+    for (n, assembly), (low, high) in zip(numbered, corners, strict=False):
         sheet.ground = OccupiedArea(low + 1j * CAPTION_HEIGHT, high)
         sheet.origin = (low + 1j * CAPTION_HEIGHT + high) / 2 - boxes[n][0] / sheet.mu
         _draw_assembly(sheet, scenes[n], group, look)
@@ -87,22 +92,22 @@ def assemblies_sheet(
 
 def _adjacent_links(group: GroupAssemblies) -> list[str]:
     """Return the moving links to which a group is attached."""
-    own = group.group.links
-    known = (pair.i if pair.j in own else pair.j for pair in group.group.outer)
-    return list(dict.fromkeys(link for link in known if link != FRAME))
+    group_links = group.group.links
+    joined_links = (pair.i if pair.j in group_links else pair.j for pair in group.group.outer)
+    return list(dict.fromkeys(link for link in joined_links if link != FRAME))
 
 
 def _drawn_pairs(structure: Structure, group: GroupAssemblies) -> tuple[Pair, ...]:
     """Return the pairs of the group and of its adjacent links with the frame, and hinges of later groups."""
-    own = set(group.group.links)
-    drawn = own | {FRAME} | set(_adjacent_links(group))
-    return tuple(p for p in structure.pairs if {p.i, p.j} <= drawn or (p.kind == "R" and p.i in own))
+    group_links = set(group.group.links)
+    drawn = group_links | {FRAME} | set(_adjacent_links(group))
+    return tuple(p for p in structure.pairs if {p.i, p.j} <= drawn or (p.kind == "R" and p.i in group_links))
 
 
 def _assembly_box(scene: MechanismScene, links: Sequence[str]) -> tuple[complex, complex]:
     """Return the centre of an assembly, and its width and height as a complex number, m."""
-    places = [*scene.extent(links), *(scene.at(pair) for pair in scene.structure.pairs)]
-    __, across, up, middle = extent([p for p in places if np.isfinite(p)] or [0j])
+    points = [*scene.extent(links), *(scene.at(pair) for pair in scene.structure.pairs)]
+    __, across, up, middle = extent([p for p in points if np.isfinite(p)] or [0j])
     return middle, complex(across, up)
 
 
@@ -111,21 +116,21 @@ def _choose_cells(count: int, largest: complex) -> tuple[float, tuple[float, flo
 
     The largest scale is chosen; of equal ones, that with the fewest empty cells.
     """
-    found = []
+    layouts = []
     for paper in (LANDSCAPE, PORTRAIT):
         for columns in range(1, count + 1):
-            size, places = divide_into_cells(*drawing_area(paper), columns, math.ceil(count / columns), CELL_GAP)
-            room = size - complex(2 * ASSEMBLY_PAD, 2 * ASSEMBLY_PAD + CAPTION_HEIGHT)
+            cell, corners = divide_into_cells(*drawing_area(paper), columns, math.ceil(count / columns), CELL_GAP)
+            room = cell - complex(2 * ASSEMBLY_PAD, 2 * ASSEMBLY_PAD + CAPTION_HEIGHT)
             if min(room.real, room.imag) > LEAST_CELL:
-                found.append((round_scale(largest.real, largest.imag, room.real, room.imag), paper, places))
-    return min(found, key=lambda one: (one[0], len(one[2]), one[1] == PORTRAIT))
+                layouts.append((round_scale(largest.real, largest.imag, room.real, room.imag), paper, corners))
+    return min(layouts, key=lambda layout: (layout[0], len(layout[2]), layout[1] == PORTRAIT))
 
 
 def _draw_assembly(sheet: DrawingSheet, scene: MechanismScene, group: GroupAssemblies, look: SymbolStyle) -> None:
     """Draw the group in its colour, the adjacent links in grey and the frame dark."""
-    own, known, pairs = group.group.links, _adjacent_links(group), scene.structure.pairs
-    hue = link_colours(scene.structure) | dict.fromkeys(known, THIN_COLOUR)
-    drawn = render_scene(sheet, scene, (*known, *own), pairs, look, hue)
+    group_links, adjacent, pairs = group.group.links, _adjacent_links(group), scene.structure.pairs
+    hue = link_colours(scene.structure) | dict.fromkeys(adjacent, THIN_COLOUR)
+    drawn = render_scene(sheet, scene, (*adjacent, *group_links), pairs, look, hue)
     draw_link_numbers(sheet, drawn.forms, hue)
     hinged = {p.point for p in pairs if p.kind == "R"}
     named = [(p, p.point) for p in pairs if p.kind == "R"]

@@ -97,11 +97,11 @@ class DrawingCaption:
         rows = self._rows(across)
         top = complex(low.real + room.real + TABLE_GAP, high.imag) if self.aside else top - 0.5j * CAPTION_ROW
         for table in (t for t in self.tables if t.rows):
-            own = len(table.rows)
+            column_rows = len(table.rows)
             if not self.aside:
-                own = math.ceil(own / math.ceil(own / rows))
-            for first in range(0, len(table.rows), own):
-                _write_column(sheet, top, table, table.rows[first : first + own])
+                column_rows = math.ceil(column_rows / math.ceil(column_rows / rows))
+            for first in range(0, len(table.rows), column_rows):
+                _write_column(sheet, top, table, table.rows[first : first + column_rows])
                 top += -1j * table.size.imag if self.aside else table.size.real + TABLE_GAP
 
     def _wrapped(self, across: float) -> list[Words]:
@@ -136,9 +136,9 @@ def _write_column(sheet: DrawingSheet, top: complex, table: CaptionTable, rows: 
 
 
 def captioned_sheets(
-    here: Position,
+    position: Position,
     title: str,
-    places: Sequence[tuple[complex, complex]],
+    points: Sequence[tuple[complex, complex]],
     beneath: Callable[[float], DrawingCaption],
     **words: str,
 ) -> tuple[DrawingSheet, DrawingSheet | None]:
@@ -147,34 +147,34 @@ def captioned_sheets(
     Orientation of the paper and position of the tables are chosen so that the drawing becomes largest.
 
     Args:
-        here: The position.
+        position: The position.
         title: Title with the field {caption}, and others given in `words`.
-        places: Points of the drawing (SI), each with the offset (mm) by which the drawing extends beyond it.
+        points: Points of the drawing (SI), each with the offset (mm) by which the drawing extends beyond it.
         beneath: Returns the caption at a scale (SI units per mm).
         words: Further fields of the title.
 
     Returns:
         The sheet for the drawing, and that of the caption or None.
     """
-    name, subject = here.results.problem.title, title.format(caption=here.caption, **words)
-    places = [(place, away) for place, away in places if np.isfinite(place + away)] or [(0j, 0j)]
+    name, subject = position.results.problem.title, title.format(caption=position.caption, **words)
+    points = [(place, away) for place, away in points if np.isfinite(place + away)] or [(0j, 0j)]
     if on_large_sheet():
-        return _captioned_sheet(name, subject, places, _large_sheet_layout(places, beneath)), None
+        return _captioned_sheet(name, subject, points, _large_sheet_layout(points, beneath)), None
 
     def with_tables_aside(mu: float) -> DrawingCaption:
         return replace(beneath(mu), aside=True)
 
     low, high = drawing_area(PORTRAIT)
-    alone = _best_layout(places, lambda mu: DrawingCaption())
-    best = _best_layout(places, beneath, with_tables_aside)
+    alone = _best_layout(points, lambda mu: DrawingCaption())
+    best = _best_layout(points, beneath, with_tables_aside)
     if (
         best.mu < OWN_SHEET_GROWTH * alone.mu
         and beneath(1.0).left(low, high).imag > (1 - MOST_CAPTION_SHARE) * (high - low).imag
     ):
-        return _captioned_sheet(name, subject, places, best), None
+        return _captioned_sheet(name, subject, points, best), None
     written, further = beneath(alone.mu), DrawingSheet(name, subject, paper=PORTRAIT)
     written.put(further, low + 1j * written.left(low, high).imag, high)
-    return _captioned_sheet(name, subject, places, alone), further
+    return _captioned_sheet(name, subject, points, alone), further
 
 
 @dataclass(frozen=True)
@@ -188,23 +188,24 @@ class _CaptionedLayout:
 
 
 def _best_layout(
-    places: Sequence[tuple[complex, complex]], *ways: Callable[[float], DrawingCaption]
+    points: Sequence[tuple[complex, complex]], *ways: Callable[[float], DrawingCaption]
 ) -> _CaptionedLayout:
     """Return the layout with the largest drawing; of equal ones, the first."""
     return min(
-        (_fit_layout(paper, places, way) for way in ways for paper in SHEET_PAPERS), key=lambda placed: placed.mu
+        (_fit_layout(paper, points, caption_at) for caption_at in ways for paper in SHEET_PAPERS),
+        key=lambda placed: placed.mu,
     )
 
 
 def _large_sheet_layout(
-    places: Sequence[tuple[complex, complex]], beneath: Callable[[float], DrawingCaption]
+    points: Sequence[tuple[complex, complex]], beneath: Callable[[float], DrawingCaption]
 ) -> _CaptionedLayout:
     """Return the layout at the scale of a large sheet, on the smallest paper for drawing and caption."""
     longest = longest_for(max(LANDSCAPE))
-    _, across, up, __ = extent([place for place, __ in places])
+    _, across, up, __ = extent([place for place, __ in points])
     mu = round_scale(across, up, longest, longest)
     written = beneath(mu)
-    _, across, up, middle = extent([place / mu + away for place, away in places])
+    _, across, up, middle = extent([place / mu + away for place, away in points])
     most = 10 * longest
     low, edge = drawing_area((0.0, 0.0))
 
@@ -215,9 +216,9 @@ def _large_sheet_layout(
         (wide, up + 2 * DRAWING_PAD + height(wide))
         for wide in (max(wide, across + 2 * DRAWING_PAD) for wide in CAPTION_WIDTHS)
     ]
-    found = [(wide, high) for wide, high in sizes if fits_sheet(wide, high + LABEL_ROOM)]
-    if found:
-        wide, high = min(found, key=lambda size: size[0] * size[1])
+    fitting = [(wide, high) for wide, high in sizes if fits_sheet(wide, high + LABEL_ROOM)]
+    if fitting:
+        wide, high = min(fitting, key=lambda size: size[0] * size[1])
     else:
         wide, high = min(sizes, key=lambda size: (excess_factor(size[0], size[1] + LABEL_ROOM), size[1]))
     paper = complex(wide, high) + low - edge
@@ -225,10 +226,10 @@ def _large_sheet_layout(
 
 
 def _captioned_sheet(
-    name: str, subject: str, places: Sequence[tuple[complex, complex]], placed: _CaptionedLayout
+    name: str, subject: str, points: Sequence[tuple[complex, complex]], placed: _CaptionedLayout
 ) -> DrawingSheet:
     low, high = drawing_area(placed.paper)
-    _, across, up, __ = extent([place for place, __ in places])
+    _, across, up, __ = extent([place for place, __ in points])
     on = PaperLayout(placed.paper, placed.mu, 0j, (across / placed.mu, up / placed.mu))
     sheet, room = DrawingSheet(name, subject, room=on), placed.written.left(low, high)
     placed.written.put(sheet, low, high)
@@ -238,15 +239,15 @@ def _captioned_sheet(
 
 
 def _fit_layout(
-    paper: tuple[float, float], places: Sequence[tuple[complex, complex]], written: Callable[[float], DrawingCaption]
+    paper: tuple[float, float], points: Sequence[tuple[complex, complex]], written: Callable[[float], DrawingCaption]
 ) -> _CaptionedLayout:
     """Return the layout at the smallest round scale factor at which drawing and caption fit on the paper."""
     low, high = drawing_area(paper)
-    size, across, up, __ = extent([place for place, __ in places])
+    size, across, up, __ = extent([place for place, __ in points])
     mu = round_scale(across, up, (high - low).real, (high - low).imag)
     while True:
         room = written(mu).left(low, high) - 2 * DRAWING_PAD * (1 + 1j)
-        _, across, up, middle = extent([place / mu + away for place, away in places])
+        _, across, up, middle = extent([place / mu + away for place, away in points])
         if (across <= room.real and up <= room.imag) or size / mu < LEAST_DRAWING:
             return _CaptionedLayout(paper, mu, middle, written(mu))
         mu = round_scale(1.01 * mu, 0.0, 1.0, 1.0)

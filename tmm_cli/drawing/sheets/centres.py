@@ -33,61 +33,61 @@ def draw_centres(results: Results) -> Iterator[tuple[str, Drawing]]:
     """Yield a sheet of instantaneous centres for each detailed position."""
     motion = results.motion
     assert motion is not None
-    for k, found in (results.centres or {}).items():
-        here = Position(results, motion, k)
+    for k, centres in (results.centres or {}).items():
+        position = Position(results, motion, k)
         yield (
-            here.stem("centres"),
-            _draw_centres_sheet(here, MechanismScene(results.linkage, results.structure, motion.poses, k), found),
+            position.stem("centres"),
+            _draw_centres_sheet(position, MechanismScene(results.linkage, results.structure, motion.poses, k), centres),
         )
 
 
-def _draw_centres_sheet(here: Position, scene: MechanismScene, found: Sequence[InstantCentre]) -> Drawing:
-    linkage = here.results.linkage
-    places = [*frame_pivots(linkage), *(scene.point(p) for p in linkage.moving_points)]
-    size = max(abs(p - places[0]) for p in places)
-    middle = sum(places) / len(places)
-    near = {c.links: c.place for c in found if c.place is not None and abs(c.place - middle) < SHEET_REACH * size}
-    every = points_to_scale(scene, [*places, *near.values()])
-    sheet = here.sheet(_("Instantaneous centres. {caption}"), every)
+def _draw_centres_sheet(position: Position, scene: MechanismScene, centres: Sequence[InstantCentre]) -> Drawing:
+    linkage = position.results.linkage
+    points = [*frame_pivots(linkage), *(scene.point(p) for p in linkage.moving_points)]
+    extent = max(abs(p - points[0]) for p in points)
+    middle = sum(points) / len(points)
+    near = {c.links: c.place for c in centres if c.place is not None and abs(c.place - middle) < SHEET_REACH * extent}
+    sheet_points = points_to_scale(scene, [*points, *near.values()])
+    sheet = position.sheet(_("Instantaneous centres. {caption}"), sheet_points)
     draw_measured(sheet, scene)
-    known = {centre.links: centre for centre in found}
-    for centre in found:
+    by_links = {centre.links: centre for centre in centres}
+    for centre in centres:
         for line in centre.lines:
-            _draw_kennedy_line(sheet, line, centre, known, near)
+            _draw_kennedy_line(sheet, line, centre, by_links, near)
     for at, links in gather_coincident((sheet.on(place), links) for links, place in near.items()):
         sheet.circle(at, CENTRE_RADIUS, LOAD_COLOUR, LOAD_COLOUR, 0.3, 7)
         sheet.label(_centre_names(links), at, 9, LOAD_COLOUR)
     sheet.note(scale_words("l", sheet.mu, "m/mm"))
-    for text in _distant_centre_notes(found, near):
+    for text in _distant_centre_notes(centres, near):
         sheet.note(text)
     return sheet.finish()
 
 
 def _centre_names(links: Iterable[LinkPair]) -> tuple[Symbol | str, ...]:
-    told: list[Symbol | str] = []
+    texts: list[Symbol | str] = []
     for pair in links:
-        told += [", "] * bool(told) + [Symbol("P", centre_name(pair)[1:])]
-    return tuple(told)
+        texts += [", "] * bool(texts) + [Symbol("P", centre_name(pair)[1:])]
+    return tuple(texts)
 
 
 def _draw_kennedy_line(
     sheet: DrawingSheet,
     line: CentreLine,
     centre: InstantCentre,
-    known: Mapping[LinkPair, InstantCentre],
+    by_links: Mapping[LinkPair, InstantCentre],
     near: Mapping[LinkPair, complex],
 ) -> None:
     """Draw the line through two centres and the one they determine, up to the border if a centre is beyond it."""
-    through = [known[links] for links in line]
+    through = [by_links[links] for links in line]
     three = (*through, centre)
     along = _line_direction(through)
-    ends = [sheet.on(near[one.links]) for one in three if one.links in near]
+    ends = [sheet.on(near[member.links]) for member in three if member.links in near]
     if not ends:
         return
     first = ends[0]
-    for one in three:
-        if one.links not in near:
-            behind = one.place is not None and dot(sheet.on(one.place) - first, along) < 0
+    for member in three:
+        if member.links not in near:
+            behind = member.place is not None and dot(sheet.on(member.place) - first, along) < 0
             ends.append(leave_field(first, first + (-FAR_AWAY if behind else FAR_AWAY) * along, *sheet.field))
     low, high = (end(ends, key=lambda p: float(dot(p, along))) for end in (min, max))
     if abs(high - low) > CENTRE_RADIUS:
@@ -95,16 +95,16 @@ def _draw_kennedy_line(
 
 
 def _line_direction(through: Sequence[InstantCentre]) -> complex:
-    one, other = through
-    if one.place is not None and other.place is not None:
-        way = other.place - one.place
-        return way / abs(way) if way else 1 + 0j
-    return complex(one.direction or other.direction or 1)
+    first, other = through
+    if first.place is not None and other.place is not None:
+        offset = other.place - first.place
+        return offset / abs(offset) if offset else 1 + 0j
+    return complex(first.direction or other.direction or 1)
 
 
-def _distant_centre_notes(found: Sequence[InstantCentre], near: Mapping[LinkPair, complex]) -> Iterator[str]:
+def _distant_centre_notes(centres: Sequence[InstantCentre], near: Mapping[LinkPair, complex]) -> Iterator[str]:
     """Yield notes on the centres that are not on the sheet."""
-    for centre in found:
+    for centre in centres:
         symbol = Symbol("P", centre_name(centre.links)[1:]).name
         if centre.place is None and centre.direction is not None:
             angle = numeral(float(np.degrees(np.angle(centre.direction))) % 180, ".1f")

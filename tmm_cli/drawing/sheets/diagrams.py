@@ -83,17 +83,17 @@ def output_plots(results: Results, motion: Motion, link: str) -> list[QuantityPl
     """Return the motion of an output; angles continue through full revolutions."""
     assert results.motion is not None
     near = [int(np.argmin(np.abs(motion.q - q))) for q in results.motion.q]
-    found = []
+    plots = []
     turning = {ANGULAR_SPEED: _("ω of {link}"), ANGULAR_ACCELERATION: _("ε of {link}")}
-    curves, given = output_motion(results, motion, link), output_motion(results, results.motion, link)
-    for (name, values, dimension), (__, points, ___) in zip(curves, given, strict=True):
+    curves, computed = output_motion(results, motion, link), output_motion(results, results.motion, link)
+    for (name, values, dimension), (__, points, ___) in zip(curves, computed, strict=True):
         if dimension in turning:
             name = turning[dimension].format(link=link)
         if dimension == ANGLE:
             values = np.unwrap(values)
             points = points + 2 * np.pi * np.round((values[near] - points) / (2 * np.pi))
-        found.append(QuantityPlot(translated(name), dimension, [SampledCurve("", values, points)]))
-    return found
+        plots.append(QuantityPlot(translated(name), dimension, [SampledCurve("", values, points)]))
+    return plots
 
 
 def balancing_plots(whole: Results, results: Results) -> list[QuantityPlot]:
@@ -101,17 +101,17 @@ def balancing_plots(whole: Results, results: Results) -> list[QuantityPlot]:
     if whole.reactions is None or results.reactions is None:
         return []
     several = len(whole.reactions.balances) > 1
-    found: dict[bool, list[SampledCurve]] = {True: [], False: []}
+    curves_of: dict[bool, list[SampledCurve]] = {True: [], False: []}
     for curve, points in zip(whole.reactions.balances, results.reactions.balances, strict=True):
         turns = curve.moment is not None if several else curve.kind == "moment"
         name = balance_symbol(curve.driver.link, several, turns=turns).name if several else ""
         values, dots = (b.generalized if several or turns else b.force for b in (curve, points))
-        found[turns].append(SampledCurve(name, values, dots))
+        curves_of[turns].append(SampledCurve(name, values, dots))
     moments = _("balancing moments") if several else _("balancing moment")
     forces = _("balancing forces") if several else _("balancing force")
     return [
         QuantityPlot(words, dimension, courses[first : first + MOST_CURVES])
-        for words, dimension, courses in ((moments, MOMENT, found[True]), (forces, FORCE, found[False]))
+        for words, dimension, courses in ((moments, MOMENT, curves_of[True]), (forces, FORCE, curves_of[False]))
         for first in range(0, len(courses), MOST_CURVES)
     ]
 
@@ -120,24 +120,24 @@ def reaction_plots(whole: Results, results: Results) -> list[QuantityPlot]:
     """Return the magnitudes of all reactions, MOST_CURVES in a panel."""
     if whole.reactions is None or results.reactions is None:
         return []
-    here = {r.pair.name: r for r in results.reactions.all}
-    found = []
+    computed = {r.pair.name: r for r in results.reactions.all}
+    plots = []
     for words, on_frame in ((_("reactions of the frame"), True), (_("reactions between moving links"), False)):
         courses = [
-            SampledCurve(f"{symbol.name} ({r.pair.name})", np.abs(r.force), np.abs(here[r.pair.name].force))
+            SampledCurve(f"{symbol.name} ({r.pair.name})", np.abs(r.force), np.abs(computed[r.pair.name].force))
             for r, symbol in ((r, reaction_symbol(r.by, r.on)) for r in whole.reactions.all)
             if (FRAME in (r.on, r.by)) == on_frame
         ]
-        found += [
+        plots += [
             QuantityPlot(words, FORCE, courses[i : i + MOST_CURVES], "R") for i in range(0, len(courses), MOST_CURVES)
         ]
-    return found
+    return plots
 
 
 def energy_plots(whole: Results, results: Results) -> list[QuantityPlot]:
     """Return reduced inertia and moment, kinetic energy and powers; nothing without weights and loads."""
-    curve, given = whole.energy, results.energy
-    if curve is None or given is None:
+    curve, computed = whole.energy, results.energy
+    if curve is None or computed is None:
         return []
     crank = results.linkage.driver.kind == "turn"
     powers = {
@@ -147,36 +147,36 @@ def energy_plots(whole: Results, results: Results) -> list[QuantityPlot]:
         _("friction"): "friction",
         _("rate of change of T"): "rate",
     }
-    found = []
+    plots = []
     for words, dimension, parts, symbol in (
         (_("reduced inertia J") if crank else _("reduced mass m"), INERTIA if crank else MASS, {"": "inertia"}, ""),
         (_("reduced moment M") if crank else _("reduced force F"), MOMENT if crank else FORCE, {"": "moment"}, ""),
         (_("kinetic energy T, J"), NUMBER, {"": "kinetic"}, "T"),
         (_("power, W"), NUMBER, powers, "P"),
     ):
-        courses = [SampledCurve(label, getattr(curve, name), getattr(given, name)) for label, name in parts.items()]
+        courses = [SampledCurve(label, getattr(curve, name), getattr(computed, name)) for label, name in parts.items()]
         courses = [course for course in courses if np.any(np.nan_to_num(course.values) != 0)]
         if courses:
-            found.append(QuantityPlot(words, dimension, courses, symbol))
-    return found
+            plots.append(QuantityPlot(words, dimension, courses, symbol))
+    return plots
 
 
 def shaking_plots(results: Results, q: Any) -> list[QuantityPlot]:
     """Return the shaking force and moment on the frame, before and after balancing."""
-    found = results.balancing
-    if found is None or not np.any(np.nan_to_num(found.cycle.before.force) != 0):
+    balancing = results.balancing
+    if balancing is None or not np.any(np.nan_to_num(balancing.cycle.before.force) != 0):
         return []
-    ways = [(_("without counterweights"), found.before), (_("with counterweights"), found.after)]
-    told = [(*way, curve) for way, curve in zip(ways, found.at(results.mechanism, q), strict=True)]
-    told = told[::-1] if found.cycle.counterweights else told[:1]  # dashed is without, as in the hodograph
-    nothing = NO_FORCE * float(np.nanmax(np.abs(found.cycle.before.force)))
+    ways = [(_("without counterweights"), balancing.before), (_("with counterweights"), balancing.after)]
+    stages = [(*stage, curve) for stage, curve in zip(ways, balancing.at(results.mechanism, q), strict=True)]
+    stages = stages[::-1] if balancing.cycle.counterweights else stages[:1]  # dashed is without, as in the hodograph
+    nothing = NO_FORCE * float(np.nanmax(np.abs(balancing.cycle.before.force)))
 
     def size(force: Any) -> Any:
         return np.where(np.abs(force) > nothing, np.abs(force), 0 * np.abs(force))
 
-    forces = [SampledCurve(name, size(curve.force), size(here.force)) for name, here, curve in told]
-    moments = [SampledCurve(name, curve.moment, here.moment) for name, here, curve in told]
-    about = _("shaking moment about {pivot}").format(pivot=found.pivot or _("the origin"))
+    forces = [SampledCurve(name, size(curve.force), size(computed.force)) for name, computed, curve in stages]
+    moments = [SampledCurve(name, curve.moment, computed.moment) for name, computed, curve in stages]
+    about = _("shaking moment about {pivot}").format(pivot=balancing.pivot or _("the origin"))
     return [QuantityPlot(_("shaking force"), FORCE, forces), QuantityPlot(about, MOMENT, moments)]
 
 
@@ -188,19 +188,20 @@ def pressure_plots(results: Results, motion: Motion) -> list[QuantityPlot]:
             for kernel, at in zip(motion.kernels, motion.placements, strict=True)
             for lead in driven_links(kernel.group)
         }
-    found = []
+    plots = []
     for slides in (True, False):
-        here = [p for p in results.pressure if p.slides == slides]
+        angles = [p for p in results.pressure if p.slides == slides]
         text = _("link {link} in pair {pair}")
         courses = [
-            SampledCurve(text.format(link=p.link, pair=p.pair), curves[p.group, p.link, p.pair], p.angles) for p in here
+            SampledCurve(text.format(link=p.link, pair=p.pair), curves[p.group, p.link, p.pair], p.angles)
+            for p in angles
         ]
         words = _("pressure angle of sliding links") if slides else _("pressure angle of rotating links")
         for first in range(0, len(courses), MOST_CURVES):
-            allowed = np.full(np.shape(motion.q), here[0].allowed)
-            limit = SampledCurve(_("allowed"), allowed, np.full(np.shape(here[0].angles), np.nan), limit=True)
-            found.append(QuantityPlot(words, ANGLE, [*courses[first : first + MOST_CURVES], limit], "θ"))
-    return found
+            allowed = np.full(np.shape(motion.q), angles[0].allowed)
+            limit = SampledCurve(_("allowed"), allowed, np.full(np.shape(angles[0].angles), np.nan), limit=True)
+            plots.append(QuantityPlot(words, ANGLE, [*courses[first : first + MOST_CURVES], limit], "θ"))
+    return plots
 
 
 MOST_POINTS = 1440  # of a curve over a cycle
@@ -241,8 +242,8 @@ SYMBOL_UNITS = {"T": "J", "A": "J", "P": "W", "t": "s"}  # of what has no unit i
 
 def draw_diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
     """Yield the diagrams over the cycle: outputs, balancing, reactions, energy, pressure angles, shaking force."""
-    places, borders = dense_coordinates(results)
-    whole = results_at(results, places)
+    coordinates, borders = dense_coordinates(results)
+    whole = results_at(results, coordinates)
     motion = whole.motion
     assert motion is not None
     outputs = results.mechanism.outputs
@@ -254,24 +255,24 @@ def draw_diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
     energy = _("Mechanism reduced to the driver, and powers; dots: computed positions")
     pressure = _("Pressure angles over the cycle; dots: computed positions; dashed: allowable values")
     balancing = _("Shaking force and shaking moment over the cycle; dots: computed positions")
-    for caption, stem, every in (
+    for caption, stem, plots in (
         (cycle, "diagrams", [*first, *balancing_plots(whole, results)]),
-        *((cycle, stem, every) for stem, every in of_outputs.items()),
+        *((cycle, stem, plots) for stem, plots in of_outputs.items()),
         (reactions, "reactions", reaction_plots(whole, results)),
         (energy, "energy", energy_plots(whole, results)),
         (pressure, "pressure", pressure_plots(results, motion)),
-        (balancing, "shaking", shaking_plots(results, places)),
+        (balancing, "shaking", shaking_plots(results, coordinates)),
     ):
-        yield from plot_over_driver(results, file_safe_name(stem), caption, motion.q, borders, every)
+        yield from plot_over_driver(results, file_safe_name(stem), caption, motion.q, borders, plots)
 
 
 def dense_coordinates(results: Results) -> tuple[Real, list[int]]:
     """Return closely spaced driver coordinates, and the indices after which a stroke ends or a load jumps."""
     turns, sense = results.turns, results.linkage.driver.sense
-    places = results.closely(min((POSITIONS_PER_TURN - 1) * (turns or 1), MOST_POINTS) + 1)
+    coordinates = results.closely(min((POSITIONS_PER_TURN - 1) * (turns or 1), MOST_POINTS) + 1)
     if not turns:
-        return places, []
-    gone, end = sense * (places - results.start), 2 * np.pi * turns
+        return coordinates, []
+    gone, end = sense * (coordinates - results.start), 2 * np.pi * turns
     stops = {stop for start, length, __ in _strokes_from_start(results) for stop in (start, start + length)}
     stops |= {float(sense * (q - results.start)) % end for q in find_table_jumps(results.mechanism)}
     borders = [stop for stop in sorted(stops - {0.0}) if stop > 2 * BORDER_OFFSET]
@@ -289,15 +290,15 @@ def _strokes_from_start(results: Results) -> list[tuple[float, float, bool]]:
     turns, strokes = results.turns, results.strokes
     if not turns or strokes is None:
         return []
-    end, found = 2 * np.pi * turns, []
+    end, strokes_drawn = 2 * np.pi * turns, []
     for stroke in strokes.strokes:
         start = float(np.mod(results.linkage.driver.sense * (stroke.start - results.start), strokes.cycle))
         start = 0.0 if strokes.cycle - start < BORDER_OFFSET or start < BORDER_OFFSET else start
         for begin in (start - strokes.cycle, start):
             low, high = max(begin, 0.0), min(begin + stroke.length, end)
             if high - low > BORDER_OFFSET:
-                found.append((low, end - low if end - high < BORDER_OFFSET else high - low, stroke.working))
-    return found
+                strokes_drawn.append((low, end - low if end - high < BORDER_OFFSET else high - low, stroke.working))
+    return strokes_drawn
 
 
 def _stroke_names(results: Results, strokes: Sequence[tuple[float, float, bool]]) -> list[str]:
@@ -318,7 +319,7 @@ def _axis_values(results: Results, q: Real) -> Any:
 
 
 def plot_over_driver(
-    results: Results, stem: str, caption: str, q: Real, borders: Sequence[int], every: Sequence[QuantityPlot]
+    results: Results, stem: str, caption: str, q: Real, borders: Sequence[int], plots: Sequence[QuantityPlot]
 ) -> Iterable[tuple[str, Drawing]]:
     """Draw quantities against the driver coordinate on one or more sheets.
 
@@ -328,9 +329,9 @@ def plot_over_driver(
         caption: Caption of the sheets.
         q: Driver coordinates (rad or m).
         borders: Indices after which a quantity may jump.
-        every: Quantities, one panel each.
+        plots: Quantities, one panel each.
     """
-    left, number = list(every), 1
+    left, number = list(plots), 1
     while left:
         count, drawing = _plot_sheet(results, caption, q, borders, left[:MOST_PANELS])
         yield (f"{stem}-{number}" if number > 1 else stem), drawing
@@ -338,11 +339,11 @@ def plot_over_driver(
 
 
 def _plot_sheet(
-    results: Results, caption: str, q: Real, borders: Sequence[int], every: Sequence[QuantityPlot]
+    results: Results, caption: str, q: Real, borders: Sequence[int], quantity_plots: Sequence[QuantityPlot]
 ) -> tuple[int, Drawing]:
     """Draw as many of the quantities as one sheet holds; return their number and the sheet."""
     assert results.motion is not None
-    sheet = DrawingSheet(results.problem.title, caption, paper=PORTRAIT if len(every) > 2 else LANDSCAPE)
+    sheet = DrawingSheet(results.problem.title, caption, paper=PORTRAIT if len(quantity_plots) > 2 else LANDSCAPE)
     xs, marks, end = _axis_values(results, q), _axis_values(results, results.motion.q), 360 * results.turns
     numbers = list(zip(marks.tolist(), map(str, results.numbers), strict=True))
     if end:
@@ -357,7 +358,7 @@ def _plot_sheet(
         for (start, length, __), name in zip(strokes, _stroke_names(results, strokes), strict=True)
     ]
     over = CommonAxis(axis, words, sorted(numbers), spans)
-    plots = [plot_quantities(one, results.problem.units, xs, marks, borders) for one in every]
+    plots = [plot_quantities(plot, results.problem.units, xs, marks, borders) for plot in quantity_plots]
     count = count_fitting(sheet, plots, over)
     draw_chart(sheet, plots[:count], over)
     return count, sheet.finish()
@@ -375,19 +376,21 @@ def _driver_axis(results: Results, ends: tuple[float, float], start: float, most
     return axis, (f"{title};  ", *scale)
 
 
-def plot_quantities(found: QuantityPlot, units: UnitSystem, xs: Any, marks: Any, borders: Sequence[int]) -> PlotContent:
+def plot_quantities(
+    quantity_plot: QuantityPlot, units: UnitSystem, xs: Any, marks: Any, borders: Sequence[int]
+) -> PlotContent:
     """Return the panel of a plot; after the indices `borders` its curves may jump.
 
     Args:
-        found: The quantities (SI).
+        quantity_plot: The quantities (SI).
         units: Units of the file.
         xs: Values of the horizontal axis, shape (coordinates,).
         marks: Values of the horizontal axis at the computed positions.
         borders: Indices of `xs` after which a curve may jump.
     """
-    factor, unit = units.factor(found.dimension), typeset_unit(units.spelt(found.dimension))
+    factor, unit = units.factor(quantity_plot.dimension), typeset_unit(units.spelt(quantity_plot.dimension))
     curves, jumps = [], []
-    for k, course in enumerate(found.courses):
+    for k, course in enumerate(quantity_plot.courses):
         values, points = (np.asarray(v) / factor for v in (course.values, course.points))
         if course.limit:
             curves.append(ChartCurve(xs, values, course.name, THIN_COLOUR, "--", 1.0))
@@ -401,18 +404,20 @@ def plot_quantities(found: QuantityPlot, units: UnitSystem, xs: Any, marks: Any,
         after = np.array(leaps, dtype=int) + 1
         whole = np.insert(values, after, np.nan)
         curves.append(ChartCurve(np.insert(xs, after, np.nan), whole, course.name, colour, style))
-        every = slice(None, None, math.ceil(len(marks) / MOST_DOTS) or 1)
-        curves.append(ChartCurve(marks[every], np.broadcast_to(points, np.shape(marks))[every], "", colour, dots=True))
+        dot_step = slice(None, None, math.ceil(len(marks) / MOST_DOTS) or 1)
+        curves.append(
+            ChartCurve(marks[dot_step], np.broadcast_to(points, np.shape(marks))[dot_step], "", colour, dots=True)
+        )
         for i in leaps:
-            written = len(found.courses) <= MOST_WRITTEN_CURVES and len(leaps) <= MOST_WRITTEN_JUMPS
-            told = [numeral(v, ".4g") if written else "" for v in (values[i], values[i + 1])]
-            jumps.append(CurveJump(xs[i], (values[i], values[i + 1]), (told[0], told[1]), colour))
+            written = len(quantity_plot.courses) <= MOST_WRITTEN_CURVES and len(leaps) <= MOST_WRITTEN_JUMPS
+            jump_texts = [numeral(v, ".4g") if written else "" for v in (values[i], values[i + 1])]
+            jumps.append(CurveJump(xs[i], (values[i], values[i + 1]), (jump_texts[0], jump_texts[1]), colour))
     return PlotContent(
-        with_unit(found.words, found.dimension, units),
+        with_unit(quantity_plot.words, quantity_plot.dimension, units),
         curves,
         jumps,
-        _scale_caption(found, units, unit),
-        degrees=found.dimension == quantities.ANGLE and units.symbol(quantities.ANGLE) == "deg",
+        _scale_caption(quantity_plot, units, unit),
+        degrees=quantity_plot.dimension == quantities.ANGLE and units.symbol(quantities.ANGLE) == "deg",
     )
 
 
@@ -431,12 +436,12 @@ def _find_jumps(xs: Any, values: Any, borders: Sequence[int]) -> list[int]:
     return sorted({*(i for i in borders if steps[i] > LEAST_JUMP * whole), *map(int, sudden)})
 
 
-def _scale_caption(found: QuantityPlot, units: UnitSystem, unit: str) -> Any:
+def _scale_caption(quantity_plot: QuantityPlot, units: UnitSystem, unit: str) -> Any:
     """Return the function that writes the scale of an axis; lengths are in metres, as on the other sheets."""
-    symbol, factor = found.symbol or SCALE_SYMBOLS.get(found.dimension, ""), 1.0
-    if found.dimension == quantities.LENGTH:
+    symbol, factor = quantity_plot.symbol or SCALE_SYMBOLS.get(quantity_plot.dimension, ""), 1.0
+    if quantity_plot.dimension == quantities.LENGTH:
         unit, factor = "m", units.factor(quantities.LENGTH)
     elif not unit:
-        unit = SYMBOL_UNITS.get(found.symbol, "1")
+        unit = SYMBOL_UNITS.get(quantity_plot.symbol, "1")
     per = f"({unit})/mm" if "/" in unit else f"{unit}/mm"
     return lambda mu: scale_words(symbol, mu * factor, per)

@@ -77,12 +77,16 @@ def draw_law_curves(results: Results) -> Iterable[tuple[str, Drawing]]:
     running = results.steady
     if running is None or results.motion is None:
         return
-    way, borders = _dense_travel(running)
-    q, here = running.start + running.sense * way, running.way(results.motion.q)
+    travel, borders = _dense_travel(running)
+    q, computed = running.start + running.sense * travel, running.way(results.motion.q)
     moments = _("Reduced moments, work and energy; driving moments are positive; dots: computed positions")
-    yield from plot_over_driver(results, "law-moments", moments, q, borders, _load_plots(results, running, way, here))
+    yield from plot_over_driver(
+        results, "law-moments", moments, q, borders, _load_plots(results, running, travel, computed)
+    )
     motion = _("Reduced inertia and the law of motion of the driver; dots: computed positions")
-    yield from plot_over_driver(results, "law-motion", motion, q, borders, _motion_plots(results, running, way, here))
+    yield from plot_over_driver(
+        results, "law-motion", motion, q, borders, _motion_plots(results, running, travel, computed)
+    )
 
 
 def draw_energy_mass(results: Results) -> Iterable[tuple[str, Drawing]]:
@@ -96,8 +100,8 @@ def _dense_travel(running: SteadyRunning) -> tuple[Real, list[int]]:
     lows, highs = visible_stretches(running.steady.law.energy.edges)
     inner = np.linspace(0, 1, max(4, 720 // len(lows)))
     low, high = lows[:, None] + BORDER_OFFSET, highs[:, None] - BORDER_OFFSET
-    places = low + (high - low) * inner
-    return places.ravel(), (len(inner) * np.arange(1, len(lows)) - 1).tolist()
+    travels = low + (high - low) * inner
+    return travels.ravel(), (len(inner) * np.arange(1, len(lows)) - 1).tolist()
 
 
 def visible_stretches(edges: Real) -> tuple[Real, Real]:
@@ -113,12 +117,12 @@ def visible_stretches(edges: Real) -> tuple[Real, Real]:
     return kept[:-1][seen], kept[1:][seen]
 
 
-def _load_plots(results: Results, running: SteadyRunning, way: Real, here: Real) -> list[QuantityPlot]:
+def _load_plots(results: Results, running: SteadyRunning, travel: Real, computed: Real) -> list[QuantityPlot]:
     """Return reduced moments of the loads with their sum, the driving moment, works and energies."""
     steady = running.steady
     law, machine = steady.law, steady.machine
     loads = _curves_with_sum(
-        _reduced_load_moments(results, running, way), _reduced_load_moments(results, running, here), _("sum")
+        _reduced_load_moments(results, running, travel), _reduced_load_moments(results, running, computed), _("sum")
     )
 
     def works(x: Real) -> tuple[Real, Real, Real]:
@@ -129,69 +133,76 @@ def _load_plots(results: Results, running: SteadyRunning, way: Real, here: Real)
         return machine.inertia(x) * square, law.flywheel * (square - law.speed(0 * x) ** 2 / 2)
 
     driver = _("constant moment") if steady.task.motor is None else _("motor")
-    driving = [_sample_curve(_("loads"), machine.moment, way, here), _sample_curve(driver, law.driving, way, here)]
+    driving = [
+        _sample_curve(_("loads"), machine.moment, travel, computed),
+        _sample_curve(driver, law.driving, travel, computed),
+    ]
     energy_names = _("links"), _("energy change of the flywheel")
     return [
         QuantityPlot(_("reduced moments of the loads"), MOMENT, loads),
         QuantityPlot(_("moments"), MOMENT, driving),
-        QuantityPlot(_("work, J"), NUMBER, _sample_curves((_("loads"), driver, _("sum")), works, way, here), "A"),
+        QuantityPlot(
+            _("work, J"), NUMBER, _sample_curves((_("loads"), driver, _("sum")), works, travel, computed), "A"
+        ),
         QuantityPlot(
             _("kinetic energy, J"),
             NUMBER,
-            _sample_curves(energy_names, energies, way, here)[: 2 if law.flywheel else 1],
+            _sample_curves(energy_names, energies, travel, computed)[: 2 if law.flywheel else 1],
             "T",
         ),
     ]
 
 
-def _motion_plots(results: Results, running: SteadyRunning, way: Real, here: Real) -> list[QuantityPlot]:
+def _motion_plots(results: Results, running: SteadyRunning, travel: Real, computed: Real) -> list[QuantityPlot]:
     """Return inertia of each link with the sum, its derivative, speed, acceleration and time."""
     steady = running.steady
     law = steady.law
     parts = _curves_with_sum(
-        _reduced_link_inertias(results, running, way), _reduced_link_inertias(results, running, here), _("sum")
+        _reduced_link_inertias(results, running, travel), _reduced_link_inertias(results, running, computed), _("sum")
     )
     mean = SampledCurve(
         _("mean of the largest and the smallest value"),
-        np.full(np.shape(way), np.mean(steady.speeds)),
-        np.full(np.shape(here), np.nan),
+        np.full(np.shape(travel), np.mean(steady.speeds)),
+        np.full(np.shape(computed), np.nan),
         limit=True,
     )
     return [
         QuantityPlot(_("reduced inertia of the links"), INERTIA, parts),
-        QuantityPlot("dJ/dφ", INERTIA, [_sample_curve("", steady.machine.slope, way, here)], "J′"),
-        QuantityPlot(_("angular velocity ω"), ANGULAR_SPEED, [_sample_curve(_("ω"), law.speed, way, here), mean]),
+        QuantityPlot("dJ/dφ", INERTIA, [_sample_curve("", steady.machine.slope, travel, computed)], "J′"),
         QuantityPlot(
-            _("angular acceleration ε"), ANGULAR_ACCELERATION, [_sample_curve("", law.acceleration, way, here)]
+            _("angular velocity ω"), ANGULAR_SPEED, [_sample_curve(_("ω"), law.speed, travel, computed), mean]
         ),
-        QuantityPlot(_("time t, s"), NUMBER, [_sample_curve("", law.time, way, here)], "t"),
+        QuantityPlot(
+            _("angular acceleration ε"), ANGULAR_ACCELERATION, [_sample_curve("", law.acceleration, travel, computed)]
+        ),
+        QuantityPlot(_("time t, s"), NUMBER, [_sample_curve("", law.time, travel, computed)], "t"),
     ]
 
 
-def _sample_curve(name: str, of: Any, way: Real, here: Real) -> SampledCurve:
-    return SampledCurve(name, of(way), of(here))
+def _sample_curve(name: str, function: Any, travel: Real, computed: Real) -> SampledCurve:
+    return SampledCurve(name, function(travel), function(computed))
 
 
-def _sample_curves(names: Sequence[str], of: Any, way: Real, here: Real) -> list[SampledCurve]:
-    return [SampledCurve(name, *both) for name, *both in zip(names, of(way), of(here), strict=True)]
+def _sample_curves(names: Sequence[str], function: Any, travel: Real, computed: Real) -> list[SampledCurve]:
+    return [SampledCurve(name, *both) for name, *both in zip(names, function(travel), function(computed), strict=True)]
 
 
-def _reduced_load_moments(results: Results, running: SteadyRunning, way: Real) -> dict[str, Real]:
+def _reduced_load_moments(results: Results, running: SteadyRunning, travel: Real) -> dict[str, Real]:
     """Return the reduced moment of each load by its name, positive in the sense of the driver."""
-    motion = motion_at_positions(results, running.start + running.sense * way)
-    found: dict[str, Real] = {}
+    motion = motion_at_positions(results, running.start + running.sense * travel)
+    moments: dict[str, Real] = {}
     for load in collect_loads(motion, results.strokes):
         if load.kind != "inertia":
             text = _("weight of link {link}") if load.kind == "weight" else _("load {name}")
             name = text.format(link=load.link, name=load.name.rstrip("'"))
-            found[name] = found.get(name, 0.0) + running.sense * reduced_moment(motion, load)
-    return found
+            moments[name] = moments.get(name, 0.0) + running.sense * reduced_moment(motion, load)
+    return moments
 
 
-def _reduced_link_inertias(results: Results, running: SteadyRunning, way: Real) -> dict[str, Real]:
-    motion = motion_at_positions(results, running.start + running.sense * way)
+def _reduced_link_inertias(results: Results, running: SteadyRunning, travel: Real) -> dict[str, Real]:
+    motion = motion_at_positions(results, running.start + running.sense * travel)
     text = _("link {link}")
-    return {text.format(link=link): own + 0.0 * way for link, (own, __) in reduced_inertias(motion).items()}
+    return {text.format(link=link): inertia + 0.0 * travel for link, (inertia, __) in reduced_inertias(motion).items()}
 
 
 def _curves_with_sum(curves: dict[str, Real], points: dict[str, Real], total: str) -> list[SampledCurve]:
@@ -199,12 +210,16 @@ def _curves_with_sum(curves: dict[str, Real], points: dict[str, Real], total: st
     sizes = {name: float(np.max(np.abs(values))) for name, values in curves.items()}
     largest = max(sizes.values(), default=0.0)
     courses = [SampledCurve(name, curves[name], points[name]) for name, size in sizes.items() if size > 1e-9 * largest]
-    every = _total_curve(courses, total)
+    total_curve = _total_curve(courses, total)
     if len(courses) > MOST_CURVES:
-        kept = sorted(courses, key=lambda one: -sizes[one.name])[: MOST_CURVES - 1]
-        rest = [one for one in courses if one not in kept]
-        courses = [*(one for one in courses if one in kept), _total_curve(rest, _("others"))]
-    return [every, *courses] if len(courses) > 1 else [replace(every, name=one.name) for one in courses] or [every]
+        kept = sorted(courses, key=lambda curve: -sizes[curve.name])[: MOST_CURVES - 1]
+        rest = [curve for curve in courses if curve not in kept]
+        courses = [*(curve for curve in courses if curve in kept), _total_curve(rest, _("others"))]
+    return (
+        [total_curve, *courses]
+        if len(courses) > 1
+        else [replace(total_curve, name=curve.name) for curve in courses] or [total_curve]
+    )
 
 
 def _total_curve(courses: Sequence[SampledCurve], name: str) -> SampledCurve:
@@ -241,20 +256,20 @@ class DrawnTangent:
         return cls(begins, touching, math.atan(tangent.slope * factor * panel.x.mu / panel.y.mu))
 
 
-def energy_mass_sheet(results: Results, running: SteadyRunning, way: Real) -> Drawing:
+def energy_mass_sheet(results: Results, running: SteadyRunning, travel: Real) -> Drawing:
     """Draw the work of all moments from position 0 on against the reduced inertia of the links, over the cycle."""
     assert results.motion is not None
     steady, units = running.steady, results.problem.units
     factor, unit = units.factor(MOMENT_OF_INERTIA), typeset_unit(units.spelt(MOMENT_OF_INERTIA))
     title = _("Energy-mass diagram with tangents for the largest and the smallest speed; dots: computed positions")
     sheet = DrawingSheet(results.problem.title, title, paper=LANDSCAPE)
-    told = sheet.ground.low + 0.5 * TEXT_ROW * 1j
+    text_start = sheet.ground.low + 0.5 * TEXT_ROW * 1j
     sheet.ground = OccupiedArea(sheet.ground.low + 2.4 * TEXT_ROW * 1j, sheet.ground.high)
 
     def diagram(x: Real, colour: str = DARK_COLOUR, *, dots: bool = False) -> ChartCurve:
         return ChartCurve(steady.machine.inertia(x) / factor, steady.work(x), colour=colour, dots=dots)
 
-    whole, here = diagram(way), diagram(running.way(results.motion.q), dots=True)
+    whole, dotted = diagram(travel), diagram(running.way(results.motion.q), dots=True)
     start, longest = axis_extent(sheet)
     axis = round_axis(*_axis_ends(whole.xs, _massless_width(steady) / factor), start, longest)
     words = with_unit(_("reduced inertia J of the links"), MOMENT_OF_INERTIA, units)
@@ -265,26 +280,26 @@ def energy_mass_sheet(results: Results, running: SteadyRunning, way: Real) -> Dr
         for tangent, name, colour in zip(steady.tangents, names, TANGENT_COLOURS, strict=True)
     ]
     work = PlotContent(
-        _("work A of all moments, J"), [whole, *lines, here], scale=lambda mu: scale_words("A", mu, "J/mm")
+        _("work A of all moments, J"), [whole, *lines, dotted], scale=lambda mu: scale_words("A", mu, "J/mm")
     )
     panel = draw_chart(sheet, [work], CommonAxis(axis, below))[0]
     for curve in (whole, *lines):
         sheet.ground.path(panel.at(curve.xs, curve.ys).tolist())
-    every = max(1, round(round_up(len(here.xs) / MOST_NUMBERED, TICK_STEPS)))
-    for place, number in list(zip(panel.at(here.xs, here.ys).tolist(), results.numbers, strict=True))[::every]:
+    step = max(1, round(round_up(len(dotted.xs) / MOST_NUMBERED, TICK_STEPS)))
+    for place, number in list(zip(panel.at(dotted.xs, dotted.ys).tolist(), results.numbers, strict=True))[::step]:
         sheet.label(str(number), place, 8, DARK_COLOUR)
     drawn = [DrawnTangent.of(panel, tangent, factor) for tangent in steady.tangents]
-    for one, name, end, radius, colour in zip(
+    for drawn_tangent, name, end, radius, colour in zip(
         drawn, TANGENT_ANGLES, SEGMENT_ENDS, ARC_RADII, TANGENT_COLOURS, strict=True
     ):
-        _draw_tangent_angle(sheet, one, name, radius, colour)
-        sheet.circle(one.start, 0.6, NAME_COLOUR, NAME_COLOUR, 0.4, 5)
-        sheet.label(end, one.start, 9, NAME_COLOUR, "italic")
+        _draw_tangent_angle(sheet, drawn_tangent, name, radius, colour)
+        sheet.circle(drawn_tangent.start, 0.6, NAME_COLOUR, NAME_COLOUR, 0.4, 5)
+        sheet.label(end, drawn_tangent.start, 9, NAME_COLOUR, "italic")
     with sheet.on_layer("dimensions"):
-        sheet.line([one.start for one in drawn], NAME_COLOUR, 2.0, z=4.2)
-    sheet.text(told + TEXT_ROW * 1j, _measured_text(drawn), PLAIN_TEXT)
+        sheet.line([drawn_tangent.start for drawn_tangent in drawn], NAME_COLOUR, 2.0, z=4.2)
+    sheet.text(text_start + TEXT_ROW * 1j, _measured_text(drawn), PLAIN_TEXT)
     if steady.law.flywheel:
-        sheet.text(told, _flywheel_text(steady.law.flywheel, axis.low, units), PLAIN_TEXT)
+        sheet.text(text_start, _flywheel_text(steady.law.flywheel, axis.low, units), PLAIN_TEXT)
     return sheet.finish()
 
 
@@ -327,11 +342,11 @@ def _draw_tangent_angle(sheet: DrawingSheet, tangent: DrawnTangent, name: Symbol
 
 def _measured_text(drawn: list[DrawnTangent]) -> Words:
     """Return the angles and the segment ab as they would be measured on the sheet."""
-    told: list[str | Symbol] = []
-    for one, name in zip(drawn, TANGENT_ANGLES, strict=True):
-        told += [name, f" = {numeral(math.degrees(one.angle), '.4g')}°;   "]
-    a, b = (one.start for one in drawn)
-    return (*told, f"ab = {numeral(abs(a - b), '.4g')} {spelt('mm')}")
+    texts: list[str | Symbol] = []
+    for tangent, name in zip(drawn, TANGENT_ANGLES, strict=True):
+        texts += [name, f" = {numeral(math.degrees(tangent.angle), '.4g')}°;   "]
+    a, b = (tangent.start for tangent in drawn)
+    return (*texts, f"ab = {numeral(abs(a - b), '.4g')} {spelt('mm')}")
 
 
 def _flywheel_text(inertia: float, begins: float, units: UnitSystem) -> Words:
@@ -340,7 +355,7 @@ def _flywheel_text(inertia: float, begins: float, units: UnitSystem) -> Words:
     begins: inertia at the start of the axis, in the unit of the file.
     """
     tan, largest, least = symbol("tan"), *TANGENT_ANGLES
-    found = units.from_si(inertia, MOMENT_OF_INERTIA)
+    in_units = units.from_si(inertia, MOMENT_OF_INERTIA)
     return (
         CourseSymbol("J_f"),
         " = ab·",
@@ -351,7 +366,7 @@ def _flywheel_text(inertia: float, begins: float, units: UnitSystem) -> Words:
         least,
         ")",
         f" − {numeral(begins, '.4g')}" if begins else "",
-        f" = {numeral(found, '.4g')} {typeset_unit(units.spelt(MOMENT_OF_INERTIA))}",
+        f" = {numeral(in_units, '.4g')} {typeset_unit(units.spelt(MOMENT_OF_INERTIA))}",
     )
 
 
@@ -371,10 +386,10 @@ def draw_single_run(results: Results) -> Iterable[tuple[str, Drawing]]:
     pieces = single.run.closely(
         max(LEAST_SAMPLES, min(SAMPLES_PER_PIECE, 4 * MOST_SAMPLES // count), MOST_SAMPLES // count)
     )
-    times, states = (np.concatenate(part, axis=-1) for part in zip(*pieces, strict=True))
-    ends = (np.cumsum([len(own) for own, __ in pieces])[:-1] - 1).tolist()
-    here = single.way(results.motion.q)
-    time, speed = single.run.at(here)
+    times, states = (np.concatenate(arrays, axis=-1) for arrays in zip(*pieces, strict=True))
+    ends = (np.cumsum([len(piece_times) for piece_times, __ in pieces])[:-1] - 1).tolist()
+    computed = single.way(results.motion.q)
+    time, speed = single.run.at(computed)
     sheet = DrawingSheet(
         results.problem.title,
         _("Single run against the travel of the driver; dots: computed positions"),
@@ -383,15 +398,19 @@ def draw_single_run(results: Results) -> Iterable[tuple[str, Drawing]]:
     start, most = axis_extent(sheet)
     axis = round_axis(0.0, float(single.run.way[-1]) / factor, start, most, degrees=crank)
     if crank:
-        told = _("crank angle from the start of the run, deg")
-        words = f"{told};  ", *scale_words("φ", axis.mu, "deg/mm")
+        axis_title = _("crank angle from the start of the run, deg")
+        words = f"{axis_title};  ", *scale_words("φ", axis.mu, "deg/mm")
     else:
-        told = with_unit(_("travel of the driver from the start of the run"), LENGTH, units)
-        words = f"{told};  ", *scale_words("s", axis.mu * factor, "m/mm")
+        axis_title = with_unit(_("travel of the driver from the start of the run"), LENGTH, units)
+        words = f"{axis_title};  ", *scale_words("s", axis.mu * factor, "m/mm")
     reached = np.isfinite(time)
-    numbers = [(float(x) / factor, str(n)) for x, n, there in zip(here, results.numbers, reached, strict=True) if there]
-    every = _run_plots(single, (times, states), (time, here, speed), crank=crank)
-    plots = [plot_quantities(one, units, states[0] / factor, here / factor, ends) for one in every]
+    numbers = [
+        (float(x) / factor, str(n))
+        for x, n, is_reached in zip(computed, results.numbers, reached, strict=True)
+        if is_reached
+    ]
+    quantity_plots = _run_plots(single, (times, states), (time, computed, speed), crank=crank)
+    plots = [plot_quantities(plot, units, states[0] / factor, computed / factor, ends) for plot in quantity_plots]
     draw_chart(sheet, plots, CommonAxis(axis, words, sorted(numbers)))
     yield "single-run", sheet.finish()
 
@@ -407,28 +426,30 @@ def _run_plots(
         points: Times, travels and speeds at the computed positions.
         crank: The driver rotates.
     """
-    times, (way, speed, driven, loaded, braked) = curve
-    time, here, there = points
-    changes, at_points = single.acceleration(times, way, speed), single.acceleration(time, here, there)
-    none = np.full(np.shape(here), np.nan)
+    times, (travel, speed, driven, loaded, braked) = curve
+    time, computed, speeds = points
+    changes, at_points = single.acceleration(times, travel, speed), single.acceleration(time, computed, speeds)
+    none = np.full(np.shape(computed), np.nan)
     driving = _("driving moment") if crank else _("driving force")
     moments = [
-        SampledCurve(driving, single.driving(way, speed, changes), single.driving(here, there, at_points)),
+        SampledCurve(driving, single.driving(travel, speed, changes), single.driving(computed, speeds, at_points)),
         SampledCurve(
-            _("loads"), single.machine.moment(way), np.where(np.isfinite(time), single.machine.moment(here), none)
+            _("loads"),
+            single.machine.moment(travel),
+            np.where(np.isfinite(time), single.machine.moment(computed), none),
         ),
     ]
     works = [SampledCurve(driving, driven, none), SampledCurve(_("loads"), loaded, none)]
     if single.task.brake:
         works.append(SampledCurve(_("brake"), braked, none))
-    works.append(SampledCurve(_("kinetic energy"), single.energy(way, speed), single.energy(here, there)))
+    works.append(SampledCurve(_("kinetic energy"), single.energy(travel, speed), single.energy(computed, speeds)))
     return [
         QuantityPlot(_("moments") if crank else _("forces"), MOMENT if crank else FORCE, moments),
         QuantityPlot(_("work and kinetic energy, J"), NUMBER, works, "A"),
         QuantityPlot(
             _("angular velocity ω") if crank else _("speed v"),
             ANGULAR_SPEED if crank else SPEED,
-            [SampledCurve("", speed, there)],
+            [SampledCurve("", speed, speeds)],
         ),
         QuantityPlot(
             _("angular acceleration ε") if crank else _("acceleration a"),

@@ -40,26 +40,32 @@ class ForceArrows:
 
     def draw(self, acting: Iterable[ForceOrCouple]) -> None:
         acting = list(acting)
-        self.ways += [(self.sheet.on(one.at), one.force / abs(one.force)) for one in acting if not one.couple]
-        for one in acting:
-            at, colour = self.sheet.on(one.at), VECTOR_COLOURS[one.kind]
-            if one.couple:
-                number = sum(abs(at - other) < 1 for other in self.coupled) + (self.whole and one.pair == DRIVE)
+        self.ways += [(self.sheet.on(load.at), load.force / abs(load.force)) for load in acting if not load.couple]
+        for load in acting:
+            at, colour = self.sheet.on(load.at), VECTOR_COLOURS[load.kind]
+            if load.couple:
+                number = sum(abs(at - other) < 1 for other in self.coupled) + (self.whole and load.pair == DRIVE)
                 _draw_couple(
                     self.sheet,
                     at,
-                    np.sign(one.moment),
+                    np.sign(load.moment),
                     colour,
-                    one.symbol,
+                    load.symbol,
                     COUPLE_RADII[min(number, len(COUPLE_RADII) - 1)],
                 )
                 self.coupled.append(at)
             else:
-                self._force(at, one.force / abs(one.force), one.symbol, colour, "--" if one.kind == "inner" else "-")
+                self._force(
+                    at, load.force / abs(load.force), load.symbol, colour, "--" if load.kind == "inner" else "-"
+                )
 
     def _force(self, at: complex, along: complex, name: Words, colour: str, style: Style) -> None:
-        alike = [out for place, way, out in self.taken if abs(at - place) < 1 and abs(along - way) < SAME_DIRECTION]
-        against = any(abs(at - place) < 1 and abs(along + way) < SAME_DIRECTION for place, way in self.ways)
+        alike = [
+            out
+            for place, direction, out in self.taken
+            if abs(at - place) < 1 and abs(along - direction) < SAME_DIRECTION
+        ]
+        against = any(abs(at - place) < 1 and abs(along + direction) < SAME_DIRECTION for place, direction in self.ways)
         # one that ends at its place would lie on one that begins there against it, or on another that ends there
         free = not against and all(alike)
         out = self.whole or not free or self._covered(at, -along) + 3 >= self._covered(at, along)
@@ -73,10 +79,10 @@ class ForceArrows:
             self.sheet.arrow(end - 4 * along, end, colour, 1.0)
         self.sheet.label(name, end if out else start, 9.5, colour)
 
-    def _covered(self, at: complex, way: complex) -> int:
+    def _covered(self, at: complex, direction: complex) -> int:
         """Count the drawn points along a direction from a point."""
         crowd = self.sheet.ground.crowd - at
-        run, off = dot(way, crowd), np.abs(cross(way, crowd))
+        run, off = dot(direction, crowd), np.abs(cross(direction, crowd))
         return int(np.count_nonzero((run > 2.5) & (run < LOAD_LENGTH + 3) & (off < SHAFT_REACH)))
 
 
@@ -91,11 +97,11 @@ def _draw_couple(sheet: DrawingSheet, at: complex, sense: float, colour: str, na
 
 def arrow_extent(acting: Iterable[ForceOrCouple]) -> list[tuple[complex, complex]]:
     """Return points (m) with the offsets (mm) by which an arrow may extend from them."""
-    found = []
-    for one in acting:
-        along = 0j if one.couple else (LOAD_LENGTH + 2) * one.force / abs(one.force)
-        found += [(one.at, along), (one.at, -along)]
-    return found
+    offsets = []
+    for load in acting:
+        along = 0j if load.couple else (LOAD_LENGTH + 2) * load.force / abs(load.force)
+        offsets += [(load.at, along), (load.at, -along)]
+    return offsets
 
 
 def draw_arms(sheet: DrawingSheet, equations: Sequence[MomentEquation], links: Vector) -> None:
@@ -130,20 +136,20 @@ def draw_arms(sheet: DrawingSheet, equations: Sequence[MomentEquation], links: V
                 continue
             sheet.line([centre, foot], ARM_COLOUR, 0.7, z=4.6)
             # arms in one line share its beginning: each letter stands at the part that no shorter one has
-            way = (foot - centre) / (length or 1.0)
-            inner = [f for f in feet if abs(cross(way, f - centre)) < 0.5 and dot(way, f - centre) > 0]
+            direction = (foot - centre) / (length or 1.0)
+            inner = [f for f in feet if abs(cross(direction, f - centre)) < 0.5 and dot(direction, f - centre) > 0]
             start = max(inner, key=lambda f: abs(f - centre), default=centre)
             sheet.label(term.letter, (start + foot) / 2, 8.5, ARM_COLOUR)
             feet.append(foot)
             if length > LEAST_MARKED_ARM:
-                _draw_right_angle(sheet, foot, way, at)
+                _draw_right_angle(sheet, foot, direction, at)
     for centre, foot, name in beside_links:  # now that all is drawn that they keep off
         draw_dimension(sheet, centre, foot, name)
 
 
-def _draw_right_angle(sheet: DrawingSheet, foot: complex, way: complex, at: complex) -> None:
+def _draw_right_angle(sheet: DrawingSheet, foot: complex, direction: complex, at: complex) -> None:
     """Draw the right-angle mark at the foot of an arm, on the side of the force."""
-    back, side = -RIGHT_ANGLE_LEG * way, RIGHT_ANGLE_LEG * 1j * way
+    back, side = -RIGHT_ANGLE_LEG * direction, RIGHT_ANGLE_LEG * 1j * direction
     if dot(side, at - foot) < 0:
         side = -side
     sheet.line([foot + back, foot + back + side, foot + side], ARM_COLOUR, 0.45, z=4.6)

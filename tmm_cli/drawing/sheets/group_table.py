@@ -158,8 +158,8 @@ def draw_group_table() -> Iterator[tuple[str, Drawing]]:
     sheet = DrawingSheet(
         _("Assur groups of classes II to VI"), _("By class and order; dotted: external pairs"), paper=LANDSCAPE
     )
-    size, places = divide_into_cells(sheet.ground.low, sheet.ground.high, COLUMNS, ROWS, CELL_GAP)
-    for example, (low, high) in zip(GROUP_EXAMPLES, places, strict=False):
+    size, corners = divide_into_cells(sheet.ground.low, sheet.ground.high, COLUMNS, ROWS, CELL_GAP)
+    for example, (low, high) in zip(GROUP_EXAMPLES, corners, strict=False):
         side = min(size.real, size.imag - CAPTION_HEIGHT) - 2 * PAIR_STUB
         middle = (low + high + 1j * CAPTION_HEIGHT) / 2
         _draw_example(sheet, example, middle - side * (0.5 + 0.5j), side)
@@ -172,8 +172,8 @@ def draw_group_table() -> Iterator[tuple[str, Drawing]]:
 def _draw_example(sheet: DrawingSheet, example: GroupExample, corner: complex, side: float) -> None:
     at = {name: corner + side * point for name, point in example.points.items()}
     for name, turn in example.leads.items():
-        way = _direction(turn)
-        sheet.line([at[name], at[name] + PAIR_STUB * way], DARK_COLOUR, 0.8, ":")
+        direction = _direction(turn)
+        sheet.line([at[name], at[name] + PAIR_STUB * direction], DARK_COLOUR, 0.8, ":")
     with sheet.on_layer("links"):
         for link in example.links:
             corners = [at[point] for point in link]
@@ -184,7 +184,10 @@ def _draw_example(sheet: DrawingSheet, example: GroupExample, corner: complex, s
         for name, place in at.items():
             if name in example.stones:
                 along = _direction(example.stones[name])
-                length, height = (part / 2 * way for part, way in zip(BLOCK_SIZE, (along, 1j * along), strict=True))
+                length, height = (
+                    side_length / 2 * direction
+                    for side_length, direction in zip(BLOCK_SIZE, (along, 1j * along), strict=True)
+                )
                 sheet.area(
                     [
                         place + length + height,

@@ -49,100 +49,106 @@ class Hodograph:
 
 def draw_shaking_hodograph(results: Results) -> Iterable[tuple[str, Drawing]]:
     """Yield the hodograph of the shaking force before and after balancing."""
-    found = results.balancing
-    if found is None or not found.cycle.shakes:
+    balancing = results.balancing
+    if balancing is None or not balancing.cycle.shakes:
         return
     drawn = [
-        Hodograph(_("dashed: without counterweights"), found.cycle.before.force, found.before.force, LOAD_COLOUR, "--")
+        Hodograph(
+            _("dashed: without counterweights"), balancing.cycle.before.force, balancing.before.force, LOAD_COLOUR, "--"
+        )
     ]
-    if found.cycle.counterweights:
-        name = _("solid: with counterweights") if found.cycle.left > NO_FORCE else _("dot: with counterweights")
-        drawn.append(Hodograph(name, found.cycle.after.force, found.after.force, REACTION_COLOUR))
+    if balancing.cycle.counterweights:
+        name = _("solid: with counterweights") if balancing.cycle.left > NO_FORCE else _("dot: with counterweights")
+        drawn.append(Hodograph(name, balancing.cycle.after.force, balancing.after.force, REACTION_COLOUR))
     yield "shaking-force", hodograph_sheet(results, _("Hodograph of the shaking force on the frame"), drawn, "F")
 
 
 def draw_reaction_hodographs(results: Results) -> Iterable[tuple[str, Drawing]]:
     """Yield for every pair the hodograph of its reaction, then magnitude and components over the cycle."""
     assert results.reactions is not None
-    places, borders = dense_coordinates(results)
-    whole = results_at(results, places)
+    coordinates, borders = dense_coordinates(results)
+    whole = results_at(results, coordinates)
     assert whole.reactions is not None
-    for here, cycle in zip(results.reactions.all, whole.reactions.all, strict=True):
-        pair, symbol = here.pair.name, reaction_symbol(here.by, here.on)
+    for reaction, cycle in zip(results.reactions.all, whole.reactions.all, strict=True):
+        pair, symbol = reaction.pair.name, reaction_symbol(reaction.by, reaction.on)
         title = _("Hodograph of the reaction {name} in pair {pair}").format(name=symbol.name, pair=pair)
-        one = Hodograph("", cycle.force, here.force, REACTION_COLOUR, leaps=borders)
+        curve = Hodograph("", cycle.force, reaction.force, REACTION_COLOUR, leaps=borders)
         if np.nanmax(np.abs(cycle.force)) > 0:
-            yield file_safe_name(f"hodograph-{pair}"), hodograph_sheet(results, title, [one], "R")
-            yield from _turned_hodographs(results, whole, here, cycle, borders)
+            yield file_safe_name(f"hodograph-{pair}"), hodograph_sheet(results, title, [curve], "R")
+            yield from _turned_hodographs(results, whole, reaction, cycle, borders)
             over = _("Reaction {name} in pair {pair} over the cycle").format(name=symbol.name, pair=pair)
-            parts = _force_components(cycle.force, here.force)
-            yield from plot_over_driver(results, file_safe_name(f"reaction-{pair}"), over, places, borders, parts)
+            parts = _force_components(cycle.force, reaction.force)
+            yield from plot_over_driver(results, file_safe_name(f"reaction-{pair}"), over, coordinates, borders, parts)
 
 
 def _turned_hodographs(
-    results: Results, whole: Results, here: Reaction, cycle: Reaction, leaps: Sequence[int]
+    results: Results, whole: Results, reaction: Reaction, cycle: Reaction, leaps: Sequence[int]
 ) -> Iterable[tuple[str, Drawing]]:
     """Yield the hodograph in the axes of each rotating link of a pair, and the magnitude in polar axes."""
     assert results.motion is not None and whole.motion is not None
-    pair, symbol = here.pair.name, reaction_symbol(here.by, here.on)
-    for link in (here.by, here.on):
+    pair, symbol = reaction.pair.name, reaction_symbol(reaction.by, reaction.on)
+    for link in (reaction.by, reaction.on):
         if link != FRAME and np.ptp(angles := whole.motion.angle(link)) > SAME_DRIVER_POSITION:
             title = _("Hodograph of the reaction {name} in pair {pair}, in axes rotating with link {link}")
-            own = np.exp(-1j * angles), np.exp(-1j * results.motion.angle(link))
-            one = Hodograph("", cycle.force * own[0], here.force * own[1], REACTION_COLOUR, leaps=leaps)
+            rotations = np.exp(-1j * angles), np.exp(-1j * results.motion.angle(link))
+            curve = Hodograph(
+                "", cycle.force * rotations[0], reaction.force * rotations[1], REACTION_COLOUR, leaps=leaps
+            )
             named = title.format(name=symbol.name, pair=pair, link=link)
-            yield file_safe_name(f"hodograph-{pair}-link-{link}"), hodograph_sheet(results, named, [one], "R")
+            yield file_safe_name(f"hodograph-{pair}-link-{link}"), hodograph_sheet(results, named, [curve], "R")
     if results.turns:
         title = _("Magnitude of the reaction {name} in pair {pair} against the crank angle, polar diagram")
-        size = np.abs(cycle.force) * np.exp(1j * whole.motion.q)
-        one = Hodograph("", size, np.abs(here.force) * np.exp(1j * results.motion.q), REACTION_COLOUR, leaps=leaps)
+        polar = np.abs(cycle.force) * np.exp(1j * whole.motion.q)
+        curve = Hodograph(
+            "", polar, np.abs(reaction.force) * np.exp(1j * results.motion.q), REACTION_COLOUR, leaps=leaps
+        )
         yield (
             file_safe_name(f"polar-{pair}"),
-            hodograph_sheet(results, title.format(name=symbol.name, pair=pair), [one], "R"),
+            hodograph_sheet(results, title.format(name=symbol.name, pair=pair), [curve], "R"),
         )
 
 
-def _force_components(cycle: Vector, here: Vector) -> list[QuantityPlot]:
+def _force_components(cycle: Vector, positions: Vector) -> list[QuantityPlot]:
     """Return the magnitude of a force, and its components along x and y."""
-    parts = [("x", cycle.real, here.real), ("y", cycle.imag, here.imag)]
-    size = SampledCurve("", np.abs(cycle), np.abs(here))
+    parts = [("x", cycle.real, positions.real), ("y", cycle.imag, positions.imag)]
+    size = SampledCurve("", np.abs(cycle), np.abs(positions))
     return [
         QuantityPlot(_("magnitude of the reaction"), FORCE, [size], "R"),
-        QuantityPlot(_("components along x and y"), FORCE, [SampledCurve(*part) for part in parts], "R"),
+        QuantityPlot(_("components along x and y"), FORCE, [SampledCurve(*component) for component in parts], "R"),
     ]
 
 
 def hodograph_sheet(results: Results, caption: str, drawn: Sequence[Hodograph], letter: str) -> Drawing:
     """Draw hodographs from one pole at one scale; a negligible force is drawn as a dot."""
-    largest = max(float(np.nanmax(np.abs(one.cycle))) for one in drawn)
-    places = [0j, *(complex(p) for one in drawn for p in one.cycle)]
-    sheet = DrawingSheet(results.problem.title, caption, places, pad=FIGURE_PAD)
-    _draw_axes(sheet, places)
-    for one in drawn:
-        if one.name:
-            sheet.note(one.name)
-        if not np.nanmax(np.abs(one.cycle)) > NO_FORCE * largest:
-            sheet.circle(sheet.on(0j), 1.0, one.colour, one.colour, 0.3, 6)
+    largest = max(float(np.nanmax(np.abs(curve.cycle))) for curve in drawn)
+    points = [0j, *(complex(p) for curve in drawn for p in curve.cycle)]
+    sheet = DrawingSheet(results.problem.title, caption, points, pad=FIGURE_PAD)
+    _draw_axes(sheet, points)
+    for curve in drawn:
+        if curve.name:
+            sheet.note(curve.name)
+        if not np.nanmax(np.abs(curve.cycle)) > NO_FORCE * largest:
+            sheet.circle(sheet.on(0j), 1.0, curve.colour, curve.colour, 0.3, 6)
             continue
-        _draw_hodograph(sheet, results, one)
-        _number_positions(sheet, results, one)
+        _draw_hodograph(sheet, results, curve)
+        _number_positions(sheet, results, curve)
     sheet.note(scale_words(letter, sheet.mu, "N/mm"))
     return sheet.finish()
 
 
-def _draw_hodograph(sheet: DrawingSheet, results: Results, one: Hodograph) -> None:
+def _draw_hodograph(sheet: DrawingSheet, results: Results, curve: Hodograph) -> None:
     """Draw the curve, closed if the driver rotates fully; jumps are thin and dotted."""
-    closed = np.append(one.cycle, one.cycle[:1]) if results.turns else one.cycle
-    places = sheet.origin + closed / sheet.mu
-    leaps = [k for k in one.leaps if abs(places[k + 1] - places[k]) > LEAST_JUMP]
-    sheet.line(np.insert(places, np.array(leaps, int) + 1, np.nan).tolist(), one.colour, 1.4, one.style)
+    closed = np.append(curve.cycle, curve.cycle[:1]) if results.turns else curve.cycle
+    points = sheet.origin + closed / sheet.mu
+    leaps = [k for k in curve.leaps if abs(points[k + 1] - points[k]) > LEAST_JUMP]
+    sheet.line(np.insert(points, np.array(leaps, int) + 1, np.nan).tolist(), curve.colour, 1.4, curve.style)
     for k in leaps:
-        sheet.line(places[k : k + 2].tolist(), one.colour, 0.7, ":")
+        sheet.line(points[k : k + 2].tolist(), curve.colour, 0.7, ":")
 
 
-def _draw_axes(sheet: DrawingSheet, places: Sequence[complex]) -> None:
+def _draw_axes(sheet: DrawingSheet, points: Sequence[complex]) -> None:
     """Draw the axes through the pole."""
-    on = np.array([sheet.on(place) for place in places if np.isfinite(place)])
+    on = np.array([sheet.on(place) for place in points if np.isfinite(place)])
     pole = sheet.on(0j)
     for along, low, high, name in (
         (1 + 0j, on.real.min() - pole.real, on.real.max() - pole.real, "x"),
@@ -156,10 +162,10 @@ def _draw_axes(sheet: DrawingSheet, places: Sequence[complex]) -> None:
     sheet.circle(pole, 0.7, "white", DARK_COLOUR, 0.8)
 
 
-def _number_positions(sheet: DrawingSheet, results: Results, one: Hodograph) -> None:
+def _number_positions(sheet: DrawingSheet, results: Results, curve: Hodograph) -> None:
     """Write numbers of positions along a hodograph."""
     step = -(-len(results.numbers) // MOST_NUMBERED)
-    for number, value in list(zip(results.numbers, one.positions.tolist(), strict=True))[::step]:
+    for number, value in list(zip(results.numbers, curve.positions.tolist(), strict=True))[::step]:
         if np.isfinite(value):
-            sheet.circle(sheet.on(value), 0.6, one.colour, one.colour, 0.3)
-            sheet.label(str(number), sheet.on(value), 8, one.colour)
+            sheet.circle(sheet.on(value), 0.6, curve.colour, curve.colour, 0.3)
+            sheet.label(str(number), sheet.on(value), 8, curve.colour)

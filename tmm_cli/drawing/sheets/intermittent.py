@@ -43,20 +43,20 @@ def _intermittent_sheet(results: Results, wheel: IntermittentMotion) -> Drawing:
         title = _("crank angle, deg")
         words = (f"{title};  ", *scale_words("φ", axis.mu, "deg/mm"))
     else:
-        told = with_unit(_("travel of the driver, forward and back"), LENGTH, units)
-        words = (f"{told};  ", *scale_words("s", axis.mu * factor, "m/mm"))
+        axis_title = with_unit(_("travel of the driver, forward and back"), LENGTH, units)
+        words = (f"{axis_title};  ", *scale_words("s", axis.mu * factor, "m/mm"))
     ways, angles, omegas = (
-        np.concatenate([getattr(part, name) for part in wheel.parts]) for name in ("ways", "angles", "omegas")
+        np.concatenate([getattr(stretch, name) for stretch in wheel.parts]) for name in ("ways", "angles", "omegas")
     )
-    borders = (np.cumsum([len(part.ways) for part in wheel.parts])[:-1] - 1).tolist()
-    every = [
+    borders = (np.cumsum([len(stretch.ways) for stretch in wheel.parts])[:-1] - 1).tolist()
+    quantity_plots = [
         QuantityPlot(_("angle of rotation of the wheel"), ANGLE, [SampledCurve("", angles, np.nan)]),
         QuantityPlot(_("angular speed of the wheel"), ANGULAR_SPEED, [SampledCurve("", omegas, np.nan)]),
     ]
     spans = [
-        (part.ways[0] / factor, part.ways[-1] / factor, _("driven") if part.ride.driven else _("stands"))
-        for part in wheel.parts
+        (stretch.ways[0] / factor, stretch.ways[-1] / factor, _("driven") if stretch.ride.driven else _("stands"))
+        for stretch in wheel.parts
     ]
-    plots = [plot_quantities(one, units, ways / factor, np.zeros(0), borders) for one in every]
+    plots = [plot_quantities(plot, units, ways / factor, np.zeros(0), borders) for plot in quantity_plots]
     draw_chart(sheet, plots, CommonAxis(axis, words, spans=spans))
     return sheet.finish()

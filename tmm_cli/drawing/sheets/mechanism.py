@@ -66,14 +66,14 @@ class Position:
         return f"{name}-{self.results.numbers[self.k]:02d}"
 
     def sheet(
-        self, title: str, places: Iterable[complex] = (), room: PaperLayout | None = None, **words: str
+        self, title: str, points: Iterable[complex] = (), room: PaperLayout | None = None, **words: str
     ) -> DrawingSheet:
         """Open a sheet for points (SI) or a layout.
 
         The field {caption} of the title is filled with position number and driver coordinate.
         """
         subject = title.format(caption=self.caption, **words)
-        return DrawingSheet(self.results.problem.title, subject, places, room=room)
+        return DrawingSheet(self.results.problem.title, subject, points, room=room)
 
     @property
     def caption(self) -> str:
@@ -103,21 +103,21 @@ def draw_measured(
         links: Draw only these, without the links to which they are joined; empty: all moving links.
     """
     linkage = scene.linkage
-    moving, shown, hue = linkage.moving_points, links or linkage.moving, dict.fromkeys(linkage.links, DARK_COLOUR)
+    moving, drawn_links, hue = linkage.moving_points, links or linkage.moving, dict.fromkeys(linkage.links, DARK_COLOUR)
     apart = [p for p in scene.structure.pairs if links and (p.i in links) != (p.j in links)]
     inner = [p for p in scene.structure.pairs if not links or {p.i, p.j} <= {*links}]
-    drawn = render_scene(sheet, scene, shown, inner, MEASURED, hue, leads=apart)
+    drawn = render_scene(sheet, scene, drawn_links, inner, MEASURED, hue, leads=apart)
     for pair in apart:
         if not pair.lower:
             draw_wheels(sheet, scene.higher(pair), dict.fromkeys(links, DARK_COLOUR))
         elif pair.slide is not None and pair.slide.runner in links:
             draw_slider(sheet, drawn.scene, pair, MEASURED, DARK_COLOUR)
-    names = {p: [p + mark if p in moving else p] for link in shown for p in linkage.links[link].points}
-    for link in shown:
-        own, centre = linkage.links[link], f"S{link}"
-        if np.any(own.mass != 0):
-            at = sheet.on(scene.place(link, complex(own.centre)))
-            point = next((p for p in own.points if abs(at - sheet.on(scene.point(p))) <= MEASURED.hinge), None)
+    names = {p: [p + mark if p in moving else p] for link in drawn_links for p in linkage.links[link].points}
+    for link in drawn_links:
+        link_data, centre = linkage.links[link], f"S{link}"
+        if np.any(link_data.mass != 0):
+            at = sheet.on(scene.place(link, complex(link_data.centre)))
+            point = next((p for p in link_data.points if abs(at - sheet.on(scene.point(p))) <= MEASURED.hinge), None)
             if point is None:
                 draw_mass_centre(sheet, at)
                 join_to_link(sheet, scene, link, at)
@@ -157,17 +157,17 @@ def draw_skeleton(
 def point_paths(results: Results) -> list[Vector]:
     """Return the paths (m) of all moving points over the cycle, and of centres of mass that are not at a point."""
     linkage, whole = results.linkage, motion_at_positions(results, results.closely(POSITIONS_PER_TURN), 0)
-    found = [whole.spot(name) for name in linkage.moving_points]
+    paths = [whole.spot(name) for name in linkage.moving_points]
     for link in links_with_mass(linkage):
-        own = linkage.links[link]
-        if all(abs(complex(own.centre) - local) > 0 for local in own.points.values()):
-            found.append(whole.poses[link].at(complex(own.centre)))
-    return found
+        link_data = linkage.links[link]
+        if all(abs(complex(link_data.centre) - local) > 0 for local in link_data.points.values()):
+            paths.append(whole.poses[link].at(complex(link_data.centre)))
+    return paths
 
 
-def draw_paths(sheet: DrawingSheet, found: Iterable[Vector]) -> None:
+def draw_paths(sheet: DrawingSheet, paths: Iterable[Vector]) -> None:
     """Draw paths (m) as dashed lines; a stretch that a point retraces is drawn once."""
-    for path in found:
+    for path in paths:
         sheet.line(drop_retraced(sheet.origin + path / sheet.mu), THIN_COLOUR, 0.7, "--", 1.5, faint=True)
 
 
@@ -175,8 +175,8 @@ def drop_retraced(path: Vector) -> list[complex]:
     """Return a path (mm) with nan where it retraces itself."""
     steps, middles = np.diff(path), (path[1:] + path[:-1]) / 2
     off = middles[:, None] - path[None, :-1]
-    size = np.maximum(np.abs(steps), 1e-12)
-    share = np.clip(dot(steps[None, :], off) / size**2, 0, 1)
+    lengths = np.maximum(np.abs(steps), 1e-12)
+    share = np.clip(dot(steps[None, :], off) / lengths**2, 0, 1)
     near = np.abs(off - share * steps[None, :]) < SAME_LINE
     back = near & (dot(steps[:, None], steps[None, :]) < 0) & np.tri(len(steps), k=-1, dtype=bool)
     return [path[0], *np.where(back.any(axis=1), np.nan, path[1:]).tolist()]
@@ -189,30 +189,30 @@ def detailed_drawings(results: Results) -> list[Position]:
     return [Position(results, motion, k) for k in detailed_positions(results)]
 
 
-def draw_position(here: Position) -> Iterable[tuple[str, Drawing]]:
+def draw_position(position: Position) -> Iterable[tuple[str, Drawing]]:
     """Yield the position with weights, inertia forces and couples, loads, and the balancing moment of the crank."""
-    results, motion, k = here.results, here.motion, here.k
+    results, motion, k = position.results, position.motion, position.k
     linkage, reactions = results.linkage, results.reactions
     scene = MechanismScene(linkage, results.structure, motion.poses, k)
-    given = () if reactions is None else LoadedPosition.at(motion, reactions, k).given()
-    places = [*frame_pivots(linkage), *(scene.point(p) for p in linkage.moving_points)]
-    places += [scene.place(n, complex(linkage.links[n].centre)) for n in linkage.moving]
+    loads = () if reactions is None else LoadedPosition.at(motion, reactions, k).given()
+    points = [*frame_pivots(linkage), *(scene.point(p) for p in linkage.moving_points)]
+    points += [scene.place(n, complex(linkage.links[n].centre)) for n in linkage.moving]
     figure, notes = FigureExtent(), [_("loads not to scale")] if reactions is not None else []
-    figure.spots(points_to_scale(scene, [*places, *(one.at for one in given)]), POSITION_MARGIN)
-    for one in given:
-        if not one.couple:
-            figure.spots([one.at], POSITION_MARGIN / 2, LOAD_LENGTH * one.force / abs(one.force))
-    found = choose_scale(figure, NoteBlock([*notes, scale_words("l", 0.0025, "m/mm")]))
-    sheet = here.sheet("{caption}", room=found)
+    figure.spots(points_to_scale(scene, [*points, *(load.at for load in loads)]), POSITION_MARGIN)
+    for load in loads:
+        if not load.couple:
+            figure.spots([load.at], POSITION_MARGIN / 2, LOAD_LENGTH * load.force / abs(load.force))
+    layout = choose_scale(figure, NoteBlock([*notes, scale_words("l", 0.0025, "m/mm")]))
+    sheet = position.sheet("{caption}", room=layout)
     draw_measured(sheet, scene)
-    for one in given:
-        if one.kind == "load" and not one.couple:
-            join_to_link(sheet, scene, one.link, sheet.on(one.at))
-    ForceArrows(sheet, whole=True).draw(given)
+    for load in loads:
+        if load.kind == "load" and not load.couple:
+            join_to_link(sheet, scene, load.link, sheet.on(load.at))
+    ForceArrows(sheet, whole=True).draw(loads)
     for note in notes:
         sheet.note(note)
     sheet.note(scale_words("l", sheet.mu, "m/mm"))
-    yield here.stem("position"), sheet.finish()
+    yield position.stem("position"), sheet.finish()
 
 
 def sketch_scene(results: Results) -> tuple[str, MechanismScene] | None:
@@ -226,8 +226,8 @@ def sketch_scene(results: Results) -> tuple[str, MechanismScene] | None:
     if driver_range is None:
         return None
     others = COORDINATES_TRIED if len(structure.pairs) <= MOST_PAIRS else 0
-    places = np.linspace(driver_range.start, driver_range.end, others + 2)
-    motion = motion_at_positions(results, np.array([linkage.sketch.at, *places[1:-1]]), 0)
+    coordinates = np.linspace(driver_range.start, driver_range.end, others + 2)
+    motion = motion_at_positions(results, np.array([linkage.sketch.at, *coordinates[1:-1]]), 0)
     if not bool(motion.placed[0]):
         return None
     scenes = [MechanismScene(linkage, structure, motion.poses, k) for k in range(len(motion.q))]
@@ -242,20 +242,20 @@ def _clearness(scenes: Sequence[MechanismScene]) -> Real:
 
     It is relative to the size of the mechanism. Pairs that always coincide do not count.
     """
-    moving, every = scenes[0].structure.links, scenes[0].structure.pairs
+    moving, all_pairs = scenes[0].structure.links, scenes[0].structure.pairs
     # a guide on the frame may be drawn anywhere along itself
-    pairs = [p for p in every if p.kind == "R" or (p.slide is not None and p.slide.carrier != FRAME)]
+    pairs = [p for p in all_pairs if p.kind == "R" or (p.slide is not None and p.slide.carrier != FRAME)]
     spots = np.array([[s.at(p) for p in pairs] for s in scenes])
     spines = [[[*s.joints(link), *(stone for stone, __ in s.guides(link))] for link in moving] for s in scenes]
-    bars = np.array([[bar for spine in here for bar in pairwise(spine)] for here in spines], complex)
+    bars = np.array([[bar for spine in spine_points for bar in pairwise(spine)] for spine_points in spines], complex)
     bars = bars.reshape(len(scenes), 1, bars.size // (2 * len(scenes)), 2)
     start, span = bars[..., 0], bars[..., 1] - bars[..., 0]
     share = np.clip(dot(span, spots[:, :, None] - start) / np.maximum(np.abs(span) ** 2, 1e-300), 0, 1)
     others = np.concatenate([np.broadcast_to(spots[:, None], (*spots.shape, len(pairs))), start + share * span], axis=2)
     gaps = np.abs(others - spots[:, :, None]).reshape(len(scenes), -1)
-    size = np.nanmax(np.abs(spots - spots[:, :1])) or 1.0
-    gaps = gaps[:, np.nanmax(gaps, axis=0) > 1e-6 * size]
-    return np.asarray(np.min(gaps / size, axis=1, initial=1.0))
+    extent = np.nanmax(np.abs(spots - spots[:, :1])) or 1.0
+    gaps = gaps[:, np.nanmax(gaps, axis=0) > 1e-6 * extent]
+    return np.asarray(np.min(gaps / extent, axis=1, initial=1.0))
 
 
 def task_picture(results: Results) -> Drawing | None:
@@ -264,14 +264,14 @@ def task_picture(results: Results) -> Drawing | None:
     Returns:
         None if the linkage cannot be assembled at the sketch.
     """
-    found = sketch_scene(results)
-    if found is None:
+    sketch = sketch_scene(results)
+    if sketch is None:
         return None
-    place, scene = found
+    place, scene = sketch
     linkage = results.linkage
-    places = [*frame_pivots(linkage), *(scene.point(name) for name in linkage.moving_points)]
-    places += [scene.place(name, complex(linkage.links[name].centre)) for name in linkage.moving]
-    sheet = DrawingSheet(results.problem.title, place, points_to_scale(scene, places), pad=30)
+    points = [*frame_pivots(linkage), *(scene.point(name) for name in linkage.moving_points)]
+    points += [scene.place(name, complex(linkage.links[name].centre)) for name in linkage.moving]
+    sheet = DrawingSheet(results.problem.title, place, points_to_scale(scene, points), pad=30)
     draw_driver_arrows(sheet, scene, draw_measured(sheet, scene), MEASURED, dict.fromkeys(linkage.links, DARK_COLOUR))
     sheet.note(scale_words("l", sheet.mu, "m/mm"))
     return sheet.finish()

@@ -59,12 +59,12 @@ def equation_lines(equation: MomentEquation, unit: str = "N·m") -> Iterable[Wor
         equation: The equation (N, m).
         unit: Unit of moments.
     """
-    found, sought = equation.found, equation.sought
+    solved, sought = equation.found, equation.sought
     links = (_("link {links}") if len(equation.links) == 1 else _("links {links}")).format(
         links=", ".join(equation.links)
     )
     moments: tuple[EquationPart, ...] = ("Σ", Symbol("M", equation.about), f", {links}: " if equation.links else ": ")
-    if found is None and sought is not None:
+    if solved is None and sought is not None:
         text = (
             _("{moments}no force has a moment, so {name} passes through {point}")
             if sought.arm
@@ -74,33 +74,33 @@ def equation_lines(equation: MomentEquation, unit: str = "N·m") -> Iterable[Wor
         return
     if not equation.terms:
         return
-    others = [t for t in equation.terms if t is not found]
-    terms = [*([found] if found else []), *others]
+    others = [t for t in equation.terms if t is not solved]
+    terms = [*([solved] if solved else []), *others]
     yield (*moments, *_sum_text((_term_letters(t), t.moment) for t in terms), " = 0")
-    if found is None or sought is None:
+    if solved is None or sought is None:
         rest, largest = abs(sum(t.moment for t in terms)), max(abs(t.moment) for t in terms)
         value = format_figures(rest if rest > NO_MOMENT * largest else 0.0)
         yield (EQUATION_INDENT, *_sum_text((_term_numbers(t), t.moment) for t in terms), f" = {value} {spelt(unit)}")
         return
-    sense = -float(np.sign(found.moment))
+    sense = -float(np.sign(solved.moment))
     letters = _sum_text((_term_letters(t), sense * t.moment) for t in others)
     numbers = _sum_text((_term_numbers(t), sense * t.moment) for t in others)
-    if found.acting.couple:
+    if solved.acting.couple:
         value = format_figures(equation.value)
         summed = () if numbers == [value] else (*numbers, " = ")
-        yield (EQUATION_INDENT, found.acting.symbol, " = ", *letters, " = ", *summed, f"{value} {spelt(unit)}")
+        yield (EQUATION_INDENT, solved.acting.symbol, " = ", *letters, " = ", *summed, f"{value} {spelt(unit)}")
         return
-    name, over, by, of = found.acting.symbol, found.letter, found.arm, "N"
+    name, over, by, unit_name = solved.acting.symbol, solved.letter, solved.arm, "N"
     if sought.arm:
-        name, over, by, of = found.letter, found.acting.symbol, found.acting.size, "m"
+        name, over, by, unit_name = solved.letter, solved.acting.symbol, solved.acting.size, "m"
     divided = ("(", *letters, ") / ", over, " = (", *numbers, f") / {format_figures(by)}")
-    yield (EQUATION_INDENT, name, " = ", *divided, f" = {format_figures(equation.value)} {spelt(of)}")
+    yield (EQUATION_INDENT, name, " = ", *divided, f" = {format_figures(equation.value)} {spelt(unit_name)}")
 
 
 def guide_force_lines(forces: ForceSum) -> Iterable[Words]:
     """Yield the sum of forces along a guide, in letters and then with numbers."""
     title = _("ΣF along guide {guide}, link {link}: ").format(guide=forces.guide, link=forces.link)
-    others = [part for part in forces.parts if part is not forces.found]
+    others = [component for component in forces.parts if component is not forces.found]
     sense = -float(np.sign(forces.found.along))
     yield (title, *_sum_text((_cosine_text(p), p.along) for p in (forces.found, *others)), " = 0")
     numbers = _sum_text(
@@ -115,9 +115,9 @@ def guide_force_lines(forces: ForceSum) -> Iterable[Words]:
     )
 
 
-def _cosine_text(part: GuideComponent) -> tuple[EquationPart, ...]:
-    angle = float(np.degrees(np.arccos(part.cosine)))
-    return (part.acting.symbol, f"·cos {numeral(angle, '.1f')}°") if angle >= 0.05 else (part.acting.symbol,)
+def _cosine_text(component: GuideComponent) -> tuple[EquationPart, ...]:
+    angle = float(np.degrees(np.arccos(component.cosine)))
+    return (component.acting.symbol, f"·cos {numeral(angle, '.1f')}°") if angle >= 0.05 else (component.acting.symbol,)
 
 
 def _term_letters(term: MomentTerm) -> tuple[EquationPart, ...]:
@@ -134,21 +134,21 @@ def _term_numbers(term: MomentTerm) -> tuple[EquationPart, ...]:
 
 def _sum_text(terms: Iterable[tuple[tuple[EquationPart, ...], float]]) -> list[EquationPart]:
     """Return terms joined with their signs, e.g. a − b + c."""
-    found: list[EquationPart] = []
+    words_joined: list[EquationPart] = []
     for words, sign in terms:
-        plus = " + " if found else ""
-        found += [plus if sign > 0 else " − " if found else "−", *words]
-    return [word for word in found if word]
+        plus = " + " if words_joined else ""
+        words_joined += [plus if sign > 0 else " − " if words_joined else "−", *words]
+    return [word for word in words_joined if word]
 
 
 def forces_table(acting: Iterable[ForceOrCouple], unit: str = "N·m") -> CaptionTable:
     """Return the table of magnitudes, directions of forces from x and senses of couples; unit: of couples."""
     rows: list[tuple[Words, ...]] = []
-    for one in acting:
-        way = f"{numeral(round(float(np.degrees(np.angle(one.force))), 1) % 360, '.1f')}°"
-        if one.couple:  # the equations have its sense as a sign
-            way = _("ccw") if one.moment > 0 else _("cw") if one.moment < 0 else ""
-        rows.append((one.symbol, f"{format_figures(one.size)} {spelt(unit if one.couple else 'N')}", way))
+    for load in acting:
+        direction = f"{numeral(round(float(np.degrees(np.angle(load.force))), 1) % 360, '.1f')}°"
+        if load.couple:  # the equations have its sense as a sign
+            direction = _("ccw") if load.moment > 0 else _("cw") if load.moment < 0 else ""
+        rows.append((load.symbol, f"{format_figures(load.size)} {spelt(unit if load.couple else 'N')}", direction))
     return CaptionTable((_("force"), _("magnitude"), _("angle")), rows)
 
 
@@ -160,14 +160,14 @@ def arms_table(equations: Sequence[MomentEquation], units: UnitSystem | None, mu
         units: Units of the file; None: arms are ratios.
         mu: Scale, SI units per mm.
     """
-    found: dict[int, list[MomentTerm]] = {}
+    by_number: dict[int, list[MomentTerm]] = {}
     for term in (t for e in equations for t in e.terms if t.number):
-        found.setdefault(term.number, []).append(term)
+        by_number.setdefault(term.number, []).append(term)
     rows: list[tuple[Words, ...]] = []
-    for first, *others in found.values():
-        of = (first.acting.symbol, *(word for term in others for word in (", ", term.acting.symbol)))
-        size = format_figures(units.from_si(first.arm, LENGTH) if units else first.arm)
-        rows.append((first.letter, of, size, f"{numeral(first.arm / mu, '.1f')} {spelt('mm')}"))
+    for first, *others in by_number.values():
+        symbols = (first.acting.symbol, *(word for term in others for word in (", ", term.acting.symbol)))
+        arm_text = format_figures(units.from_si(first.arm, LENGTH) if units else first.arm)
+        rows.append((first.letter, symbols, arm_text, f"{numeral(first.arm / mu, '.1f')} {spelt('mm')}"))
     return CaptionTable((_("arm"), _("force"), units.spelt(LENGTH) if units else "", _("on paper")), rows)
 
 
@@ -178,8 +178,8 @@ def format_figures(value: float) -> str:
         return numeral(value, ".0f")
     if not 0 < abs(rounded) < 1e-4:  # no power of ten
         return numeral(rounded, ".10g")
-    places = len(np.format_float_positional(rounded).partition(".")[2])
-    return numeral(rounded, f".{places}f" if abs(value) > PLAIN_DOWN_TO else ".4g")
+    decimals = len(np.format_float_positional(rounded).partition(".")[2])
+    return numeral(rounded, f".{decimals}f" if abs(value) > PLAIN_DOWN_TO else ".4g")
 
 
 # Each group apart, and each driving link: its links to scale under loads and reactions, arms, equations of moments.
@@ -188,35 +188,35 @@ def format_figures(value: float) -> str:
 MOST_ARMS = 12  # arms on one sheet
 
 
-def draw_group_loads(here: Position) -> Iterable[tuple[str, Drawing]]:
+def draw_group_loads(position: Position) -> Iterable[tuple[str, Drawing]]:
     """Yield a sheet for each group and each driving link with loads and equations of moments.
 
     Equations whose arms would crowd the first sheet get another one.
     """
-    if here.results.reactions is None:
+    if position.results.reactions is None:
         return
-    for part in list_free_bodies(here.motion, here.results.reactions, here.k):
-        kind = "links" if len(part.links) > 1 else "link"
-        stem = file_safe_name("-".join([here.stem("group-loads"), kind, *part.links]))
-        few, *others = split_equations(part.equations)
+    for loaded in list_free_bodies(position.motion, position.results.reactions, position.k):
+        kind = "links" if len(loaded.links) > 1 else "link"
+        stem = file_safe_name("-".join([position.stem("group-loads"), kind, *loaded.links]))
+        few, *others = split_equations(loaded.equations)
         sheets = [
-            *_group_sheets(here, part, few, part.sums),
-            *(s for more in others for s in _group_sheets(here, part, more, ())),
+            *_group_sheets(position, loaded, few, loaded.sums),
+            *(s for more in others for s in _group_sheets(position, loaded, more, ())),
         ]
-        for number, sheet in enumerate(sheets if part.acting else ()):
+        for number, sheet in enumerate(sheets if loaded.acting else ()):
             yield stem + (f"-sheet-{number + 1}" if number else ""), sheet.finish()
 
 
 def split_equations(equations: Sequence[MomentEquation]) -> list[list[MomentEquation]]:
     """Distribute equations in order over as many sheets as their arms need."""
-    found: list[list[MomentEquation]] = [[]]
+    sheets: list[list[MomentEquation]] = [[]]
     for equation in equations:
-        number = sum(len(_arm_numbers(e)) for e in found[-1])
+        number = sum(len(_arm_numbers(e)) for e in sheets[-1])
         crowded = number + len(_arm_numbers(equation)) > MOST_ARMS
-        if found[-1] and (crowded or equation.special or found[-1][-1].special):
-            found.append([])
-        found[-1].append(equation)
-    return found
+        if sheets[-1] and (crowded or equation.special or sheets[-1][-1].special):
+            sheets.append([])
+        sheets[-1].append(equation)
+    return sheets
 
 
 def _arm_numbers(equation: MomentEquation) -> set[int]:
@@ -224,41 +224,43 @@ def _arm_numbers(equation: MomentEquation) -> set[int]:
 
 
 def _group_sheets(
-    here: Position, part: FreeBody, equations: Sequence[MomentEquation], sums: Sequence[ForceSum]
+    position: Position, loaded: FreeBody, equations: Sequence[MomentEquation], sums: Sequence[ForceSum]
 ) -> Iterable[DrawingSheet]:
-    linkage = here.results.linkage
+    linkage = position.results.linkage
     linkage = replace(linkage, springs=())  # they are loads here
-    scene = MechanismScene(linkage, here.results.structure, here.motion.poses, here.k)
+    scene = MechanismScene(linkage, position.results.structure, position.motion.poses, position.k)
     terms = [t for e in equations for t in e.terms]
-    shown = [*(t.acting for t in terms), *(s.found.acting for s in sums)]
-    further = [a for a in dict.fromkeys(shown) if a.kind == "reaction" and a not in part.acting]
-    places = [*scene.extent(part.links), *(scene.point(p) for n in part.links for p in linkage.links[n].points)]
-    places += [p for e in equations for p in (e.centre, *(t.foot for t in e.terms if t.number))]
+    listed = [*(t.acting for t in terms), *(s.found.acting for s in sums)]
+    further = [a for a in dict.fromkeys(listed) if a.kind == "reaction" and a not in loaded.acting]
+    points = [*scene.extent(loaded.links), *(scene.point(p) for n in loaded.links for p in linkage.links[n].points)]
+    points += [p for e in equations for p in (e.centre, *(t.foot for t in e.terms if t.number))]
     title = _("Links {links} under their loads. {caption}")
-    if part.driving:
+    if loaded.driving:
         title = _("Driving link {links} under its loads. {caption}")
-    elif len(part.links) == 1:
+    elif len(loaded.links) == 1:
         title = _("Link {links} under its loads. {caption}")
     lines = [line for e in equations for line in equation_lines(e)] if writes_equations() else []
-    lines += [line for one in sums for line in guide_force_lines(one)] if writes_equations() else []
-    units, shown = here.results.problem.units, [*part.acting, *further]
+    lines += [line for force_sum in sums for line in guide_force_lines(force_sum)] if writes_equations() else []
+    units, listed = position.results.problem.units, [*loaded.acting, *further]
 
     def beneath(mu: float) -> DrawingCaption:
-        return DrawingCaption(lines, (forces_table(shown), arms_table(equations, units, mu)))
+        return DrawingCaption(lines, (forces_table(listed), arms_table(equations, units, mu)))
 
-    sized = [*((place, 0j) for place in places), *arrow_extent(shown)]
-    if extent_of([place for place, __ in sized])[0] <= SAME_POINTS * here.motion.largest.size:  # but for rounding one
-        places, sized = places[:1], [(places[0], along) for __, along in sized]
-    sheet, text = captioned_sheets(here, title, sized, beneath, links=", ".join(part.links))
-    draw_measured(sheet, scene, links=part.links)
+    sized = [*((place, 0j) for place in points), *arrow_extent(listed)]
+    if (
+        extent_of([place for place, __ in sized])[0] <= SAME_POINTS * position.motion.largest.size
+    ):  # but for rounding one
+        points, sized = points[:1], [(points[0], along) for __, along in sized]
+    sheet, text = captioned_sheets(position, title, sized, beneath, links=", ".join(loaded.links))
+    draw_measured(sheet, scene, links=loaded.links)
     bars = sheet.ground.crowd
     forces = ForceArrows(sheet)
-    forces.draw(part.acting)
+    forces.draw(loaded.acting)
     forces.draw(replace(a, kind="inner") for a in further)
     for equation in (e for e in equations if e.special):
-        _draw_assur_point(sheet, part, equation)
+        _draw_assur_point(sheet, loaded, equation)
     draw_arms(sheet, equations, bars)
-    if extent_of(places)[0] > 0:
+    if extent_of(points)[0] > 0:
         sheet.note(scale_words("l", sheet.mu, "m/mm"))
     sheet.note(_("forces not to scale"))
     sheet.note(_("positive moments: counterclockwise"))
@@ -267,12 +269,12 @@ def _group_sheets(
     return (sheet,) if text is None else (sheet, text)
 
 
-def _draw_assur_point(sheet: DrawingSheet, part: FreeBody, equation: MomentEquation) -> None:
+def _draw_assur_point(sheet: DrawingSheet, loaded: FreeBody, equation: MomentEquation) -> None:
     """Mark the Assur point, and draw the lines of action of the reactions that meet there."""
     at, with_moments = sheet.on(equation.centre), {t.acting.symbol for t in equation.terms}
-    for one in part.acting:
-        if one.pair and not one.couple and one.symbol not in with_moments:
-            sheet.line([sheet.on(one.at), at], REACTION_COLOUR, 0.5, "-.", 1.7)
+    for load in loaded.acting:
+        if load.pair and not load.couple and load.symbol not in with_moments:
+            sheet.line([sheet.on(load.at), at], REACTION_COLOUR, 0.5, "-.", 1.7)
     sheet.circle(at, 0.6, REACTION_COLOUR, REACTION_COLOUR, 0.5)
     sheet.label(equation.about, at, 10)
 
@@ -298,14 +300,14 @@ def significant_forces(plan: LeverPlan) -> Sequence[ForceOrCouple]:
     ]
 
 
-def draw_lever(here: Position) -> Iterable[tuple[str, Drawing]]:
+def draw_lever(position: Position) -> Iterable[tuple[str, Drawing]]:
     """Yield the Zhukovsky lever (rotated velocity plan) with all forces, arms and the equation of moments."""
-    results = here.results
+    results = position.results
     if results.lever is None or results.reactions is None:
         return
     crank = results.linkage.driver.kind == "turn"
-    plan = lever_plan(here.motion, results.reactions, results.lever, here.k)
-    places = [*plan.ends.values(), *(term.foot for term in plan.equation.terms)]
+    plan = lever_plan(position.motion, results.reactions, results.lever, position.k)
+    points = [*plan.ends.values(), *(term.foot for term in plan.equation.terms)]
     title = (
         _("Zhukovsky lever: velocity plan for 1 rad/s, rotated by 90° clockwise. {caption}")
         if crank
@@ -314,7 +316,7 @@ def draw_lever(here: Position) -> Iterable[tuple[str, Drawing]]:
     unit = "N·m" if crank else "N"
     pairs = [word for pair in plan.pairs for word in _couple_equation(pair)]
     lines = (
-        [*equation_lines(plan.equation, unit), *([tuple(pairs)] if pairs else []), *_force_plan_check(here)]
+        [*equation_lines(plan.equation, unit), *([tuple(pairs)] if pairs else []), *_force_plan_check(position)]
         if writes_equations()
         else []
     )
@@ -324,28 +326,30 @@ def draw_lever(here: Position) -> Iterable[tuple[str, Drawing]]:
         return DrawingCaption(lines, (forces_table(plan.acting, unit), arms_table([plan.equation], units, mu)))
 
     sheet, text = captioned_sheets(
-        here, title, [*((place, 0j) for place in places), *arrow_extent(plan.acting)], beneath
+        position, title, [*((place, 0j) for place in points), *arrow_extent(plan.acting)], beneath
     )
     for bar in plan.bars:
         sheet.line(
             [sheet.on(bar.start), sheet.on(bar.end)], DARK_COLOUR if bar.kind == "absolute" else THIN_COLOUR, 1.5, z=3
         )
     bars = sheet.ground.crowd
-    shown = significant_forces(plan)
-    ForceArrows(sheet).draw(shown)
-    draw_arms(sheet, [replace(plan.equation, terms=tuple(t for t in plan.equation.terms if t.acting in shown))], bars)
+    drawn_loads = significant_forces(plan)
+    ForceArrows(sheet).draw(drawn_loads)
+    draw_arms(
+        sheet, [replace(plan.equation, terms=tuple(t for t in plan.equation.terms if t.acting in drawn_loads))], bars
+    )
     draw_plan_points(sheet, plan.ends, LEVER_POLE)
     sheet.note(scale_words("l", sheet.mu, "m/mm") if crank else scale_words("i", sheet.mu, "1/mm"))
-    few = len(shown) < len(plan.acting)
+    few = len(drawn_loads) < len(plan.acting)
     sheet.note(_("forces not to scale; below 0.1 % only in the table") if few else _("forces not to scale"))
     sheet.note(_("positive moments: counterclockwise"))
     if any(a.couple and not a.pair for a in plan.acting):
         sheet.note(_("M′: M times the speed ratio of its link to the driver"))
-    for line in _several_driver_notes(here):
+    for line in _several_driver_notes(position):
         sheet.note(line)
-    yield here.stem("lever"), sheet.finish()
+    yield position.stem("lever"), sheet.finish()
     if text is not None:
-        yield here.stem("lever") + "-sheet-2", text.finish()
+        yield position.stem("lever") + "-sheet-2", text.finish()
 
 
 def _couple_equation(pair: CoupleAsForces) -> tuple[str | Symbol, ...]:
@@ -355,15 +359,15 @@ def _couple_equation(pair: CoupleAsForces) -> tuple[str | Symbol, ...]:
     return (pair.symbol, " = ", pair.couple, f" / {''.join(pair.points)} = {numbers}      ")
 
 
-def _force_plan_check(here: Position) -> Iterable[Words]:
+def _force_plan_check(position: Position) -> Iterable[Words]:
     """Yield the balancing load by the force plans and its difference, if there is one driver."""
-    results, reactions = here.results, here.results.reactions
+    results, reactions = position.results, position.results.reactions
     assert reactions is not None and results.lever is not None
     if len(reactions.balances) > 1:
         return
-    balance, difference = reactions.balance, 100 * float(results.lever.difference[here.k])
+    balance, difference = reactions.balance, 100 * float(results.lever.difference[position.k])
     turns = balance.kind == "moment"
-    value = float((balance.generalized if turns else balance.force)[here.k])
+    value = float((balance.generalized if turns else balance.force)[position.k])
     yield filled(
         _("force plan: {name} = {value} {unit}, difference {percent} %"),
         name=balance_symbol(balance.driver.link, several=False, turns=turns),
@@ -373,9 +377,9 @@ def _force_plan_check(here: Position) -> Iterable[Words]:
     )
 
 
-def _several_driver_notes(here: Position) -> Iterable[str]:
+def _several_driver_notes(position: Position) -> Iterable[str]:
     """Yield notes for several drivers: the lever gives the sum of their powers at their speed ratios."""
-    motion, results, k = here.motion, here.results, here.k
+    motion, results, k = position.motion, position.results, position.k
     reactions = results.reactions
     assert reactions is not None and results.lever is not None
     if len(reactions.balances) == 1:

@@ -55,10 +55,10 @@ def length_rows(results: Results) -> list[TableRow]:
     titles: list[Words] = [_("length"), *([_("name in the file")] if named else []), units.spelt(LENGTH)]
     rows = [TableRow(tuple(titles), head=True)]
     for name, parameter, value, dimension in sizes:
-        shown = numeral(units.from_si(value, dimension), ".6g") + (
+        value_text = numeral(units.from_si(value, dimension), ".6g") + (
             f" {units.spelt(ANGLE)}" if dimension == ANGLE else ""
         )
-        rows.append(TableRow((name, *([parameter] if named else []), shown)))
+        rows.append(TableRow((name, *([parameter] if named else []), value_text)))
     return rows
 
 
@@ -90,37 +90,39 @@ def _gear_radii(linkage: Linkage) -> Iterator[TableSize]:
 
 def _length_parameter(results: Results, link: str, name: str) -> str:
     """Return the parameter that is the length of a link between these points, or "" if it has the same name."""
-    own = _file_value(results, "links", link)
-    ends = own.get("points") if isinstance(own, dict) else None
+    link_block = _file_value(results, "links", link)
+    ends = link_block.get("points") if isinstance(link_block, dict) else None
     if not isinstance(ends, list) or "".join(map(str, ends)) != name:
         return ""
-    return _renaming_parameter(results, own.get("length"), name)
+    return _renaming_parameter(results, link_block.get("length"), name)
 
 
-def _coordinate_parameter(results: Results, written: Any, place: complex, size: float, name: str) -> str:
+def _coordinate_parameter(results: Results, written: Any, place: complex, magnitude: float, name: str) -> str:
     """Return the parameter that is the coordinate of a point with this absolute value, or ""."""
     if not isinstance(written, list):
         return ""
     both = zip(written, (place.real, place.imag), strict=False)
-    found = [
-        _renaming_parameter(results, text, name) for text, value in both if abs(abs(value) - size) <= SAME_POINTS * size
+    parameters = [
+        _renaming_parameter(results, text, name)
+        for text, value in both
+        if abs(abs(value) - magnitude) <= SAME_POINTS * magnitude
     ]
-    return next((parameter for parameter in found if parameter), "")
+    return next((parameter for parameter in parameters if parameter), "")
 
 
 def _renaming_parameter(results: Results, text: Any, name: str) -> str:
     """Return the parameter of which a text of the file consists, or "" if it has the letters of `name`."""
-    known, word = _file_value(results, "parameters"), str(text).lstrip("-")
-    return word if isinstance(known, dict) and word in known and sorted(word) != sorted(name) else ""
+    parameters, word = _file_value(results, "parameters"), str(text).lstrip("-")
+    return word if isinstance(parameters, dict) and word in parameters and sorted(word) != sorted(name) else ""
 
 
 def _file_value(results: Results, *path: str) -> Any:
     """Return the value at a path of keys in the problem file, or None."""
     source = results.problem.source
-    found: Any = None if source is None else source.data
+    block: Any = None if source is None else source.data
     for key in path:
-        found = {str(k): value for k, value in found.items()}.get(key) if isinstance(found, dict) else None
-    return found
+        block = {str(k): value for k, value in block.items()}.get(key) if isinstance(block, dict) else None
+    return block
 
 
 def _frame_sizes(results: Results) -> Iterator[TableSize]:
@@ -187,17 +189,19 @@ def output_extremes(results: Results) -> list[OutputExtreme]:
         cycle, ends = np.inf, [travels[0].low_at, travels[0].high_at]
     else:
         return []
-    found: list[OutputExtreme] = []
-    asked = results.asked[list(results.numbers)]
+    extremes: list[OutputExtreme] = []
+    coordinates = results.asked[list(results.numbers)]
     for q in ends:
-        off = np.abs(asked - q) if np.isinf(cycle) else np.abs((asked - q + cycle / 2) % cycle - cycle / 2)
-        here = int(np.argmin(off))
-        found.append(OutputExtreme(float(q), str(results.numbers[here]) if off[here] < SAME_DRIVER_POSITION else ""))
-    between = [extreme for extreme in found if not extreme.mark]
+        off = np.abs(coordinates - q) if np.isinf(cycle) else np.abs((coordinates - q + cycle / 2) % cycle - cycle / 2)
+        nearest = int(np.argmin(off))
+        extremes.append(
+            OutputExtreme(float(q), str(results.numbers[nearest]) if off[nearest] < SAME_DRIVER_POSITION else "")
+        )
+    between = [extreme for extreme in extremes if not extreme.mark]
     for number, extreme in enumerate(between, 1):
         mark = "k" + ("" if len(between) == 1 else "′" * (number - 1) if len(between) == 2 else subscript(str(number)))
-        found[found.index(extreme)] = OutputExtreme(extreme.q, mark)
-    return found
+        extremes[extremes.index(extreme)] = OutputExtreme(extreme.q, mark)
+    return extremes
 
 
 def output_travel(results: Results) -> float:
@@ -231,8 +235,8 @@ def swinging_path(linkage: Linkage, link: str) -> NumberedPath:
     pivot = next((p for p in points if p in linkage.links[FRAME].points and linkage.hinged_to_frame(link)), None)
     if pivot is None or len(points) < 2:
         return NumberedPath("any", link, next(iter(points.values()), 0j))
-    own = points[pivot]
-    end = max(points.values(), key=lambda local: abs(local - own))
+    pivot_point = points[pivot]
+    end = max(points.values(), key=lambda local: abs(local - pivot_point))
     return NumberedPath("arc", link, end, pivot=linkage.local(FRAME, pivot))
 
 
@@ -248,9 +252,9 @@ def driver_path(results: Results) -> NumberedPath | None:
     return NumberedPath("any", driver.link, slide.at)
 
 
-def extreme_states(results: Results, found: list[OutputExtreme]) -> LinkStates:
+def extreme_states(results: Results, extremes: list[OutputExtreme]) -> LinkStates:
     """Return the states of the mechanism in the extreme positions of the output."""
-    return motion_at_positions(results, np.array([extreme.q for extreme in found]), 0)
+    return motion_at_positions(results, np.array([extreme.q for extreme in extremes]), 0)
 
 
 # The mechanism in all positions: numbers at the driver and the output, ends of its way, stroke, a table of lengths.
@@ -292,11 +296,11 @@ class PositionsView:
 
     def lines(self, k: int) -> Vector:
         """Return points (m) along the links in a position."""
-        scene, found = replace(self.scene, k=k), []
+        scene, points = replace(self.scene, k=k), []
         for link in self.results.linkage.moving:
-            places = [scene.place(link, local) for local in self.results.linkage.links[link].points.values()]
-            found += [place + (places[n - 1] - place) * LINE_SHARES for n, place in enumerate(places)]
-        return np.concatenate(found)
+            link_points = [scene.place(link, local) for local in self.results.linkage.links[link].points.values()]
+            points += [place + (link_points[n - 1] - place) * LINE_SHARES for n, place in enumerate(link_points)]
+        return np.concatenate(points)
 
     @property
     def shown(self) -> list[int]:
@@ -312,20 +316,20 @@ class PositionsView:
 
     def marks(self, track: NumberedPath) -> list[PositionMark]:
         """Return numbers and letters of positions along a path, including the extreme positions."""
-        named, strokes, places = [end.mark for end in self.ends], self.results.strokes, track.places(self.motion)
-        working = np.ones(len(places), bool)
+        named, strokes, points = [end.mark for end in self.ends], self.results.strokes, track.places(self.motion)
+        working = np.ones(len(points), bool)
         if strokes is not None and strokes.strokes:
             working = strokes.share(self.motion.q, self.results.linkage.driver.sense)
-        found = [
-            PositionMark(complex(places[k]), text, text in named, bool(working[k]))
+        marks = [
+            PositionMark(complex(points[k]), text, text in named, bool(working[k]))
             for k in self.numbered
             for text in [str(self.results.numbers[k])]
         ]
         if self.states is not None:
-            there = [mark.text for mark in found]
+            texts = [mark.text for mark in marks]
             ends = zip(track.places(self.states), named, strict=True)
-            found += [PositionMark(complex(place), mark, True, True) for place, mark in ends if mark not in there]
-        return found
+            marks += [PositionMark(complex(place), mark, True, True) for place, mark in ends if mark not in texts]
+        return marks
 
 
 def draw_all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
@@ -343,11 +347,11 @@ def draw_all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
     notes, rows = list(_position_notes(view, track, marks)), length_rows(results)
     figure = _figure_extent(view, whole)
     off = _reserve_ruler(figure, view, track, marks, whole) if track is not None and ruled else 0.0
-    found = choose_scale(
+    layout = choose_scale(
         figure, NoteBlock([(*scale_words("l", 0.0125, "m/mm"), ", 1:12.5"), *notes], rows), EXTRA_SCALES
     )
     caption = _("Mechanism in {count} positions, trajectories of its points").format(count=len(results.numbers))
-    sheet = DrawingSheet(results.problem.title, caption, room=found)
+    sheet = DrawingSheet(results.problem.title, caption, room=layout)
     draw_paths(sheet, whole)
     for other in view.shown:
         if other != k:
@@ -409,9 +413,9 @@ def _reserve_ruler(
         RULER_OVERHANG if high - low > SHORT_STROKE else RULER_OVERHANG + SHORT_STROKE
     )  # the text of a short stroke stands beside it
     for run in np.linspace(low - more, high + more, len(LINE_SHARES)).tolist():
-        way = ruler.path_point(min(max(run, low), high))
+        path_point = ruler.path_point(min(max(run, low), high))
         for out in (0.0, ruler_reach(ruler, numbers), ruler_reach(ruler, numbers) + STROKE_OFFSET):
-            figure.spots([way * mu], THIN_CLEARANCE, ruler.at(run, out) - way)
+            figure.spots([path_point * mu], THIN_CLEARANCE, ruler.at(run, out) - path_point)
     return ruler.off
 
 
@@ -451,10 +455,10 @@ def _travel_text(view: PositionsView) -> str:
     return f"{letter} = {numeral(units.from_si(output_travel(results), measure), '.4g')} {units.spelt(measure)}"
 
 
-def _farthest_ends(places: Vector) -> tuple[complex, complex]:
+def _farthest_ends(points: Vector) -> tuple[complex, complex]:
     """Return the two points that are farthest from each other."""
-    found = [(p, q) for n, p in enumerate(places.tolist()) for q in places.tolist()[:n]]
-    return max(found, key=lambda ends: abs(ends[0] - ends[1]))
+    pairs = [(p, q) for n, p in enumerate(points.tolist()) for q in points.tolist()[:n]]
+    return max(pairs, key=lambda ends: abs(ends[0] - ends[1]))
 
 
 def _number_points(sheet: DrawingSheet, marks: list[PositionMark]) -> None:
@@ -464,11 +468,11 @@ def _number_points(sheet: DrawingSheet, marks: list[PositionMark]) -> None:
         return
     middle = sheet.on(sum(mark.place for mark in finite) / len(finite))
     # in a cycle of several turns the crank comes back to its places
-    for at, here in in_place((sheet.on(mark.place), mark) for mark in finite):
+    for at, marks_there in in_place((sheet.on(mark.place), mark) for mark in finite):
         out = at - middle
-        end = any(mark.end for mark in here)
+        end = any(mark.end for mark in marks_there)
         sheet.circle(at, 0.7 if end else 0.5, DARK_COLOUR, DARK_COLOUR, 0.3, 5)
-        text = ", ".join(mark.text for mark in here)
+        text = ", ".join(mark.text for mark in marks_there)
         sheet.label(text, at + 1.5 * out / (abs(out) or 1.0), 9 if end else 8, DARK_COLOUR if end else GREY_TEXT)
 
 

@@ -74,12 +74,13 @@ class MechanismPart:
 def mechanism_parts(structure: Structure) -> tuple[MechanismPart, ...]:
     """Return the primary mechanisms and the groups in the order of solution, then the redundant links."""
     cranks = [driver for driver in structure.drivers if driver.base == FRAME]
-    every: list[tuple[str, tuple[str, ...], Group | None]] = [
+    entries: list[tuple[str, tuple[str, ...], Group | None]] = [
         *((structure.driver_title(d), structure.rigid_with(d.link), None) for d in cranks),
         *((group.title, group.links, group) for group in structure.groups),
     ]
     coloured = [
-        MechanismPart(title, links, PART_COLOURS[n % len(PART_COLOURS)], g) for n, (title, links, g) in enumerate(every)
+        MechanismPart(title, links, PART_COLOURS[n % len(PART_COLOURS)], g)
+        for n, (title, links, g) in enumerate(entries)
     ]
     redundant = [
         MechanismPart(", ".join(r.links), r.links, FREE_COLOUR, redundant=r) for r in structure.reduction.links
@@ -95,25 +96,25 @@ def link_colours(structure: Structure) -> dict[str, str]:
 
 def draw_scheme(results: Results) -> Iterator[tuple[str, Drawing]]:
     """Yield the structural scheme at the sketch; nothing if the linkage cannot be assembled there."""
-    found = sketch_scene(results)
-    if found is not None:
-        yield "structure", scheme_sheet(results.problem.title, *found).finish()
+    sketch = sketch_scene(results)
+    if sketch is not None:
+        yield "structure", scheme_sheet(results.problem.title, *sketch).finish()
 
 
 def scheme_sheet(title: str, place: str, scene: MechanismScene) -> DrawingSheet:
     """Draw the structural scheme with its legend below; its labels are placed."""
     legend = Legend(scene.structure)
     links, pairs, hue = scene.structure.links, scene.structure.pairs, link_colours(scene.structure)
-    places, most = scene.extent(links), SCHEME_BASE_SIZE + SCHEME_SIZE_PER_LINK * len(links)
+    points, most = scene.extent(links), SCHEME_BASE_SIZE + SCHEME_SIZE_PER_LINK * len(links)
 
     def scale(paper: tuple[float, float]) -> float:
         low, high = drawing_area(paper)
-        return scale_to_fit(places, high - low - 2 * SCHEME_PAD * (1 + 1j) - 1j * legend.height(paper[0]), most)
+        return scale_to_fit(points, high - low - 2 * SCHEME_PAD * (1 + 1j) - 1j * legend.height(paper[0]), most)
 
     subject = _("Structural scheme, {place} (not to scale)").format(place=place)
     if on_large_sheet():
         most = math.inf
-        sheet = DrawingSheet(title, subject, room=scaleless_layout(places, SCHEME_PAD, LEGEND_WIDTH, legend.height))
+        sheet = DrawingSheet(title, subject, room=scaleless_layout(points, SCHEME_PAD, LEGEND_WIDTH, legend.height))
     else:
         # upright only where the mechanism becomes much larger
         paper = LANDSCAPE if scale(LANDSCAPE) < 1.4 * scale(PORTRAIT) else PORTRAIT
@@ -141,7 +142,9 @@ def _draw_replacements(sheet: DrawingSheet, scene: MechanismScene) -> None:
             sheet.circle(start, JOINT_RADIUS, "white", DARK_COLOUR, 0.7)
             if link.slides:
                 along = (end - start) / (abs(end - start) or 1.0)
-                corners = [end + JOINT_RADIUS * along * way for way in (1 + 2j, -1 + 2j, -1 - 2j, 1 - 2j)]
+                corners = [
+                    end + JOINT_RADIUS * along * corner_offset for corner_offset in (1 + 2j, -1 + 2j, -1 - 2j, 1 - 2j)
+                ]
                 sheet.area(corners, "white", DARK_COLOUR, 0.7, 7)
             else:
                 sheet.circle(end, JOINT_RADIUS, "white", DARK_COLOUR, 0.7)
@@ -244,22 +247,22 @@ STUB_LENGTH = 8.0  # mm of what a lead would be joined to
 
 def draw_all_groups(results: Results) -> Iterable[tuple[str, Drawing]]:
     """Yield the sheets of the groups at the sketch; nothing if the linkage cannot be assembled there."""
-    found = sketch_scene(results)
-    return () if found is None else draw_groups(results.problem.title, *found, results.roles)
+    sketch = sketch_scene(results)
+    return () if sketch is None else draw_groups(results.problem.title, *sketch, results.roles)
 
 
 def draw_groups(
     title: str, place: str, scene: MechanismScene, roles: Mapping[str, str] | None = None
 ) -> Iterable[tuple[str, Drawing]]:
     """Yield sheets with the groups side by side; on large sheets, a picture of each."""
-    every = mechanism_parts(scene.structure)
+    all_parts = mechanism_parts(scene.structure)
     if on_large_sheet():
-        for part in every:
+        for part in all_parts:
             yield file_safe_name(f"groups-{part.title}"), _group_picture(title, scene, part, roles or {}).finish()
         return
-    for first in range(0, len(every), GROUPS_PER_SHEET):
+    for first in range(0, len(all_parts), GROUPS_PER_SHEET):
         stem = "groups" if first == 0 else f"groups-sheet-{first // GROUPS_PER_SHEET + 1}"
-        yield stem, groups_sheet(title, place, scene, every[first : first + GROUPS_PER_SHEET], roles or {}).finish()
+        yield stem, groups_sheet(title, place, scene, all_parts[first : first + GROUPS_PER_SHEET], roles or {}).finish()
 
 
 def _group_picture(title: str, scene: MechanismScene, part: MechanismPart, roles: Mapping[str, str]) -> DrawingSheet:
@@ -272,20 +275,20 @@ def _group_picture(title: str, scene: MechanismScene, part: MechanismPart, roles
 
 
 def groups_sheet(
-    title: str, place: str, scene: MechanismScene, every: Sequence[MechanismPart], roles: Mapping[str, str]
+    title: str, place: str, scene: MechanismScene, sheet_parts: Sequence[MechanismPart], roles: Mapping[str, str]
 ) -> DrawingSheet:
     """Draw a sheet of these parts, each in a cell with its caption below it."""
     subject = _("Assur groups drawn separately, {place}; dashed: links to which external pairs are joined").format(
         place=place
     )
     sheet = DrawingSheet(title, subject, paper=LANDSCAPE)
-    rows = math.ceil(len(every) / GROUPS_PER_ROW)
-    columns = math.ceil(len(every) / rows)
-    size, places = divide_into_cells(sheet.ground.low, sheet.ground.high, columns, rows, GROUP_GAP)
-    told = [part_caption(part, scene.structure.pairs, roles, size.real) for part in every]
-    for index, (part, words, (low, high)) in enumerate(zip(every, told, places, strict=False)):
+    rows = math.ceil(len(sheet_parts) / GROUPS_PER_ROW)
+    columns = math.ceil(len(sheet_parts) / rows)
+    size, corners = divide_into_cells(sheet.ground.low, sheet.ground.high, columns, rows, GROUP_GAP)
+    captions = [part_caption(part, scene.structure.pairs, roles, size.real) for part in sheet_parts]
+    for index, (part, words, (low, high)) in enumerate(zip(sheet_parts, captions, corners, strict=False)):
         row, column = divmod(index, columns)
-        lines = max(map(len, told[row * columns : (row + 1) * columns]))
+        lines = max(map(len, captions[row * columns : (row + 1) * columns]))
         if column:
             x = low.real - GROUP_GAP / 2
             sheet.line([complex(x, low.imag), complex(x, high.imag)], THIN_COLOUR, 0.4, blocks=False)
@@ -348,19 +351,19 @@ def _draw_part(sheet: DrawingSheet, scene: MechanismScene, part: MechanismPart, 
     most = math.inf if on_large_sheet() else GROUP_BASE_SIZE + GROUP_SIZE_PER_LINK * len(links)
     scene = fit_links(sheet, scene, links, pad, most)
     look = STRUCTURAL.sized(symbol_scale(sheet, scene, links))
-    own = dict.fromkeys(links, part.colour)
+    part_colours = dict.fromkeys(links, part.colour)
     for pair in pairs:  # of wheels and cams that this part shares with others, also later ones, its own side
         if not pair.lower and pair not in inner and {pair.i, pair.j} & set(links):
-            draw_higher_pair(sheet, scene.higher(pair), own)
+            draw_higher_pair(sheet, scene.higher(pair), part_colours)
     for pair in outer:
         if pair.slide is not None:
             draw_free_prismatic(sheet, scene, pair, part, look)
-    drawn = render_scene(sheet, scene, links, inner, look, {FRAME: DARK_COLOUR} | own, leads=outer)
+    drawn = render_scene(sheet, scene, links, inner, look, {FRAME: DARK_COLOUR} | part_colours, leads=outer)
     for pair in outer:
         if pair.kind == "R":
             _draw_stub(sheet, scene, pair, drawn.forms, look)
-    draw_driver_arrows(sheet, scene, drawn, look, own)
-    draw_link_numbers(sheet, drawn.forms, own)
+    draw_driver_arrows(sheet, scene, drawn, look, part_colours)
+    draw_link_numbers(sheet, drawn.forms, part_colours)
     draw_names(
         sheet, ((name_anchor(sheet, scene, p, look), p.name, part.colour if part.group else DARK_COLOUR) for p in inner)
     )
@@ -405,9 +408,9 @@ def _mark_later_pairs(
     sheet: DrawingSheet, scene: MechanismScene, part: MechanismPart, drawn: Iterable[Pair], look: SymbolStyle
 ) -> None:
     """Mark pairs to which later groups will be joined with dots and grey names."""
-    known = {p.name for p in drawn}
+    drawn_names = {p.name for p in drawn}
     circled = [sheet.on(scene.at(p)) for p in drawn if p.kind == "R"]
-    later = [p for link in part.links for p in scene.of(link) if p.name not in known]
+    later = [p for link in part.links for p in scene.of(link) if p.name not in drawn_names]
     fresh = [p for p in later if all(abs(sheet.on(scene.at(p)) - at) > 0.5 for at in circled)]
     for pair in fresh:
         at = sheet.on(scene.at(pair))

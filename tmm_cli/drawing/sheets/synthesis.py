@@ -82,27 +82,27 @@ def use_problem_names(
     Returns:
         The renamed construction, and the new letters by the standard ones.
     """
-    own = {letter: letter for letter in CHAIN_LETTERS.get(drawn.chain, "")}
+    joint_names = {letter: letter for letter in CHAIN_LETTERS.get(drawn.chain, "")}
     if linkage is not None:
-        own |= match_joints(linkage, drawn.chain, drawn)
-    taken = set(own.values()) | {spot.name[:1] for spot in drawn.spots if spot.name[:1] not in own}
+        joint_names |= match_joints(linkage, drawn.chain, drawn)
+    taken = set(joint_names.values()) | {spot.name[:1] for spot in drawn.spots if spot.name[:1] not in joint_names}
     centre = next(letter for letter in CENTRE_LETTERS if letter not in taken)
-    parameters = {name: shown for name, shown in names.items() if shown != name}
+    parameters = {name: file_name for name, file_name in names.items() if file_name != name}
     if set(parameters) & set(BAR_ENDS) and drawn.chain == "four-bar":  # the others are called likewise
-        parameters = {bar: "".join(own[c] for c in ends) for bar, ends in BAR_ENDS.items()} | parameters
+        parameters = {bar: "".join(joint_names[c] for c in ends) for bar, ends in BAR_ENDS.items()} | parameters
 
     def point(text: str) -> str:
         letter, number = text[:1], text[1:]
-        shown = own.get(letter, letter)
-        return f"{shown}({number})" if number[:1].isdigit() and shown[-1:].isdigit() else shown + number
+        joint_name = joint_names.get(letter, letter)
+        return f"{joint_name}({number})" if number[:1].isdigit() and joint_name[-1:].isdigit() else joint_name + number
 
     def line(text: str) -> str:
-        return re.sub(r"[A-Za-z]+\d*", lambda found: quantity(found[0]), text)
+        return re.sub(r"[A-Za-z]+\d*", lambda match: quantity(match[0]), text)
 
     def quantity(word: str) -> str:
         if word in parameters:
             return parameters[word]
-        return "".join(own[c] for c in word) if all(c in own for c in word) else word
+        return "".join(joint_names[c] for c in word) if all(c in joint_names for c in word) else word
 
     named = replace(
         drawn,
@@ -112,7 +112,7 @@ def use_problem_names(
         centres=tuple(replace(c, name=centre) for c in drawn.centres),
         values=tuple((line(name), value, kind) for name, value, kind in drawn.values),
     )
-    return named, {**own, "M": centre}
+    return named, {**joint_names, "M": centre}
 
 
 def match_joints(linkage: Linkage, chain: Chain, drawn: GeometricConstruction) -> dict[str, str]:
@@ -123,28 +123,28 @@ def match_joints(linkage: Linkage, chain: Chain, drawn: GeometricConstruction) -
     driver, letters = linkage.driver, CHAIN_LETTERS.get(chain, "")
     if not letters or driver.kind != "turn":
         return {}
-    link, found = driver.link, [driver.joint]
+    link, joints = driver.link, [driver.joint]
     for __ in linkage.links:
-        if len(found) == len(letters):
+        if len(joints) == len(letters):
             break
-        hinged = {h.point: h.links for h in linkage.hinges if link in h.links and h.point not in found}
-        ends = hinged or {p: (FRAME, link) for p in linkage.links[link].points if p not in found}
+        hinged = {h.point: h.links for h in linkage.hinges if link in h.links and h.point not in joints}
+        ends = hinged or {p: (FRAME, link) for p in linkage.links[link].points if p not in joints}
         pivots = [p for p in hinged if FRAME in hinged[p]]
-        wanted = pivots or list(ends)
+        candidates = pivots or list(ends)
         across = {s.carrier if s.runner == link else s.runner for s in linkage.slides if link in (s.carrier, s.runner)}
-        if len(wanted) == 1:
-            found += wanted
-            link = link if pivots else next((n for n in ends[wanted[0]] if n != link), FRAME)
-        elif not wanted and len(across) == 1:  # a stone: the chain goes on along its lever
+        if len(candidates) == 1:
+            joints += candidates
+            link = link if pivots else next((n for n in ends[candidates[0]] if n != link), FRAME)
+        elif not candidates and len(across) == 1:  # a stone: the chain goes on along its lever
             (link,) = across
         else:
             return {}
-    if len(found) < len(letters):
+    if len(joints) < len(letters):
         return {}
     at = {spot.name: spot.at for spot in drawn.spots}
     crank = linkage.links[driver.link].points
-    own, wished = abs(crank[found[0]] - crank[found[1]]), abs(at[f"{letters[1]}1"] - at[letters[0]])
-    return dict(zip(letters, found, strict=True)) if abs(own - wished) <= SAME_LENGTH * wished else {}
+    crank_length, wished = abs(crank[joints[0]] - crank[joints[1]]), abs(at[f"{letters[1]}1"] - at[letters[0]])
+    return dict(zip(letters, joints, strict=True)) if abs(crank_length - wished) <= SAME_LENGTH * wished else {}
 
 
 # A construction on its sheet: the mechanism as large as can be, what is beyond the edge cut there, sizes, angles.
@@ -210,8 +210,8 @@ def draw_construction(
         draw_angle(sheet, vertex, first, last, angle.name, right=angle.right)
     _write_notes(sheet, drawn, letters, units)
     sheet.corner()
-    for size in drawn.sizes:
-        _draw_size(sheet, size, units)
+    for dimension in drawn.sizes:
+        _draw_size(sheet, dimension, units)
     for spot in drawn.spots:
         if spot.name:
             sheet.label(spot.name, sheet.on(spot.at), 11)
@@ -231,38 +231,38 @@ def points_on_sheet(drawn: GeometricConstruction) -> list[complex]:
     return points
 
 
-def pieces_inside(places: Sequence[complex], low: complex, high: complex) -> list[list[complex]]:
+def pieces_inside(points: Sequence[complex], low: complex, high: complex) -> list[list[complex]]:
     """Return the pieces of a polyline inside a field, each extended to the edge where the line leaves it."""
-    z = np.asarray(places, dtype=complex)
+    z = np.asarray(points, dtype=complex)
     within = (z.real >= low.real) & (z.real <= high.real) & (z.imag >= low.imag) & (z.imag <= high.imag)
-    found = []
-    for part in np.split(np.arange(len(z)), np.flatnonzero(within[1:] != within[:-1]) + 1):
-        if len(part) and within[part[0]]:
-            first, last = part[0], part[-1]
+    pieces = []
+    for indices in np.split(np.arange(len(z)), np.flatnonzero(within[1:] != within[:-1]) + 1):
+        if len(indices) and within[indices[0]]:
+            first, last = indices[0], indices[-1]
             before = [leave_field(z[first], z[first - 1], low, high)] if first > 0 and np.isfinite(z[first - 1]) else []
             after = (
                 [leave_field(z[last], z[last + 1], low, high)] if last + 1 < len(z) and np.isfinite(z[last + 1]) else []
             )
-            found.append([complex(p) for p in (*before, *z[part], *after)])
-    return found
+            pieces.append([complex(p) for p in (*before, *z[indices], *after)])
+    return pieces
 
 
-def _draw_curve(sheet: DrawingSheet, places: Sequence[complex], style: str) -> list[Sequence[complex]]:
+def _draw_curve(sheet: DrawingSheet, points: Sequence[complex], style: str) -> list[Sequence[complex]]:
     """Draw a curve, cut at the edge with arrows where it continues; return the pieces drawn."""
     colour, width, line = LINE_STYLES[style]
-    pieces: list[Sequence[complex]] = [piece for piece in pieces_inside(places, *sheet.field) if len(piece) > 1]
+    pieces: list[Sequence[complex]] = [piece for piece in pieces_inside(points, *sheet.field) if len(piece) > 1]
     low, high = sheet.field
     for piece in pieces:
         sheet.line(piece, colour, width, line, z=2.0 if style == "bold" else 1.2, blocks=False)
         sheet.ground.path(piece)
-        for way in (piece, piece[::-1]):
-            tip = way[0]
+        for from_end in (piece, piece[::-1]):
+            tip = from_end[0]
             if (
                 min(tip.real - low.real, high.real - tip.real, tip.imag - low.imag, high.imag - tip.imag)
                 > EDGE_TOLERANCE
             ):
                 continue
-            tail = next((z for z in way if abs(z - tip) > CUT_ARROW), None)
+            tail = next((z for z in from_end if abs(z - tip) > CUT_ARROW), None)
             if tail is not None:
                 sheet.arrow(tip + CUT_ARROW * (tail - tip) / abs(tail - tip), tip, colour, 0.5, 2.1)
     return pieces
@@ -270,13 +270,13 @@ def _draw_curve(sheet: DrawingSheet, places: Sequence[complex], style: str) -> l
 
 def _label_curve(sheet: DrawingSheet, name: str, pieces: Sequence[Sequence[complex]]) -> None:
     """Write the name of a curve once, where there is room."""
-    places: list[complex] = []
+    points: list[complex] = []
     for piece in pieces:
         run = np.concatenate([[0], np.cumsum(np.abs(np.diff(piece)))])
-        places += [complex(np.interp(share * run[-1], run, piece)) for share in np.linspace(0.1, 0.9, 17)]
-    if name and places:
+        points += [complex(np.interp(share * run[-1], run, piece)) for share in np.linspace(0.1, 0.9, 17)]
+    if name and points:
         crowd = sheet.ground.crowd
-        free = min(places, key=lambda z: (int(np.count_nonzero(np.abs(crowd - z) < NAME_CLEARANCE)), -abs(z)))
+        free = min(points, key=lambda z: (int(np.count_nonzero(np.abs(crowd - z) < NAME_CLEARANCE)), -abs(z)))
         sheet.label(name, free, 10, NAME_COLOUR, "italic")
 
 
@@ -338,12 +338,12 @@ def _draw_spot(sheet: DrawingSheet, spot: LetteredPoint, rods: Sequence[Segment]
         sheet.circle(at, MEASURED.hinge)
 
 
-def _draw_size(sheet: DrawingSheet, size: DimensionLine, units: UnitSystem) -> None:
+def _draw_size(sheet: DrawingSheet, dimension: DimensionLine, units: UnitSystem) -> None:
     """Draw a dimension line; its value has no unit."""
-    way = size.end - size.start
-    length = abs(way) if size.along == 0 else abs((way * np.conj(size.along / abs(size.along))).real)
-    text = _equation_text(size.name, length, "length", units, symbol=False)
-    draw_dimension(sheet, sheet.on(size.start), sheet.on(size.end), text, size.along)
+    span = dimension.end - dimension.start
+    length = abs(span) if dimension.along == 0 else abs((span * np.conj(dimension.along / abs(dimension.along))).real)
+    text = _equation_text(dimension.name, length, "length", units, symbol=False)
+    draw_dimension(sheet, sheet.on(dimension.start), sheet.on(dimension.end), text, dimension.along)
 
 
 def _equation_text(name: str, value: float, kind: str, units: UnitSystem, *, symbol: bool = True) -> str:
@@ -399,9 +399,11 @@ def draw_synthesis(
 
 def draw_problem_synthesis(results: Results) -> Iterable[tuple[str, Drawing]]:
     """Yield the drawings of the synthesis of a problem, if it has one."""
-    found = results.problem.synthesis
-    if found is not None:
-        yield from draw_synthesis(results.problem.title, found.outcome, results, results.problem.units, found.names)
+    synthesis = results.problem.synthesis
+    if synthesis is not None:
+        yield from draw_synthesis(
+            results.problem.title, synthesis.outcome, results, results.problem.units, synthesis.names
+        )
 
 
 def synthesis_diagram(title: str, drawn: Diagram, units: UnitSystem) -> Drawing:
@@ -451,7 +453,7 @@ def extreme_positions_sheet(results: Results) -> DrawingSheet:
     motion = motion_at_positions(results, np.array(ends), 2)
     scene = MechanismScene(linkage, results.structure, motion.poses)
     ways = point_paths(results)
-    used = [*frame_pivots(linkage), *(place for way in ways for place in way)]
+    used = [*frame_pivots(linkage), *(place for path in ways for place in path)]
     sheet = DrawingSheet(results.problem.title, _("Extreme positions of the output"), points_to_scale(scene, used))
     draw_paths(sheet, ways)
     others = [replace(scene, k=k) for k in range(1, len(ends))]
@@ -465,7 +467,9 @@ def extreme_positions_sheet(results: Results) -> DrawingSheet:
                 draw_slider(sheet, other, pair, MEASURED, INERTIA_COLOUR)
     draw_measured(sheet, scene, STROKE_MARKS[0])
     points = linkage.moving_points
-    sheet.ground.rivals += [sheet.on(here.point(name)) for here in (scene, *others) for name in points]
+    sheet.ground.rivals += [
+        sheet.on(extreme_scene.point(name)) for extreme_scene in (scene, *others) for name in points
+    ]
     for other in others:
         for name in points:
             at = sheet.on(other.point(name))

@@ -55,11 +55,11 @@ OVERLAP_WITHIN = 0.01  # of a plan: lines nearer than this lie on one another
 LEAST_DIFFERENCE = 0.03  # of a plan: a vector that differs from another one by less is not drawn beside it
 
 
-def draw_force_plans(here: Position) -> Iterable[tuple[str, Drawing]]:
+def draw_force_plans(position: Position) -> Iterable[tuple[str, Drawing]]:
     """Yield a sheet with the force polygon of each group and of the driving link."""
-    if here.results.reactions is None:
+    if position.results.reactions is None:
         return
-    for plan in force_plans(here.results.reactions, here.k, here.motion):
+    for plan in force_plans(position.results.reactions, position.k, position.motion):
         title = _("Force plan of link {links}. {caption}")
         if plan.driving:
             title = _("Force plan of the driving link {links}. {caption}")
@@ -67,12 +67,12 @@ def draw_force_plans(here: Position) -> Iterable[tuple[str, Drawing]]:
             title = _("Force plan of links {links}. {caption}")
         kind = "links" if len(plan.links) > 1 else "link"
         yield (
-            file_safe_name("-".join([here.stem("forces"), kind, *plan.links])),
-            _force_plan_sheet(here, plan, title).finish(),
+            file_safe_name("-".join([position.stem("forces"), kind, *plan.links])),
+            _force_plan_sheet(position, plan, title).finish(),
         )
 
 
-def _force_plan_sheet(here: Position, plan: ForcePlan, title: str) -> DrawingSheet:
+def _force_plan_sheet(position: Position, plan: ForcePlan, title: str) -> DrawingSheet:
     drawn = [*plan.plan.drawn(), *distinct_reactions(plan)]
     aside = lane_offsets(drawn, plan.plan.size)
     ground = FigureExtent()
@@ -82,8 +82,8 @@ def _force_plan_sheet(here: Position, plan: ForcePlan, title: str) -> DrawingShe
     equation = list(wrap_symbols(_force_sum(plan), NOTE_SIZE * POINT, EQUATION_WIDTH)) if writes_equations() else []
     # how wide the table is hardly hangs on the scale
     notes = [*equation, "μ = 0.0000 N/mm"]
-    found = choose_scale(ground, NoteBlock(notes, force_plan_rows(plan, plan.plan.size / 100 or 1.0), 3))
-    sheet = here.sheet(title, room=found, links=", ".join(plan.links))
+    layout = choose_scale(ground, NoteBlock(notes, force_plan_rows(plan, plan.plan.size / 100 or 1.0), 3))
+    sheet = position.sheet(title, room=layout, links=", ".join(plan.links))
     _join_corners(sheet, drawn, aside)
     for vector, off in zip(drawn, aside, strict=True):
         _draw_force(sheet, vector, off, full=vector in plan.full)
@@ -97,7 +97,7 @@ def _force_plan_sheet(here: Position, plan: ForcePlan, title: str) -> DrawingShe
 def _force_sum(plan: ForcePlan) -> Words:
     """Return the equation that the sum of all vectors is zero."""
     symbols = [v.symbol for v in plan.plan.vectors if v.kind != "inner"]
-    return (*(part for symbol in symbols[:-1] for part in (symbol, " + ")), *symbols[-1:], " = 0")
+    return (*(piece for symbol in symbols[:-1] for piece in (symbol, " + ")), *symbols[-1:], " = 0")
 
 
 def distinct_reactions(plan: ForcePlan) -> list[NamedVector]:
@@ -115,9 +115,9 @@ def force_plan_rows(plan: ForcePlan, mu: float) -> list[TableRow]:
     rows = [TableRow((_("vector"), spelt("N"), spelt("mm"), _("angle")), head=True)]
     least = NO_FORCE * plan.plan.size
     for vector in (*plan.plan.vectors, *plan.full):
-        size = abs(vector.value) if abs(vector.value) > least else 0.0
-        angle = f"{numeral(round(float(np.degrees(np.angle(vector.value))), 1) % 360, '.1f')}°" if size else ""
-        rows.append(TableRow((vector.symbol, format_figures(size), numeral(size / mu, ".1f"), angle)))
+        magnitude = abs(vector.value) if abs(vector.value) > least else 0.0
+        angle = f"{numeral(round(float(np.degrees(np.angle(vector.value))), 1) % 360, '.1f')}°" if magnitude else ""
+        rows.append(TableRow((vector.symbol, format_figures(magnitude), numeral(magnitude / mu, ".1f"), angle)))
     return rows
 
 
@@ -128,7 +128,7 @@ def lane_offsets(vectors: Sequence[NamedVector], size: float) -> list[complex]:
     """
     middle = extent([p for v in vectors for p in (v.start, v.end)] or [0j])[3]
     taken: dict[int, int] = {}
-    found = [0j] * len(vectors)
+    offsets = [0j] * len(vectors)
     for number in sorted(range(len(vectors)), key=lambda n: (vectors[n].kind == "inner", -abs(vectors[n].value))):
         vector = vectors[number]
         used = {lane for other, lane in taken.items() if _overlaps(vector, vectors[other], size)}
@@ -136,13 +136,13 @@ def lane_offsets(vectors: Sequence[NamedVector], size: float) -> list[complex]:
         along = vector.value / abs(vector.value)
         upward = along if (round(along.imag, 6), along.real) > (0, 0) else -along
         inward = dot(-1j * upward, (vector.start + vector.end) / 2 - middle) < -OVERLAP_WITHIN * size
-        found[number] = (1j if inward else -1j) * upward * LANE_WIDTH * taken[number]
-    return found
+        offsets[number] = (1j if inward else -1j) * upward * LANE_WIDTH * taken[number]
+    return offsets
 
 
-def _overlaps(one: NamedVector, other: NamedVector, size: float) -> bool:
+def _overlaps(first: NamedVector, other: NamedVector, size: float) -> bool:
     """Return True if two vectors would look like one line."""
-    short, long = sorted((one, other), key=lambda vector: abs(vector.value))
+    short, long = sorted((first, other), key=lambda vector: abs(vector.value))
     along = long.value / abs(long.value)
     if max(abs(cross(along, p - long.start)) for p in (short.start, short.end)) > OVERLAP_WITHIN * size:
         return False
@@ -153,10 +153,10 @@ def _overlaps(one: NamedVector, other: NamedVector, size: float) -> bool:
 def _join_corners(sheet: DrawingSheet, vectors: Sequence[NamedVector], aside: Sequence[complex]) -> None:
     """Draw thin lines between the parts of a corner of the polygon that are drawn apart."""
     ends = [(sheet.on(p), sheet.on(p) + off) for v, off in zip(vectors, aside, strict=True) for p in (v.start, v.end)]
-    for _at, places in gather_coincident(ends):
-        apart = [place for place in places if abs(place - places[0]) > 0.1 * LANE_WIDTH]
+    for _at, corner_points in gather_coincident(ends):
+        apart = [place for place in corner_points if abs(place - corner_points[0]) > 0.1 * LANE_WIDTH]
         for place in apart:
-            sheet.line([places[0], place], THIN_COLOUR, 0.5, z=2.0)
+            sheet.line([corner_points[0], place], THIN_COLOUR, 0.5, z=2.0)
 
 
 def _draw_force(sheet: DrawingSheet, vector: NamedVector, off: complex, *, full: bool) -> None:
@@ -208,19 +208,20 @@ def motion_plan_kinds() -> tuple[MotionPlanKind, MotionPlanKind]:
     )
 
 
-def draw_motion_plans(here: Position) -> Iterable[tuple[str, Drawing]]:
+def draw_motion_plans(position: Position) -> Iterable[tuple[str, Drawing]]:
     """Yield the velocity plan and the acceleration plan of a position, with the components for each link."""
     for sort in motion_plan_kinds():
-        plan = sort.plan(here.motion, here.k)
+        plan = sort.plan(position.motion, position.k)
         figure = FigureExtent()
         figure.spots([0j], PLAN_MARGIN)
         for vector in plan.vectors:
             figure.line(vector.start, vector.end, PLAN_MARGIN)
         # how wide the table is hardly hangs on the scale
-        found = choose_scale(
-            figure, NoteBlock(["μ = 0.0000 (m/s²)/mm"], motion_plan_rows(here, sort, plan, plan.size / 100 or 1.0), 2)
+        layout = choose_scale(
+            figure,
+            NoteBlock(["μ = 0.0000 (m/s²)/mm"], motion_plan_rows(position, sort, plan, plan.size / 100 or 1.0), 2),
         )
-        sheet = here.sheet(sort.title, room=found)
+        sheet = position.sheet(sort.title, room=layout)
         for vector in plan.drawn():
             # of points of mass a thin ray is enough: the letters say the rest
             mass = vector.kind == "absolute" and vector.symbol.below.startswith("S")
@@ -238,8 +239,8 @@ def draw_motion_plans(here: Position) -> Iterable[tuple[str, Drawing]]:
         if plan.size == 0:
             sheet.note(_("everything is at rest"))
         sheet.note(scale_words(sort.letter, sheet.mu, f"({sort.unit})/mm"))
-        sheet.table(motion_plan_rows(here, sort, plan, sheet.mu), 2)
-        yield here.stem(sort.stem), sheet.finish()
+        sheet.table(motion_plan_rows(position, sort, plan, sheet.mu), 2)
+        yield position.stem(sort.stem), sheet.finish()
 
 
 def corners_on_paper(plan: Plan, mu: float) -> dict[str, complex]:
@@ -256,23 +257,26 @@ def corners_on_paper(plan: Plan, mu: float) -> dict[str, complex]:
 def name_position(vector: NamedVector, plan: Plan) -> complex:
     """Return a point near the middle of a vector, clear of other vectors, for its name."""
     others = [v for v in plan.drawn() if v is not vector and v.kind != "absolute"]
-    places = [vector.start + share * vector.value for share in NAME_SHARES]
-    room = [min((distance_to_segment(place, v.start, v.end) for v in others), default=plan.size) for place in places]
+    candidates = [vector.start + share * vector.value for share in NAME_SHARES]
+    room = [
+        min((distance_to_segment(place, v.start, v.end) for v in others), default=plan.size) for place in candidates
+    ]
     return next(
-        (place for place, free in zip(places, room, strict=True) if free > NAME_CLEARANCE * plan.size), places[0]
+        (place for place, free in zip(candidates, room, strict=True) if free > NAME_CLEARANCE * plan.size),
+        candidates[0],
     )
 
 
-def motion_plan_rows(here: Position, sort: MotionPlanKind, plan: Plan, mu: float) -> list[TableRow]:
+def motion_plan_rows(position: Position, sort: MotionPlanKind, plan: Plan, mu: float) -> list[TableRow]:
     """Return the table of a plan: segment, length on paper and value of every vector; angular quantities of links."""
     rows = [TableRow((_("vector"), _("segment"), spelt("mm"), spelt(sort.unit)), head=True)]
     for reading in plan_readings(plan):
         first, *others = reading.symbols
-        names = (first, *(part for symbol in others for part in (" = ", symbol)))
+        names = (first, *(piece for symbol in others for piece in (" = ", symbol)))
         length = numeral(reading.size / mu, ".1f") if reading.size else "0"
         rows.append(TableRow((names, with_subscripts(reading.segment), length, format_figures(reading.size))))
     rows.append(TableRow((_("link"), _("sense"), "", spelt(sort.turning)), head=True))
-    for turn in angular_values(here.motion, here.k, sort.what):
+    for turn in angular_values(position.motion, position.k, sort.what):
         sense = _("ccw") if turn.value > 0 else _("cw") if turn.value < 0 else ""
         rows.append(TableRow((turn.symbol, sense, "", format_figures(abs(turn.value)))))
     return rows

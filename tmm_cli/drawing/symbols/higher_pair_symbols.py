@@ -28,7 +28,7 @@ HATCH_OPENING = 1.1  # mm from a rod in which nothing is hatched
 
 def draw_higher_pair(
     sheet: DrawingSheet,
-    found: HigherPairOutline,
+    outline: HigherPairOutline,
     hue: Mapping[str, str],
     span: tuple[float, float] | None = None,
     rods: Sequence[Segment] = (),
@@ -37,35 +37,35 @@ def draw_higher_pair(
 
     Args:
         sheet: Sheet to draw on.
-        found: Geometry of the pair.
+        outline: Geometry of the pair.
         hue: Colours of links.
         span: Range (m) of the rack on both sides of the pitch point; None: a short piece.
         rods: Bars (mm) that interrupt hatching.
     """
-    if isinstance(found, CamOutline):
-        _draw_cam(sheet, found, hue)
+    if isinstance(outline, CamOutline):
+        _draw_cam(sheet, outline, hue)
         return
-    pitch = sheet.on(found.pitch)
-    for disc in found.discs:
+    pitch = sheet.on(outline.pitch)
+    for disc in outline.discs:
         if disc.link in hue:
             with sheet.part(disc.link):
                 _draw_pitch_circle(sheet, disc, hue[disc.link])
-            _draw_teeth(sheet, disc, pitch, found.along, hue[disc.link])
+            _draw_teeth(sheet, disc, pitch, outline.along, hue[disc.link])
             if disc.link == FRAME:
                 with sheet.part(FRAME):
                     _hatch_fixed_gear(sheet, disc, rods)
-    if found.side != 0 and found.mesh.j in hue:
-        with sheet.part(found.mesh.j):
-            _draw_rack(sheet, found, hue[found.mesh.j], span)
+    if outline.side != 0 and outline.mesh.j in hue:
+        with sheet.part(outline.mesh.j):
+            _draw_rack(sheet, outline, hue[outline.mesh.j], span)
     sheet.circle(pitch, 0.55, DARK_COLOUR, DARK_COLOUR, 0.3, 6.4)
 
 
-def _draw_in_field(sheet: DrawingSheet, places: Vector, colour: str, width: float, style: Style, z: float) -> None:
+def _draw_in_field(sheet: DrawingSheet, points: Vector, colour: str, width: float, style: Style, z: float) -> None:
     """Draw a curve within the field of the sheet."""
     low, high = sheet.ground.low, sheet.ground.high
-    inside = (places.real > low.real) & (places.real < high.real) & (places.imag > low.imag) & (places.imag < high.imag)
+    inside = (points.real > low.real) & (points.real < high.real) & (points.imag > low.imag) & (points.imag < high.imag)
     if bool(np.any(inside)):
-        sheet.line(list(np.where(inside, places, complex(np.nan, np.nan))), colour, width, style, z)
+        sheet.line(list(np.where(inside, points, complex(np.nan, np.nan))), colour, width, style, z)
 
 
 def _draw_pitch_circle(sheet: DrawingSheet, disc: GearDisc, colour: str) -> None:
@@ -84,8 +84,8 @@ def _hatch_fixed_gear(sheet: DrawingSheet, disc: GearDisc, rods: Sequence[Segmen
     rim = disc.radius / sheet.mu + (RIM_DEPTH if disc.ring else 0.0)
     number = int(np.clip(2 * np.pi * rim / 3.2, 12, 900))
     with sheet.on_layer("supports"):
-        for way in unit(np.linspace(0, 2 * np.pi, number, endpoint=False)):
-            stroke = centre + way * np.array([rim, rim + 0.85 * out + 0.6j, rim + 1.7 * out + 1.2j])
+        for direction in unit(np.linspace(0, 2 * np.pi, number, endpoint=False)):
+            stroke = centre + direction * np.array([rim, rim + 0.85 * out + 0.6j, rim + 1.7 * out + 1.2j])
             if all(distance_to_segment(complex(place), *rod) > HATCH_OPENING for place in stroke for rod in rods):
                 _draw_in_field(sheet, stroke, THIN_COLOUR, 0.6, "-", GEAR_Z)
 
@@ -107,41 +107,41 @@ def _draw_teeth(sheet: DrawingSheet, disc: GearDisc, pitch: complex, along: comp
     _draw_in_field(sheet, centre + out * (radius + height) * unit(turn), colour, 0.9, "-", 2.3)
 
 
-def _draw_rack(sheet: DrawingSheet, found: MeshOutline, colour: str, span: tuple[float, float] | None) -> None:
+def _draw_rack(sheet: DrawingSheet, mesh: MeshOutline, colour: str, span: tuple[float, float] | None) -> None:
     """Draw a toothed bar, joined to the sliding point of the rack; hatched if it is the frame."""
-    pitch, along, side = sheet.on(found.pitch), found.along, found.side
+    pitch, along, side = sheet.on(mesh.pitch), mesh.along, mesh.side
     low, high = (-16.0, 16.0) if span is None else (span[0] / sheet.mu - 8, span[1] / sheet.mu + 8)
     run = np.linspace(low, high, int(np.clip(30 * (high - low) / TOOTH_PITCH, 60, 20_000)))
     teeth = pitch + run * along - 1j * along * TOOTH_HALF_HEIGHT * _tooth_wave(run)
     back = [pitch + high * along + side * RIM_DEPTH, pitch + low * along + side * RIM_DEPTH]
     _draw_in_field(sheet, np.concatenate([teeth, back, teeth[:1]]), colour, 1.1, "-", 2.6)
     _draw_in_field(sheet, pitch + np.array([low - 3, high + 3]) * along, colour, 0.8, CHAIN_STYLE, 2.05)
-    if found.mesh.j == FRAME:
+    if mesh.mesh.j == FRAME:
         draw_hatching(sheet, back[1], back[0], side)
         return
-    start = sheet.on(found.start)
+    start = sheet.on(mesh.start)
     foot = float(np.clip(dot(along, start - pitch), low, high))
     end = pitch + foot * along + side * RIM_DEPTH
     if abs(end - start) > 1.0:
         sheet.line([start, end], colour, 1.6, z=2.9)
 
 
-def _draw_cam(sheet: DrawingSheet, found: CamOutline, hue: Mapping[str, str]) -> None:
+def _draw_cam(sheet: DrawingSheet, cam: CamOutline, hue: Mapping[str, str]) -> None:
     """Draw the cam disk and the roller; the other parts of the follower are bars of its link."""
-    disk = [sheet.on(complex(p)) for p in found.disk]
-    if found.mesh.i in hue:
-        with sheet.part(found.mesh.i):
-            sheet.area(disk[:-1], "#f1f3f6", hue[found.mesh.i], 1.2, 1.9)
+    disk = [sheet.on(complex(p)) for p in cam.disk]
+    if cam.mesh.i in hue:
+        with sheet.part(cam.mesh.i):
+            sheet.area(disk[:-1], "#f1f3f6", hue[cam.mesh.i], 1.2, 1.9)
     else:
         sheet.line(disk, THIN_COLOUR, 0.8, DASHED_STYLE, 1.9)
-    if found.mesh.j not in hue:
+    if cam.mesh.j not in hue:
         return
-    own = hue[found.mesh.j]
-    if found.roller:
-        with sheet.part(found.mesh.j):
-            sheet.circle(sheet.on(found.face[0]), found.roller / sheet.mu, "white", own, 1.2, 2.9)
-            sheet.circle(sheet.on(found.face[0]), AXLE_RADIUS, "white", own, 1.0)
-    sheet.circle(sheet.on(found.touch), 0.55, DARK_COLOUR, DARK_COLOUR, 0.3, 6.4)
+    colour = hue[cam.mesh.j]
+    if cam.roller:
+        with sheet.part(cam.mesh.j):
+            sheet.circle(sheet.on(cam.face[0]), cam.roller / sheet.mu, "white", colour, 1.2, 2.9)
+            sheet.circle(sheet.on(cam.face[0]), AXLE_RADIUS, "white", colour, 1.0)
+    sheet.circle(sheet.on(cam.touch), 0.55, DARK_COLOUR, DARK_COLOUR, 0.3, 6.4)
 
 
 SAME_ANGLE = 0.02  # rad: bars of one direction
@@ -150,15 +150,15 @@ SPOKE_WIDTH, THROUGH_WIDTH = 1.2, 2.0  # points
 
 
 def draw_rigid_marks(
-    sheet: DrawingSheet, found: HigherPairOutline, form: LinkForm, link: str, colour: str, hinge: float
+    sheet: DrawingSheet, outline: HigherPairOutline, form: LinkForm, link: str, colour: str, hinge: float
 ) -> None:
     """Mark the parts of a link of a higher pair as rigidly joined."""
-    if not isinstance(found, CamOutline):
-        for disc in found.discs:
+    if not isinstance(outline, CamOutline):
+        for disc in outline.discs:
             if disc.link == link:
                 _draw_spoke(sheet, disc, form, colour)
-    elif found.mesh.j == link:
-        start, end = (sheet.on(place) for place in found.stem)
+    elif outline.mesh.j == link:
+        start, end = (sheet.on(place) for place in outline.stem)
         _draw_corner(sheet, start, end - start, form, colour, hinge)
 
 

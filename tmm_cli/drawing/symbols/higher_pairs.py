@@ -92,50 +92,54 @@ def _cam_angle(scene: MechanismScene, mesh: Mesh) -> float:
     return scene.angle(mesh.i) - scene.angle(mesh.carrier)
 
 
-def contact_point(found: HigherPairOutline) -> complex:
+def contact_point(outline: HigherPairOutline) -> complex:
     """Return the pitch point of a gear mesh, or the point of contact of a cam, m."""
-    return found.pitch if isinstance(found, MeshOutline) else found.touch
+    return outline.pitch if isinstance(outline, MeshOutline) else outline.touch
 
 
-def follower_segments(found: HigherPairOutline) -> list[tuple[complex, complex]]:
+def follower_segments(outline: HigherPairOutline) -> list[tuple[complex, complex]]:
     """Return the straight parts of a cam follower (m): its stem, and its face unless it has a roller."""
-    return [] if isinstance(found, MeshOutline) else [part for part in (found.stem, found.face) if part[0] != part[1]]
+    return (
+        []
+        if isinstance(outline, MeshOutline)
+        else [segment for segment in (outline.stem, outline.face) if segment[0] != segment[1]]
+    )
 
 
 def outline_extent(
-    found: Iterable[HigherPairOutline], size: float, links: Collection[str] | None = None
+    outlines: Iterable[HigherPairOutline], size: float, links: Collection[str] | None = None
 ) -> list[complex]:
     """Return points (m) that must be on the sheet.
 
     Args:
-        found: Geometries of higher pairs.
+        outlines: Geometries of higher pairs.
         size: Size (m) of the rest of the mechanism; much larger gears do not count.
         links: Links whose gears are drawn; None: all.
     """
-    places: list[complex] = []
-    for one in found:
-        if isinstance(one, CamOutline):
-            places += [*one.disk.tolist(), one.touch, *one.face]
+    points: list[complex] = []
+    for outline in outlines:
+        if isinstance(outline, CamOutline):
+            points += [*outline.disk.tolist(), outline.touch, *outline.face]
             continue
-        if one.side != 0 and (links is None or one.mesh.j in links):
-            places.append(one.pitch)
-        apart = max(abs(disc.centre - one.discs[0].centre) for disc in one.discs)
-        for disc in one.discs:
+        if outline.side != 0 and (links is None or outline.mesh.j in links):
+            points.append(outline.pitch)
+        apart = max(abs(disc.centre - outline.discs[0].centre) for disc in outline.discs)
+        for disc in outline.discs:
             if disc.radius < LARGE_GEAR * max(size, apart) and (links is None or disc.link in links):
-                places += [disc.centre + disc.radius * complex(unit(turn)) for turn in CIRCLE_ANGLES]
-    return [p for p in places if np.isfinite(p)]
+                points += [disc.centre + disc.radius * complex(unit(turn)) for turn in CIRCLE_ANGLES]
+    return [p for p in points if np.isfinite(p)]
 
 
 def _gear_outline(scene: MechanismScene, mesh: Mesh) -> MeshOutline:
-    one, other = (_axis_point(scene, mesh, link) for link in (mesh.i, mesh.j))
-    pitch = (one - mesh.ratio * other) / (1 - mesh.ratio)
-    radii = abs(pitch - one), abs(pitch - other)
+    first_axis, other = (_axis_point(scene, mesh, link) for link in (mesh.i, mesh.j))
+    pitch = (first_axis - mesh.ratio * other) / (1 - mesh.ratio)
+    radii = abs(pitch - first_axis), abs(pitch - other)
     inner = mesh.ratio > 0
     discs = (
-        GearDisc(mesh.i, one, radii[0], inner and radii[0] > radii[1]),
+        GearDisc(mesh.i, first_axis, radii[0], inner and radii[0] > radii[1]),
         GearDisc(mesh.j, other, radii[1], inner and radii[1] > radii[0]),
     )
-    return MeshOutline(mesh, pitch, 1j * (other - one) / abs(other - one), discs)
+    return MeshOutline(mesh, pitch, 1j * (other - first_axis) / abs(other - first_axis), discs)
 
 
 def _guide_direction(scene: MechanismScene, mesh: Mesh) -> tuple[complex, complex]:
@@ -189,14 +193,16 @@ def _roller_cam(scene: MechanismScene, mesh: Mesh) -> CamOutline:
     arm = ROLLER_ARM * (centre - pivot) * complex(unit(outward * math.acos(ROLLER_ARM)))
     path = centre + (pivot + arm * unit(rise - middle) - centre) * unit(angle - turn)
     now = float(mesh.law(np.array(angle))[0])
-    here = pivot + arm * complex(unit(now - middle))
+    roller_centre = pivot + arm * complex(unit(now - middle))
     tangent = np.gradient(path)
     normal = 1j * tangent / np.maximum(np.abs(tangent), 1e-300)
     normal = normal * np.sign(dot(normal, centre - path))
     roller = ROLLER_RADIUS * abs(centre - pivot)
     disk = path + roller * normal
-    touch = here + roller * normal[int(np.argmin(np.abs(path - here)))]
-    return CamOutline(mesh, centre, disk, complex(touch), (here, here), (pivot, here), roller)
+    touch = roller_centre + roller * normal[int(np.argmin(np.abs(path - roller_centre)))]
+    return CamOutline(
+        mesh, centre, disk, complex(touch), (roller_centre, roller_centre), (pivot, roller_centre), roller
+    )
 
 
 @dataclass(frozen=True)
@@ -211,20 +217,20 @@ class ReplacementLink:
     slides: bool
 
 
-def replacement_link(found: HigherPairOutline) -> ReplacementLink:
+def replacement_link(outline: HigherPairOutline) -> ReplacementLink:
     """Return the link that replaces a higher pair (I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 2).
 
     Involute teeth touch on a common tangent of their base circles, where their centres of curvature lie.
     """
-    if isinstance(found, MeshOutline):
-        mesh = found.mesh
-        line = found.along * complex(unit(mesh.pressure))
-        centres = [found.pitch + line * float(dot(line, disc.centre - found.pitch)) for disc in found.discs]
-        return ReplacementLink(centres[0], centres[1] if len(centres) > 1 else found.pitch, len(centres) == 1)
-    centre = _curvature_centre(found.disk, found.touch)
-    if found.roller:
-        return ReplacementLink(centre, found.stem[1], False)
-    return ReplacementLink(centre, found.touch, True)
+    if isinstance(outline, MeshOutline):
+        mesh = outline.mesh
+        line = outline.along * complex(unit(mesh.pressure))
+        centres = [outline.pitch + line * float(dot(line, disc.centre - outline.pitch)) for disc in outline.discs]
+        return ReplacementLink(centres[0], centres[1] if len(centres) > 1 else outline.pitch, len(centres) == 1)
+    centre = _curvature_centre(outline.disk, outline.touch)
+    if outline.roller:
+        return ReplacementLink(centre, outline.stem[1], False)
+    return ReplacementLink(centre, outline.touch, True)
 
 
 def _curvature_centre(disk: Vector, touch: complex) -> complex:

@@ -116,9 +116,9 @@ def form_by_points(sheet: DrawingSheet, scene: MechanismScene, link: str, *, who
     bars: list[LinkBar] = []
     for slide in _carried_guides(scene, link):
         stone, along = sheet.on(scene.place(slide.runner, slide.at)), scene.along(slide)
-        (low, high), here = scene.travel(slide), scene.run(slide)
+        (low, high), displacement = scene.travel(slide), scene.run(slide)
         bar = _bar_through(bars, stone, along)
-        for end, side in ((low - here, -along), (high - here, along)) if whole else ():
+        for end, side in ((low - displacement, -along), (high - displacement, along)) if whole else ():
             tip = stone + end / sheet.mu * along
             if not any(bar.meets(j) and dot(side, j - tip) > BLOCK_HALF_LENGTH for j in joints):
                 bar.take(leave_field(stone, tip + GUIDE_OVERHANG * side, *sheet.field))
@@ -216,7 +216,7 @@ def _nearest_joint(bars: Sequence[LinkBar], loose: Sequence[complex]) -> tuple[L
         return min(bar.holds, key=lambda hold: abs(hold - place)) if bar.holds else bar.foot(place)
 
     ways = [(bar, place, foot(bar, place)) for bar in bars for place in loose]
-    return min(ways, key=lambda way: abs(way[1] - way[2]))
+    return min(ways, key=lambda joint: abs(joint[1] - joint[2]))
 
 
 def _longer_arm(bar: LinkBar, foot: complex) -> complex:

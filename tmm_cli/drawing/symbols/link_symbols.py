@@ -65,7 +65,7 @@ PLATE_COLOUR = "#eceff3"  # of measured drawings
 def tint_colour(colour: str, share: float = 0.16) -> str:
     """Return a colour mixed with white, for areas."""
     parts = (int(colour[n : n + 2], 16) for n in (1, 3, 5))
-    return "#" + "".join(f"{round(255 - share * (255 - part)):02x}" for part in parts)
+    return "#" + "".join(f"{round(255 - share * (255 - channel)):02x}" for channel in parts)
 
 
 def draw_mass_centre(sheet: DrawingSheet, at: complex) -> None:
@@ -89,15 +89,17 @@ def draw_body(sheet: DrawingSheet, form: LinkForm, colour: str, look: SymbolStyl
             for side in look.sides:  # a bar is wider than a line
                 shift = side * (end - start) / abs(end - start)
                 sheet.ground.line(start + shift, end + shift)
-    for at, one, other in form.welds:
+    for at, first_leg, other in form.welds:
         hidden = look.hinge if any(abs(at - joint) < ON_LINE for joint in form.joints) else 0.0
-        draw_weld(sheet, at, one, other, colour, hidden)
+        draw_weld(sheet, at, first_leg, other, colour, hidden)
 
 
-def draw_weld(sheet: DrawingSheet, at: complex, one: complex, other: complex, colour: str, hidden: float = 0.0) -> None:
+def draw_weld(
+    sheet: DrawingSheet, at: complex, first_leg: complex, other: complex, colour: str, hidden: float = 0.0
+) -> None:
     """Draw the mark of a rigid corner between two legs; a circle of radius `hidden` (mm) covers its tip."""
-    if min(abs(one), abs(other)) > 0.5:
-        legs = [min(WELD_LEG + hidden, abs(leg)) * leg / abs(leg) for leg in (one, other)]
+    if min(abs(first_leg), abs(other)) > 0.5:
+        legs = [min(WELD_LEG + hidden, abs(leg)) * leg / abs(leg) for leg in (first_leg, other)]
         sheet.area([at, at + legs[0], at + legs[1]], colour, colour, 0.5, 3.1)
 
 
@@ -139,9 +141,9 @@ def quiet_direction(
     crowd = sheet.ground.crowd
     crowd = crowd[np.abs(crowd - at) < 2 * reach] - at
 
-    def cost(way: complex) -> float:
-        run, off = dot(way, crowd), np.abs(cross(way, crowd))
-        turned = abs(np.angle(way / wish))
+    def cost(direction: complex) -> float:
+        run, off = dot(direction, crowd), np.abs(cross(direction, crowd))
+        turned = abs(np.angle(direction / wish))
         return float(np.count_nonzero((run > from_) & (run < reach) & (off < 0.45 * reach))) + 2.0 * turned
 
     turns = (0, 1, -1, 2, -2, 3, -3, 4, -4, 6, -6, 8)
@@ -160,10 +162,10 @@ def draw_rotation_arrow(
     def cost(first: float) -> int:
         return sum(int(np.count_nonzero(np.abs(crowd - p) < 2.2)) for p in arc(first))
 
-    places = arc(min((start + sense * turn for turn in (0.35, 1.1, 1.9, 2.7, 3.5, 4.3)), key=cost))
-    sheet.line(places[:-5], colour, 1.2, z=5)
-    sheet.arrow(places[-9], places[-1], colour, 1.2)
-    sheet.label(name, places[11], 10, colour)
+    arc_points = arc(min((start + sense * turn for turn in (0.35, 1.1, 1.9, 2.7, 3.5, 4.3)), key=cost))
+    sheet.line(arc_points[:-5], colour, 1.2, z=5)
+    sheet.arrow(arc_points[-9], arc_points[-1], colour, 1.2)
+    sheet.label(name, arc_points[11], 10, colour)
 
 
 def draw_sliding_arrow(
@@ -178,8 +180,8 @@ def draw_sliding_arrow(
 
 def symbol_scale(sheet: DrawingSheet, scene: MechanismScene, links: Iterable[str]) -> float:
     """Return 1, or less if pairs are so close on paper that symbols would overlap."""
-    places = drop_coincident(sheet.on(scene.at(p)) for link in links for p in scene.of(link))
-    gaps = [abs(p - q) for n, p in enumerate(places) for q in places[:n]]
+    points = drop_coincident(sheet.on(scene.at(p)) for link in links for p in scene.of(link))
+    gaps = [abs(p - q) for n, p in enumerate(points) for q in points[:n]]
     return float(np.clip(min(gaps, default=10.0) / 6.5, 0.5, 1.0))
 
 
@@ -214,8 +216,8 @@ def support_side(sheet: DrawingSheet, at: complex, rods: Sequence[Segment], look
         return 2 * GROUND_HALF_WIDTHS * half - free + 3 * half * sum(through(rod, out) for rod in rods)
 
     def through(rod: Segment, out: complex) -> bool:
-        places = _rod_points(rod) - at
-        run, off = dot(out, places), np.abs(cross(out, places))
+        points = _rod_points(rod) - at
+        run, off = dot(out, points), np.abs(cross(out, points))
         return bool(
             np.any(
                 (run > look.hinge + ROD_CLEARANCE) & (run < height) & (off < half * run / height + TRIANGLE_CLEARANCE)
@@ -224,10 +226,10 @@ def support_side(sheet: DrawingSheet, at: complex, rods: Sequence[Segment], look
 
     ways = [complex(unit(np.pi / 8 * n)) for n in (-4, 4, 0, 8, -2, -6, 2, 6, -3, -5, -1, -7, 3, 5, 1, 7)]
     for among in (ways[:2], ways[2:4], ways):
-        losses = [lost(way) for way in among]
+        losses = [lost(direction) for direction in among]
         if min(losses) < ROD_STEP:
             break
-    least = [way for way, loss in zip(among, losses, strict=True) if loss < min(losses) + ROD_STEP]
+    least = [direction for direction, loss in zip(among, losses, strict=True) if loss < min(losses) + ROD_STEP]
     return quiet_direction(sheet, at, -1j, 9.0, least, from_=2.2)
 
 
@@ -266,15 +268,15 @@ def draw_hatched_line(
 
 def _covered_runs(rods: Sequence[Segment], rail: complex, along: complex, out: complex) -> list[tuple[float, float]]:
     """Return the intervals (mm) of a rail at which bars run through its hatching."""
-    found = []
+    intervals = []
     for rod in rods:
-        places = _rod_points(rod) - rail
-        inside = dot(along, places)[
-            (dot(out, places) > -ROD_CLEARANCE) & (dot(out, places) < HATCH_DEPTH + ROD_CLEARANCE)
+        points = _rod_points(rod) - rail
+        inside = dot(along, points)[
+            (dot(out, points) > -ROD_CLEARANCE) & (dot(out, points) < HATCH_DEPTH + ROD_CLEARANCE)
         ]
         if len(inside):
-            found.append((float(np.min(inside)) - OPENING_CLEARANCE, float(np.max(inside)) + OPENING_CLEARANCE))
-    return found
+            intervals.append((float(np.min(inside)) - OPENING_CLEARANCE, float(np.max(inside)) + OPENING_CLEARANCE))
+    return intervals
 
 
 def _rod_points(rod: Segment) -> Vector:

@@ -101,18 +101,18 @@ def _render_links(
         if pair.slide is None:
             continue
         if pair.name in driven:
-            found = Cylinder.of(sheet, scene, pair.slide)
-            found.draw(sheet, hue)
-            drawn.cylinders[pair.name] = (found.back + found.front) / 2
+            cylinder = Cylinder.of(sheet, scene, pair.slide)
+            cylinder.draw(sheet, hue)
+            drawn.cylinders[pair.name] = (cylinder.back + cylinder.front) / 2
         else:
             draw_slider(sheet, scene, pair, look, hue[pair.slide.runner], rods)
     if look.measured:
         draw_springs(sheet, scene)
     hinges = gather_coincident((sheet.on(scene.at(p)), p) for p in (*pairs, *leads) if p.kind == "R")
-    for at, here in hinges:
-        _draw_hinge(sheet, at, here, forms, look, hue)
-    for at, here in hinges:
-        joined = {link for pair in here if pair in pairs for link in (pair.i, pair.j)}
+    for at, pairs_there in hinges:
+        _draw_hinge(sheet, at, pairs_there, forms, look, hue)
+    for at, pairs_there in hinges:
+        joined = {link for pair in pairs_there if pair in pairs for link in (pair.i, pair.j)}
         if FRAME not in joined:
             continue
         stones = [place for link in joined if link in forms for place in forms[link].boxes]
@@ -134,17 +134,17 @@ def _draw_frame_guide(
     slide = pair.slide
     assert slide is not None
     at, along = sheet.on(scene.at(pair)), scene.along(slide)
-    (low, high), here = scene.travel(slide), scene.run(slide)
+    (low, high), displacement = scene.travel(slide), scene.run(slide)
     if look.moves:
-        middle, way = at + ((low + high) / 2 - here) / sheet.mu * along, (high - low) / sheet.mu
+        middle, travel = at + ((low + high) / 2 - displacement) / sheet.mu * along, (high - low) / sheet.mu
         with sheet.part(FRAME):
-            draw_guide(sheet, middle, along, look, (way + look.box[0] + GUIDE_EXTENSION) / 2)
+            draw_guide(sheet, middle, along, look, (travel + look.box[0] + GUIDE_EXTENSION) / 2)
         return
     draw_guide(sheet, at, along, look, look.box[0] / 2 + GUIDE_EXTENSION, rods)
     if look.measured:
         start, end = (
-            at + ((low - here) / sheet.mu - AXIS_OVERHANG) * along,
-            at + ((high - here) / sheet.mu + AXIS_OVERHANG) * along,
+            at + ((low - displacement) / sheet.mu - AXIS_OVERHANG) * along,
+            at + ((high - displacement) / sheet.mu + AXIS_OVERHANG) * along,
         )
         axis = [leave_field(at, start, *sheet.field), leave_field(at, end, *sheet.field)]
         with sheet.on_layer("construction"):
@@ -164,17 +164,17 @@ def _draw_higher_pair(
     rods: Sequence[Segment],
 ) -> None:
     """Draw gears, or a cam with its follower; of a rack to scale, the whole part that comes into mesh."""
-    found, span = scene.higher(pair), None
-    if look.measured and found.mesh.slide:
-        slide = scene.linkage.slide(found.mesh.slide)
-        (low, high), here = scene.travel(slide), scene.run(slide)
-        span = here - high, here - low
-    draw_wheels(sheet, found, hue, span, rods)
+    outline, span = scene.higher(pair), None
+    if look.measured and outline.mesh.slide:
+        slide = scene.linkage.slide(outline.mesh.slide)
+        (low, high), displacement = scene.travel(slide), scene.run(slide)
+        span = displacement - high, displacement - low
+    draw_wheels(sheet, outline, hue, span, rods)
     if look.measured:
-        sheet.label(found.mesh.name, sheet.on(contact_point(found)), 9, MESH_COLOUR)
-        if isinstance(found, CamOutline) and not found.true:
+        sheet.label(outline.mesh.name, sheet.on(contact_point(outline)), 9, MESH_COLOUR)
+        if isinstance(outline, CamOutline) and not outline.true:
             text = _("disk of cam {link}: not to scale; only the law of its follower is given")
-            sheet.note(text.format(link=found.mesh.i))
+            sheet.note(text.format(link=outline.mesh.i))
 
 
 def draw_slider(
@@ -198,7 +198,7 @@ def draw_slider(
 def _draw_hinge(
     sheet: DrawingSheet,
     at: complex,
-    here: Sequence[Pair],
+    pairs_there: Sequence[Pair],
     forms: Mapping[str, LinkForm],
     look: SymbolStyle,
     hue: Mapping[str, str],
@@ -206,9 +206,9 @@ def _draw_hinge(
     """Draw the revolute pairs at one point, a circle for each; continuous bars cross it."""
     order = {link: number for number, link in enumerate((FRAME, *hue))}
     step = 0.95 * look.hinge / STRUCTURAL.hinge
-    links = list(dict.fromkeys(link for pair in here for link in (pair.i, pair.j)))
+    links = list(dict.fromkeys(link for pair in pairs_there for link in (pair.i, pair.j)))
     with sheet.part(FRAME if FRAME in links else links[0]):
-        for number, pair in reversed(list(enumerate(here))):
+        for number, pair in reversed(list(enumerate(pairs_there))):
             later = max((pair.i, pair.j), key=lambda link: order.get(link, 0))
             sheet.circle(at, look.hinge + step * number, "white", hue[later], 1.2, 6 - 0.01 * number)
     for link in links:
@@ -220,8 +220,8 @@ def _draw_hinge(
 
 def draw_names(sheet: DrawingSheet, named: Iterable[tuple[complex, str, str]]) -> None:
     """Write names beside their points; names at one point share a label."""
-    for at, here in gather_coincident((at, (name, colour)) for at, name, colour in named):
-        sheet.label(", ".join(dict.fromkeys(name for name, __ in here)), at, 10, here[0][1])
+    for at, names_there in gather_coincident((at, (name, colour)) for at, name, colour in named):
+        sheet.label(", ".join(dict.fromkeys(name for name, __ in names_there)), at, 10, names_there[0][1])
 
 
 def name_anchor(sheet: DrawingSheet, scene: MechanismScene, pair: Pair, look: SymbolStyle) -> complex:

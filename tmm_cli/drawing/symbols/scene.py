@@ -93,11 +93,11 @@ class MechanismScene:
 
     def joints(self, link: str) -> list[complex]:
         """Return the hinges and sliding points of a link (m); if there is only one, also its named points."""
-        found = [self.at(p) for p in self.of(link) if p.slide is None or p.slide.runner == link]
+        points = [self.at(p) for p in self.of(link) if p.slide is None or p.slide.runner == link]
         disk = any(mesh.kind == "cam" and mesh.i == link for mesh in self.linkage.meshes)
-        if len(found) + len(self.guides(link)) < 2 and not disk:
-            found += self.ends(link)
-        return found
+        if len(points) + len(self.guides(link)) < 2 and not disk:
+            points += self.ends(link)
+        return points
 
     def guides(self, link: str) -> list[tuple[complex, complex]]:
         """Return the guides that a link carries: point of the block (m), and direction."""
@@ -111,16 +111,16 @@ class MechanismScene:
     def extent(self, links: Iterable[str]) -> list[complex]:
         """Return points (m) that must be on paper when these links are drawn."""
         links = tuple(links)
-        found: list[complex] = []
+        points: list[complex] = []
         for link in links:
-            found += self.joints(link)
+            points += self.joints(link)
             for stone, along in self.guides(link):
-                found += [stone, *(e for e in self.ends(link) if abs(cross(along, e - stone)) < 1e-6 * abs(e - stone))]
-        found = [p for p in found if np.isfinite(p)]
-        size = max((abs(p - q) for p in found for q in found[:1]), default=0.0)
-        own = [self.higher(p) for p in self.structure.pairs if not p.lower and {p.i, p.j} & set(links)]
+                points += [stone, *(e for e in self.ends(link) if abs(cross(along, e - stone)) < 1e-6 * abs(e - stone))]
+        points = [p for p in points if np.isfinite(p)]
+        size = max((abs(p - q) for p in points for q in points[:1]), default=0.0)
+        outlines = [self.higher(p) for p in self.structure.pairs if not p.lower and {p.i, p.j} & set(links)]
         drawn = (*links, FRAME) if len(links) == len(self.structure.links) else links
-        return found + wheels_extent(own, size, drawn)
+        return points + wheels_extent(outlines, size, drawn)
 
     def _now(self, values: object) -> complex:
         row = np.ravel(np.asarray(values))
@@ -143,14 +143,14 @@ def fit_links(
 def spread_boxes(sheet: DrawingSheet, scene: MechanismScene, links: Sequence[str]) -> MechanismScene:
     """Move boxes along guides on the frame (their position there is arbitrary) so that they do not overlap."""
     boxes = {p.name: sheet.on(scene.at(p)) for link in links for p in scene.of(link) if p.slide is not None}
-    every = drop_coincident(sheet.on(scene.at(p)) for link in links for p in scene.of(link))
+    all_points = drop_coincident(sheet.on(scene.at(p)) for link in links for p in scene.of(link))
     moved = {}
     for pair in (p for link in links for p in scene.of(link)):
         if pair.slide is None or pair.slide.carrier != FRAME:
             continue
         at = boxes[pair.name]
         if any(abs(place - at) < LEAST_BOX_GAP for name, place in boxes.items() if name != pair.name):
-            others = [place for place in (*every, *boxes.values()) if abs(place - at) > ON_LINE]
+            others = [place for place in (*all_points, *boxes.values()) if abs(place - at) > ON_LINE]
             choices = [at + side * BOX_SHIFT * scene.along(pair.slide) for side in (1, -1)]
             # farther from the others; without any, lower
             free = max(choices, key=lambda z: (min((abs(z - other) for other in others), default=0.0), -z.imag))
@@ -159,40 +159,40 @@ def spread_boxes(sheet: DrawingSheet, scene: MechanismScene, links: Sequence[str
     return replace(scene, moved=moved) if moved else scene
 
 
-def scale_to_fit(places: Sequence[complex], room: complex, most: float) -> float:
+def scale_to_fit(points: Sequence[complex], room: complex, most: float) -> float:
     """Return the scale (m per mm) at which points (m) fit into a room (mm) and are not larger than `most` (mm)."""
-    larger, across, up, __ = extent(places or [0j])
+    larger, across, up, __ = extent(points or [0j])
     return max(across / room.real, up / room.imag, larger / most) or 1.0
 
 
-def fit_points(sheet: DrawingSheet, places: Sequence[complex], pad: float, most: float) -> None:
+def fit_points(sheet: DrawingSheet, points: Sequence[complex], pad: float, most: float) -> None:
     """Centre points (m) on the sheet, as large as the pad and `most` (mm) allow."""
-    sheet.mu = scale_to_fit(places, sheet.ground.high - sheet.ground.low - 2 * pad * (1 + 1j), most)
-    centre_points(sheet, places)
+    sheet.mu = scale_to_fit(points, sheet.ground.high - sheet.ground.low - 2 * pad * (1 + 1j), most)
+    centre_points(sheet, points)
 
 
-def centre_points(sheet: DrawingSheet, places: Sequence[complex]) -> None:
+def centre_points(sheet: DrawingSheet, points: Sequence[complex]) -> None:
     """Centre points (m) on the sheet at its scale."""
-    sheet.origin = (sheet.ground.low + sheet.ground.high) / 2 - extent(places or [0j])[3] / sheet.mu
+    sheet.origin = (sheet.ground.low + sheet.ground.high) / 2 - extent(points or [0j])[3] / sheet.mu
 
 
-def drop_coincident(places: Iterable[complex]) -> list[complex]:
+def drop_coincident(points: Iterable[complex]) -> list[complex]:
     """Return the points without those that coincide with an earlier one."""
-    found: list[complex] = []
-    for place in places:
-        if np.isfinite(place) and all(abs(place - other) > ON_LINE for other in found):
-            found.append(place)
-    return found
+    distinct: list[complex] = []
+    for place in points:
+        if np.isfinite(place) and all(abs(place - other) > ON_LINE for other in distinct):
+            distinct.append(place)
+    return distinct
 
 
-def points_to_scale(scene: MechanismScene, places: Sequence[complex]) -> list[complex]:
+def points_to_scale(scene: MechanismScene, points: Sequence[complex]) -> list[complex]:
     """Return the points (m), and those of gears, cams and springs that must also be on the sheet."""
-    size = extent([p for p in places if np.isfinite(p)] or [0j])[0]
-    found = [*places, *wheels_extent((higher_pair_outline(scene, mesh) for mesh in scene.linkage.meshes), size)]
+    size = extent([p for p in points if np.isfinite(p)] or [0j])[0]
+    all_points = [*points, *wheels_extent((higher_pair_outline(scene, mesh) for mesh in scene.linkage.meshes), size)]
     for spring in scene.linkage.springs:
         if not spring.turns:
-            found += [scene.place(spring.i, spring.at_i), scene.place(spring.j, spring.at_j)]
-    return found
+            all_points += [scene.place(spring.i, spring.at_i), scene.place(spring.j, spring.at_j)]
+    return all_points
 
 
 def frame_pivots(linkage: Linkage) -> list[complex]:
