@@ -22,91 +22,101 @@ CASES = {
         "between: [1, 4]",
         "between: [1]",
         "[1]",
-        "gears.z.between: 2 are wanted here\n  found:   [1]\n  allowed: the two wheels; the frame may be one (fixed)",
+        (
+            "gears.z.between: too few items; at least 2 expected here\n"
+            "  found:   [1]\n"
+            "  allowed: the two gears; one may be the frame (a fixed gear)"
+        ),
     ),
     "one wheel twice": (
         blocks.GEARED,
         "between: [1, 4]",
         "between: [1, 1]",
         "[1,",
-        "gears.z.between: different links are wanted\n  found:   1, 1, 0",
+        ("gears.z.between: the links must be different\n  found:   1, 1, 0"),
     ),
     "fixed wheel on the frame that carries it": (
         blocks.GEARED,
         "between: [1, 4]",
         "between: [0, 4]",
         "[0, 4",
-        "gears.z.between: different links are wanted\n  found:   0, 4, 0",
+        ("gears.z.between: the links must be different\n  found:   0, 4, 0"),
     ),
     "wheel not hinged to the frame": (
         blocks.GEARED,
         "between: [1, 4]",
         "between: [1, 2]",
         "2]",
-        "gears.z.between[1]: link 2 is not joined to link 0 as is needed here\n  found:   '2'\n  allowed: 1, 4",
+        ("gears.z.between[1]: link 2 has no suitable pair with link 0\n  found:   '2'\n  allowed: 1, 4"),
     ),
     "wheel not hinged to its carrier": (
         blocks.GEARED,
         "between: [1, 4]",
         "between: [1, 4], carrier: 2",
         "4]",
-        "gears.z.between[1]: link 4 is not joined to link 2 as is needed here\n  found:   '4'\n  allowed: 1, 3",
+        ("gears.z.between[1]: link 4 has no suitable pair with link 2\n  found:   '4'\n  allowed: 1, 3"),
     ),
     "wheels on one axis": (
         blocks.GEARED,
         "D: [150, 0]}",
         "D: [0, 0]}",
         "[1",
-        "gears.z.between: wheels 1 and 4 turn about one axis\n  found:   1, 4",
+        ("gears.z.between: gears 1 and 4 rotate about the same axis\n  found:   1, 4"),
     ),
     "axes too far apart for the module": (
         blocks.GEARED,
         "module: 5 mm",
         "module: 4 mm",
         "z:",
-        "gears.z: wheels 1 and 4 do not mesh: their axes are 150 mm apart\n  allowed: a distance of 120 mm",
+        ("gears.z: gears 1 and 4 do not mesh: the distance of their axes is 150 mm\n  allowed: a distance of 120 mm"),
     ),
     "axes too near for the radii": (
         blocks.GEARED,
         "teeth: [30, 30], module: 5 mm",
         "radii: [75, 80]",
         "z:",
-        "gears.z: wheels 1 and 4 do not mesh: their axes are 150 mm apart\n  allowed: a distance of 155 mm",
+        ("gears.z: gears 1 and 4 do not mesh: the distance of their axes is 150 mm\n  allowed: a distance of 155 mm"),
     ),
     "inner mesh at the distance of an outer one": (
         blocks.GEARED,
         "teeth: [30, 30], module: 5 mm",
         "radii: [75, 70], inner: true",
         "z:",
-        "gears.z: wheels 1 and 4 do not mesh: their axes are 150 mm apart\n  allowed: a distance of 5 mm",
+        ("gears.z: gears 1 and 4 do not mesh: the distance of their axes is 150 mm\n  allowed: a distance of 5 mm"),
     ),
     "teeth and ratio disagree": (
         blocks.GEARED,
         "module: 5 mm",
         "ratio: 2",
         "z:",
-        "gears.z: contradictory gear ratios of wheels 1 and 4\n  found:   by teeth 1, by ratio 2",
+        ("gears.z: contradictory ratios of gears 1 and 4\n  found:   by teeth 1, by ratio 2"),
     ),
     "teeth and radii disagree": (
         blocks.GEARED,
         "teeth: [30, 30], module: 5 mm",
         "teeth: [30, 20], radii: [75, 75]",
         "z:",
-        "gears.z: contradictory gear ratios of wheels 1 and 4\n  found:   by teeth 1.5, by radii 1",
+        ("gears.z: contradictory ratios of gears 1 and 4\n  found:   by teeth 1.5, by radii 1"),
     ),
     "no ratio at all": (
         blocks.GEARED,
         "teeth: [30, 30], module: 5 mm",
         "offset: 3 deg",
         "z:",
-        "gears.z: teeth, radii or ratio is wanted, with a module teeth\n  allowed: teeth: [20, 40]",
+        (
+            "gears.z: expected `teeth`, `radii` or `ratio`; together with `module` it must be `teeth`\n"
+            "  allowed: teeth: [20, 40]"
+        ),
     ),
     "module without teeth": (
         blocks.GEARED,
         "teeth: [30, 30], module: 5 mm",
         "module: 3 mm",
         "z:",
-        "gears.z: teeth, radii or ratio is wanted, with a module teeth\n  allowed: teeth: [20, 40]",
+        (
+            "gears.z: expected `teeth`, `radii` or `ratio`; together with `module` it must be `teeth`\n"
+            "  allowed: teeth: [20, 40]"
+        ),
     ),
     "ratio zero": (
         blocks.GEARED,
@@ -127,7 +137,7 @@ CASES = {
         "teeth: [30, 30], module: 5 mm",
         "ratio: 1e-20",
         "z:",
-        "gears.z: no pair of wheels has this ratio\n  found:   1e-20",
+        ("gears.z: no pair of gears can have this ratio\n  found:   1e-20"),
     ),
     "no teeth": (
         blocks.GEARED,
@@ -141,49 +151,52 @@ CASES = {
         "teeth: [30, 30]",
         "teeth: [1e-17, 30]",
         "1e-17",
-        "gears.z.teeth[0]: a number of teeth is whole\n  found:   1e-17",
+        ("gears.z.teeth[0]: a number of teeth must be a whole number\n  found:   1e-17"),
     ),
     "half a tooth": (
         blocks.GEARED,
         "teeth: [30, 30], module: 5 mm",
         "teeth: [1.5, 30]",
         "1.5",
-        "gears.z.teeth[0]: a number of teeth is whole\n  found:   1.5",
+        ("gears.z.teeth[0]: a number of teeth must be a whole number\n  found:   1.5"),
     ),
     "arithmetic that gives half a tooth": (
         blocks.GEARED,
         "teeth: [30, 30], module: 5 mm",
         "teeth: [61/2, 30]",
         "61/2",
-        "gears.z.teeth[0]: a number of teeth is whole\n  found:   '61/2'",
+        ("gears.z.teeth[0]: a number of teeth must be a whole number\n  found:   '61/2'"),
     ),
     "teeth of one wheel": (
         blocks.GEARED,
         "teeth: [30, 30], module: 5 mm",
         "teeth: [30]",
         "[30",
-        "gears.z.teeth: 2 are wanted here\n  found:   [30]\n  allowed: numbers of teeth of both",
+        (
+            "gears.z.teeth: too few items; at least 2 expected here\n  found:   [30]\n  allowed: numbers "
+            "of teeth of both gears"
+        ),
     ),
     "equal wheels inside one another": (
         blocks.GEARED,
         "teeth: [30, 30], module: 5 mm",
         "teeth: [30, 30], inner: true",
         "z:",
-        "gears.z: no pair of wheels has this ratio\n  found:   1",
+        ("gears.z: no pair of gears can have this ratio\n  found:   1"),
     ),
     "pressure angle of a right angle": (
         blocks.GEARED,
         "module: 5 mm",
         "module: 5 mm, pressure: 90 deg",
         "90",
-        "gears.z.pressure: a pressure angle of teeth lies between 0 and 90 deg\n  found:   90 deg",
+        ("gears.z.pressure: the pressure angle of the teeth must be between 0 and 90 deg\n  found:   90 deg"),
     ),
     "gear called like a hinge": (
         blocks.GEARED,
         "  z: {",
         "  A: {",
         "A:",
-        "gears.A: this name is taken\n  found:   'A'",
+        ("gears.A: this name is already in use\n  found:   'A'"),
     ),
     "misspelt key of a gear": (
         blocks.GEARED,
@@ -200,56 +213,61 @@ CASES = {
         "gears:",
         "gear:",
         "gear",
-        "gear: unknown key\n"
-        "  found:   'gear'\n"
-        "  allowed: tmm, lang, title, description, reference, shows, units, parameters, synthesis, variants, grading, "
-        "points, guides, links, hinges, driver, gears, racks, cams, springs, friction, sketch, change points, masses, "
-        "loads, gravity, output, "
-        "cycle, intermittent, positions, checks, dynamics, balancing, sheet, frame, note\n"
-        "  did you mean 'gears'?",
+        (
+            "gear: unknown key\n"
+            "  found:   'gear'\n"
+            "  allowed: tmm, lang, title, description, reference, shows, units, parameters, "
+            "synthesis, variants, grading, points, guides, links, hinges, driver, gears, racks, "
+            "cams, springs, friction, sketch, change points, masses, loads, gravity, output, cycle, "
+            "intermittent, positions, checks, dynamics, balancing, sheet, frame, note\n"
+            "  did you mean 'gears'?"
+        ),
     ),
     "rack and wheel are one link": (
         blocks.RACK,
         "rack: 2",
         "rack: 1",
         "{w",
-        "racks.k: different links are wanted\n  found:   1, 1, 0",
+        ("racks.k: the links must be different\n  found:   1, 1, 0"),
     ),
     "wheel that is the frame": (
         blocks.RACK,
         "wheel: 1",
         "wheel: 0",
         "{w",
-        "racks.k: different links are wanted\n  found:   0, 2, 0",
+        ("racks.k: the links must be different\n  found:   0, 2, 0"),
     ),
     "rack that does not slide on the carrier": (
         blocks.GEARED,
         "driver:",
         "racks: {k: {wheel: 1, rack: 4, radius: 50}}\ndriver:",
         "4,",
-        "racks.k.rack: link 4 is not joined to link 0 as is needed here\n  found:   '4'",
+        ("racks.k.rack: link 4 has no suitable pair with link 0\n  found:   '4'"),
     ),
     "wheel on a rack that is not hinged to the carrier": (
         blocks.GEARED,
         "driver:",
         "racks: {k: {wheel: 2, rack: 4, radius: 50}}\ndriver:",
         "2,",
-        "racks.k.wheel: link 2 is not joined to link 0 as is needed here\n  found:   '2'\n  allowed: 1, 4",
+        ("racks.k.wheel: link 2 has no suitable pair with link 0\n  found:   '2'\n  allowed: 1, 4"),
     ),
     "axis on the line of the rack's guide": (
         blocks.RACK,
         "[0, -50]",
         "[0, 0]",
         "k:",
-        "racks.k.side: on which side of the rack is the wheel?\n"
-        "  allowed: side: left or right, looking along the guide",
+        (
+            "racks.k.side: the axis of the gear lies on the line of the guide: on which side of the "
+            "rack the gear is must be given\n"
+            "  allowed: side: left or right, looking along the guide"
+        ),
     ),
     "side that is neither left nor right": (
         blocks.RACK,
         "radius: 50",
         "radius: 50, side: above",
         "abov",
-        "racks.k.side: this word is not known here\n  found:   'above'\n  allowed: left, right",
+        ("racks.k.side: this value is not allowed here\n  found:   'above'\n  allowed: left, right"),
     ),
     "radius zero": (
         blocks.RACK,
@@ -263,14 +281,21 @@ CASES = {
         "over: 60 deg}]",
         "over: 50 deg}]",
         "[{ov",
-        "cams.c.law: the pieces of the law do not make a full turn\n  found:   350 deg\n  allowed: 360 deg",
+        (
+            "cams.c.law: the parts of the law of motion do not add up to a full turn of the cam\n"
+            "  found:   350 deg\n"
+            "  allowed: 360 deg"
+        ),
     ),
     "law that does not come back": (
         blocks.CAM,
         "rise: -20",
         "rise: -10",
         "[{ov",
-        "cams.c.law: after a turn the follower is not back where it was\n  allowed: rises that add up to 0",
+        (
+            "cams.c.law: after a full turn the follower does not return to its initial position\n"
+            "  allowed: values of `rise` that add up to 0"
+        ),
     ),
     "piece of no angle": (
         blocks.CAM,
@@ -284,7 +309,7 @@ CASES = {
         "rise: 20",
         "rise: 20 deg",
         "20 deg}",
-        "cams.c.law[0].rise: a length is wanted here\n"
+        "cams.c.law[0].rise: expected here: a length\n"
         "  found:   '20 deg', an angle (20 deg)\n"
         "  allowed: a length, e.g. 110 mm or 0.11 m",
     ),
@@ -293,45 +318,51 @@ CASES = {
         "law: cosine",
         "law: cosin",
         "cosi",
-        "cams.c.law[2].law: this word is not known here\n"
-        "  found:   'cosin'\n"
-        "  allowed: linear, parabolic, cosine, sine, 3-4-5, 4-5-6-7\n"
-        "  did you mean 'cosine'?",
+        (
+            "cams.c.law[2].law: this value is not allowed here\n"
+            "  found:   'cosin'\n"
+            "  allowed: linear, parabolic, cosine, sine, 3-4-5, 4-5-6-7\n"
+            "  did you mean 'cosine'?"
+        ),
     ),
     "no pieces": (
         blocks.CAM,
         "law: [{over: 120 deg, rise: 20}, {over: 60 deg}, {over: 120 deg, rise: -20, law: cosine}, {over: 60 deg}]",
         "law: []",
         "[]",
-        "cams.c.law: there is nothing here\n  found:   a list of 0\n  allowed: piece by piece over a full turn",
+        (
+            "cams.c.law: nothing is given here\n"
+            "  found:   a list, number of items: 0\n"
+            "  allowed: law of motion, part by part over a full turn"
+        ),
     ),
     "cam is its own follower": (
         blocks.CAM,
         "follower: 2",
         "follower: 1",
         "cam:",
-        "cams.c: different links are wanted\n  found:   1, 1, 0",
+        ("cams.c: the links must be different\n  found:   1, 1, 0"),
     ),
     "cam that is the frame": (
         blocks.CAM,
         "cam: 1",
         "cam: 0",
         "cam:",
-        "cams.c: different links are wanted\n  found:   0, 2, 0",
+        ("cams.c: the links must be different\n  found:   0, 2, 0"),
     ),
     "follower off the frame": (
         blocks.GEARED,
         "driver:",
         "cams: {c: {cam: 1, follower: 2, law: [{over: 360 deg}]}}\ndriver:",
         "2,",
-        "cams.c.follower: link 2 is not joined to link 0 as is needed here\n  found:   '2'\n  allowed: 1, 4",
+        ("cams.c.follower: link 2 has no suitable pair with link 0\n  found:   '2'\n  allowed: 1, 4"),
     ),
     "cam off the frame": (
         blocks.GEARED,
         "driver:",
         "cams: {c: {cam: 2, follower: 4, law: [{over: 360 deg}]}}\ndriver:",
         "2,",
-        "cams.c.cam: link 2 is not joined to link 0 as is needed here\n  found:   '2'\n  allowed: 1, 4",
+        ("cams.c.cam: link 2 has no suitable pair with link 0\n  found:   '2'\n  allowed: 1, 4"),
     ),
     "spring without its free length": (
         blocks.CYLINDER,
@@ -345,7 +376,7 @@ CASES = {
         "[0, 3], at: [O, K]",
         "[3, 3], at: [D, K]",
         "[3,",
-        "springs.s.between: different links are wanted\n  found:   3, 3",
+        ("springs.s.between: the links must be different\n  found:   3, 3"),
     ),
     "spring on a link that does not exist": (
         blocks.CYLINDER,
@@ -359,35 +390,42 @@ CASES = {
         "[O, K]",
         "[O, Q]",
         "Q]",
-        "springs.s.at[1]: there is no point of link 3 of that name\n  found:   'Q'\n  allowed: D, B, K",
+        ("springs.s.at[1]: link 3 has no point of that name\n  found:   'Q'\n  allowed: D, B, K"),
     ),
     "spring with one end": (
         blocks.CYLINDER,
         "at: [O, K], ",
         "at: [K], ",
         "[K",
-        "springs.s.at: 2 are wanted here\n  found:   [K]\n  allowed: its ends, one on each link; their first points",
+        (
+            "springs.s.at: too few items; at least 2 expected here\n"
+            "  found:   [K]\n"
+            "  allowed: ends of the spring, one on each link; default: the first points of the links"
+        ),
     ),
     "spring without ends": (
         blocks.CYLINDER,
         "at: [O, K], ",
         "",
         "s: {b",
-        "springs.s.at: where are the ends of the spring?\n  allowed: at: [point of one, point of the other]",
+        (
+            "springs.s.at: the ends of the spring are not given\n"
+            "  allowed: at: [point of the first link, point of the second link]"
+        ),
     ),
     "spring without stiffness": (
         blocks.CYLINDER,
         "rate: 2 N/mm, ",
         "",
         "s: {b",
-        "springs.s: one of these keys is wanted\n  allowed: rate, torsion",
+        ("springs.s: expected exactly one of these keys\n  allowed: rate, torsion"),
     ),
     "spring that stretches and twists": (
         blocks.CYLINDER,
         "rate: 2 N/mm",
         "rate: 2 N/mm, torsion: 1 N*m/rad",
         "s: {b",
-        "springs.s: one of these keys is wanted\n  found:   rate, torsion\n  allowed: rate, torsion",
+        ("springs.s: expected exactly one of these keys\n  found:   rate, torsion\n  allowed: rate, torsion"),
     ),
     "spring that is shorter than nothing": (
         blocks.CYLINDER,
@@ -422,33 +460,37 @@ CASES = {
         "{between: [0, 3], at: [O, K], rate: 2 N/mm, free: 100}",
         "{between: [0, 3], torsion: 2 N*m/rad, free: -300 deg}",
         "-300",
-        "springs.s.free: a free angle lies within half a turn; what a spring is wound up beyond that is its "
-        "preload\n"
-        "  found:   -300 deg",
+        (
+            "springs.s.free: the free angle must be within half a turn; any further winding is given "
+            "as `preload`\n"
+            "  found:   -300 deg"
+        ),
     ),
     "spring called like a load": (
         blocks.CYLINDER,
         "springs: {s:",
         "springs: {F:",
         "F:",
-        "springs.F: this name is taken\n  found:   'F'",
+        ("springs.F: this name is already in use\n  found:   'F'"),
     ),
     "friction in a pair that does not exist": (
         blocks.SLIDER,
         "radius: 5}",
         "radius: 5, pairs: {X: {coefficient: 1}}}",
         "X:",
-        "friction.pairs.X: there is no turning or sliding pair of that name\n"
-        "  found:   'X'\n"
-        "  allowed: O, A, B, x\n"
-        "  did you mean 'x'?",
+        (
+            "friction.pairs.X: there is no revolute or prismatic pair of that name\n"
+            "  found:   'X'\n"
+            "  allowed: O, A, B, x\n"
+            "  did you mean 'x'?"
+        ),
     ),
     "journal of a sliding pair": (
         blocks.SLIDER,
         "radius: 5}",
         "radius: 5, pairs: {x: {radius: 5}}}",
         "radius: 5}",
-        "friction.pairs.x.radius: a sliding pair has no journal",
+        "friction.pairs.x.radius: a prismatic pair has no journal, so it has no `radius`",
     ),
     "negative coefficient": (
         blocks.SLIDER,
@@ -462,7 +504,11 @@ CASES = {
         "driver:",
         "friction: {pairs: {z: {coefficient: 0.1}}}\ndriver:",
         "z: {c",
-        "friction.pairs.z: there is no turning or sliding pair of that name\n  found:   'z'\n  allowed: O, D, A, B, C",
+        (
+            "friction.pairs.z: there is no revolute or prismatic pair of that name\n"
+            "  found:   'z'\n"
+            "  allowed: O, D, A, B, C"
+        ),
     ),
     "no driver at all": (
         blocks.TWO,
@@ -476,58 +522,64 @@ CASES = {
         "link: 4",
         "link: 1",
         "1, speed: 2",
-        "driver[1].link: this link is driven already\n  found:   '1'",
+        ("driver[1].link: this link has a driver already\n  found:   '1'"),
     ),
     "driver that is not joined to the frame": (
         blocks.TWO,
         "link: 4",
         "link: 2",
         "2,",
-        "driver[1].link: link 2 is not joined to link 0 as is needed here\n  found:   '2'\n  allowed: 1, 4",
+        ("driver[1].link: link 2 has no suitable pair with link 0\n  found:   '2'\n  allowed: 1, 4"),
     ),
     "driver between links that are not joined": (
         blocks.TWO,
         "link: 4",
         "link: 4, on: 2",
         "4,",
-        "driver[1].link: link 4 is not joined to link 2 as is needed here\n  found:   '4'\n  allowed: 1, 3",
+        ("driver[1].link: link 4 has no suitable pair with link 2\n  found:   '4'\n  allowed: 1, 3"),
     ),
     "driver on itself": (
         blocks.TWO,
         "link: 4",
         "link: 4, on: 4",
         "4, s",
-        "driver[1].on: different links are wanted\n  found:   4, 4",
+        ("driver[1].on: the links must be different\n  found:   4, 4"),
     ),
     "second driver without its place": (
         blocks.TWO,
         ", at: 90 deg",
         "",
         "{link: 4",
-        "driver[1].at: the place of the first driver stands in the sketch, that of each other one here\n"
-        "  allowed: sketch: {at: 30 deg} for the first, at: 30 deg for the others",
+        (
+            "driver[1].at: the coordinate of the first driver in the sketch is given in `sketch`, that "
+            "of each further driver here\n"
+            "  allowed: for the first driver sketch: {at: 30 deg}, for the others at: 30 deg"
+        ),
     ),
     "first driver with a place": (
         blocks.TWO,
         "1 rad/s}",
         "1 rad/s, at: 3 deg}",
         "at",
-        "driver[0].at: the place of the first driver stands in the sketch, that of each other one here\n"
-        "  allowed: sketch: {at: 30 deg} for the first, at: 30 deg for the others",
+        (
+            "driver[0].at: the coordinate of the first driver in the sketch is given in `sketch`, that "
+            "of each further driver here\n"
+            "  allowed: for the first driver sketch: {at: 30 deg}, for the others at: 30 deg"
+        ),
     ),
     "first driver at rest": (
         blocks.TWO,
         "1 rad/s}",
         "0}",
         "0}\n  -",
-        "driver[0].speed: the first of several drivers counts the positions: it must move\n  found:   0",
+        ("driver[0].speed: the first driver numbers the positions, so its speed must not be zero\n  found:   0"),
     ),
     "speed of a slider for a crank": (
         blocks.TWO,
         "2 rad/s",
         "2 m/s",
         "2 m/",
-        "driver[1].speed: an angular speed is wanted here\n"
+        "driver[1].speed: expected here: an angular speed\n"
         "  found:   '2 m/s', a speed (2 m/s)\n"
         "  allowed: an angular speed, e.g. 82 rpm or 8.6 rad/s",
     ),
@@ -536,151 +588,190 @@ CASES = {
         "2 rad/s",
         "1e11 rad/s",
         "1e11",
-        "driver[1].speed: a driver is far faster than the first one\n"
-        "  found:   1e11 rad/s\n"
-        "  allowed: the fastest driver first",
+        (
+            "driver[1].speed: this driver is more than 100 times faster than the first one\n"
+            "  found:   1e11 rad/s\n"
+            "  allowed: the fastest driver as the first of the list"
+        ),
     ),
     "two drivers: no real assembly": (
         blocks.TWO,
         "[A, B], length: 200",
         "[A, B], length: 20",
         "90 deg,",
-        "sketch.at: group II(2,3) cannot be assembled with the driver at 90 deg\n"
-        "  found:   80 mm short of closing\n"
-        "  allowed: lengths that reach, or another place of the driver",
+        (
+            "sketch.at: group II(2,3) cannot be assembled when the driver coordinate is 90 deg\n"
+            "  found:   the loop is open by 80 mm\n"
+            "  allowed: lengths with which the links reach each other, or another driver coordinate"
+        ),
     ),
     "one driver for two freedoms": (
         blocks.TWO,
         "driver:\n  - {link: 1, speed: 1 rad/s}\n  - {link: 4, speed: 2 rad/s, at: 90 deg}\n",
         "driver: {link: 1, speed: 1 rad/s}\n",
         "2:",
-        "links.2: mobility is not 1: these links are loose: 2, 3, 4\n"
-        "  found:   W = 3*4 - 2*5 = 2\n"
-        "  allowed: W = 1, as many as there are drivers",
+        (
+            "links.2: the mobility is not 1: these links are not sufficiently constrained: 2, 3, 4\n"
+            "  found:   W = 3*4 - 2*5 = 2\n"
+            "  allowed: W = 1, the number of drivers"
+        ),
     ),
     "three drivers for two freedoms": (
         blocks.TWO,
         "  - {link: 4, speed: 2 rad/s, at: 90 deg}\n",
         "  - {link: 4, speed: 2 rad/s, at: 90 deg}\n  - {link: 2, on: 1, speed: 1 rad/s, at: 0}\n",
         "2,",
-        "driver[2].link: link 2 cannot be driven: pairs or other drivers hold it already\n"
-        "  found:   W = 3*4 - 2*5 = 2; over-held: links 0, 1, 2, 3, 4\n"
-        "  allowed: W = 3",
+        (
+            "driver[2].link: link 2 cannot be a driver: pairs or other drivers already determine its "
+            "motion\n"
+            "  found:   W = 3*4 - 2*5 = 2; links with redundant constraints: 0, 1, 2, 3, 4\n"
+            "  allowed: W = 3"
+        ),
     ),
     "two drivers for one freedom": (
         blocks.SLIDER,
         "driver: {link: 1, speed: 60 rpm}",
         "driver: [{link: 1, speed: 60 rpm}, {link: 3, speed: 1 m/s, at: 160}]",
         "3,",
-        "driver[1].link: link 3 cannot be driven: pairs or other drivers hold it already\n"
-        "  found:   W = 3*3 - 2*4 = 1; over-held: links 0, 1, 2, 3\n"
-        "  allowed: W = 2",
+        (
+            "driver[1].link: link 3 cannot be a driver: pairs or other drivers already determine its "
+            "motion\n"
+            "  found:   W = 3*3 - 2*4 = 1; links with redundant constraints: 0, 1, 2, 3\n"
+            "  allowed: W = 2"
+        ),
     ),
     "driver on a link of a truss": (
         blocks.LOCKED,
         "driver: {link: 1",
         "driver: {link: 4",
         "4,",
-        "driver.link: link 4 cannot be driven: pairs or other drivers hold it already\n"
-        "  found:   W = 3*5 - 2*7 = 1; over-held: links 0, 4, 5\n"
-        "  allowed: W = 1",
+        (
+            "driver.link: link 4 cannot be a driver: pairs or other drivers already determine its "
+            "motion\n"
+            "  found:   W = 3*5 - 2*7 = 1; links with redundant constraints: 0, 4, 5\n"
+            "  allowed: W = 1"
+        ),
     ),
     "one of two drivers on a link of a truss": (
         blocks.LOCKED,
         "driver: {link: 1, speed: 1 rad/s}",
         "driver: [{link: 1, speed: 1 rad/s}, {link: 5, speed: 1 rad/s, at: 0}]",
         "5,",
-        "driver[1].link: link 5 cannot be driven: pairs or other drivers hold it already\n"
-        "  found:   W = 3*5 - 2*7 = 1; over-held: links 0, 4, 5\n"
-        "  allowed: W = 2",
+        (
+            "driver[1].link: link 5 cannot be a driver: pairs or other drivers already determine its "
+            "motion\n"
+            "  found:   W = 3*5 - 2*7 = 1; links with redundant constraints: 0, 4, 5\n"
+            "  allowed: W = 2"
+        ),
     ),
     "ring of three wheels outside one another": (
         blocks.RING,
         "driver:",
         "driver:",
         "c:",
-        "gears.c: gear c contradicts those before it: the wheels lock one another\n"
-        "  allowed: ratios and offsets that agree round a ring, or one gear less",
+        (
+            "gears.c: gear pair c contradicts the ones before it: the gears lock each other\n"
+            "  allowed: ratios and offsets that agree around the closed train, or one gear pair less"
+        ),
     ),
     "two ratios between two wheels": (
         blocks.RING,
         "c: {between: [3, 1], ratio: 0.5}",
         "c: {between: [1, 2], ratio: 3}",
         "c:",
-        "gears.c: gear c contradicts those before it: the wheels lock one another\n"
-        "  allowed: ratios and offsets that agree round a ring, or one gear less",
+        (
+            "gears.c: gear pair c contradicts the ones before it: the gears lock each other\n"
+            "  allowed: ratios and offsets that agree around the closed train, or one gear pair less"
+        ),
     ),
     "cylinder that is not one": (
         blocks.CYLINDER,
         "link: 2, on: 1",
         "link: 3, on: 1",
         "3,",
-        "driver.link: link 3 is not joined to link 1 as is needed here\n  found:   '3'\n  allowed: 0, 2",
+        ("driver.link: link 3 has no suitable pair with link 1\n  found:   '3'\n  allowed: 0, 2"),
     ),
     "cylinder too long": (
         blocks.CYLINDER,
         "sketch: {at: 280, B: [250, 140]}",
         "sketch: {at: 700}",
         "700",
-        "sketch.at: group II(1,2,3) cannot be assembled with the driver at 700 mm\n"
-        "  found:   250 mm short of closing\n"
-        "  allowed: lengths that reach, or another place of the driver",
+        (
+            "sketch.at: group II(1,2,3) cannot be assembled when the driver coordinate is 700 mm\n"
+            "  found:   the loop is open by 250 mm\n"
+            "  allowed: lengths with which the links reach each other, or another driver coordinate"
+        ),
     ),
     "cylinder whose lever may lie on either side": (
         blocks.CYLINDER,
         "sketch: {at: 280, B: [250, 140]}",
         "sketch: {at: 280}",
         "sket",
-        "sketch: the sketch does not say how group II(1,2,3) is assembled; see tmm kinematics "
-        "x.yaml --assemblies\n"
-        "  allowed: with the driver at 280 mm, P: [86.8452, 49.5773] or [86.8452, -49.5773]; 1: 29.7207 deg "
-        "or -29.7207 deg; B: [243.167, 138.816] or [243.167, -138.816]; 2: 29.7207 deg or -29.7207 deg",
+        (
+            "sketch: the sketch does not determine which assembly of group II(1,2,3) is meant; to see "
+            "all of them, run tmm kinematics x.yaml --assemblies\n"
+            "  allowed: one of these for the driver coordinate 280 mm: P: [86.8452, 49.5773] or "
+            "[86.8452, -49.5773]; 1: 29.7207 deg or -29.7207 deg; B: [243.167, 138.816] or [243.167, "
+            "-138.816]; 2: 29.7207 deg or -29.7207 deg"
+        ),
     ),
     "cylinder in line with its lever": (
         blocks.CYLINDER,
         "sketch: {at: 280, B: [250, 140]}",
         "sketch: {at: 450, B: [450, 0]}",
         "450",
-        "sketch.at: group II(1,2,3) is in a dead position in the sketch\n"
-        "  found:   450 mm\n"
-        "  allowed: another place of the driver",
+        (
+            "sketch.at: in the sketch group II(1,2,3) is in a dead position\n"
+            "  found:   450 mm\n"
+            "  allowed: another driver coordinate"
+        ),
     ),
     "working stroke of a cylinder": (
         blocks.CYLINDER,
         "{at: [200, 250, 300, 350, 400]}",
         "{count: 5, from: working stroke}",
         "from",
-        "positions.from: positions of a driven slider go from one end of its way to the other\n"
-        "  found:   working stroke\n"
-        "  allowed: driver: {stroke: [first, last]}, or positions: {at: [...]}",
+        (
+            "positions.from: `from` is for cranks: the positions of a driven slider run from one end "
+            "of its stroke to the other\n"
+            "  found:   working stroke\n"
+            "  allowed: driver: {stroke: [first, last]}, or positions: {at: [...]}"
+        ),
     ),
     "class III group without real assembly": (
         blocks.TRIAD,
         "[C, E], length: 90",
         "[C, E], length: 900",
         "90 d",
-        "sketch.at: group III(2,3,4,5) cannot be assembled with the driver at 90 deg\n"
-        "  found:   it never closes\n"
-        "  allowed: lengths that reach, or another place of the driver",
+        (
+            "sketch.at: group III(2,3,4,5) cannot be assembled when the driver coordinate is 90 deg\n"
+            "  found:   the loop does not close at any position\n"
+            "  allowed: lengths with which the links reach each other, or another driver coordinate"
+        ),
     ),
     "class III group with a flat middle link": (
         blocks.TRIAD,
         "D: [40, 60]}}",
         "D: [40, 0]}}",
         "90 d",
-        "sketch.at: group III(2,3,4,5) cannot be assembled with the driver at 90 deg\n"
-        "  found:   it never closes\n"
-        "  allowed: lengths that reach, or another place of the driver",
+        (
+            "sketch.at: group III(2,3,4,5) cannot be assembled when the driver coordinate is 90 deg\n"
+            "  found:   the loop does not close at any position\n"
+            "  allowed: lengths with which the links reach each other, or another driver coordinate"
+        ),
     ),
     "class III group that the sketch leaves open": (
         blocks.TRIAD,
         "sketch: {at: 90 deg, B: [110, 60], C: [190, 50], D: [155, 115]}",
         "sketch: {at: 90 deg}",
         "sket",
-        "sketch: the sketch does not say how group III(2,3,4,5) is assembled; see tmm "
-        "kinematics x.yaml --assemblies\n"
-        "  allowed: with the driver at 90 deg, B: [119.322, 52.7353] or [104.675, 98.679]; 2: 6.09211 deg "
-        "or 29.2743 deg; C: [199.275, 49.9971] or [139.56, 26.6859]; D: [161.352, 111.331] or [176.112, 88.8464]",
+        (
+            "sketch: the sketch does not determine which assembly of group III(2,3,4,5) is meant; to "
+            "see all of them, run tmm kinematics x.yaml --assemblies\n"
+            "  allowed: one of these for the driver coordinate 90 deg: B: [119.322, 52.7353] or "
+            "[104.675, 98.679]; 2: 6.09211 deg or 29.2743 deg; C: [199.275, 49.9971] or [139.56, "
+            "26.6859]; D: [161.352, 111.331] or [176.112, 88.8464]"
+        ),
     ),
 }
 

@@ -195,14 +195,14 @@ def test_masses_in_two_planes_leave_neither_force_nor_couple(masses, one, other)
 @pytest.mark.parametrize(
     ("name", "block", "said"),
     [
-        ("crank-slider", "{counterweights: {2: {}}}", "its mass counts, and so its radius is wanted"),
-        ("crank-slider", "{counterweights: {3: {}}}", "a link that does not turn"),
+        ("crank-slider", "{counterweights: {2: {}}}", "its mass must be known"),
+        ("crank-slider", "{counterweights: {3: {}}}", "a link that does not rotate"),
         ("crank-slider", "{counterweights: {9: {}}}", "there is no link of that name"),
-        ("crank-slider", "{counterweights: {1: {}}, share: 2}", "a share is not above one"),
-        ("crank-rocker", "{counterweights: {1: {}}, share: 1/2}", "along a guide on the frame, and there is none"),
-        ("crank-rocker", "{rotor: {masses: [{mass: 1, radius: 9}], planes: [5, 5]}}", "two different planes"),
-        ("boom-lift", "{counterweights: {}}", "for one crank that turns fully"),
-        ("crank-slider", "{counterweights: {1: {}, 2: {about: B, radius: 50}}}", "of these radii balance nothing"),
+        ("crank-slider", "{counterweights: {1: {}}, share: 2}", "a fraction cannot be greater than 1"),
+        ("crank-rocker", "{counterweights: {1: {}}, share: 1/2}", "this mechanism has no such guide"),
+        ("crank-rocker", "{rotor: {masses: [{mass: 1, radius: 9}], planes: [5, 5]}}", "planes must be different"),
+        ("boom-lift", "{counterweights: {}}", "a single crank that rotates fully"),
+        ("crank-slider", "{counterweights: {1: {}, 2: {about: B, radius: 50}}}", "of these radii do not balance"),
     ],
 )
 def test_what_cannot_be_balanced_is_refused(tmp_path, name, block, said):

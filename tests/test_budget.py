@@ -24,18 +24,20 @@ def points(number):
     [
         (
             {LOAD: loads(200), "count: 12": "count: 20000"},
-            "positions.count: too many positions for so many links, points and loads found: 20000 positions; 5 links, "
-            "8 points, 200 loads allowed: at most 6089",
+            "positions.count: too many positions for so many links, points and loads found: positions: 20000; "
+            "links: 5, points: 8, loads: 200 allowed: at most 6089",
         ),
         (
             {"count: 12": "count: 100000"},
-            "positions.count: too many positions for so many links, points and loads found: 100000 positions; 5 links, "
-            "8 points, 1 loads allowed: at most 74240",
+            "positions.count: too many positions for so many links, points and loads found: positions: 100000; "
+            "links: 5, points: 8, loads: 1 allowed: at most 74240",
         ),
         (
             {"points: [C, D], length: CD": points(5000)},
-            "links: this linkage is too large found: 5 links, 5008 points, 1 loads "
-            "allowed: 6 a link, 1 a point, 2 a load: at most 3942 in all",
+            (
+                "links: this mechanism is too large found: links: 5, points: 5008, loads: 1 allowed: at most "
+                "3942 in total, where a link counts as 6, a point as 1, a load as 2"
+            ),
         ),
     ],
 )
@@ -58,22 +60,32 @@ def test_what_options_add_is_refused_before_anything_is_computed(tmp_path, monke
     assert tmm("run", file, "--no-drawings", cwd=tmp_path).returncode == 0
     monkeypatch.setattr("tmm_cli.mechanics.analysis.pipeline.solve", lambda *_, **__: pytest.fail("this was computed"))
     for command, told in {
-        ("run",): "positions.detail: these are too many drawings for so many links, points and positions "
-        "found: 1 positions in detail; 5 links, 508 points, 1 loads allowed: without drawings",
+        ("run",): (
+            "positions.detail: too many drawings for so many links, points and positions found: detailed positions: "
+            "1; links: 5, points: 508, loads: 1 allowed: without drawings"
+        ),
         ("structure", "--drawings"): "allowed: without drawings",
-        ("note",): "positions.detail: these are too many drawings for so many links, points and positions "
-        "found: 1 positions in detail; 5 links, 508 points, 1 loads allowed: without drawings",
-        ("sheets",): "positions.detail: these are too many drawings",
-        ("sheets", "--positions", "all"): "positions.detail: these are too many drawings",
+        ("note",): (
+            "positions.detail: too many drawings for so many links, points and positions found: detailed positions: "
+            "1; links: 5, points: 508, loads: 1 allowed: without drawings"
+        ),
+        ("sheets",): "positions.detail: too many drawings",
+        ("sheets", "--positions", "all"): "positions.detail: too many drawings",
         (
             "kinematics",
             "--centres",
             *(word for k in range(6) for word in ("-p", str(k))),
-        ): "--centres: these are too many instantaneous centres for so many links and positions "
-        "found: 6 positions in detail; 5 links, 508 points, 1 loads allowed: at most 3 in detail, or without centres",
+        ): (
+            "--centres: too many instantaneous centres for so many links and positions found: detailed positions: "
+            "6; links: 5, points: 508, loads: 1 allowed: at most 3 detailed positions, "
+            "or without instantaneous centres"
+        ),
         **{
-            (name, "--digits"): "--digits: too many positions and too large a linkage for all digits to be judged "
-            "found: 12 positions; 5 links, 508 points, 1 loads allowed: at most 2 positions, or without --digits"
+            (name, "--digits"): (
+                "--digits: too many positions, or too large a mechanism, for the estimate of correct "
+                "digits found: positions: 12; links: 5, points: 508, loads: 1 allowed: at most 2 positions, or "
+                "without --digits"
+            )
             for name in ("run", "kinematics", "forces")
         },
     }.items():
@@ -110,7 +122,7 @@ def test_large_sheets_of_many_positions_are_refused_before_their_long_layout(tmp
     refuse_options(linkage, 12, digits=False, detail=12, large=True)
     with pytest.raises(ProblemError) as refused:
         refuse_options(linkage, 24, digits=False, detail=24, large=True)
-    assert refused.value.allowed == "at most 15 in detail, or without drawings"
+    assert refused.value.allowed == "at most 15 detailed positions, or without drawings"
 
 
 def test_plans_of_all_positions_count_less_than_positions_in_detail():
@@ -119,5 +131,8 @@ def test_plans_of_all_positions_count_less_than_positions_in_detail():
     refuse_options(press, 24, digits=False, detail=1, large=True, plans=24)
     with pytest.raises(ProblemError) as refused:
         refuse_options(press, 36_000, digits=False, detail=1, large=True, plans=24)
-    assert (refused.value.path, refused.value.found) == (("--positions",), "24 positions; 7 links, 14 points, 1 loads")
-    assert refused.value.allowed == "plans of at most 19, or --positions detail"
+    assert (refused.value.path, refused.value.found) == (
+        ("--positions",),
+        "positions: 24; links: 7, points: 14, loads: 1",
+    )
+    assert refused.value.allowed == "plans for at most 19 positions, or --positions detail"

@@ -52,8 +52,8 @@ def test_the_number_of_the_frame_is_no_other_links(tmp_path):
     done = tmm("structure", written(tmp_path, "frame: 5"))
     assert done.returncode == 2
     told = [line.strip() for line in done.stderr.splitlines()]
-    assert told[0].endswith("course.yaml:35:8: frame: a link has this number already")
-    assert told[1:] == ["found:   5", "allowed: a number of no link, such as 6"]
+    assert told[0].endswith("course.yaml:35:8: frame: a link already has this number")
+    assert told[1:] == ["found:   5", "allowed: a number that no link has, e.g. 6"]
 
 
 def test_the_number_of_the_frame_is_no_rollers(tmp_path):
@@ -62,8 +62,8 @@ def test_the_number_of_the_frame_is_no_rollers(tmp_path):
     file.write_text(f"{cam}\nframe: 5\n", encoding="utf-8")
     done = tmm("structure", str(file))
     assert done.returncode == 2
-    assert "frame: a link has this number already" in done.stderr
-    assert "allowed: a number of no link, such as 6" in done.stderr
+    assert "frame: a link already has this number" in done.stderr
+    assert "allowed: a number that no link has, e.g. 6" in done.stderr
 
 
 def test_the_number_that_a_message_offers_for_the_frame_is_free(tmp_path):
@@ -78,7 +78,7 @@ def test_the_number_that_a_message_offers_for_the_frame_is_free(tmp_path):
     )
     done = tmm("structure", str(file))
     assert done.returncode == 2
-    assert "allowed: a number of no link, such as 3" in done.stderr
+    assert "allowed: a number that no link has, e.g. 3" in done.stderr
     file.write_text(file.read_text(encoding="utf-8").replace("frame: 4", "frame: 3"), encoding="utf-8")
     assert "I(3,1) → II(4,2)" in tmm("structure", str(file)).stdout
 

@@ -74,19 +74,28 @@ def test_a_load_of_the_working_stroke_is_told_to_act_in_each_of_them():
     [
         (
             "cycle: 1.5 turns",
-            "x.yaml:12:8: cycle: a cycle is a whole number of turns\n"
-            "  found:   '1.5 turns'\n  allowed: 2 turns, or 720 deg; at most 60 turns",
+            (
+                "x.yaml:12:8: cycle: a cycle must be a whole number of turns\n"
+                "  found:   '1.5 turns'\n"
+                "  allowed: 2 turns, or 720 deg; largest number of turns: 60"
+            ),
         ),
         (
             "cycle: 2",
-            "x.yaml:12:8: cycle: a cycle is a whole number of turns\n"
-            "  found:   2\n  allowed: 2 turns, or 720 deg; at most 60 turns",
+            (
+                "x.yaml:12:8: cycle: a cycle must be a whole number of turns\n"
+                "  found:   2\n"
+                "  allowed: 2 turns, or 720 deg; largest number of turns: 60"
+            ),
         ),
         (
             "cycle: 2 turns\nloads: {m: {on: 1, moment: {against: crank angle, table: [[0, 1], [800, 5]]}}}",
-            "x.yaml:13:68: loads.m.moment.table[1][0]: this row is never reached: all repeats after 2 turns of the "
-            "driver\n"
-            "  found:   800 deg\n  allowed: 0 to 720 deg; a longer cycle of loads is told by cycle: 3 turns",
+            (
+                "x.yaml:13:68: loads.m.moment.table[1][0]: this row is never used: the motion repeats "
+                "after several turns of the driver, number of turns: 2\n"
+                "  found:   800 deg\n"
+                "  allowed: 0 to 720 deg; for a longer cycle of loads write cycle: 3 turns"
+            ),
         ),
     ],
 )
@@ -99,7 +108,9 @@ def test_a_crank_that_does_not_turn_fully_has_no_cycle_of_turns(monkeypatch):
         "test_loads.MACHINE",
         MACHINE.replace("length: 150", "length: 40").replace("{at: 90, B: [140, 0]}", "{at: 10, B: [88, 0]}"),
     )
-    assert refused("cycle: 2 turns") == "x.yaml:12:1: cycle: a cycle of 2 turns needs a crank that turns fully"
+    assert (
+        refused("cycle: 2 turns") == "x.yaml:12:1: cycle: for a cycle of several turns (2) the crank must rotate fully"
+    )
 
 
 def test_the_law_of_motion_goes_on_from_the_end_of_the_cycle_as_it_began():

@@ -57,7 +57,7 @@ def test_a_sketch_beyond_the_stroke_is_refused():
     with pytest.raises(ProblemError) as caught:
         solved_text(SWINGING.replace("at: 550", "at: 650"))
     assert str(caught.value) == (
-        "x.yaml:8:14: sketch.at: the sketch shows the driver beyond its stroke\n  found:   650"
+        "x.yaml:8:14: sketch.at: in the sketch the driver is outside its stroke\n  found:   650"
     )
 
 

@@ -39,8 +39,11 @@ def refused(dynamics):
         ),
         (
             "yes",
-            "x.yaml:11:11: dynamics: keys with values are wanted\n  found:   'yes'\n"
-            "  allowed: mean speed, delta, motor, flywheel, run",
+            (
+                "x.yaml:11:11: dynamics: expected keys with values\n"
+                "  found:   'yes'\n"
+                "  allowed: mean speed, delta, motor, flywheel, run"
+            ),
         ),
         (
             "{motor: {stall: 6}}",
@@ -48,28 +51,46 @@ def refused(dynamics):
         ),
         (
             f"{{motor: {{{INDUCTION}, speed: 1430}}}}",
-            "x.yaml:11:82: dynamics.motor.speed: the rated speed is below the synchronous one\n"
-            "  found:   1430 = 1430 rad/s = 13655.5 rpm\n  allowed: less than 157.08 rad/s = 1500 rpm",
+            (
+                "x.yaml:11:82: dynamics.motor.speed: the rated speed must be less than the synchronous "
+                "speed\n"
+                "  found:   1430 = 1430 rad/s = 13655.5 rpm\n"
+                "  allowed: less than 157.08 rad/s = 1500 rpm"
+            ),
         ),
         (
             f"{{motor: {{{INDUCTION}, speed: 1430 rpm, overload: 0.5}}}}",
-            "x.yaml:11:102: dynamics.motor.overload: the breakdown moment is not below the rated one\n"
-            "  found:   0.5\n  allowed: 1 or more",
+            (
+                "x.yaml:11:102: dynamics.motor.overload: the breakdown torque cannot be less than the "
+                "rated torque\n"
+                "  found:   0.5\n"
+                "  allowed: 1 or more"
+            ),
         ),
         (
             "{motor: {kind: linear, stall: 60, free: 1500 rpm, moment: 20}}",
-            "x.yaml:11:61: dynamics.motor.moment: this motor is told by other numbers\n"
-            "  found:   'moment'\n  allowed: stall, free",
+            (
+                "x.yaml:11:61: dynamics.motor.moment: a motor of this kind is specified by other keys\n"
+                "  found:   'moment'\n"
+                "  allowed: stall, free"
+            ),
         ),
         (
             "{flywheel: {shape: rim, height: 1.2}}",
-            "x.yaml:11:43: dynamics.flywheel.height: a rim as high as that has no hole\n"
-            "  found:   1.2\n  allowed: less than 1, the mean diameter",
+            (
+                "x.yaml:11:43: dynamics.flywheel.height: a rim of this height leaves no hole in the middle\n"
+                "  found:   1.2\n"
+                "  allowed: less than 1 (ratio to the mean diameter)"
+            ),
         ),
         (
             "{run: {to: 90, drive: {against: time, table: [[0, 5], [1, 6]], area: 5 cm^2}}}",
-            "x.yaml:11:74: dynamics.run.drive.area: a pressure is on a piston, and this driver is a crank\n"
-            "  found:   '5 cm^2'\n  allowed: a table of moments, or a driver that slides",
+            (
+                "x.yaml:11:74: dynamics.run.drive.area: a pressure acts on a piston, but this driver is a "
+                "crank\n"
+                "  found:   '5 cm^2'\n"
+                "  allowed: a table of moments without `area`, or a driven slider"
+            ),
         ),
     ],
 )
@@ -116,5 +137,7 @@ def test_a_driver_that_stands_has_no_fluctuation():
     with pytest.raises(ProblemError) as caught:
         build_problem(read_text(text, "x.yaml"))
     assert str(caught.value) == (
-        "x.yaml:11:1: dynamics: a driver that stands has no fluctuation of speed\n  allowed: mean speed"
+        "x.yaml:11:1: dynamics: the speed of the driver is zero, so the law of motion cannot be "
+        "computed\n"
+        "  allowed: mean speed"
     )

@@ -299,9 +299,11 @@ def test_links_too_heavy_for_their_motor_are_refused_for_the_digits_that_are_los
     with np.errstate(all="raise"), pytest.raises(ProblemError) as refused:
         solve(with_ram(mass))
     assert str(refused.value).split("\n")[::2] == [
-        "shaper.yaml:35:1: dynamics: the law of motion is lost in rounding: the links and the flywheel are too heavy "
-        "for the motor to change their speed",
-        "  allowed: masses and inertias that fit the motor: are their units right?",
+        (
+            "shaper.yaml:35:1: dynamics: the law of motion is lost in rounding errors: the links and "
+            "the flywheel are too heavy for the motor to change their speed"
+        ),
+        "  allowed: masses and moments of inertia that suit the motor; check their units",
     ]
 
 
@@ -352,7 +354,10 @@ def test_a_machine_all_of_whose_masses_rest_at_once_has_no_law_of_motion_without
     file.write_text(LIGHT_ENGINE, encoding="utf-8")
     done = tmm("dynamics", str(file))
     assert done.returncode == 2
-    told = "dynamics: there is no law of motion: nothing that moves with the driver there has mass or inertia"
+    told = (
+        "dynamics: the law of motion cannot be computed: no link that moves in this position has "
+        "mass or moment of inertia"
+    )
     assert told in done.stderr
     file.write_text(LIGHT_ENGINE.replace("1500 rpm}", "1500 rpm}, delta: 1/25"), encoding="utf-8")
     assert tmm("dynamics", str(file)).returncode == 0

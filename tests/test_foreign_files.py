@@ -274,13 +274,13 @@ def test_a_link_with_two_pins_on_the_frame_is_the_frame():
     bars = [*BARS, ("R", "ADE", "ADE", 1, 5, 1), ("R", "EG", "EG", 1, 13, 3), ("R", "CG", "CG", 1, 11, 5)]
     foreign, results = imported(link(rail, bars))
     assert set(foreign.frame) == {"A", "D", "E"} and "ADE" not in results.linkage.links
-    assert "Link ADE is pinned to the frame twice: it is part of the frame." in foreign.notes
+    assert "Link ADE is pinned to the frame at two points, so it is part of the frame." in foreign.notes
 
 
 def test_friction_and_synthesis_of_pmks_are_listed_as_not_carried_over():
     joints = [FOUR_BAR[0], (*FOUR_BAR[1], "", "", "", "", "0~3", "0~2", "1"), *FOUR_BAR[2:]]
     foreign, __ = imported(link(joints, BARS, tail=".SD~1~2~3"))
-    assert foreign.left == ("The design of its synthesis.", "Friction of joint B.")
+    assert foreign.left == ("Data of the synthesis in PMKS+.", "Friction of joint B.")
 
 
 def test_a_file_of_linkage_v2_has_its_points_constructed_and_its_masses_and_loads_carried_over():
@@ -298,7 +298,7 @@ def test_a_file_of_linkage_v2_has_its_points_constructed_and_its_masses_and_load
     assert lever.inertia == pytest.approx(1.1 + 20 * 2 / 22 * 0.325**2)
     (load,) = linkage.loads
     assert load.force == pytest.approx(1500 * (d - e) / abs(d - e)) and load.at == pytest.approx(0.03j)
-    assert foreign.left == ("Block `dynamics`: motor and flywheel are said otherwise here.",)
+    assert foreign.left == ("Block `dynamics`: motor and flywheel have other keys here; write them by hand.",)
 
 
 def file_of_pylinkage(**changed):
@@ -363,67 +363,68 @@ def test_joints_on_no_moving_link_are_left_out_and_said():
     foreign, results = imported(json.dumps(file_of_pylinkage(more=more)))
     assert set(results.linkage.links["0"].points) == {"A", "D"} and set(foreign.places) == set("ABCD")
     assert set(foreign.left) == {
-        "Joint X is on no moving link.",
-        "Joint Y is on no moving link.",
+        "Joint X belongs to no moving link.",
+        "Joint Y belongs to no moving link.",
         "Point T follows two joints that are not on one link.",
     }
 
 
 REFUSED = {
-    "nothing of it\n": "file: this file is of no format that is known here\n"
-    "  allowed: pylinkage; PMKS+, a saved link; linkage/v2",
+    "nothing of it\n": (
+        "file: the format of this file is not supported\n  allowed: pylinkage; PMKS+, a saved link; linkage/v2"
+    ),
     SLIDER[:-1]
-    + ("0" if SLIDER[-1] != "0" else "1"): "file: this link is not whole: its last character does not fit its length",
+    + (
+        "0" if SLIDER[-1] != "0" else "1"
+    ): "file: this web link is incomplete: its check character does not match its length",
     '{"joints": [{"id": "A", "position": [0, 0]}], "links": [{"id": "1", "type": "lnk", "joints": []}]}': (
-        "file:1:77: links[0].type: this word is not known here\n"
+        "file:1:77: links[0].type: this value is not allowed here\n"
         "  found:   'lnk'\n"
         "  allowed: ground, driver, arc_driver, link\n"
         "  did you mean 'link'?"
     ),
-    json.dumps(
-        file_of_pylinkage(more=[{"id": "B", "position": [1, 2]}])
-    ): "file:1:252: joints[4].id: a name is given twice\n  found:   'B'",
-    json.dumps(
-        file_of_pylinkage(more=[{"id": "X", "position": [1e308, -1.7e308]}])
-    ): "file:1:270: joints[4].position[0]: this is too large for a mechanism\n  found:   1e+308",
+    json.dumps(file_of_pylinkage(more=[{"id": "B", "position": [1, 2]}])): (
+        "file:1:252: joints[4].id: this name occurs twice\n  found:   'B'"
+    ),
+    json.dumps(file_of_pylinkage(more=[{"id": "X", "position": [1e308, -1.7e308]}])): (
+        "file:1:270: joints[4].position[0]: this value is too large for a mechanism\n  found:   1e+308"
+    ),
     json.dumps(file_of_pylinkage(joints=[{}] * 501)): "file:1:32: joints: this is too long: at most 500",
-    link(
-        [(INPUT | GROUND, "A", 0, 0, 0), (TURNING, "B", 1e40, 4, 0)], []
-    ): "file: joints.B: this is no number to the base 64\n  found:   'SijRs6CXv000000000000000'",
-    link(
-        [*FOUR_BAR[:3], (*FOUR_BAR[3], *"XAB")], BARS
-    ): "file: joints.D: a slot needs a joint that slides, a link and two joints of that link\n  found:   'X,A,B'",
+    link([(INPUT | GROUND, "A", 0, 0, 0), (TURNING, "B", 1e40, 4, 0)], []): (
+        "file: joints.B: this is not a base-64 number\n  found:   'SijRs6CXv000000000000000'"
+    ),
+    link([*FOUR_BAR[:3], (*FOUR_BAR[3], *"XAB")], BARS): (
+        "file: joints.D: a slot needs a sliding joint, a link and two joints of that link\n  found:   'X,A,B'"
+    ),
     link(
         [*FOUR_BAR[:3], (SLIDING, *FOUR_BAR[3][1:], "XY", "A", "B")], BARS
     ): "file: joints.D: there is no link of that name\n  found:   'XY'",
-    link(
-        [*FOUR_BAR[:3], (*FOUR_BAR[3], "", "", "", "", "", "", "", "new")], BARS
-    ): "file: joints.D: a field of a joint that is not known here\n  found:   ',,new'",
-    link(
-        FOUR_BAR, [*BARS[:2], ("QR", *BARS[2][1:])]
-    ): "file: links.CD: a link of a kind that is not known here\n  found:   'Q'",
-    link(
-        FOUR_BAR, BARS, tail=".G1~eyJnZWFycyI6W119"
-    ): "file: gears of PMKS+ are not read\n  found:   'G1~eyJnZWFycyI6W119'",
-    link(FOUR_BAR, BARS, tail=".XJB"): "file: an entry that is not known here\n  found:   'XJB'",
-    link(
-        [(GROUND, *FOUR_BAR[0][1:]), (INPUT, *FOUR_BAR[1][1:]), *FOUR_BAR[2:]], BARS
-    ): "file: joints.B: a motor between two moving links is not taken over\n  found:   AB, BC",
-    (GALLERY / "Saw.pmks")
-    .read_text(encoding="utf-8")
-    .replace("E,1E8", "E,1E9"): "file: this link is damaged: its digest does not fit its text\n  found:   '3FX8op'",
+    link([*FOUR_BAR[:3], (*FOUR_BAR[3], "", "", "", "", "", "", "", "new")], BARS): (
+        "file: joints.D: unknown field in the record of a joint\n  found:   ',,new'"
+    ),
+    link(FOUR_BAR, [*BARS[:2], ("QR", *BARS[2][1:])]): ("file: links.CD: unknown kind of link\n  found:   'Q'"),
+    link(FOUR_BAR, BARS, tail=".G1~eyJnZWFycyI6W119"): (
+        "file: gears of PMKS+ are not supported\n  found:   'G1~eyJnZWFycyI6W119'"
+    ),
+    link(FOUR_BAR, BARS, tail=".XJB"): ("file: unknown entry\n  found:   'XJB'"),
+    link([(GROUND, *FOUR_BAR[0][1:]), (INPUT, *FOUR_BAR[1][1:]), *FOUR_BAR[2:]], BARS): (
+        "file: joints.B: a motor between two moving links cannot be imported\n  found:   AB, BC"
+    ),
+    (GALLERY / "Saw.pmks").read_text(encoding="utf-8").replace("E,1E8", "E,1E9"): (
+        "file: this web link is damaged: its checksum does not match its text\n  found:   '3FX8op'"
+    ),
     "https://app.pmksplus.com/?pmks2:0123abcd.eyJib2RpZXMiOltdfQ": (
-        "file: a document of the newer editor of PMKS+ is not read\n  found:   pmks2:..."
+        "file: documents of the new PMKS+ editor are not supported\n  found:   pmks2:..."
     ),
     link(
         [(INPUT | GROUND, "A", 0, 0, 0)], [("R", "AB", "A", 2, 1, 2)], [("F", "BA", 0, 0, 1, 0, 9)]
     ): "file: forces.F: there is no link of that name\n  found:   'BA'",
-    "\n" * 900_000: "file: this file is of no format that is known here",
+    "\n" * 900_000: "file: the format of this file is not supported",
     "schema: linkage/v2\ngeometry: {points: {A: [0, 0]}}\nbodies: {}\njoints: [{type: revolute, endpoints: []}]\n": (
-        "file:4:38: joints[0].endpoints: a hinge joins two links"
+        "file:4:38: joints[0].endpoints: a hinge must join at least two links"
     ),
     "schema: linkage/v2\ngeometry: {points: {A: [0, 0]}, construct: [{type: point_on_ray, point: B, from: C}]}\n": (
-        "file:2:82: geometry.construct[0].from: this word is not known here\n  found:   'C'\n  allowed: A"
+        "file:2:82: geometry.construct[0].from: this value is not allowed here\n  found:   'C'\n  allowed: A"
     ),
 }
 
@@ -474,7 +475,8 @@ def test_what_cannot_be_a_problem_file_is_said_of_the_file_that_was_read(tmp_pat
     done = tmm("import", "it.json", cwd=tmp_path)
     assert done.returncode == 2 and not (tmp_path / "it.yaml").exists()
     assert done.stderr.startswith(
-        "error: it.json: the problem file of it would be refused: links.rod.points: a link has at least one point\n"
+        "error: it.json: the problem file of it would be refused: links.rod.points: a link must "
+        "have at least one point\n"
     )
 
 
@@ -482,4 +484,4 @@ def test_a_key_with_control_characters_does_not_reach_the_terminal(tmp_path):
     text = (FILES / "slotted-lever.yaml").read_text(encoding="utf-8") + '"\\x1b[31mred": 1\n'
     (tmp_path / "it.yml").write_text(text, encoding="utf-8")
     done = tmm("import", "it.yml", cwd=tmp_path)
-    assert "not taken over: Key `\\x1b[31mred` is not read.\n" in done.stderr
+    assert "not taken over: Key `\\x1b[31mred` was ignored.\n" in done.stderr

@@ -70,7 +70,7 @@ def test_a_balancing_force_in_the_pivot_of_the_crank_is_refused(tmp_path):
     file = changed_bank_file(tmp_path, "crank-slider", ("turns: ccw}", "balance: force, end: O}"))
     done = tmm("forces", file)
     assert done.returncode == 2
-    assert "driver.end: a balancing force in the pivot O has no arm\n  found:   'O'\n" in done.stderr
+    assert ("driver.end: a balancing force at the pivot O has no moment arm\n  found:   'O'\n") in done.stderr
     assert "  allowed: another point of the link" in done.stderr
 
 
@@ -83,7 +83,9 @@ def test_a_sweep_of_links_that_hold_one_another_is_refused_in_the_words_of_the_f
     )
     done = tmm("sweep", file, "--over", "l=200..240:3")
     assert done.returncode == 2
-    assert "driver.link: link 1 cannot be driven: pairs or other drivers hold it already" in done.stderr
+    assert (
+        "driver.link: link 1 cannot be a driver: pairs or other drivers already determine its motion"
+    ) in done.stderr
 
 
 def test_no_states_of_a_group_are_moved_by_no_step():

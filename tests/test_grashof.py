@@ -202,7 +202,9 @@ REFUSED = {
         "longer. Shorten it\n"
         "  found:   10\n"
     ),
-    "{task: grashof, l1: 10, l2: 0, l3: 3, l4: 4}": "synthesis.l2: this is too small for a mechanism\n  found:   0",
+    "{task: grashof, l1: 10, l2: 0, l3: 3, l4: 4}": (
+        "synthesis.l2: this value is too small for a mechanism\n  found:   0"
+    ),
     "{task: grashof, l1: 1, l2: 2, l3: 3, l4: 3, frame: l1, driver: l3}": (
         "synthesis.driver: the driver must be hinged to the frame\n"
         "  found:   'l3', which lies opposite the frame l1\n"
@@ -214,7 +216,7 @@ REFUSED = {
         "  allowed: l1, l2, l3, l4 (+ frame, driver); r, l (+ e); OA, OC (+ e)"
     ),
     "{task: grashof, l1: 1, l2: 2, l3: 3, l4: 3, frame: l5}": (
-        "synthesis.frame: this word is not known here\n  found:   'l5'\n  allowed: l1, l2, l3, l4"
+        "synthesis.frame: this value is not allowed here\n  found:   'l5'\n  allowed: l1, l2, l3, l4"
     ),
     "{task: grashof, l1: 1, l2: 2, l3: 3, l4: 3, names: {r: OA}}": (
         "synthesis.names.r: the synthesis grashof has no result with this name\n"

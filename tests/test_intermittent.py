@@ -229,22 +229,32 @@ CASES = {
         "moves_with: 3",
         "moves_with: 2",
         "2, when",
-        "intermittent.shaft.moves_with: a wheel moves with a link that turns on the frame\n"
-        "  found:   '2'\n  allowed: 3",
+        (
+            "intermittent.shaft.moves_with: the wheel must move with a link that is hinged to the "
+            "frame\n"
+            "  found:   '2'\n"
+            "  allowed: 3"
+        ),
     ),
     "another word": (
         "when: backward",
         "when: back",
         "back,",
-        "intermittent.shaft.when: this word is not known here\n  found:   'back'\n"
-        "  allowed: forward, backward, working stroke, idle stroke\n  did you mean 'backward'?",
+        (
+            "intermittent.shaft.when: this value is not allowed here\n"
+            "  found:   'back'\n"
+            "  allowed: forward, backward, working stroke, idle stroke\n"
+            "  did you mean 'backward'?"
+        ),
     ),
     "strokes of an output where the driver goes there and back": (
         "when: backward",
         "when: working stroke",
         "working stroke, settings",
-        "intermittent.shaft.when: there is no working stroke\n"
-        "  allowed: forward, backward, or an output that has strokes",
+        (
+            "intermittent.shaft.when: this mechanism has no working stroke\n"
+            "  allowed: forward, backward, or an output link that has strokes"
+        ),
     ),
     "unknown parameter": (
         "R: 125}]}",
@@ -269,22 +279,29 @@ CASES = {
         "R: 125}]}",
         "R: 700}]}",
         "{R: 700",
-        "intermittent.shaft.settings[1]: group II(2,3) cannot be assembled with the driver at -319.527 mm\n"
-        "  found:   50.6103 mm short of closing\n  allowed: lengths that reach, or another place of the driver",
+        (
+            "intermittent.shaft.settings[1]: group II(2,3) cannot be assembled when the driver "
+            "coordinate is -319.527 mm\n"
+            "  found:   the loop is open by 50.6103 mm\n"
+            "  allowed: lengths with which the links reach each other, or another driver coordinate"
+        ),
     ),
     "no cycle": (
         "speed: v, stroke: [xA, xB]",
         "speed: v",
         "shaft: {moves",
-        "intermittent.shaft: intermittent motion is found over a cycle, and the driver has none\n"
-        "  allowed: a crank that turns fully, or a driver with a stroke that the linkage can go"
-        "; driver: {stroke: [0, 100]}",
+        (
+            "intermittent.shaft: intermittent motion is computed over a cycle, but this driver has no "
+            "cycle\n"
+            "  allowed: a crank that rotates fully, or a driver with a stroke that the mechanism can "
+            "complete; driver: {stroke: [0, 100]}"
+        ),
     ),
     "a name that is taken": (
         "shaft: {moves",
         "3: {moves",
         "3: {moves",
-        "intermittent.3: this name is taken\n  found:   '3'",
+        ("intermittent.3: this name is already in use\n  found:   '3'"),
     ),
 }
 
@@ -301,8 +318,10 @@ def test_one_message_at_its_place(old, new, part, message):
 def test_a_link_that_goes_round_never_lets_go():
     found = refusal(SLOTS.replace("moves_with: 4, when: working stroke", "moves_with: 1, when: forward"))
     assert (
-        "this link never turns back: the wheel would not stand\n  found:   '1'\n  allowed: a link that swings" in found
-    )
+        "this link never reverses its rotation, so the wheel would never stand still\n"
+        "  found:   '1'\n"
+        "  allowed: a link that swings (a rocker)"
+    ) in found
 
 
 def test_the_block_is_read_without_its_settings_in_double_doubles():

@@ -62,8 +62,9 @@ def test_contradictory_offsets_in_a_ring_are_refused(offsets, wanted):
             assert solved_text(text(a, b, c + rounding)).structure.redundant == 1
     else:
         assert refusal(text(*offsets)) == (
-            f"x.yaml:{place(text(*offsets), 'c: {')}: gears.c: gear c contradicts those before it: the wheels lock "
-            "one another\n  allowed: ratios and offsets that agree round a ring, or one gear less"
+            f"x.yaml:{place(text(*offsets), 'c: {')}: gears.c: gear pair c contradicts "
+            "the ones before it: the gears lock each other\n"
+            "  allowed: ratios and offsets that agree around the closed train, or one gear pair less"
         )
 
 
@@ -302,8 +303,9 @@ def test_the_output_of_a_cylinder_is_what_it_lifts_and_two_points_of_a_link_are_
 def test_positions_of_a_cylinder_do_not_start_somewhere():
     text = changed(blocks.CYLINDER, "{at: [200, 250, 300, 350, 400]}", "{count: 5, from: 250}")
     assert refusal(text) == (
-        f"x.yaml:{place(text, 'from')}: positions.from: positions of a driven slider go from one end of its way to the "
-        "other\n  found:   250\n  allowed: driver: {stroke: [first, last]}, or positions: {at: [...]}"
+        f"x.yaml:{place(text, 'from')}: positions.from: `from` is for cranks: the positions of "
+        "a driven slider run from one end of its stroke to the other\n"
+        "  found:   250\n  allowed: driver: {stroke: [first, last]}, or positions: {at: [...]}"
     )
 
 
@@ -343,9 +345,9 @@ def ladder(number):
 def test_a_group_of_98_links_is_refused_by_name_and_one_of_6_is_solved():
     text = ladder(48)
     assert refusal(text).startswith(
-        f"x.yaml:{place(text, 'links:')}: links: a group of so many links is not solved: III(a,t0,g0,t1,"
+        f"x.yaml:{place(text, 'links:')}: links: this group has too many links to be solved: III(a,t0,g0,t1,"
     )
-    assert refusal(text).endswith("found:   98\n  allowed: at most 16 in one group; any number of groups")
+    assert refusal(text).endswith("found:   98\n  allowed: at most 16 links in one group; any number of groups")
     results = solved_text(ladder(2))
     assert results.structure.groups[0].title == "III(a,t0,g0,t1,g1,e)"
     assert bool(results.motion.moving.all())
@@ -380,12 +382,12 @@ def test_change_points_behind_too_many_groups_and_turns_are_refused_by_name(monk
     """50 turns of the driver are one of the first crank, and each kite doubles them."""
     text = kites(2)
     assert bool(solved_text(text).motion.moving.all())
-    assert "the change points of group II(" in refusal(kites(10))
+    assert "the search for the change points of group II(" in refusal(kites(10))
     monkeypatch.setattr("tmm_cli.mechanics.assembly.assembling.LARGEST_SEARCH", 299)
     assert refusal(text) == (
-        f"x.yaml:{place(text, 'links:')}: links: the change points of group II(c2,r2) take too long to find: so many "
-        "groups lie before it\n  found:   3 groups over 100 turns of the driver\n"
-        "  allowed: groups times turns: at most 299"
+        f"x.yaml:{place(text, 'links:')}: links: the search for the change points of group II(c2,r2) takes too "
+        "long: it depends on too many groups\n  found:   groups: 3, turns of the driver: 100\n"
+        "  allowed: number of groups times number of turns at most 299"
     )
 
 
@@ -394,7 +396,7 @@ def test_a_group_that_is_too_large_is_named_before_a_search_that_is_too_long(mon
     text = changed(ladder(47), "points: {", "points: {Q: [-1, 2], ")
     text = changed(text, "driver:", "  p: {points: [A, P], length: 0.8}\n  q: {points: [Q, P], length: 0.8}\ndriver:")
     text = changed(text, "sketch: {at: 0, ", "sketch: {at: 0, P: [-0.2, 1.9], ")
-    assert "a group of so many links is not solved: III(a,t0,g0,t1," in refusal(text)
+    assert "this group has too many links to be solved: III(a,t0,g0,t1," in refusal(text)
 
 
 def test_a_group_that_moves_by_itself_is_in_a_dead_position():
@@ -406,7 +408,7 @@ def test_a_group_that_moves_by_itself_is_in_a_dead_position():
     text = changed(
         text, "{at: 90 deg, B: [110, 60], C: [190, 50], D: [155, 115]}", "{at: 0, B: [60, 120], C: [160, 120]}"
     )
-    assert "sketch.at: group III(2,3,4,5) is in a dead position in the sketch" in refusal(text)
+    assert "sketch.at: in the sketch group III(2,3,4,5) is in a dead position" in refusal(text)
 
 
 @pytest.mark.parametrize("name", ["triad", "planet", "rack", "cam", "cylinder", "two", "slider"])

@@ -112,8 +112,9 @@ def test_an_output_that_only_translates_has_no_working_stroke():
     with pytest.raises(ProblemError) as refusal:
         solved_text(text)
     assert str(refusal.value) == (
-        "x.yaml:12:38: loads.M.when: there is no working stroke\n"
-        "  found:   link 2 has no ends of its stroke\n  allowed: see output:"
+        "x.yaml:12:38: loads.M.when: this mechanism has no working stroke\n"
+        "  found:   link 2 has no extreme positions\n"
+        "  allowed: an output link with a stroke, see the key `output`"
     )
     assert solved_text(PARALLELOGRAM + "output: 2\n").strokes.strokes == ()
 
@@ -242,22 +243,32 @@ def test_what_was_understood_of_loads_is_told():
     [
         (
             "loads: {f: {on: 3, force: [1, 0], when: [540, 720]}}",
-            "x.yaml:12:42: loads.f.when[0]: the crank does not come to this angle in its cycle\n"
-            "  found:   540\n  allowed: at most 360 deg; a longer cycle of loads is told by cycle: 2 turns",
+            (
+                "x.yaml:12:42: loads.f.when[0]: the crank does not reach this angle within a cycle\n"
+                "  found:   540\n"
+                "  allowed: at most 360 deg; for a longer cycle of loads write cycle: 2 turns"
+            ),
         ),
         (
             "loads: {f: {on: 3, force: [1, 0], when: [0, 360]}}",
-            "x.yaml:12:41: loads.f.when: between these two angles there is nothing, or all\n"
-            "  found:   [0, 360]\n  allowed: two angles less than 360 deg apart, or when: always",
+            (
+                "x.yaml:12:41: loads.f.when: the two angles are equal, or a whole cycle apart: the load "
+                "would act never or always\n"
+                "  found:   [0, 360]\n"
+                "  allowed: two different angles less than 360 deg apart, or when: always"
+            ),
         ),
         (
             "loads: {f: {on: 3, from: 3, force: [1, 0]}}",
-            "x.yaml:12:26: loads.f.from: different links are wanted\n  found:   3, 3",
+            ("x.yaml:12:26: loads.f.from: the links must be different\n  found:   3, 3"),
         ),
         (
             "loads: {f: {on: 3, force: {resists: 5, angle: 20}}}",
-            "x.yaml:12:20: loads.f.force: one of these keys is wanted\n"
-            "  found:   angle, resists\n  allowed: size, table, angle, resists",
+            (
+                "x.yaml:12:20: loads.f.force: expected exactly one of these keys\n"
+                "  found:   angle, resists\n"
+                "  allowed: size, table, angle, resists"
+            ),
         ),
         (
             "loads: {f: {on: 3, force: {resists: -5}}}",
@@ -265,27 +276,36 @@ def test_what_was_understood_of_loads_is_told():
         ),
         (
             "loads: {f: {on: 3, pressure: {size: 5 bar, angle: 0}}}",
-            "x.yaml:12:9: loads.f: one of these keys is wanted\n  allowed: area, bore",
+            ("x.yaml:12:9: loads.f: expected exactly one of these keys\n  allowed: area, bore"),
         ),
         (
             "loads: {f: {on: 3, force: {resists: 5}, moment: 3}}",
-            "x.yaml:12:9: loads.f: one part of this load resists a motion, the other does not\n"
-            "  found:   both\n  allowed: two loads",
+            (
+                "x.yaml:12:9: loads.f: the force and the moment of one load must both have `resists`, or "
+                "neither\n"
+                "  found:   both\n"
+                "  allowed: two loads"
+            ),
         ),
         (
             "loads: {f: {on: 3, force: [-9, 0]}}\nfriction: {coefficient: 0.1}\ndynamics: {delta: 1/30}",
-            "x.yaml:13:1: friction: a law of motion is not found where forces hang on reactions or on speeds\n"
-            "  allowed: loads that do not: force: {resists: 200 N} for a constant friction",
+            (
+                "x.yaml:13:1: friction: the law of motion is not computed if forces depend on reactions or "
+                "on speeds\n"
+                "  allowed: loads independent of them; for constant friction force: {resists: 200 N}"
+            ),
         ),
         (
             "springs: {s: {between: [0, 3], rate: 1, free: 9, damping: 3}}\ndynamics: {delta: 1/30}",
-            "x.yaml:12:50: springs.s.damping: a law of motion is not found where forces hang on reactions or "
-            "on speeds\n"
-            "  allowed: loads that do not: force: {resists: 200 N} for a constant friction",
+            (
+                "x.yaml:12:50: springs.s.damping: the law of motion is not computed if forces depend on "
+                "reactions or on speeds\n"
+                "  allowed: loads independent of them; for constant friction force: {resists: 200 N}"
+            ),
         ),
         (
             "masses: {2: {inertia: 1, points: []}}",
-            "x.yaml:12:10: masses.2: one of these keys is wanted\n  allowed: mass, weight",
+            ("x.yaml:12:10: masses.2: expected exactly one of these keys\n  allowed: mass, weight"),
         ),
     ],
 )
@@ -303,7 +323,9 @@ def test_a_point_that_is_called_as_a_centre_of_mass_is_there():
     assert point == pytest.approx(0.075 + 0.01j)
     with pytest.raises(ProblemError) as refusal:
         build_any_problem(read_text(machine + mass.format("[75, 0]"), "x.yaml"))
-    assert "this centre of mass is called S2, and so is another point" in str(refusal.value)
+    assert (
+        "the centre of mass of this link is called S2 in tables and drawings, but another point has this name"
+    ) in str(refusal.value)
 
 
 def work_warnings(tail, output="3"):

@@ -168,8 +168,8 @@ def test_tables_of_the_file_name_the_link_whose_stroke_it_is():
     "written, message, found",
     [
         ("stroke of 9", "there is no moving link of that name", "'9'"),
-        ("strokes", "this word is not known here", "'strokes'"),
-        ("stroke of 1", "there is no working stroke", "link 1 has no ends of its stroke"),
+        ("strokes", "this value is not allowed here", "'strokes'"),
+        ("stroke of 1", "this mechanism has no working stroke", "link 1 has no extreme positions"),
     ],
 )
 def test_a_stroke_that_there_is_not_is_refused(written, message, found):
@@ -184,4 +184,4 @@ def test_words_for_when_a_load_acts():
     with pytest.raises(ProblemError) as error:
         text = TWO_PISTONS.replace("on: 5, force", "on: 5, when: idle, force")
         build_any_problem(read_text(text, "pistons.yaml"))
-    assert (error.value.message, error.value.found) == ("this word is not known here", "'idle'")
+    assert (error.value.message, error.value.found) == ("this value is not allowed here", "'idle'")

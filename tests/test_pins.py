@@ -205,7 +205,7 @@ def test_friction_in_a_compound_hinge_acts_between_the_links_that_are_attached()
     "point, link, message, found, allowed",
     [
         ("Q", 1, "there is no hinge of that name", "'Q'", None),
-        ("B", 2, "this hinge joins two links: they make one pair", "2, 3", None),
+        ("B", 2, "this hinge joins only two links, so there is nothing to attach: they form one pair", "2, 3", None),
         ("A", 5, "link 5 is not in hinge A", "'5'", "1, 2, 4"),
     ],
 )
@@ -220,7 +220,7 @@ def test_an_attachment_that_joins_groups_is_refused():
     """Rod 4 is placed by pin B, which coupler and rocker place: attached to it they would make one group of four."""
     with pytest.raises(ProblemError) as error:
         build_problem(read_text(attached(TEXT, "B", 4), "six-bar.yaml"))
-    assert error.value.message == "with the links attached to 4 the mechanism does not fall into the same groups"
+    assert error.value.message == "with the links attached to 4 the mechanism is not divided into the same groups"
     assert error.value.allowed == "2, 3"
 
 

@@ -120,8 +120,9 @@ def test_another_length_of_the_second_coupler_locks_it():
     with pytest.raises(ProblemError) as caught:
         solved_text(PARALLELOGRAM.replace("{DE: 300}", "{DE: 305}"))
     assert str(caught.value) == (
-        "x.yaml:8:16: driver.link: link 1 cannot be driven: pairs or other drivers hold it already\n"
-        "  found:   W = 3*4 - 2*6 = 0; over-held: links 0, 1, 2, 3, 4\n"
+        "x.yaml:8:16: driver.link: link 1 cannot be a driver: pairs or other drivers already "
+        "determine its motion\n"
+        "  found:   W = 3*4 - 2*6 = 0; links with redundant constraints: 0, 1, 2, 3, 4\n"
         "  allowed: W = 1"
     )
 
@@ -145,7 +146,7 @@ def test_a_second_parallel_guide_is_passive_and_an_inclined_one_locks():
     both = [(r.motion.named("B").a, r.reactions.balance.moment) for r in (results, alone)]
     for found, expected in zip(*both, strict=True):
         assert np.allclose(found, expected, rtol=0, atol=1e-15 * np.max(np.abs(expected)))
-    with pytest.raises(ProblemError, match="mobility is not 1: pair y holds what is held already"):
+    with pytest.raises(ProblemError, match="the mobility is not 1: pair y is a redundant constraint"):
         solved_text(GUIDES.replace("ANGLE", "5"))
 
 

@@ -96,12 +96,12 @@ def test_every_key_and_value_has_its_place() -> None:
     assert len(tree.marks) == len(tree.key_marks) + 4  # the top and three list items
 
 
-INDENT = "\n  allowed: keys and items of one level start in one column, indented by spaces"
-ALIAS = "\n  allowed: the value written out, or a parameter; text that starts with * or & in quotes"
+INDENT = "\n  allowed: keys and items of one level begin in the same column, indented by spaces"
+ALIAS = "\n  allowed: the value itself, or a parameter; a text that begins with * or & needs quotation marks"
 BRACKETS = "\n  allowed: [2 kN, 0] or {a: 1, b: 2}"
-AFTER_BRACKET = "\n  allowed: [2 kN, 0]: units inside; a comment begins with #"
+AFTER_BRACKET = "\n  allowed: units inside the brackets: [2 kN, 0]; a comment begins with #"
 COMMA = "\n  allowed: a decimal point; a list is written [1, 5]"
-EMPTY = "f: the file is empty\n  allowed: a mapping such as 'tmm: 1'"
+EMPTY = "f: the file is empty\n  allowed: keys with values, such as 'tmm: 1'"
 
 
 @pytest.mark.usefixtures("parser")
@@ -112,11 +112,34 @@ EMPTY = "f: the file is empty\n  allowed: a mapping such as 'tmm: 1'"
         ("# only\n# comments\n", EMPTY),
         ("---\n", EMPTY),
         ("\n \n", EMPTY),
-        ("[1, 2]", "f:1:1: the top level is not a mapping\n  found:   [1, 2]\n  allowed: lines 'key: value'"),
-        ("tmm:1", "f:1:1: the top level is not a mapping\n  found:   'tmm:1'\n  allowed: lines 'key: value'"),
-        ("a: 1\n---\nb: 2", "f:2:1: a second document\n  found:   ---\n  allowed: one document in a file"),
-        ("a:\n  k: 1\n  k: 2", "f:3:3: a.k: duplicate key\n  found:   'k'\n  allowed: the first is at line 2"),
-        ("1: x\n'1': y", "f:2:1: 1: duplicate key\n  found:   '1'\n  allowed: the first is at line 1"),
+        (
+            "[1, 2]",
+            (
+                "f:1:1: the top level of the file must consist of keys with values\n"
+                "  found:   [1, 2]\n"
+                "  allowed: lines 'key: value'"
+            ),
+        ),
+        (
+            "tmm:1",
+            (
+                "f:1:1: the top level of the file must consist of keys with values\n"
+                "  found:   'tmm:1'\n"
+                "  allowed: lines 'key: value'"
+            ),
+        ),
+        (
+            "a: 1\n---\nb: 2",
+            ("f:2:1: the file contains a second document\n  found:   ---\n  allowed: one document in a file"),
+        ),
+        (
+            "a:\n  k: 1\n  k: 2",
+            ("f:3:3: a.k: this key occurs twice\n  found:   'k'\n  allowed: each key once; the first is on line 2"),
+        ),
+        (
+            "1: x\n'1': y",
+            ("f:2:1: 1: this key occurs twice\n  found:   '1'\n  allowed: each key once; the first is on line 1"),
+        ),
         ("a:\n\tb: 1", "f:2:1: a tab is used for indentation\n  found:   a tab\n  allowed: spaces, two for each level"),
         (
             "a:\n  -\tb: 1",
@@ -130,47 +153,97 @@ EMPTY = "f: the file is empty\n  allowed: a mapping such as 'tmm: 1'"
         ),
         ("a:\n  b: {c: 1,5}", "f:2:10: a.b.c: decimal comma: write 1.5\n  found:   '1,5'" + COMMA),
         ("a: [0, {d: 2, c: 1,5, e: 3}]", "f:1:18: a[1].c: decimal comma: write 1.5\n  found:   '1,5'" + COMMA),
-        ("a: {b:1}", "f:1:5: a: a key without a value\n  found:   'b:1'\n  allowed: 'key: value', a space after ':'"),
+        (
+            "a: {b:1}",
+            ("f:1:5: a: this key has no value\n  found:   'b:1'\n  allowed: 'key: value', with a space after ':'"),
+        ),
         (
             "a: {b: 1, 5}",
-            "f:1:11: a: a key without a value\n  found:   '5'\n  allowed: 'key: value', a space after ':'",
+            ("f:1:11: a: this key has no value\n  found:   '5'\n  allowed: 'key: value', with a space after ':'"),
         ),
         *(
-            (f"a: {w}", f"f:1:4: a: not a finite number\n  found:   '{w}'\n  allowed: a finite number")
+            (f"a: {w}", f"f:1:4: a: the number is not finite\n  found:   '{w}'\n  allowed: a finite number")
             for w in (".nan", "NaN", ".inf", "-.Inf", "inf", "+Infinity")
         ),
         (
             "a: 1e999",
-            "f:1:4: a: the number is too large or too small\n  found:   '1e999'\n  allowed: sizes from 1e-300 to 1e300",
+            (
+                "f:1:4: a: the number is too large or too small\n"
+                "  found:   '1e999'\n"
+                "  allowed: absolute values from 1e-300 to 1e300"
+            ),
         ),
         (
             "a: 1e-999",
-            "f:1:4: a: the number is too large or too small\n  found:   '1e-999'"
-            "\n  allowed: sizes from 1e-300 to 1e300",
+            (
+                "f:1:4: a: the number is too large or too small\n"
+                "  found:   '1e-999'\n"
+                "  allowed: absolute values from 1e-300 to 1e300"
+            ),
         ),
         ("a: " + "9" * 41, f"f:1:4: a: the number is too long\n  found:   '{'9' * 41}'\n  allowed: at most 40 digits"),
-        ("a: &x 1", "f:1:4: a: aliases are not part of a problem file" + ALIAS),
-        ("a: *x", "f:1:4: a: aliases are not part of a problem file" + ALIAS),
+        ("a: &x 1", "f:1:4: a: YAML aliases (* and &) are not allowed in a problem file" + ALIAS),
+        ("a: *x", "f:1:4: a: YAML aliases (* and &) are not allowed in a problem file" + ALIAS),
         (
             "a: !!python/object:os.system x",
-            "f:1:4: a: tags are not part of a problem file"
-            "\n  found:   'tag:yaml.org,2002:python/object:os.system'\n  allowed: plain values",
+            (
+                "f:1:4: a: YAML tags (!) are not allowed in a problem file\n"
+                "  found:   'tag:yaml.org,2002:python/object:os.system'\n"
+                "  allowed: values without tags"
+            ),
         ),
         (
             "a: !!str 5",
-            "f:1:4: a: tags are not part of a problem file"
-            "\n  found:   'tag:yaml.org,2002:str'\n  allowed: plain values",
+            (
+                "f:1:4: a: YAML tags (!) are not allowed in a problem file\n"
+                "  found:   'tag:yaml.org,2002:str'\n"
+                "  allowed: values without tags"
+            ),
         ),
-        ("a: ! 5", "f:1:4: a: tags are not part of a problem file\n  found:   '!'\n  allowed: plain values"),
-        ("a: x\x07", "f:1:5: a control or invisible character\n  found:   U+0007\n  allowed: printable text"),
-        ("a: 1\r\nb: \u202ex", "f:2:4: a control or invisible character\n  found:   U+202E\n  allowed: printable text"),
-        ('a: "\\e[31m"', "f:1:4: a: a control character\n  found:   '\\x1b'\n  allowed: printable text"),
-        ("? [1]\n: 2", "f:1:3: a list or mapping is used as a key\n  allowed: a word or number"),
-        ("a: 1\n  - 2", "f:1:4: a: a value and a list below it\n  found:   '1 - 2'\n  allowed: one of the two"),
+        (
+            "a: ! 5",
+            (
+                "f:1:4: a: YAML tags (!) are not allowed in a problem file\n"
+                "  found:   '!'\n"
+                "  allowed: values without tags"
+            ),
+        ),
+        (
+            "a: x\x07",
+            (
+                "f:1:5: the file contains a control character or an invisible character\n"
+                "  found:   U+0007\n"
+                "  allowed: printable characters"
+            ),
+        ),
+        (
+            "a: 1\r\nb: \u202ex",
+            (
+                "f:2:4: the file contains a control character or an invisible character\n"
+                "  found:   U+202E\n"
+                "  allowed: printable characters"
+            ),
+        ),
+        (
+            'a: "\\e[31m"',
+            ("f:1:4: a: the text contains a control character\n  found:   '\\x1b'\n  allowed: printable characters"),
+        ),
+        ("? [1]\n: 2", ("f:1:3: a list or a set of keys cannot be used as a key\n  allowed: a word or number")),
+        (
+            "a: 1\n  - 2",
+            (
+                "f:1:4: a: this key has a value and a list below it\n"
+                "  found:   '1 - 2'\n"
+                "  allowed: either a value or a list"
+            ),
+        ),
         (
             "a: b: c",
-            "f:1:5: a ':' where none can be\n  found:   ': c'"
-            "\n  allowed: one 'key: value' in a line; text with ': ' in quotes",
+            (
+                "f:1:5: a ':' is not allowed here\n"
+                "  found:   ': c'\n"
+                "  allowed: one 'key: value' on a line; a text with ': ' in it needs quotation marks"
+            ),
         ),
         (
             "a: [1, 2\nb: 3",
@@ -199,13 +272,27 @@ EMPTY = "f: the file is empty\n  allowed: a mapping such as 'tmm: 1'"
         ),
         ("a: [2, 0] kN", "f:1:11: text after a closing bracket\n  found:   'kN'" + AFTER_BRACKET),
         ("a: {b: 2} // speed\nc: 1", "f:1:11: text after a closing bracket\n  found:   '// speed'" + AFTER_BRACKET),
-        ("a: 'x\nb: 3", "f:1:4: a quote is not closed\n  found:   ''x'\n  allowed: text between two equal quotes"),
+        (
+            "a: 'x\nb: 3",
+            (
+                "f:1:4: a quotation mark is not closed\n"
+                "  found:   ''x'\n"
+                "  allowed: text between two equal quotation marks"
+            ),
+        ),
         ("a: 1\nb\nc: 2", "f:2:1: a line without ':'\n  found:   'b'\n  allowed: 'key: value', with a space after ':'"),
-        ("a: @x", "f:1:4: a value cannot start with this character\n  found:   '@x'\n  allowed: text between quotes"),
-        ("a:\n  b: 1\n c: 2", "f:3:2: this does not fit the lines above\n  found:   'c: 2'" + INDENT),
+        (
+            "a: @x",
+            ("f:1:4: a value cannot begin with this character\n  found:   '@x'\n  allowed: text in quotation marks"),
+        ),
+        (
+            "a:\n  b: 1\n c: 2",
+            ("f:3:2: this line does not match the indentation or structure of the lines above\n  found:   'c: 2'")
+            + INDENT,
+        ),
         (
             "a: - 1",
-            "f:1:4: a list item '-' where none can be\n  found:   '- 1'\n  allowed: each '- item' in a line of its own",
+            ("f:1:4: a list item '-' is not allowed here\n  found:   '- 1'\n  allowed: each '- item' on its own line"),
         ),
         ("a: [1,,2]", "f:1:7: a value is missing\n  found:   ',2]'\n  allowed: a value"),
     ],
@@ -223,16 +310,18 @@ def test_the_flow_trap_is_hinted_at() -> None:
 
 @pytest.mark.usefixtures("parser")
 def test_hostile_shapes_are_bounded() -> None:
-    deep = "f:1:23: a[0][0]: nested too deeply\n  allowed: at most 20 levels"
+    deep = "f:1:23: a[0][0]: too many nested levels\n  allowed: at most 20 levels"
     assert refused("a: " + "[" * 500) == deep
-    assert "nested too deeply" in refused("a: " + "[" * 100_000)  # the parser may refuse it before the composer does
-    assert "nested too deeply" in refused("a: " + "{a: " * 100_000)
-    assert "nested too deeply" in refused("- " * 100_000)
-    assert "nested too deeply" in refused("\n".join(" " * level + "a:" for level in range(200)))
+    assert "too many nested levels" in refused(
+        "a: " + "[" * 100_000
+    )  # the parser may refuse it before the composer does
+    assert "too many nested levels" in refused("a: " + "{a: " * 100_000)
+    assert "too many nested levels" in refused("- " * 100_000)
+    assert "too many nested levels" in refused("\n".join(" " * level + "a:" for level in range(200)))
     laughs = "a: &a [x, x]\n" + "".join(
         f"{b}: &{b} [*{a}, *{a}, *{a}]\n" for a, b in zip("abcdefg", "bcdefgh", strict=True)
     )
-    assert refused(laughs).startswith("f:1:4: a: aliases are not part of a problem file")
+    assert refused(laughs).startswith("f:1:4: a: YAML aliases (* and &) are not allowed in a problem file")
 
 
 def test_too_many_values() -> None:
@@ -257,8 +346,8 @@ def file_error(path: Path | str) -> str:
 
 
 def test_files_that_cannot_be_read(tmp_path: Path) -> None:
-    assert file_error(tmp_path / "none.yaml") == "f: no such file"
-    assert file_error(tmp_path) == "f: this is a directory\n  allowed: a YAML file"
+    assert file_error(tmp_path / "none.yaml") == "f: there is no such file"
+    assert file_error(tmp_path) == ("f: this is a folder, not a file\n  allowed: a YAML file")
     assert "the file cannot be read" in file_error("a\0b")
     (loop := tmp_path / "loop").symlink_to(loop)
     assert "the file cannot be read" in file_error(loop)
@@ -288,14 +377,20 @@ def test_pipes_are_read(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("a: 1\nб: я".encode("cp1251"), "f:2:1: the file is not UTF-8 text\n  found:   byte 0xE1 at position 6"),
-        (b"\xef\xbb\xbfa: \xff", "f:1:4: the file is not UTF-8 text\n  found:   byte 0xFF at position 7"),
-        ("a: 1".encode("utf-16"), "f:1:1: the file is not UTF-8 text\n  found:   byte 0xFF at position 1"),
+        (
+            "a: 1\nб: я".encode("cp1251"),
+            ("f:2:1: the file is not text in UTF-8 encoding\n  found:   byte 0xE1 at position 6"),
+        ),
+        (b"\xef\xbb\xbfa: \xff", ("f:1:4: the file is not text in UTF-8 encoding\n  found:   byte 0xFF at position 7")),
+        (
+            "a: 1".encode("utf-16"),
+            ("f:1:1: the file is not text in UTF-8 encoding\n  found:   byte 0xFF at position 1"),
+        ),
     ],
 )
 def test_other_encodings_are_refused(tmp_path: Path, content: bytes, message: str) -> None:
     (file := tmp_path / "f.yaml").write_bytes(content)
-    assert file_error(file) == message + "\n  allowed: UTF-8; in the editor: Save with encoding, UTF-8"
+    assert file_error(file) == message + ("\n  allowed: UTF-8; in the editor choose: Save with encoding, UTF-8")
 
 
 def test_an_error_finds_its_place() -> None:

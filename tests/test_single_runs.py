@@ -143,7 +143,9 @@ def test_a_run_of_very_many_turns_is_refused():
     text = (PROBLEMS / "press-single-run.yaml").read_text().replace("from: -90, to: 270, s", "from: -90000, to: 270, s")
     with pytest.raises(ProblemError) as refused:
         build_any_problem(read_text(text, "press.yaml"))
-    assert str(refused.value).split("\n", 1)[1] == "  found:   -90000\n  allowed: within 20 turns of the x axis"
+    assert str(refused.value).split("\n", 1)[1] == (
+        "  found:   -90000\n  allowed: an angle of no more than 20 turns from the x axis"
+    )
 
 
 def test_a_run_too_slow_for_its_time_says_so_and_has_its_last_place():
@@ -183,8 +185,10 @@ def test_a_run_of_links_without_masses_is_refused():
     with pytest.raises(ProblemError) as refused:
         solve(build_any_problem(read_text(text + tail, "press.yaml")))
     assert str(refused.value).partition(": ")[2] == (
-        "dynamics.run: there is no law of motion: nothing that moves with the driver there has mass or inertia\n"
-        "  found:   at 0 deg of the driver's way\n  allowed: masses of the links, or flywheel: {inertia: 0.5}"
+        "dynamics.run: the law of motion cannot be computed: no link that moves in this position "
+        "has mass or moment of inertia\n"
+        "  found:   driver coordinate: 0 deg\n"
+        "  allowed: masses of the links, or flywheel: {inertia: 0.5}"
     )
 
 
@@ -198,9 +202,9 @@ def test_a_moment_of_a_crank_is_positive_counterclockwise_in_a_clockwise_run_too
         )
         assert results.running.run.driven[-1] == pytest.approx(40 * np.radians(30), rel=1e-9)
         assert not [text for text in collect_warnings(results) if "the run goes" in text]
-    with pytest.raises(ProblemError, match="the run does not start") as refused:
+    with pytest.raises(ProblemError, match="the machine does not start") as refused:
         solve(build_any_problem(read_text(text + tail.replace("-40", "40"), "press.yaml")))
-    assert "a larger drive (positive along the guide or counterclockwise)" in str(refused.value)
+    assert "a larger `drive` (positive along the guide or counterclockwise)" in str(refused.value)
 
 
 def of_the_run(results):

@@ -23,7 +23,7 @@ links:
 driver: {link: 1, speed: 1 rad/s}
 sketch: {at: 60, B: [250, 190]}
 """
-TWINS = "this name looks like another one, but its letters differ"
+TWINS = "this name looks like another one, but is written with other letters"
 ARITHMETIC = "\n  allowed: numbers, units, parameters, + - * / ^ ( )"
 TOP = (
     "tmm, lang, title, description, reference, shows, units, parameters, synthesis, variants, grading, points, guides, "
@@ -58,8 +58,12 @@ def told(old: str, new: str) -> str:
         (
             "along: CD",
             "along: СD",
-            "x.yaml:21:56: links.2.slides.along: two points of one link are wanted\n  found:   'СD'"
-            "\n  allowed: two of C, D\n  did you mean 'CD' in Latin letters?",
+            (
+                "x.yaml:21:56: links.2.slides.along: expected two points of the same link\n"
+                "  found:   'СD'\n"
+                "  allowed: two of these: C, D\n"
+                "  did you mean 'CD' in Latin letters?"
+            ),
         ),
     ],
 )
@@ -84,7 +88,11 @@ def test_keys_in_another_language(key: str, word: str, place: str, allowed: str)
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("tmm: 1\n", "", "x.yaml:1:1: tmm: the key `tmm` is missing\n  allowed: version of this format; write tmm: 1"),
+        (
+            "tmm: 1\n",
+            "",
+            ("x.yaml:1:1: tmm: the key `tmm` is missing\n  allowed: version of the file format; write tmm: 1"),
+        ),
         (
             "1 rad/s",
             "70 об.мин",
@@ -103,32 +111,41 @@ def test_keys_in_another_language(key: str, word: str, place: str, allowed: str)
         (
             "at: 60",
             "at: pi/3 rad",
-            "x.yaml:8:14: sketch.at: an angle is wanted here"
+            "x.yaml:8:14: sketch.at: expected here: an angle"
             "\n  found:   'pi/3 rad', a number (1.0472)"
             "\n  allowed: an angle, e.g. 30 deg or 0.5 rad; pi is in radians already",
         ),
         (
             "length: 100",
             "length: (40 + 60) mm",
-            "x.yaml:4:31: links.1.length: a unit follows a number only: here write * 1 mm"
-            "\n  found:   '(40 + 60) mm', at 'mm'" + ARITHMETIC,
+            (
+                "x.yaml:4:31: links.1.length: a unit may stand only after a number; write * 1 mm here\n"
+                "  found:   '(40 + 60) mm', the error is at 'mm'"
+            )
+            + ARITHMETIC,
         ),
         (
             "at: 60",
             "at: atan2(1, 2)",
-            "x.yaml:8:14: sketch.at: a comma in brackets needs quotes here"
-            "\n  found:   'atan2(1, 2)'\n  allowed: \"atan2(1, 2)\"",
+            (
+                "x.yaml:8:14: sketch.at: an expression with a comma needs quotation marks here\n"
+                "  found:   'atan2(1, 2)'\n"
+                '  allowed: "atan2(1, 2)"'
+            ),
         ),
         (
             "[300, 0]",
             "(300, 0)",
-            "x.yaml:2:24: points.D: two coordinates [x, y] are wanted\n  found:   '(300, 0)'\n  allowed: [300, 0]",
+            ("x.yaml:2:24: points.D: expected two coordinates [x, y]\n  found:   '(300, 0)'\n  allowed: [300, 0]"),
         ),
         (
             "[300, 0]",
             "[hypot(300, 0), 0]",
-            "x.yaml:2:25: points.D[0]: a comma in brackets needs quotes here"
-            "\n  found:   'hypot(300, 0)'\n  allowed: \"hypot(300, 0)\"",
+            (
+                "x.yaml:2:25: points.D[0]: an expression with a comma needs quotation marks here\n"
+                "  found:   'hypot(300, 0)'\n"
+                '  allowed: "hypot(300, 0)"'
+            ),
         ),
     ],
 )
@@ -143,7 +160,7 @@ def test_what_to_write_instead(old: str, new: str, message: str) -> None:
 def test_a_bare_per_cent_is_no_allowed_difference(lever: str, found: str, allowed: str) -> None:
     """`lever: 5` would allow the lever to differ from the force plan by 500 %."""
     assert told("tmm: 1\n", f"tmm: 1\nchecks: {{lever: {lever}}}\n") == (
-        f"x.yaml:2:17: checks.lever: a share is not above one\n  found:   {found}\n  allowed: {allowed}"
+        f"x.yaml:2:17: checks.lever: a fraction cannot be greater than 1\n  found:   {found}\n  allowed: {allowed}"
     )
 
 
@@ -183,7 +200,7 @@ def test_a_place_that_a_search_varies_is_an_angle() -> None:
     with pytest.raises(ProblemError) as caught:
         read_task(read_text(text, "x.yaml"))
     assert str(caught.value) == (
-        "x.yaml:9:100: synthesis.objective.at[0]: an angle is wanted here\n  found:   'a0', a length (45 mm)\n"
+        "x.yaml:9:100: synthesis.objective.at[0]: expected here: an angle\n  found:   'a0', a length (45 mm)\n"
         "  allowed: an angle, e.g. 30 deg or 0.5 rad"
     )
 
@@ -219,8 +236,9 @@ def test_tasks_that_no_mechanism_meets_end_at_once(task: str, message: str) -> N
 
 def test_the_group_that_was_sketched_wrong_is_blamed_and_not_a_later_one() -> None:
     assert refusal(changed("D: [0.23*CD, 0.97*CD - OC]", "D: [140, -680]")) == (
-        "x.yaml:26:25: sketch.D: the sketch fits no assembly\n  found:   [140, -680]\n"
-        "  allowed: about [-148.829, -982.732] with the driver at 30 deg"
+        "x.yaml:26:25: sketch.D: the sketch does not match any assembly of the mechanism\n"
+        "  found:   [140, -680]\n"
+        "  allowed: about [-148.829, -982.732] when the driver coordinate is 30 deg"
     )
 
 
@@ -251,26 +269,38 @@ def test_no_step_of_arithmetic_leaves_the_numbers(call: str) -> None:
         (
             "length: 100",
             "length: 1e200",
-            "x.yaml:4:31: links.1.length: this is too large for a mechanism"
-            "\n  found:   1e200\n  allowed: 1e+15 mm or less",
+            (
+                "x.yaml:4:31: links.1.length: this value is too large for a mechanism\n"
+                "  found:   1e200\n"
+                "  allowed: 1e+15 mm or less"
+            ),
         ),
         (
             "length: 100",
             "length: 1e-200",
-            "x.yaml:4:31: links.1.length: this is too small for a mechanism"
-            "\n  found:   1e-200\n  allowed: 1e-17 mm or more",
+            (
+                "x.yaml:4:31: links.1.length: this value is too small for a mechanism\n"
+                "  found:   1e-200\n"
+                "  allowed: 1e-17 mm or more"
+            ),
         ),
         (
             "1 rad/s",
             "1e160 rpm",
-            "x.yaml:7:26: driver.speed: this is too large for a mechanism"
-            "\n  found:   '1e160 rpm'\n  allowed: 1e+12 rad/s or less",
+            (
+                "x.yaml:7:26: driver.speed: this value is too large for a mechanism\n"
+                "  found:   '1e160 rpm'\n"
+                "  allowed: 1e+12 rad/s or less"
+            ),
         ),
         (
             "at: 60",
             "at: 6e19",
-            "x.yaml:8:14: sketch.at: this is too large for a mechanism"
-            "\n  found:   6e19\n  allowed: 5.72958e+07 deg or less",
+            (
+                "x.yaml:8:14: sketch.at: this value is too large for a mechanism\n"
+                "  found:   6e19\n"
+                "  allowed: 5.72958e+07 deg or less"
+            ),
         ),
     ],
 )
@@ -322,9 +352,10 @@ def test_a_bare_length_or_per_cent_is_no_share(old: str, number: str, at: str, p
     place, _, where = at.partition(": ")
     new = old[: old.index("at: ")] + f"at: {number}}}"
     assert refusal(LOADED.replace(old, new)) == (
-        f"x.yaml:{place}: {where}.at: a share of the way from {points[0]} to {points[1]} is wanted here\n"
+        f"x.yaml:{place}: {where}.at: expected a fraction of the distance from {points[0]} to {points[1]}\n"
         f"  found:   {number}\n"
-        f"  allowed: e.g. 0.5; with its unit {number} %, or {number} mm for a distance from {points[0]}"
+        f"  allowed: e.g. 0.5, or {number} % if a percentage is meant; "
+        f"for a distance from {points[0]} write {number} mm"
     )
 
 

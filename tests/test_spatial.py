@@ -513,19 +513,21 @@ def test_links_may_be_counted_named_or_left_out_and_local_freedoms_told():
     [
         (
             "pairs: {A: {between: [0, 1], kind: sferical}}",
-            "x.yaml:4:40: structure.spatial.pairs.A.kind: this word is not known here\n"
-            "  found:   'sferical'\n"
-            "  allowed: turning, sliding, screw, cylindrical, spherical with a pin, universal, spherical, planar, "
-            "sphere in cylinder, cylinder on plane, sphere on plane\n"
-            "  did you mean 'spherical'?",
+            (
+                "x.yaml:4:40: structure.spatial.pairs.A.kind: this value is not allowed here\n"
+                "  found:   'sferical'\n"
+                "  allowed: turning, sliding, screw, cylindrical, spherical with a pin, universal, "
+                "spherical, planar, sphere in cylinder, cylinder on plane, sphere on plane\n"
+                "  did you mean 'spherical'?"
+            ),
         ),
         (
             "links: [1, 2]\npairs: {A: {between: [0, 1], kind: turning}}",
-            "x.yaml:5:5: structure.spatial.pairs: no pairs join link 2 to the frame",
+            "x.yaml:5:5: structure.spatial.pairs: no chain of pairs joins link 2 to the frame",
         ),
         (
             "pairs: {A: {between: [1, 1], kind: turning}}",
-            "x.yaml:4:26: structure.spatial.pairs.A.between: different links are wanted\n  found:   1, 1",
+            ("x.yaml:4:26: structure.spatial.pairs.A.between: the links must be different\n  found:   1, 1"),
         ),
         (
             "links: [arm, hand]\npairs: {A: {between: [0, arm], kind: screw}, B: {between: [arm, hnad], kind: screw}}",
@@ -536,7 +538,7 @@ def test_links_may_be_counted_named_or_left_out_and_local_freedoms_told():
         ),
         (
             "pairs: {A: {between: [0, 1], kind: turning}, B: {between: [2, 3], kind: turning}}",
-            "x.yaml:4:5: structure.spatial.pairs: no pairs join link 2 to the frame",
+            "x.yaml:4:5: structure.spatial.pairs: no chain of pairs joins link 2 to the frame",
         ),
         (
             "pairs: {A: {between: [0, 1, 2], kind: turning}}",
@@ -546,19 +548,23 @@ def test_links_may_be_counted_named_or_left_out_and_local_freedoms_told():
         ),
         (
             "pairs: {A: {between: [0, 1]}}",
-            "x.yaml:4:13: structure.spatial.pairs.A: one of these keys is wanted\n  allowed: kind, freedoms",
+            ("x.yaml:4:13: structure.spatial.pairs.A: expected exactly one of these keys\n  allowed: kind, freedoms"),
         ),
         (
             "pairs: {A: {between: [0, 1], kind: turning, freedoms: 1}}",
-            "x.yaml:4:13: structure.spatial.pairs.A: one of these keys is wanted\n"
-            "  found:   kind, freedoms\n"
-            "  allowed: kind, freedoms",
+            (
+                "x.yaml:4:13: structure.spatial.pairs.A: expected exactly one of these keys\n"
+                "  found:   kind, freedoms\n"
+                "  allowed: kind, freedoms"
+            ),
         ),
         (
             "pairs: {A: {between: [0, 1], freedoms: 6}}",
-            "x.yaml:4:44: structure.spatial.pairs.A.freedoms: at most 5 is wanted\n"
-            "  found:   6\n"
-            "  allowed: instead of kind: 1 to 5 freedoms",
+            (
+                "x.yaml:4:44: structure.spatial.pairs.A.freedoms: expected a number not greater than 5\n"
+                "  found:   6\n"
+                "  allowed: instead of kind: number of degrees of freedom, 1 to 5"
+            ),
         ),
         (
             f"pairs: {PAIRS}\noutput: 3",
@@ -574,13 +580,15 @@ def test_links_may_be_counted_named_or_left_out_and_local_freedoms_told():
         ),
         (
             f"links: 1000\npairs: {PAIRS}",
-            "x.yaml:4:12: structure.spatial.links: at most 100 is wanted\n"
-            "  found:   1000\n"
-            "  allowed: moving links, names or how many; those of the pairs when left out",
+            (
+                "x.yaml:4:12: structure.spatial.links: expected a number not greater than 100\n"
+                "  found:   1000\n"
+                "  allowed: moving links: their names or their number; default: the links named in `pairs`"
+            ),
         ),
         (
             f"links: [0, 1]\npairs: {PAIRS}",
-            "x.yaml:4:13: structure.spatial.links[0]: this name is taken\n  found:   '0'",
+            ("x.yaml:4:13: structure.spatial.links[0]: this name is already in use\n  found:   '0'"),
         ),
         (
             f"pairs: {PAIRS}\nwnated: 1",
@@ -617,7 +625,7 @@ def test_a_block_with_nothing_in_it_is_a_bad_chain_and_no_planar_linkage(tmp_pat
     file.write_text("tmm: 1\nstructure:\n", encoding="utf-8")
     done = tmm("structure", file)
     assert done.returncode == 2
-    assert "structure: keys with values are wanted" in done.stderr
+    assert "structure: expected keys with values" in done.stderr
 
 
 def test_untrusted_chains_are_bounded():
@@ -645,7 +653,9 @@ def test_what_needs_dimensions_says_that_there_are_none():
     for command in ("kinematics", "forces", "explain"):
         done = tmm(command, "problems/swashplate.yaml")
         assert done.returncode == 2
-        assert "structure: a chain given by pairs alone has no dimensions: there is only its structure" in done.stderr
+        assert (
+            "structure: this file gives only links and pairs, without dimensions: only the structure can be analysed"
+        ) in done.stderr
 
 
 def test_run_writes_the_structure_of_a_chain_and_check_compares_it(tmp_path):

@@ -128,7 +128,9 @@ def test_near_a_dead_position_the_speed_is_that_of_the_table(between):
 def test_accelerations_may_jump_but_speeds_may_not():
     told = refused("speed: {against: crank angle, table: [[0, 4], [90, 4], [90, 6], [360, 4]]}")
     assert told == (
-        "x.yaml:9:75: driver.speed.table[2][0]: the first column must grow\n  found:   90\n  allowed: each value once"
+        "x.yaml:9:75: driver.speed.table[2][0]: the values in the first column must increase\n"
+        "  found:   90\n"
+        "  allowed: each value once"
     )
     results = solved(
         "speed: {against: crank angle, table: [[0, 4], [360, 4]]}, "
@@ -150,40 +152,59 @@ def test_what_was_understood_of_it_is_told():
     [
         (
             "speed: {against: crank angle, table: [[0, 4], [180, -8], [360, 4]]}",
-            "x.yaml:9:71: driver.speed.table[1][1]: a speed is counted in the driver's sense, which is one alone\n"
-            "  found:   -8\n  allowed: zero or more; turns: cw for the other sense",
+            (
+                "x.yaml:9:71: driver.speed.table[1][1]: speeds in a table must not be negative: the driver "
+                "moves in one sense\n"
+                "  found:   -8\n"
+                "  allowed: zero or more; for the other sense of rotation turns: cw"
+            ),
         ),
         (
             "speed: {against: crank angle, table: [[0, 4], [180, 8], [360, 5]]}",
-            "x.yaml:9:81: driver.speed.table[2][1]: the table does not close: its cycle ends otherwise than it begins\n"
-            "  found:   5\n  allowed: 4, as in the first row",
+            (
+                "x.yaml:9:81: driver.speed.table[2][1]: the table covers the whole cycle, but its last "
+                "value differs from the first\n"
+                "  found:   5\n"
+                "  allowed: 4, the value of the first row"
+            ),
         ),
         (
             "speed: {against: crank angle, table: [[0, 4], [180, 8], [400, 4]]}",
-            "x.yaml:9:76: driver.speed.table[2][0]: this row is never reached: it is more than a cycle after the first "
-            "one\n"
-            "  found:   400\n  allowed: at most 360 deg; a longer cycle is told by cycle: 2 turns",
+            (
+                "x.yaml:9:76: driver.speed.table[2][0]: this row is never used: it lies more than one "
+                "cycle after the first row\n"
+                "  found:   400\n"
+                "  allowed: at most 360 deg; for a longer cycle write cycle: 2 turns"
+            ),
         ),
         (
             "speed: {against: crank angle, table: [[0, 4], [180, 8], [330, 5]]}",
-            "x.yaml:9:49: driver.speed.table: the table of speeds does not reach over all positions\n"
-            "  found:   the table goes from 0 deg to 330 deg\n"
-            "  allowed: a last row at 360 deg with the speed of the first, or positions: {at: [...]} within it",
+            (
+                "x.yaml:9:49: driver.speed.table: the table of speeds does not cover all positions\n"
+                "  found:   the table covers 0 deg to 330 deg\n"
+                "  allowed: a last row at 360 deg with the speed of the first row, or positions: {at: "
+                "[...]} within the table"
+            ),
         ),
         (
             "speed: {against: crank angle, table: [[0, 4], [90, 0.1], [100, 9], [360, 4]]}",
-            "x.yaml:9:58: driver.speed.table[0][0]: between this row and the next the smooth curve of squares "
-            "of speeds "
-            "goes below zero\n  found:   0\n  allowed: between: linear, or more rows there",
+            (
+                "x.yaml:9:58: driver.speed.table[0][0]: the smooth curve through the squares of the speeds "
+                "falls below zero between this row and the next\n"
+                "  found:   0\n"
+                "  allowed: between: linear, or more rows between these two"
+            ),
         ),
         (
             "speed: {against: crank angle, table: [[0, 4], [360, 4]]}, acceleration: 3",
-            "x.yaml:9:77: driver.acceleration: an acceleration goes with a speed at position 0, a table of them with a "
-            "table of speeds",
+            (
+                "x.yaml:9:77: driver.acceleration: speed and acceleration must be given in the same way: "
+                "two values at position 0, or two tables"
+            ),
         ),
         (
             "speed: {against: crank angle, table: [[0, 0], [360, 0]]}",
-            "x.yaml:9:49: driver.speed.table: the driver stands still in all rows",
+            "x.yaml:9:49: driver.speed.table: the speed of the driver is zero in all rows",
         ),
     ],
 )
@@ -196,13 +217,19 @@ def test_what_cannot_be_is_refused_with_its_place(driver, told):
     [
         (
             "dynamics: {delta: 1/30}",
-            "x.yaml:9:19: driver.speed: a law of motion is found, or it is given by a table\n"
-            "  allowed: one speed beside dynamics",
+            (
+                "x.yaml:9:19: driver.speed: a table of speeds and the block `dynamics` exclude each other: "
+                "the law of motion is either given or computed\n"
+                "  allowed: a single speed together with `dynamics`"
+            ),
         ),
         (
             "grading: {answers: [{of: H}]}",
-            "x.yaml:9:19: driver.speed: variants and searches know drivers of one speed and one acceleration only\n"
-            "  allowed: speed: 82 rpm",
+            (
+                "x.yaml:9:19: driver.speed: for variants and optimization the motion of the driver must be "
+                "given by one speed and one acceleration, without tables and without `dynamics`\n"
+                "  allowed: speed: 82 rpm"
+            ),
         ),
     ],
 )

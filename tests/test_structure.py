@@ -358,14 +358,14 @@ def test_a_roller_is_a_link_with_a_local_freedom(tmp_path):
     file.write_text(text, encoding="utf-8")
     done = tmm("structure", str(file))
     assert done.returncode == 2
-    assert "cams.cam.roller: a link has this number already" in done.stderr
+    assert "cams.cam.roller: a link already has this number" in done.stderr
     one_roller = Path("problems/cam-lever.yaml").read_text(encoding="utf-8")
     block = one_roller[one_roller.index("  cam:\n") : one_roller.index("driver:")]
     file.write_text(one_roller.replace(block, block + block.replace("  cam:\n", "  cam2:\n")), encoding="utf-8")
     done = tmm("structure", str(file))
     assert done.returncode == 2
-    assert "cams.cam2.roller: a link has this number already" in done.stderr
-    assert "found:   '5'" in done.stderr and "allowed: a number of its own for each roller" in done.stderr
+    assert "cams.cam2.roller: a link already has this number" in done.stderr
+    assert "found:   '5'" in done.stderr and "allowed: a different number for each roller" in done.stderr
 
 
 @pytest.mark.parametrize(("c", "motion"), [([300, 100], "translation"), ([252, -88], "plane motion")])

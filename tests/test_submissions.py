@@ -157,7 +157,7 @@ HEAD = "quantity,position,value\n"
         (HEAD + "R_43,7,1\n", "not asked, so not counted: R_43 at 7 (R_34 is asked)"),
         (HEAD + "v of e,7,1\n", "there is no quantity of this name; found: 'v of e'; did you mean 'v of E'?"),
         (HEAD + "M_b,7,1\nM_b,7,2\n", "M_b at 7 is given twice: the first counts"),
-        (HEAD + "H,,nan\n", "H: not a finite number; found: 'nan'"),
+        (HEAD + "H,,nan\n", "H: the number is not finite; found: 'nan'"),
         (HEAD + "H,,(1; 2)\n", "H: one number is wanted here; found: '(1; 2)'"),
         (HEAD + "M_b,7,3 foo\n", "M_b at 7: unknown unit; found: 'foo'; allowed: e.g. mm, deg, rpm, kg, N, N*m"),
         (
@@ -202,18 +202,33 @@ def test_far_more_cells_than_are_asked_are_not_read(tmp_path, monkeypatch):
         (
             "Ana.yaml",
             "a: &x [1]\nb: *x\n",
-            "Ana.yaml:1:4: a: aliases are not part of a problem file; allowed: the "
-            "value written out, or a parameter; text that starts with * or & in quotes",
+            (
+                "Ana.yaml:1:4: a: YAML aliases (* and &) are not allowed in a problem file; allowed: the "
+                "value itself, or a parameter; a text that begins with * or & needs quotation marks"
+            ),
         ),
-        ("Ana.yaml", "a: " + "[" * 500, "Ana.yaml:1:23: a[0][0]: nested too deeply; allowed: at most 20 levels"),
+        ("Ana.yaml", "a: " + "[" * 500, "Ana.yaml:1:23: a[0][0]: too many nested levels; allowed: at most 20 levels"),
         (
             "Ana.yaml",
             "a: !!python/object/apply:os.system [ls]",
-            "Ana.yaml:1:4: a: tags are not part of a problem file; "
-            "found: 'tag:yaml.org,2002:python/object/apply:os.system'; allowed: plain values",
+            (
+                "Ana.yaml:1:4: a: YAML tags (!) are not allowed in a problem file; found: "
+                "'tag:yaml.org,2002:python/object/apply:os.system'; allowed: values without tags"
+            ),
         ),
-        ("Ana.yaml", "H: 1\nH: 2\n", "Ana.yaml:2:1: H: duplicate key; found: 'H'; allowed: the first is at line 1"),
-        ("Ana.yaml", "- 1\n", "Ana.yaml:1:1: the top level is not a mapping; found: [1]; allowed: lines 'key: value'"),
+        (
+            "Ana.yaml",
+            "H: 1\nH: 2\n",
+            ("Ana.yaml:2:1: H: this key occurs twice; found: 'H'; allowed: each key once; the first is on line 1"),
+        ),
+        (
+            "Ana.yaml",
+            "- 1\n",
+            (
+                "Ana.yaml:1:1: the top level of the file must consist of keys with values; found: [1]; "
+                "allowed: lines 'key: value'"
+            ),
+        ),
         (
             "Ana.yaml",
             "answers: [1, 2]\n",

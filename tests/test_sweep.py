@@ -197,7 +197,7 @@ def test_a_double_crank_goes_but_its_output_has_no_swing():
     turning = sweep("crank-rocker", ["l4=100..400:2", "l1=100..300:2"], ["psi"])
     (row,) = np.flatnonzero(np.all(turning.points == [100, 300], axis=1))
     assert turning.state[row] in (WORKS, LIMIT) and np.isnan(turning.values[row, 0])
-    assert turning.why[row] == "there is no working stroke"
+    assert turning.why[row] == "this mechanism has no working stroke"
 
 
 def test_an_output_that_turns_back_more_often_is_still_told():
@@ -234,7 +234,7 @@ def test_an_output_that_turns_back_more_often_is_still_told():
         ),
         (
             ["n1=60..80 kg"],
-            "--over n1=60..80 kg: an angular speed is wanted here\n  found:   'n1=60..80 kg'\n"
+            "--over n1=60..80 kg: expected here: an angular speed\n  found:   'n1=60..80 kg'\n"
             "  allowed: an angular speed, e.g. 82 rpm or 8.6 rad/s",
         ),
         (["OA=8..9", "OA=80..90"], "--over OA=80..90: this is swept twice\n  found:   'OA'"),

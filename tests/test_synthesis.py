@@ -55,7 +55,7 @@ REFUSED = {
         "synthesis.ratio: the crank rotates fully only if the rod is longer than the crank\n  found:   0.5\n"
     ),
     "{task: crank-slider, stroke: 0, nu: 0.2, ratio: 3}": (
-        "synthesis.stroke: this is too small for a mechanism\n  found:   0"
+        "synthesis.stroke: this value is too small for a mechanism\n  found:   0"
     ),
     "{task: crank-slider, stroke: 50, e: 80, k: 1.5}": (
         "synthesis.k: the crank does not rotate fully: k is too large for this stroke and offset\n  found:   1.5\n"
@@ -73,13 +73,16 @@ REFUSED = {
     ),
     "{task: crank-slider, strok: 20, k: 1.1, ratio: 3}": "synthesis.strok: unknown key\n  found:   'strok'\n"
     "  allowed: task, names, stroke, speed, crank_speed, ratio, nu, k, pressure, e\n  did you mean 'stroke'?",
-    "{task: crank-slidr, stroke: 20}": "synthesis.task: this word is not known here\n  found:   'crank-slidr'\n",
+    "{task: crank-slidr, stroke: 20}": ("synthesis.task: this value is not allowed here\n  found:   'crank-slidr'\n"),
     "{task: [a]}": "synthesis.task: ",
     "{task: {a: b}}": "synthesis.task: ",
     "{task: 3}": "synthesis.task: ",
     "{stroke: 20}": "synthesis.task: the key `task` is missing\n",
-    "3": "synthesis: keys with values are wanted\n  found:   3\n"
-    "  allowed: a task whose answer becomes parameters: {task: ...}",
+    "3": (
+        "synthesis: expected keys with values\n"
+        "  found:   3\n"
+        "  allowed: a task whose answer becomes parameters: {task: ...}"
+    ),
     "{task: crank-slider, stroke: 20 kg, k: 1.1, ratio: 3}": (
         "synthesis.stroke: a length is wanted here\n"
         "  found:   '20 kg', a mass (20 kg)\n"
@@ -97,14 +100,15 @@ REFUSED = {
         "  allowed: different names"
     ),
     "{task: crank-slider, stroke: 20, k: 1.1, ratio: 3, names: {r: 2a}}": (
-        "synthesis.names.r: this cannot be the name of a parameter\n"
+        "synthesis.names.r: invalid name of a parameter\n"
         "  found:   '2a'\n"
-        "  allowed: letters, figures and _, a letter first"
+        "  allowed: letters, digits and _, beginning with a letter"
     ),
     "{task: crank-slider, stroke: 120, k: 1.2, ratio: 3}\nparameters: {e: 3}": (
-        "parameters.e: parameter e is given, although the synthesis crank-slider computes it (as e)\n"
+        "parameters.e: parameter e is given, although the synthesis crank-slider computes it (as "
+        "e)\n"
         "  found:   3\n"
-        "  allowed: only one of the two; or another name: synthesis: {names: {e: ...}}"
+        "  allowed: only either a value or a list; or another name: synthesis: {names: {e: ...}}"
     ),
     "{task: crank-slider, stroke: H, k: 1.2, ratio: 3}\nparameters: {H: 2*OA, OA: r}": (
         "synthesis.stroke: the task depends on parameters that the synthesis itself finds\n"
@@ -121,10 +125,10 @@ NO_MECHANISM = {
     "crank-slider, speed: 1e200, crank_speed: 1e-200, nu: 0, ratio: 4": "speed: this is too large",
     "four-bar-by-k, l3: 1e-250, psi1: 10, psi2: 70, k: 1.2": "l3: this is too small",
     "four-bar-by-k, l3: 1e12, psi1: 10, psi2: 70, k: 1.2": (
-        "l3: this is too large for a mechanism\n  found:   1e12\n  allowed: 1e+09 mm or less"
+        "l3: this value is too large for a mechanism\n  found:   1e12\n  allowed: 1e+09 mm or less"
     ),
     "four-bar-by-k, l3: 100, psi1: 10, psi2: 70, k: 1.2, near: [1e12, 0]": (
-        "near[0]: this is too large for a mechanism\n  found:   1e12"
+        "near[0]: this value is too large for a mechanism\n  found:   1e12"
     ),
     "four-bar-by-k, l3: 1e250, psi1: 10, psi2: 70, k: 1.2": "l3: this is too large",
     "four-bar-by-k, l3: 100, psi1: 10, psi2: 70, k: 1.2, near: [1e200, 0]": "near[0]: this is too large",

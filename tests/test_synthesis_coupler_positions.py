@@ -332,8 +332,9 @@ REFUSED = {
         "  allowed: nearest feasible value: B[1]: 1 mm"
     ),
     "positions: [[0, 0, 0], [60, 40, 75]], B: [0, 0], AB: 70, C: [50, 0], DC: 150, DC_side: right": (
-        "synthesis.positions: branch defect: some positions belong to the other assembly of the four-bar\n"
-        "  found:   a list of 2\n"
+        "synthesis.positions: branch defect: some positions belong to the other assembly of the "
+        "four-bar\n"
+        "  found:   a list, number of items: 2\n"
         "  allowed: nearest feasible value: positions[1][2]: 69.3"
     ),
     "positions: [[0, 0, 0], [50, 20, 0], [100, 10, 0]], B: [0, 0], C: [0, 0]": (

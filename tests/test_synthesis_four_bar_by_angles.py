@@ -402,7 +402,7 @@ REFUSED = {
         "synthesis.choose: there is no solution with this number, or it has a defect\n  found:   2\n  allowed: 1"
     ),
     "pairs: [[20, 35], [35, 45], [50, 60]], l4: -100": (
-        "synthesis.l4: this is too small for a mechanism\n  found:   -100\n  allowed: 0.001 mm or more"
+        "synthesis.l4: this value is too small for a mechanism\n  found:   -100\n  allowed: 0.001 mm or more"
     ),
     "function: log(x), x: [1, 2], input: [30, 120], output: [60, 120], l4: 100": (
         "synthesis.function: unknown function\n  found:   'log(x)'\n"
@@ -411,9 +411,9 @@ REFUSED = {
         "synthesis.function: unknown function\n  found:   ''\n  allowed: log10(x), ln(x), exp(x), "
     ),
     "pairs: [[0, 0], [10, 12], [20, 22], [30, 34], [40, 42], [50, 55]], psi0: 20, l4: 100": (
-        "synthesis.pairs: no four-bar has the smallest error for these pairs: it keeps decreasing as the "
-        "links become longer, or as the input link comes closer to locking\n"
-        "  found:   a list of 6"
+        "synthesis.pairs: no four-bar has the smallest error for these pairs: it keeps decreasing "
+        "as the links become longer, or as the input link comes closer to locking\n"
+        "  found:   a list, number of items: 6"
     ),
     "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, l3: 80, phi0: 5": (
         "synthesis.phi0: three pairs and two lengths determine phi0 too\n  found:   phi0\n  allowed: psi0"

@@ -328,7 +328,7 @@ REFUSED = [
     ),
     (", l4: 900", {}, ".l4: no pivot A on the admissible arcs meets this condition", "900", "nearest feasible value: "),
     (", l4: 100", {}, ".l4: no pivot A on the admissible arcs meets this condition", "100", "nearest feasible value: "),
-    (", l4: -3", {}, ".l4: this is too small for a mechanism", "-3", "0.001 mm or more"),
+    (", l4: -3", {}, ".l4: this value is too small for a mechanism", "-3", "0.001 mm or more"),
     (
         ", l4: 900, turns: ccw",
         {},

@@ -230,14 +230,14 @@ REFUSED = {
     "  objective: pressure\n  constraints: [{of: stroke, equal: 10}]\n  generations: 20": (
         "no mechanism was found within the bounds that satisfies this"
     ),
-    "  objective: presure": "this word is not known here",
+    "  objective: presure": "this value is not allowed here",
     "  objective: {of: reaction, pair: X}": "there is no pair of that name",
     "  objective: {of: path, point: A}": "the key `through` is missing",
     "  objective: {of: law, link: 3, at: [1, 2], values: [3]}": "at and values must have the same number of values",
     "  objective: {of: mass, pair: A}": "the quantity mass has no key pair",
     "  objective: mass\n  constraints: [{of: k}]": "a constraint needs a bound",
     "  objective: mass\n  constraints: [{of: k, least: 2, most: 1}]": "the lower bound exceeds the upper bound",
-    "  objective: mass\n  constraints: [{of: k, least: 2 mm}]": "a number is wanted here",
+    "  objective: mass\n  constraints: [{of: k, least: 2 mm}]": "expected a number here",
 }
 
 

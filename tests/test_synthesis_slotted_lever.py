@@ -245,8 +245,8 @@ REFUSED_LEVERS = {
         ".swing: with a fully rotating crank the swing angle of the lever must be less than 180 deg\n"
         "  found:   '190 deg'"
     ),
-    "CB: 500, k: 1.3, OC: -2": (".OC: this is too small for a mechanism\n  found:   -2"),
-    "CB: 500, k: 1.3, OA: -2": (".OA: this is too small for a mechanism\n  found:   -2"),
+    "CB: 500, k: 1.3, OC: -2": (".OC: this value is too small for a mechanism\n  found:   -2"),
+    "CB: 500, k: 1.3, OA: -2": (".OA: this value is too small for a mechanism\n  found:   -2"),
     "CB: 500, k: 1.3, OC: 200, OA: 20": (
         ": these keys do not determine a mechanism; remove: OA or OC\n  found:   OC, OA\n"
         "  allowed: OC; or OA; or within"
@@ -281,14 +281,14 @@ REFUSED_SHAPERS = {
         "stroke divided by that of the fast one\n"
         "  found:   1"
     ),
-    "stroke: -400, k: 1.5, OC: 350, DE: 200": (".stroke: this is too small for a mechanism\n  found:   -400"),
+    "stroke: -400, k: 1.5, OC: 350, DE: 200": (".stroke: this value is too small for a mechanism\n  found:   -400"),
     "stroke: 400, k: 1.5, OC: 500, DE: 200": (
         ".OC: the sliding block would pass the hinge D of the connecting rod\n  found:   500"
     ),
     "stroke: 400, k: 1.5, OA: 155, DE: 200": (
         ".OA: the sliding block would pass the hinge D of the connecting rod\n  found:   155"
     ),
-    "stroke: 400, k: 1.5, OA: 0, DE: 200": (".OA: this is too small for a mechanism\n  found:   0"),
+    "stroke: 400, k: 1.5, OA: 0, DE: 200": (".OA: this value is too small for a mechanism\n  found:   0"),
     "stroke: 400, k: 1.5, frame_ratio: 0.8, DE: 200": (
         ".frame_ratio: the sliding block would pass the hinge D of the connecting rod\n  found:   0.8"
     ),

@@ -117,7 +117,7 @@ MESSAGES = {
     "no step": ("n2: {from: 60 rpm, to: 80 rpm}", "vary.n2: [low, high], {from, to, step} or {among: [...]} is wanted"),
     "both": ("n2: {from: 60 rpm, among: [2 rpm, 3 rpm]}", "[low, high], {from, to, step} or {among: [...]} is wanted"),
     "one value": ("n2: {among: [60 rpm]}", "with a single value the parameter does not vary", "found:   '60 rpm'"),
-    "no value": ("n2: {among: []}", "vary.n2.among: there is nothing here", "the values themselves"),
+    "no value": ("n2: {among: []}", "vary.n2.among: nothing is given here", "the values themselves"),
     "misspelt": ("n2: {amogn: [60 rpm]}", "unknown key", "did you mean 'among'?"),
     "three bounds": ("n2: [1, 2, 3]", "these are not two bounds", "values to choose from: {among: [...]}"),
     "a number": ("n2: 3", "[low, high], {from, to, step} or {among: [...]} is wanted", "found:   3"),
@@ -214,9 +214,12 @@ def test_where_few_values_do_the_nearest_stroke_that_is_told_does_it(limit, key,
 @pytest.mark.parametrize(
     "varies, said",
     [
-        ("z: {among: [25, 25.5, 26]}", "a number of teeth is whole"),
+        ("z: {among: [25, 25.5, 26]}", "a number of teeth must be a whole number"),
         ("z: {from: -25, to: 25, step: 1}", "a number cannot be zero"),
-        ("z: {among: [25, 25.5, 26, 27]}", "with z = 25.5 the problem file is invalid: a number of teeth is whole"),
+        (
+            "z: {among: [25, 25.5, 26, 27]}",
+            "with z = 25.5 the problem file is invalid: a number of teeth must be a whole number",
+        ),
     ],
 )
 def test_numbers_that_the_file_refuses_are_told(varies, said):
@@ -245,10 +248,9 @@ def test_a_parameter_that_spoils_the_dimensions_of_a_passive_link_is_refused():
             read_text(text_of("parallel-couplers", (("parameters: {DE: 300}", "parameters: {}"),), task), "x.yaml")
         )
     assert str(caught.value) == (
-        "x.yaml:12:9: synthesis.vary: with every parameter in the middle of its bounds, link 1 cannot "
-        "be driven: pairs or "
-        "other drivers hold it already\n"
-        "  found:   W = 3*4 - 2*6 = 0; over-held: links 0, 1, 2, 3, 4\n"
+        "x.yaml:12:9: synthesis.vary: with every parameter in the middle of its bounds, link 1 "
+        "cannot be a driver: pairs or other drivers already determine its motion\n"
+        "  found:   W = 3*4 - 2*6 = 0; links with redundant constraints: 0, 1, 2, 3, 4\n"
         "  allowed: W = 1"
     )
 
@@ -259,7 +261,7 @@ def test_bounds_of_a_number_of_teeth_are_refused():
         (("teeth: [120, 40], module: 2", "teeth: [z1, 40]"),),
         "vary: {z1: [99.5, 140.2]}\n  objective: stroke",
     )
-    assert "a number of teeth is whole" in refusal_of(text)
+    assert "a number of teeth must be a whole number" in refusal_of(text)
 
 
 def test_the_choice_is_not_settled_before_what_is_free_is_polished():

@@ -144,7 +144,7 @@ def test_a_parameter_may_be_set_beside_the_file():
             "parameters.OA: decimal comma: write 1.5\n  found:   '1,5'\n"
             "  allowed: a decimal point; a list is written [1, 5]",
         ),
-        ("OA", "a name and a value are wanted\n  allowed: --set OA=120"),
+        ("OA", ("expected a name and a value\n  allowed: --set OA=120")),
     ],
 )
 @pytest.mark.parametrize("command", ["run", "structure", "kinematics", "forces", "explain", "synthesis"])
@@ -156,7 +156,7 @@ def test_a_setting_is_refused_as_in_the_file(command, setting, message):
 
 def test_a_parameter_is_set_once():
     done = tmm("structure", SHAPER, "--set", "OA=1", "--set", "OA=2")
-    assert done.stderr.startswith("error: --set OA=2: parameters.OA: this is set twice\n")
+    assert done.stderr.startswith("error: --set OA=2: parameters.OA: this parameter is set twice\n")
 
 
 @pytest.mark.parametrize("command", [(), ("run",), ("explain",), ("bench",), ("bench", "speed"), ("schema",)])

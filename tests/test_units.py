@@ -77,9 +77,12 @@ def test_units_as_people_write_them(texts: str, kind: str, factor: float) -> Non
         ("MM", "unknown unit\n  found:   'MM'\n  allowed: e.g. mm, deg, rpm, kg, N, N*m\n  did you mean 'mm'?"),
         ("furlong", "unknown unit\n  found:   'furlong'\n  allowed: e.g. mm, deg, rpm, kg, N, N*m"),
         ("", "a unit is missing\n  found:   ''\n  allowed: e.g. mm, deg, rpm, kN"),
-        ("/m", "not a unit\n  found:   '/m'\n  allowed: e.g. mm, deg, rpm, kN, N*m, kg*m^2, m/s^2"),
-        ("m/", "not a unit\n  found:   'm/'\n  allowed: e.g. mm, deg, rpm, kN, N*m, kg*m^2, m/s^2"),
-        ("m^99999999999", "not a unit: the power is too large\n  found:   'm^99999999999'\n  allowed: powers up to 4"),
+        ("/m", ("this is not a valid unit\n  found:   '/m'\n  allowed: e.g. mm, deg, rpm, kN, N*m, kg*m^2, m/s^2")),
+        ("m/", ("this is not a valid unit\n  found:   'm/'\n  allowed: e.g. mm, deg, rpm, kN, N*m, kg*m^2, m/s^2")),
+        (
+            "m^99999999999",
+            ("this is not a valid unit: the power is too large\n  found:   'm^99999999999'\n  allowed: powers up to 4"),
+        ),
     ],
 )
 def test_unknown_units(text: str, message: str) -> None:
@@ -168,7 +171,14 @@ def test_a_file_chooses() -> None:
 @pytest.mark.parametrize(
     ("names", "message"),
     [
-        ({"length": "deg"}, "length: wrong unit\n  found:   'deg', an angle\n  allowed: a unit of length, e.g. mm"),
+        (
+            {"length": "deg"},
+            (
+                "length: this unit measures another quantity\n"
+                "  found:   'deg', an angle\n"
+                "  allowed: a unit of length, e.g. mm"
+            ),
+        ),
         (
             {"angle": "dge"},
             "angle: unknown unit\n  found:   'dge'\n  allowed: e.g. mm, deg, rpm, kg, N, N*m\n  did you mean 'deg'?",
@@ -204,6 +214,6 @@ def test_words() -> None:
     units = UnitSystem()
     assert units.describe(PhysicalValue(0.11, LENGTH)) == "a length (110 mm)"
     assert units.describe(PhysicalValue(0.5, NUMBER)) == "a number (0.5)"
-    assert units.describe(PhysicalValue(5)) == "a bare number (5)"
+    assert units.describe(PhysicalValue(5)) == "a number without a unit (5)"
     assert units.describe(PhysicalValue(1, TIME.power(2))) == "a quantity in s^2 (1 s^2)"
     assert ANGLE.example == "an angle, e.g. 30 deg or 0.5 rad"

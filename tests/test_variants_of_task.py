@@ -127,7 +127,7 @@ def test_a_tolerance_in_bare_per_cent_is_refused():
     with pytest.raises(ProblemError) as caught:
         assert own.asked
     assert str(caught.value) == (
-        "t.yaml:38:40: grading.answers[0].tolerance: a share is not above one\n  found:   3\n  allowed: 3 %"
+        "t.yaml:38:40: grading.answers[0].tolerance: a fraction cannot be greater than 1\n  found:   3\n  allowed: 3 %"
     )
 
 

@@ -290,7 +290,7 @@ class Task:
         found = self._parameters({})
         for name in names:
             if name not in found:
-                none = None if found else _("none: the file has no parameters")
+                none = None if found else _("none: the file has no block `parameters`")
                 raise unknown_name_error(name, found, _("there is no parameter of that name"), none)
         return tuple(found[name] for name in names)
 

@@ -186,5 +186,5 @@ def factor(name: str, dimension: Dimension) -> float:
         return 1.0
     unit = parse_unit(name)
     if not unit.dimension.fits(dimension):
-        raise UnitError(_("{want} is wanted here").format(want=dimension), found=quote(name), allowed=dimension.example)
+        raise UnitError(_("expected here: {want}").format(want=dimension), found=quote(name), allowed=dimension.example)
     return unit.si(1.0)

@@ -158,7 +158,7 @@ def bytes_of(path: Path | str, largest: int) -> bytes:
         with open(file, "rb") as stream:
             return stream.read(largest + 1)
     except FileNotFoundError:
-        raise ProblemError(_("no such file")) from None
+        raise ProblemError(_("there is no such file")) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise ProblemError(_("the file cannot be read: {reason}").format(reason=reason)) from None

@@ -156,6 +156,6 @@ def _value(task: Task, name: str, cell: str, unit: str, dimension: Any) -> str:
             value = task.value(text)
         if dimension and value.dimension and not value.dimension.fits(dimension):
             raise ProblemError(
-                _("{want} is wanted here").format(want=dimension), found=quote(cell), allowed=dimension.example
+                _("expected here: {want}").format(want=dimension), found=quote(cell), allowed=dimension.example
             )
     return text

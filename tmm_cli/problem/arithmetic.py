@@ -85,9 +85,9 @@ class Parser:
         found = self.sum()
         rest = self.text[self.at :].strip()
         if rest and _UNIT.fullmatch(rest) and all(find_unit(one) for one in _SYMBOL.findall(rest)):
-            raise self.fault(_("a unit follows a number only: here write * 1 {unit}").format(unit=rest))
+            raise self.fault(_("a unit may stand only after a number; write * 1 {unit} here").format(unit=rest))
         if rest:
-            raise self.fault(_("this is not arithmetic"))
+            raise self.fault(_("this is not a valid arithmetic expression"))
         return found
 
     def fault(self, message: str) -> ProblemError:
@@ -96,7 +96,7 @@ class Parser:
         if whole and (comma := _COMMA.match(rest)):
             return decimal_comma_error(whole[0], comma[1])
         found = quote(self.text) + (
-            _(", at {rest}").format(rest=quote(rest)) if rest and rest != self.text.strip() else ""
+            _(", the error is at {rest}").format(rest=quote(rest)) if rest and rest != self.text.strip() else ""
         )
         return ProblemError(message, found=found, allowed=_("numbers, units, parameters, + - * / ^ ( )"))
 
@@ -110,7 +110,7 @@ class Parser:
     def deeper(self) -> None:
         self.depth += 1
         if self.depth > MAX_DEPTH:
-            raise self.fault(_("this is nested too deeply"))
+            raise self.fault(_("the expression has too many nested brackets"))
 
     def sum(self) -> PhysicalValue:
         self.deeper()
@@ -152,11 +152,13 @@ class Parser:
         exponent = self.signed()
         self.depth -= 1
         if exponent.dimension not in (None, NUMBER) or not abs(exponent.value) <= MAX_POWER:
-            raise self.fault(_("an exponent is a small bare number"))
+            raise self.fault(_("an exponent must be a small number without a unit"))
         dimension = base.dimension
         if dimension is not None:
             if exponent.value != int(exponent.value):
-                raise self.fault(_("a quantity has whole powers; see sqrt"))
+                raise self.fault(
+                    _("a quantity with a unit can only be raised to a whole power; for a square root use sqrt")
+                )
             dimension = dimension.power(int(exponent.value))
         return PhysicalValue(self.real("this power", lambda: base.value**exponent.value), dimension)
 
@@ -171,7 +173,7 @@ class Parser:
             return inside
         if name := _NAME.match(self.text, self.at):
             return self.named(name)
-        raise self.fault(_("a number is wanted here") if self.text[self.at :].strip() else _("a number is missing"))
+        raise self.fault(_("expected a number here") if self.text[self.at :].strip() else _("a number is missing"))
 
     def with_unit(self, number: float) -> PhysicalValue:
         """The number with the longest unit that follows it (in `10 mm * k` that is mm: k is a parameter)."""
@@ -214,7 +216,7 @@ class Parser:
 
     def call(self, name: str) -> PhysicalValue:
         if not self.sign("("):
-            raise self.fault(_("{name} wants its argument in brackets").format(name=name))
+            raise self.fault(_("the argument of {name} must be in brackets").format(name=name))
         given = [self.sum()]
         while self.sign(","):
             given.append(self.sum())
@@ -222,7 +224,7 @@ class Parser:
             raise self.fault(_("a bracket is not closed"))
         least, most = {"atan2": (2, 2), "min": (1, 20), "max": (1, 20), "hypot": (2, 2)}.get(name, (1, 1))
         if not least <= len(given) <= most:
-            raise self.fault(_("{name} wants another number of arguments").format(name=name))
+            raise self.fault(_("wrong number of arguments of {name}").format(name=name))
         return self.of_many(name, given) if name in _MANY_ARGUMENTS else self.of_one(name, given[0])
 
     def of_one(self, name: str, given: PhysicalValue) -> PhysicalValue:
@@ -232,17 +234,25 @@ class Parser:
         if name in _OF_ANGLE:
             angle = to_si(given, ANGLE, self.units)
             if angle is None:
-                raise self.fault(_("{name} wants an angle, not {dimension}").format(name=name, dimension=dimension))
+                raise self.fault(
+                    _("the argument of {name} must be an angle; found: {dimension}").format(
+                        name=name, dimension=dimension
+                    )
+                )
             if abs(float(angle)) > MAX_ANGLE:
-                raise self.fault(_("{name} of so large an angle has no digit left").format(name=name))
+                raise self.fault(
+                    _("the angle is too large: rounding leaves no correct digit of {name}").format(name=name)
+                )
             if name == "tan" and abs(math.cos(angle)) < 1e-15:
-                raise self.fault(_("tan of a right angle has no value"))
+                raise self.fault(_("the tangent of a right angle is undefined"))
             return PhysicalValue(compute(angle), None)
         if name in _TO_ANGLE and dimension not in (None, NUMBER):
-            raise self.fault(_("{name} wants a number, not {dimension}").format(name=name, dimension=dimension))
+            raise self.fault(
+                _("the argument of {name} must be a number; found: {dimension}").format(name=name, dimension=dimension)
+            )
         root = _square_root_dimension(dimension) if dimension else None
         if name == "sqrt" and dimension is not None and root is None:
-            raise self.fault(_("{dimension} has no square root").format(dimension=dimension))
+            raise self.fault(_("no square root can be taken of this quantity: {dimension}").format(dimension=dimension))
         value = self.real(f"{name} of {given.value:.6g}", lambda: compute(given.value))
         return PhysicalValue(value, root if name == "sqrt" else ANGLE)
 
@@ -287,7 +297,7 @@ class Parser:
         except (ValueError, OverflowError, ZeroDivisionError):
             value = math.nan
         if isinstance(value, complex) or not math.isfinite(value):
-            raise self.fault(_("{what} has no value").format(what=what))
+            raise self.fault(_("{what} is undefined").format(what=what))
         return float(value) if isinstance(value, int) else value
 
 
@@ -366,8 +376,8 @@ def _checked_si(source: object, found: PhysicalValue, units: UnitSystem, want: D
         if want == ANGLE and "pi" in str(source):
             allowed = _("{allowed}; pi is in radians already").format(allowed=allowed)
         if found.dimension is not None and found.dimension.times(ACCELERATION).fits(want):
-            allowed = _("{allowed}; a kilogram of force is written kgf").format(allowed=allowed)
-        raise UnitError(_("{want} is wanted here").format(want=want), found=given, allowed=allowed)
+            allowed = _("{allowed}; kilogram-force is written kgf").format(allowed=allowed)
+        raise UnitError(_("expected here: {want}").format(want=want), found=given, allowed=allowed)
     return value
 
 
@@ -379,14 +389,18 @@ def evaluate_quantity(
     pi is one of radians, so that pi/2 is a right angle whatever the file's unit of angles, unless told otherwise.
     """
     if isinstance(source, bool) or not isinstance(source, int | float | str):
-        raise ProblemError(_("a number is wanted here"), found=quote(source), allowed=_("a number, a unit, arithmetic"))
+        raise ProblemError(
+            _("expected a number here"),
+            found=quote(source),
+            allowed=_("a number, a number with a unit, or an arithmetic expression"),
+        )
     if isinstance(source, int | float):
         if not -1e300 < source < 1e300:
-            raise ProblemError(_("not a number from -1e300 to 1e300"), found=quote(source))
+            raise ProblemError(_("the number is not between -1e300 and 1e300"), found=quote(source))
         return PhysicalValue(units.number(source.written if isinstance(source, WrittenNumber) else source), None)
     if len(source) > MAX_LENGTH:
         raise ProblemError(
-            _("this is too long"),
+            _("this expression is too long"),
             found=quote(source),
             allowed=_("at most {max_length} characters").format(max_length=MAX_LENGTH),
         )
@@ -397,14 +411,19 @@ def check_parameter(name: str, path: Path, *, key: bool = True) -> None:
     """Refuse what cannot be the name of a parameter."""
     if not re.fullmatch(r"[^\W\d]\w{0,39}", name):
         raise ProblemError(
-            _("this cannot be the name of a parameter"),
+            _("invalid name of a parameter"),
             path=path,
             found=quote(name),
-            allowed=_("letters, figures and _, a letter first"),
+            allowed=_("letters, digits and _, beginning with a letter"),
             key=key,
         )
     if name in FUNCTIONS or name == "pi":
-        raise ProblemError(_("this name is taken by arithmetic"), path=path, found=quote(name), key=key)
+        raise ProblemError(
+            _("this is the name of a function or constant of arithmetic; choose another one"),
+            path=path,
+            found=quote(name),
+            key=key,
+        )
 
 
 def resolve_parameters(
@@ -423,7 +442,9 @@ def resolve_parameters(
         order = list(TopologicalSorter(needs).static_order())
     except CycleError as error:
         cycle: list[str] = error.args[1][::-1]
-        raise ProblemError(_("parameters go round in a circle"), path=(cycle[0],), found=" -> ".join(cycle)) from None
+        raise ProblemError(
+            _("these parameters refer to each other in a circle"), path=(cycle[0],), found=" -> ".join(cycle)
+        ) from None
     for name in order:
         with prefix_errors(name):
             found[name] = _evaluate_parameter(raw[name], found, units)

@@ -63,7 +63,7 @@ def validate_planar(tree: Tree) -> schema.File:
     """The file in the shape of a linkage. Raises ProblemError."""
     if is_chain(tree):
         raise ProblemError(
-            _("a chain given by pairs alone has no dimensions: there is only its structure"),
+            _("this file gives only links and pairs, without dimensions: only the structure can be analysed"),
             path=("structure",),
             allowed=_("tmm structure, tmm run, tmm check"),
             key=True,
@@ -99,10 +99,10 @@ def _refuse_frame_of_a_link(shape: schema.File, links: Mapping[str, Link]) -> No
     if shape.frame != FRAME and shape.frame in taken:
         free = next(number for number in count(1) if str(number) not in taken)
         raise ProblemError(
-            _("a link has this number already"),
+            _("a link already has this number"),
             found=shape.frame,
             path=("frame",),
-            allowed=_("a number of no link, such as {number}").format(number=free),
+            allowed=_("a number that no link has, e.g. {number}").format(number=free),
         )
 
 
@@ -180,10 +180,13 @@ def _refuse_law_with_table(shape: schema.File) -> None:
     by_table = isinstance(shape.driver, schema.DriverKeys) and isinstance(shape.driver.speed, schema.Speeds)
     if by_table and shape.dynamics is not None:
         raise ProblemError(
-            _("a law of motion is found, or it is given by a table"),
+            _(
+                "a table of speeds and the block `dynamics` exclude each other: the law of motion is either given "
+                "or computed"
+            ),
             path=("driver", "speed"),
             key=True,
-            allowed=_("one speed beside dynamics"),
+            allowed=_("a single speed together with `dynamics`"),
         )
     searched = isinstance(shape.synthesis, dict) and shape.synthesis.get("task") == "optimal"
     if searched or shape.grading is not None or shape.variants is not None:
@@ -194,7 +197,10 @@ def refuse_variable_speed(by_table: bool, dynamics: bool) -> None:
     """Refuse tables of speeds and the block dynamics where they are not known. Raises ProblemError."""
     if by_table or dynamics:
         raise ProblemError(
-            _("variants and searches know drivers of one speed and one acceleration only"),
+            _(
+                "for variants and optimization the motion of the driver must be given by one speed and one "
+                "acceleration, without tables and without `dynamics`"
+            ),
             key=True,
             path=("driver", "speed") if by_table else ("dynamics",),
             allowed=_("speed: 82 rpm"),
@@ -297,7 +303,7 @@ def _build_spatial_chain(spatial: schema.Spatial) -> SpatialChain:
     chain = SpatialChain(links, tuple(pairs))
     there = links_joined_to_frame(chain.pairs)
     if apart := [link for link in links if link not in there]:  # W would count a chain of its own
-        message = _("no pairs join link {link} to the frame").format(link=apart[0])
+        message = _("no chain of pairs joins link {link} to the frame").format(link=apart[0])
         raise ProblemError(message, path=(*SPATIAL, "pairs"), key=True)
     return chain
 

@@ -70,16 +70,16 @@ def _driver_at(problem: Problem) -> str:
 
 @problem_error.register
 def _never_closes(error: AssemblyError, problem: Problem) -> ProblemError:
-    short = _("it never closes")
+    short = _("the loop does not close at any position")
     if error.residual is not None:
-        short = _("{size} short of closing").format(size=problem.units.format_value(error.residual, LENGTH))
+        short = _("the loop is open by {size}").format(size=problem.units.format_value(error.residual, LENGTH))
     return ProblemError(
-        _("group {group} cannot be assembled with the driver at {place}").format(
+        _("group {group} cannot be assembled when the driver coordinate is {place}").format(
             group=error.group.title, place=_driver_at(problem)
         ),
         path=("sketch", "at"),
         found=short,
-        allowed=_("lengths that reach, or another place of the driver"),
+        allowed=_("lengths with which the links reach each other, or another driver coordinate"),
     )
 
 
@@ -88,31 +88,32 @@ def _ambiguous(error: AmbiguousSketchError, problem: Problem) -> ProblemError:
     group, place, units = error.group.title, _driver_at(problem), problem.units
     if not error.choices:
         return ProblemError(
-            _("group {group} is in a dead position in the sketch").format(group=group),
+            _("in the sketch group {group} is in a dead position").format(group=group),
             path=("sketch", "at"),
             found=place,
-            allowed=_("another place of the driver"),
+            allowed=_("another driver coordinate"),
         )
     told = list(error.choices.items())[:MAX_CHOICES]
     ways = "; ".join(f"{name}: {format_coordinate(a, units)} or {format_coordinate(b, units)}" for name, (a, b) in told)
     undecided = _(
-        "the sketch does not say how group {group} is assembled; see tmm kinematics {file} --assemblies"
+        "the sketch does not determine which assembly of group {group} is meant; to see all of them, run "
+        "tmm kinematics {file} --assemblies"
     ).format(group=group, file=problem.file or "FILE")
     return ProblemError(
         undecided,
         path=("sketch",),
         key=True,
-        allowed=_("with the driver at {place}, {ways}").format(place=place, ways=ways),
+        allowed=_("one of these for the driver coordinate {place}: {ways}").format(place=place, ways=ways),
     )
 
 
 @problem_error.register
 def _no_such_assembly(error: SketchMismatchError, problem: Problem) -> ProblemError:
     return ProblemError(
-        _("the sketch fits no assembly"),
+        _("the sketch does not match any assembly of the mechanism"),
         path=("sketch", error.name),
         found=format_coordinate(error.sketched, problem.units),
-        allowed=_("about {value} with the driver at {place}").format(
+        allowed=_("about {value} when the driver coordinate is {place}").format(
             value=format_coordinate(error.found, problem.units), place=_driver_at(problem)
         ),
     )
@@ -121,10 +122,10 @@ def _no_such_assembly(error: SketchMismatchError, problem: Problem) -> ProblemEr
 @problem_error.register
 def _too_large(error: GroupTooLargeError, problem: Problem) -> ProblemError:
     return ProblemError(
-        _("a group of so many links is not solved: {title}").format(title=error.group.title),
+        _("this group has too many links to be solved: {title}").format(title=error.group.title),
         path=("links",),
         found=str(len(error.group.links)),
-        allowed=_("at most {most} in one group; any number of groups").format(most=error.most),
+        allowed=_("at most {most} links in one group; any number of groups").format(most=error.most),
         key=True,
     )
 
@@ -132,20 +133,20 @@ def _too_large(error: GroupTooLargeError, problem: Problem) -> ProblemError:
 @problem_error.register
 def _searched_too_long(error: ChangePointSearchError, problem: Problem) -> ProblemError:
     return ProblemError(
-        _("the change points of group {title} take too long to find: so many groups lie before it").format(
+        _("the search for the change points of group {title} takes too long: it depends on too many groups").format(
             title=error.group.title
         ),
         path=("links",),
         key=True,
-        found=_("{groups} groups over {turns} turns of the driver").format(groups=error.groups, turns=error.turns),
-        allowed=_("groups times turns: at most {most}").format(most=error.most),
+        found=_("groups: {groups}, turns of the driver: {turns}").format(groups=error.groups, turns=error.turns),
+        allowed=_("number of groups times number of turns at most {most}").format(most=error.most),
     )
 
 
 @problem_error.register
 def _immobile(error: MobilityError, problem: Problem) -> ProblemError:
     lone = _lone_ends(problem.linkage, error.structure.under_constrained)
-    hint = _("point {point} is on link {link} alone; a hinge on the frame: points: {{{point}: [x, y]}}")
+    hint = _("point {point} belongs only to link {link}; for a hinge on the frame write points: {{{point}: [x, y]}}")
     return mobility_error(error.structure, [hint.format(point=point, link=link) for link, point in lone[:1]])
 
 
@@ -176,28 +177,30 @@ def mobility_error(structure: Structure, hints: Sequence[str] = ()) -> ProblemEr
     if held is not None:
         number = max((k for k, d in enumerate(structure.drivers) if {d.base, d.link} <= set(held)), default=0)
         return ProblemError(
-            _("link {link} cannot be driven: pairs or other drivers hold it already").format(
+            _("link {link} cannot be a driver: pairs or other drivers already determine its motion").format(
                 link=structure.drivers[number].link
             ),
             path=("driver", number, "link") if wanted > 1 else ("driver", "link"),
-            found=_("{count}; over-held: links {links}").format(count=count, links=", ".join(held)),
+            found=_("{count}; links with redundant constraints: {links}").format(count=count, links=", ".join(held)),
             allowed=f"W = {wanted}",
         )
     if loose:
         return ProblemError(
-            _("mobility is not {wanted}: these links are loose: {links}").format(wanted=wanted, links=", ".join(loose)),
+            _("the mobility is not {wanted}: these links are not sufficiently constrained: {links}").format(
+                wanted=wanted, links=", ".join(loose)
+            ),
             path=("links", loose[0]),
             found=count,
-            allowed="; ".join([_("W = {wanted}, as many as there are drivers").format(wanted=wanted), *hints]),
+            allowed="; ".join([_("W = {wanted}, the number of drivers").format(wanted=wanted), *hints]),
             key=True,
         )
     name, bodies = redundant[0]
     links = tuple(b for b in bodies if b in structure.links)
     return ProblemError(
-        _("mobility is not {wanted}: pair {name} holds what is held already").format(wanted=wanted, name=name),
+        _("the mobility is not {wanted}: pair {name} is a redundant constraint").format(wanted=wanted, name=name),
         path=("links", links[0]) if links else ("links",),
         key=True,
-        found=_("{count}; over-held: links {links}").format(count=count, links=", ".join(bodies)),
+        found=_("{count}; links with redundant constraints: {links}").format(count=count, links=", ".join(bodies)),
         allowed=f"W = {wanted}",
     )
 
@@ -210,26 +213,28 @@ def _no_strokes(error: MissingStrokesError, problem: Problem) -> ProblemError:
     block, *__, key = error.path
     if block == "intermittent" and key == "moves_with":
         return ProblemError(
-            _("this link never turns back: the wheel would not stand"),
+            _("this link never reverses its rotation, so the wheel would never stand still"),
             path=error.path,
             found=quote(error.link),
-            allowed=_("a link that swings"),
+            allowed=_("a link that swings (a rocker)"),
         )
-    text = _("there is no working stroke")
+    text = _("this mechanism has no working stroke")
     if block == "intermittent":
-        return ProblemError(text, path=error.path, allowed=_("forward, backward, or an output that has strokes"))
+        return ProblemError(text, path=error.path, allowed=_("forward, backward, or an output link that has strokes"))
     if error.limits is not None:
         first, last = (format_coordinate(limit, problem.units) for limit in error.limits)
         return ProblemError(
-            _("a table against the stroke needs a driver that turns fully, so that the output makes whole strokes"),
+            _("for a table against the stroke the driver must rotate fully, so that the output makes full strokes"),
             path=error.path,
             found=_("the driver moves from {first} to {last}").format(first=first, last=last),
             allowed=_("against: crank angle"),
         )
-    found = _("no output is joined to the frame")
+    found = _("no output link is joined to the frame")
     if error.link is not None:
-        found = _("link {link} has no ends of its stroke").format(link=error.link)
-    return ProblemError(text, path=error.path, found=found, allowed=_("see output:"))
+        found = _("link {link} has no extreme positions").format(link=error.link)
+    return ProblemError(
+        text, path=error.path, found=found, allowed=_("an output link with a stroke, see the key `output`")
+    )
 
 
 @problem_error.register
@@ -237,12 +242,14 @@ def _speeds_end(error: SpeedTableError, problem: Problem) -> ProblemError:
     first, last, end = (
         format_coordinate(x, problem.units) for x in (error.first, error.last, error.first + error.cycle)
     )
-    ends = _("the table goes from {first} to {last}").format(first=first, last=last)
+    ends = _("the table covers {first} to {last}").format(first=first, last=last)
     if error.at is not None:
-        ends = _("{ends}, a position is at {place}").format(ends=ends, place=format_coordinate(error.at, problem.units))
-    closing = _("a last row at {end} with the speed of the first, or positions: {{at: [...]}} within it")
+        ends = _("{ends}, and a position is requested at {place}").format(
+            ends=ends, place=format_coordinate(error.at, problem.units)
+        )
+    closing = _("a last row at {end} with the speed of the first row, or positions: {{at: [...]}} within the table")
     return ProblemError(
-        _("the table of speeds does not reach over all positions"),
+        _("the table of speeds does not cover all positions"),
         path=("driver", "speed", "table"),
         key=True,
         found=ends,
@@ -252,19 +259,19 @@ def _speeds_end(error: SpeedTableError, problem: Problem) -> ProblemError:
 
 @problem_error.register
 def _no_turn(error: NoTurnError, problem: Problem) -> ProblemError:
-    full = _("a cycle of {turns} turns needs a crank that turns fully").format(turns=error.turns)
+    full = _("for a cycle of several turns ({turns}) the crank must rotate fully").format(turns=error.turns)
     return ProblemError(full, path=("cycle",), key=True)
 
 
 @problem_error.register
 def _no_cycle(error: NoCycleError, problem: Problem) -> ProblemError:
-    wanted = _("a law of motion is found for one crank that turns fully")
-    allowed = _("one driver that turns round and round")
+    wanted = _("the law of motion is computed only for a single crank that rotates fully")
+    allowed = _("one driver that rotates fully")
     if error.path[0] == "balancing":
-        wanted = _("what shakes is found for one crank that turns fully")
+        wanted = _("shaking force and moment are computed only for a single crank that rotates fully")
     if error.path[0] == "intermittent":
-        wanted = _("intermittent motion is found over a cycle, and the driver has none")
-        fit = _("a crank that turns fully, or a driver with a stroke that the linkage can go")
+        wanted = _("intermittent motion is computed over a cycle, but this driver has no cycle")
+        fit = _("a crank that rotates fully, or a driver with a stroke that the mechanism can complete")
         allowed = f"{fit}; driver: {{stroke: [0, 100]}}"
     return ProblemError(wanted, path=error.path, key=True, allowed=allowed)
 
@@ -273,7 +280,7 @@ def _no_cycle(error: NoCycleError, problem: Problem) -> ProblemError:
 def _out_of_range(error: OutOfRangeError, problem: Problem) -> ProblemError:
     first, last = format_coordinate(error.start, problem.units), format_coordinate(error.end, problem.units)
     return ProblemError(
-        _("the run goes where the driver does not come"),
+        _("the run leads beyond the range of the driver"),
         path=("dynamics", "run"),
         key=True,
         allowed=_("{first} to {last}").format(first=first, last=last),
@@ -283,10 +290,10 @@ def _out_of_range(error: OutOfRangeError, problem: Problem) -> ProblemError:
 @problem_error.register
 def _beyond_cycle(error: TableBeyondCycleError, problem: Problem) -> ProblemError:
     turns, units = round(error.cycle / (2 * math.pi)), problem.units
-    text = _("this row is never reached: all repeats after {turns} turns of the driver")
+    text = _("this row is never used: the motion repeats after several turns of the driver, number of turns: {turns}")
     if turns == 1:
-        text = _("this row is never reached: all repeats after 1 turn of the driver")
-    allowed = _("0 to {end} {unit}; a longer cycle of loads is told by cycle: {turns} turns").format(
+        text = _("this row is never used: the motion repeats after one turn of the driver")
+    allowed = _("0 to {end} {unit}; for a longer cycle of loads write cycle: {turns} turns").format(
         end=f"{units.from_si(error.cycle, ANGLE):.6g}",
         unit=units.spelt(ANGLE),
         turns=max(2, math.ceil(error.argument / math.tau)),
@@ -302,30 +309,33 @@ def _beyond_cycle(error: TableBeyondCycleError, problem: Problem) -> ProblemErro
 @problem_error.register
 def _unsettled(error: CounterweightError, problem: Problem) -> ProblemError:
     return ProblemError(
-        _("counterweights of these radii balance nothing: their masses load the pivots that they move with"),
+        _(
+            "counterweights of these radii do not balance the mechanism: their own masses add more inertia "
+            "force than they balance"
+        ),
         path=("balancing", "counterweights"),
         key=True,
-        allowed=_("larger radii, or other points of the links"),
+        allowed=_("larger radii, or other points of the links for `about`"),
     )
 
 
 @problem_error.register
 def _by_speed(error: SpeedDependentForceError, problem: Problem) -> ProblemError:
     return ProblemError(
-        _("a law of motion is not found where forces hang on reactions or on speeds"),
+        _("the law of motion is not computed if forces depend on reactions or on speeds"),
         path=error.path,
         key=True,
-        allowed=_("loads that do not: force: {resists: 200 N} for a constant friction"),
+        allowed=_("loads independent of them; for constant friction force: {resists: 200 N}"),
     )
 
 
 @problem_error.register
 def _long_run(error: LongRunError, problem: Problem) -> ProblemError:
-    reason = _("the run is not computed to its end: after {count} evaluations it has come to {time} s")
+    reason = _("the run takes too long to compute: after {count} evaluations it has reached {time} s")
     return ProblemError(
         reason.format(count=error.count, time=f"{error.time:.4g}"),
         path=("dynamics", "run"),
-        allowed=_("a shorter run, or inertias that differ less on the way"),
+        allowed=_("a shorter run, or moments of inertia that vary less during the run"),
     )
 
 
@@ -333,27 +343,27 @@ def _long_run(error: LongRunError, problem: Problem) -> ProblemError:
 def _standstill(error: StandstillError, problem: Problem) -> ProblemError:
     if problem.dynamics is not None and not problem.dynamics.cyclic:
         return ProblemError(
-            _("the run does not start: what drives is no more than the loads"),
+            _("the machine does not start: the driving moment or force does not exceed the loads"),
             path=("dynamics", "run"),
             key=True,
-            allowed=_("a larger drive (positive along the guide or counterclockwise), or a speed at the beginning"),
+            allowed=_("a larger `drive` (positive along the guide or counterclockwise), or an initial `speed`"),
         )
     return ProblemError(
-        _("the machine comes to rest before its cycle ends: what drives it cannot carry the load"),
+        _("the machine stops before the end of the cycle: the driving moment cannot overcome the load"),
         path=("dynamics",),
         key=True,
-        found=_("at {place} of the driver's way").format(place=format_coordinate(error.place, problem.units)),
-        allowed=_("a heavier flywheel, a higher speed, a stronger motor"),
+        found=_("driver coordinate: {place}").format(place=format_coordinate(error.place, problem.units)),
+        allowed=_("a heavier flywheel, a higher speed, or a stronger motor"),
     )
 
 
 @problem_error.register
 def _no_inertia(error: NoInertiaError, problem: Problem) -> ProblemError:
     return ProblemError(
-        _("there is no law of motion: nothing that moves with the driver there has mass or inertia"),
+        _("the law of motion cannot be computed: no link that moves in this position has mass or moment of inertia"),
         path=("dynamics", "run") if hasattr(problem.dynamics, "speed") else ("dynamics",),
         key=True,
-        found=_("at {place} of the driver's way").format(place=format_coordinate(error.place, problem.units)),
+        found=_("driver coordinate: {place}").format(place=format_coordinate(error.place, problem.units)),
         allowed=_("masses of the links, or flywheel: {inertia: 0.5}"),
     )
 
@@ -362,15 +372,15 @@ def _no_inertia(error: NoInertiaError, problem: Problem) -> ProblemError:
 def _lost_digits(error: LostDigitsError, problem: Problem) -> ProblemError:
     return ProblemError(
         _(
-            "the law of motion is lost in rounding: the links and the flywheel are too heavy for the motor to change "
-            "their speed"
+            "the law of motion is lost in rounding errors: the links and the flywheel are too heavy for the "
+            "motor to change their speed"
         ),
         path=("dynamics",),
         key=True,
-        found=_("in a cycle the motor makes up for {share} of a difference of speed").format(
+        found=_("fraction of a difference of speed that the motor compensates in one cycle: {share}").format(
             share=numeral(error.share, ".1g")
         ),
-        allowed=_("masses and inertias that fit the motor: are their units right?"),
+        allowed=_("masses and moments of inertia that suit the motor; check their units"),
     )
 
 
@@ -378,18 +388,18 @@ def _lost_digits(error: LostDigitsError, problem: Problem) -> ProblemError:
 def _runaway(error: RunawayError, problem: Problem) -> ProblemError:
     units, unit = problem.units, problem.units.spelt(MOMENT)
     found = _(
-        "{moment} {unit} in the mean push the driver, most at {place} of its way; its motor holds {most} "
-        "{unit} at its best"
+        "mean moment with which the loads drive the crank: {moment} {unit}, largest at driver coordinate "
+        "{place}; largest braking moment of the motor: {most} {unit}"
     )
-    wanted = _("a motor that holds more, a larger ratio, smaller loads")
+    wanted = _("a motor with a larger braking moment, a larger ratio, or smaller loads")
     if not math.isnan(error.speed):
         found = _(
-            "{speed} at {place} of the driver's way and still quicker, without load {idle}; {moment} "
-            "{unit} in the mean push the driver, its motor holds {most} {unit} at its best"
+            "{speed} at driver coordinate {place} and still increasing, no-load speed {idle}; mean moment with "
+            "which the loads drive the crank: {moment} {unit}, largest braking moment of the motor: {most} {unit}"
         )
-        wanted = _("a heavier flywheel, a stronger motor, smaller loads")
+        wanted = _("a heavier flywheel, a stronger motor, or smaller loads")
     return ProblemError(
-        _("the loads push the machine on, and its motor does not hold it: it runs away"),
+        _("the loads drive the machine and the motor cannot brake it: its speed increases without limit"),
         path=("dynamics", "motor"),
         key=True,
         allowed=wanted,
@@ -408,13 +418,19 @@ def _runaway(error: RunawayError, problem: Problem) -> ProblemError:
 def _weak_motor(error: WeakMotorError, problem: Problem) -> ProblemError:
     units, unit = problem.units, problem.units.spelt(MOMENT)
     return ProblemError(
-        _("the motor cannot carry the load: over the cycle this wants more than it gives at its best"),
+        _(
+            "the motor cannot overcome the load: the mean moment of the load over the cycle exceeds the "
+            "largest moment of the motor"
+        ),
         path=("dynamics", "motor"),
         key=True,
-        found=_("{moment} {unit} on the driver, whose loads are largest at {place} of its way").format(
+        found=_(
+            "largest moment of the motor, reduced to the driver: {moment} {unit}; the load is largest at "
+            "driver coordinate {place}"
+        ).format(
             moment=f"{units.from_si(error.most, MOMENT):.4g}", unit=unit, place=format_coordinate(error.place, units)
         ),
-        allowed=_("more than {moment} {unit}, the mean over the cycle: a stronger motor, or a larger ratio").format(
+        allowed=_("more than {moment} {unit}, the mean over the cycle: a stronger motor or a larger ratio").format(
             moment=f"{units.from_si(error.wanted, MOMENT):.4g}", unit=unit
         ),
     )
@@ -422,12 +438,12 @@ def _weak_motor(error: WeakMotorError, problem: Problem) -> ProblemError:
 
 @problem_error.register
 def _no_flywheel(error: NoFlywheelError, problem: Problem) -> ProblemError:
-    text, allowed = _("no flywheel keeps this fluctuation with this motor"), _("a larger delta")
+    text, allowed = _("with this motor no flywheel achieves this coefficient of fluctuation"), _("a larger `delta`")
     if not math.isnan(error.own):
-        text = _("the fluctuation is smaller than this without any flywheel")
-        allowed = _("less than {own}, or no delta").format(own=f"{error.own:.4g}")
+        text = _("the coefficient of fluctuation is smaller than this even without a flywheel")
+        allowed = _("less than {own}, or leave out `delta`").format(own=f"{error.own:.4g}")
         if problem.dynamics is not None and problem.dynamics.flywheel:
-            text = _("the fluctuation is smaller than this with the flywheel that is given")
+            text = _("the coefficient of fluctuation is smaller than this with the given flywheel")
     return ProblemError(text, path=("dynamics", "delta"), found=f"{error.wanted:.6g}", allowed=allowed)
 
 
@@ -441,13 +457,13 @@ def _position(error: UnknownPositionError, problem: Problem) -> ProblemError:
 
 @problem_error.register
 def _name(error: UnknownNameError, problem: Problem) -> ProblemError:
-    what = _("there is no such point, link or centre of mass")
+    what = _("there is no point, link or centre of mass of that name")
     return unknown_name_error(error.name, error.allowed, what, path=("links",), key=True)
 
 
 @problem_error.register
 def _on_frame(error: NotOnFrameError, problem: Problem) -> ProblemError:
-    what = _("this link cannot drive: it is not joined to the frame")
+    what = _("this link cannot be the driver: it is not joined to the frame")
     return unknown_name_error(error.link, error.allowed, what, path=("links",), key=True)
 
 

@@ -225,7 +225,7 @@ def quote(value: object) -> str:
     if isinstance(value, list | tuple):
         if 0 < len(value) <= 4 and not any(isinstance(item, list | tuple | dict) for item in value):
             return clean("[" + ", ".join(item if isinstance(item, str) else quote(item) for item in value) + "]")
-        return _("a list of {count}").format(count=len(value))
+        return _("a list, number of items: {count}").format(count=len(value))
     if isinstance(value, dict):
         return "a mapping with " + (", ".join(clean(str(key), 20) for key in list(value)[:4]) or "no keys")
     return clean(type(value).__name__)

@@ -34,12 +34,12 @@ def tab_error(file: str, mark: SourcePosition) -> ProblemError:
 def syntax_error(error: yaml.MarkedYAMLError, text: str, file: str) -> ProblemError:
     """The error of either of PyYAML's parsers on `text`, with its line and column."""
     opened, shown = error.context_mark or error.problem_mark, error.problem_mark or error.context_mark
-    indent = _("keys and items of one level start in one column, indented by spaces")
-    quoted = _("a quote is not closed"), _("text between two equal quotes"), opened
+    indent = _("keys and items of one level begin in the same column, indented by spaces")
+    quoted = _("a quotation mark is not closed"), _("text between two equal quotation marks"), opened
     table = {  # PyYAML's words (of both its parsers): what is wrong, what is allowed, and where
         "mapping values are not": (
-            _("a ':' where none can be"),
-            _("one 'key: value' in a line; text with ': ' in quotes"),
+            _("a ':' is not allowed here"),
+            _("one 'key: value' on a line; a text with ': ' in it needs quotation marks"),
             shown,
         ),
         "expected ',' or ']'": (_("'[' is not closed"), _("'[1, 2]', items separated by commas"), opened),
@@ -47,16 +47,24 @@ def syntax_error(error: yaml.MarkedYAMLError, text: str, file: str) -> ProblemEr
         "end of stream": quoted,
         "found unexpected document": quoted,
         "could not find expected ':'": (_("a line without ':'"), _("'key: value', with a space after ':'"), opened),
-        "cannot start any token": (_("a value cannot start with this character"), _("text between quotes"), shown),
-        "expected <block end>": (_("this does not fit the lines above"), indent, shown),
-        "did not find expected key": (_("this does not fit the lines above"), indent, shown),
+        "cannot start any token": (_("a value cannot begin with this character"), _("text in quotation marks"), shown),
+        "expected <block end>": (
+            _("this line does not match the indentation or structure of the lines above"),
+            indent,
+            shown,
+        ),
+        "did not find expected key": (
+            _("this line does not match the indentation or structure of the lines above"),
+            indent,
+            shown,
+        ),
         "entries are not allowed": (
-            _("a list item '-' where none can be"),
-            _("each '- item' in a line of its own"),
+            _("a list item '-' is not allowed here"),
+            _("each '- item' on its own line"),
             shown,
         ),
         "node content": (_("a value is missing"), _("a value"), shown),
-        "nesting depth": (_("nested too deeply"), _("at most {most} levels").format(most=MAX_DEPTH), shown),
+        "nesting depth": (_("too many nested levels"), _("at most {most} levels").format(most=MAX_DEPTH), shown),
     }
     problem = f"{error.problem} {error.context}"
     plain = _("this is not YAML: {problem}").format(problem=error.problem), None, shown
@@ -66,7 +74,10 @@ def syntax_error(error: yaml.MarkedYAMLError, text: str, file: str) -> ProblemEr
         message, allowed = _("',' or the closing bracket is expected here"), _("[2 kN, 0] or {a: 1, b: 2}")
         return _refusal_at(start, text, file, message, allowed)
     if shown and allowed == indent and text[: shown.index].rstrip(" ").endswith(("]", "}")):
-        message, allowed = _("text after a closing bracket"), _("[2 kN, 0]: units inside; a comment begins with #")
+        message, allowed = (
+            _("text after a closing bracket"),
+            _("units inside the brackets: [2 kN, 0]; a comment begins with #"),
+        )
         return _refusal_at(shown.index, text, file, message, allowed)
     if place is None:
         return ProblemError(message, allowed=allowed, file=file)
@@ -143,12 +154,12 @@ class Composer:
             if isinstance(event, yaml.NodeEvent):
                 top = self.node(event, ())
             elif isinstance(event, yaml.DocumentStartEvent) and () in self.marks:
-                self.refuse(event, (), _("a second document"), "---", _("one document in a file"))
+                self.refuse(event, (), _("the file contains a second document"), "---", _("one document in a file"))
         if top is None:
-            raise ProblemError(_("the file is empty"), allowed=_("a mapping such as 'tmm: 1'"), file=self.file)
+            raise ProblemError(_("the file is empty"), allowed=_("keys with values, such as 'tmm: 1'"), file=self.file)
         if not isinstance(top, dict):
             raise ProblemError(
-                _("the top level is not a mapping"),
+                _("the top level of the file must consist of keys with values"),
                 found=quote(top),
                 allowed=_("lines 'key: value'"),
                 file=self.file,
@@ -216,26 +227,34 @@ class Composer:
             self.refuse(event, path, _("too many values"), allowed=_("at most {most}").format(most=MAX_NODES))
         if len(path) >= MAX_DEPTH and not isinstance(event, yaml.ScalarEvent):
             allowed = _("at most {most} levels").format(most=MAX_DEPTH)
-            self.refuse(event, path[:3], _("nested too deeply"), allowed=allowed)
+            self.refuse(event, path[:3], _("too many nested levels"), allowed=allowed)
         if isinstance(event, yaml.AliasEvent) or event.anchor is not None:
             self.refuse(
                 event,
                 path,
-                _("aliases are not part of a problem file"),
-                allowed=_("the value written out, or a parameter; text that starts with * or & in quotes"),
+                _("YAML aliases (* and &) are not allowed in a problem file"),
+                allowed=_("the value itself, or a parameter; a text that begins with * or & needs quotation marks"),
             )
         if event.tag is not None:
-            self.refuse(event, path, _("tags are not part of a problem file"), quote(event.tag), _("plain values"))
+            self.refuse(
+                event,
+                path,
+                _("YAML tags (!) are not allowed in a problem file"),
+                quote(event.tag),
+                _("values without tags"),
+            )
 
     def key(self, event: Any, path: Path, mapping: dict[str, Any]) -> str:
         """The name of a key, as it is written."""
         if not isinstance(event, yaml.ScalarEvent):
-            self.refuse(event, path, _("a list or mapping is used as a key"), allowed=_("a word or number"))
+            self.refuse(
+                event, path, _("a list or a set of keys cannot be used as a key"), allowed=_("a word or number")
+            )
         name: str = event.value
         path = (*path, name)
         if name in mapping:
-            allowed = _("the first is at line {line}").format(line=self.key_marks[path].line)
-            self.refuse(event, path, _("duplicate key"), quote(name), allowed)
+            allowed = _("each key once; the first is on line {line}").format(line=self.key_marks[path].line)
+            self.refuse(event, path, _("this key occurs twice"), quote(name), allowed)
         self.key_marks[path] = _mark(event)
         return name
 
@@ -243,11 +262,23 @@ class Composer:
         text: str = event.value
         if event.style:
             if hidden := HIDDEN.search(text):
-                self.refuse(event, path, _("a control character"), found=quote(hidden[0]), allowed=_("printable text"))
+                self.refuse(
+                    event,
+                    path,
+                    _("the text contains a control character"),
+                    found=quote(hidden[0]),
+                    allowed=_("printable characters"),
+                )
             return text
         if event.start_mark.line != event.end_mark.line:
             if _ITEM_BELOW.search(self.text[event.start_mark.index : event.end_mark.index]):
-                self.refuse(event, path, _("a value and a list below it"), quote(text), _("one of the two"))
+                self.refuse(
+                    event,
+                    path,
+                    _("this key has a value and a list below it"),
+                    quote(text),
+                    _("either a value or a list"),
+                )
             return text
         try:
             return plain_value(text)
@@ -260,8 +291,10 @@ class Composer:
             return
         if cut := _CALL.match(self.text[event.start_mark.index : event.start_mark.index + MAX_CALL_LENGTH]):
             if cut[0].startswith("("):  # as coordinates are written on paper
-                self.refuse(event, path, _("two coordinates [x, y] are wanted"), quote(cut[0]), f"[{cut[0][1:-1]}]")
-            self.refuse(event, path, _("a comma in brackets needs quotes here"), quote(cut[0]), f'"{cut[0]}"')
+                self.refuse(event, path, _("expected two coordinates [x, y]"), quote(cut[0]), f"[{cut[0][1:-1]}]")
+            self.refuse(
+                event, path, _("an expression with a comma needs quotation marks here"), quote(cut[0]), f'"{cut[0]}"'
+            )
 
     def key_alone(self, key: Any, value: Any, before: tuple[Path, Any] | None, path: Path) -> None:
         """Refuse `{length: 1,5}`, which YAML reads as {length: 1, 5: null}, and `{length:5}`: {"length:5": null}."""
@@ -273,7 +306,7 @@ class Composer:
             touching = self.text[number.end_mark.index : key.start_mark.index] == ","
             if touching and is_split_number(number.value, key.value):
                 raise self.placed(decimal_comma_error(number.value, key.value), number, its_path)
-        self.refuse(key, path, _("a key without a value"), quote(key.value), _("'key: value', a space after ':'"))
+        self.refuse(key, path, _("this key has no value"), quote(key.value), _("'key: value', with a space after ':'"))
 
 
 def _mark(event: Any) -> SourcePosition:
@@ -322,14 +355,14 @@ def read_bytes(file: str) -> bytes:
     try:
         found = os.stat(file)
         if stat.S_ISDIR(found.st_mode):
-            raise ProblemError(_("this is a directory"), allowed=_("a YAML file"), file=file)
+            raise ProblemError(_("this is a folder, not a file"), allowed=_("a YAML file"), file=file)
         if found.st_size > MAX_BYTES:
             raise _too_large_error(file, f"{found.st_size} bytes")
         with open(file, "rb") as stream:
             # Pipes and devices have no size to look at beforehand.
             data = stream.read(MAX_BYTES + 1)
     except FileNotFoundError:
-        raise ProblemError(_("no such file"), file=file) from None
+        raise ProblemError(_("there is no such file"), file=file) from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise ProblemError(_("the file cannot be read: {reason}").format(reason=reason), file=file) from None
@@ -352,11 +385,11 @@ def decode_text(data: bytes, file: str) -> str:
         before = body[: error.start]
         column = len(before[before.rfind(b"\n") + 1 :].decode()) + 1
         raise ProblemError(
-            _("the file is not UTF-8 text"),
+            _("the file is not text in UTF-8 encoding"),
             found=_("byte {byte} at position {position}").format(
                 byte=f"0x{body[error.start]:02X}", position=len(data) - len(body) + error.start + 1
             ),
-            allowed=_("UTF-8; in the editor: Save with encoding, UTF-8"),
+            allowed=_("UTF-8; in the editor choose: Save with encoding, UTF-8"),
             file=file,
             mark=SourcePosition(before.count(b"\n") + 1, column),
         ) from None
@@ -369,9 +402,9 @@ def read_text(text: str, file: str, composed_by: type[Composer] = Composer) -> T
         raise _too_large_error(file, f"{len(text)} characters")
     if hidden := HIDDEN.search(text):
         raise ProblemError(
-            _("a control or invisible character"),
+            _("the file contains a control character or an invisible character"),
             found=f"U+{ord(hidden[0]):04X}",
-            allowed=_("printable text"),
+            allowed=_("printable characters"),
             file=file,
             mark=_mark_at(text, hidden.start()),
         )
@@ -400,14 +433,14 @@ def apply_settings(tree: Tree, settings: Sequence[str]) -> Tree:
         name, sign, text = (part.strip() for part in setting.partition("="))
         path = ("parameters", name)
         if not sign or not name:
-            raise ProblemError(_("a name and a value are wanted"), allowed="--set OA=120", file=words)
+            raise ProblemError(_("expected a name and a value"), allowed="--set OA=120", file=words)
         if name not in parameters:
-            none = None if parameters else _("none: the file has no parameters")
+            none = None if parameters else _("none: the file has no block `parameters`")
             raise unknown_name_error(
                 name, parameters, _("there is no parameter of that name"), none, path=path, file=words
             )
         if path in given:
-            raise ProblemError(_("this is set twice"), path=path, found=f"{given[path]}, {words}", file=words)
+            raise ProblemError(_("this parameter is set twice"), path=path, found=f"{given[path]}, {words}", file=words)
         given[path] = words
         try:
             parameters[name] = plain_value(text)

@@ -42,7 +42,7 @@ def plain_value(text: str) -> Scalar:
         finite_float(text)
         return WrittenNumber(text)
     if _NOT_FINITE.fullmatch(text):
-        raise ProblemError(_("not a finite number"), found=quote(text), allowed=_("a finite number"))
+        raise ProblemError(_("the number is not finite"), found=quote(text), allowed=_("a finite number"))
     whole, comma, part = text.partition(",")
     if comma and is_split_number(whole, part):
         raise decimal_comma_error(whole, part)
@@ -54,7 +54,9 @@ def finite_float(text: str) -> float:
     number = float(text)
     if math.isinf(number) or (number == 0 and re.search("[1-9]", re.split("[eE]", text)[0])):
         raise ProblemError(
-            _("the number is too large or too small"), found=quote(text), allowed=_("sizes from 1e-300 to 1e300")
+            _("the number is too large or too small"),
+            found=quote(text),
+            allowed=_("absolute values from 1e-300 to 1e300"),
         )
     return number
 

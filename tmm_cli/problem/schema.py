@@ -33,7 +33,7 @@ MAX_TEXT_LENGTH = 200
 def _checked_short_text(found: Any) -> str:
     """A line of text; the number of a group may be written as a number."""
     if isinstance(found, bool) or not isinstance(found, int | str):
-        raise PydanticCustomError("words", "text is wanted")
+        raise PydanticCustomError("words", "expected a text")
     if len(str(found)) > MAX_TEXT_LENGTH:
         raise PydanticCustomError("words", f"text is at most {MAX_TEXT_LENGTH} characters long")
     return str(found)
@@ -45,15 +45,17 @@ ShortText = Annotated[str, BeforeValidator(_checked_short_text), WithJsonSchema(
 class SheetTexts(Strict):
     """Texts of the title block. One that is too long for its cell is cut there."""
 
-    student: ShortText = Field(default="", description="who drew it")
-    group: ShortText = Field(default="", description="the student's group")
-    teacher: ShortText = Field(default="", description="who checks it")
-    institution: ShortText = Field(default="", description="the university, on the title page of the note")
-    department: ShortText = Field(default="", description="the university and its department")
+    student: ShortText = Field(default="", description="name of the student, in the title block")
+    group: ShortText = Field(default="", description="group of the student")
+    teacher: ShortText = Field(default="", description="name of the teacher, in the title block")
+    institution: ShortText = Field(default="", description="university, on the title page of the calculation note")
+    department: ShortText = Field(default="", description="university and department, in the title block")
     code: ShortText = Field(
         default="", description="designation of the project; the number of the sheet is added to it"
     )
-    block: Literal["gost", "plain"] = Field(default="gost", description="GOST 2.104 form 1, or a plain one")
+    block: Literal["gost", "plain"] = Field(
+        default="gost", description="form of the title block. gost: GOST 2.104, form 1; plain: a simple one"
+    )
 
 
 class NoteStyle(Strict):
@@ -61,14 +63,17 @@ class NoteStyle(Strict):
 
     inertia: Literal["U", "Φ"] | None = Field(
         default=None,
-        description="letter of inertia forces; left out: that of the language (in Russian Φ)",
+        description="letter for inertia forces; default: the usual one in the language (Φ in Russian)",
     )
     arms: Literal["m", "paper"] = Field(
         default="m",
-        description="arms in equations of moments: in metres, or in millimetres of the drawing with its scale mu_l",
+        description="moment arms in equations. m: in metres; paper: in millimetres of the drawing, with the scale mu_l",
     )
     sections: Literal["usual", "MATI"] = Field(
-        default="usual", description="MATI: the force analysis in the steps 1 to 4 of the guidelines, before the lever"
+        default="usual",
+        description=(
+            "order of the force analysis. usual; MATI: steps 1 to 4 of the MATI guidelines, before the Zhukovsky lever"
+        ),
     )
 
 
@@ -82,24 +87,40 @@ Quantity = Annotated[str, Field(min_length=1, max_length=60)]
 class ShownKeys(Strict):
     """A quantity by the name that the tables give it, as one number."""
 
-    of: Quantity = Field(description="what: psi, k, W, x of E, v of 5 on 0, phi of 3, M_b, R_34; of vectors the size")
-    at: Number | None = Field(default=None, description="in which position")
+    of: Quantity = Field(
+        description=(
+            "name of the quantity: psi, k, W, x of E, v of 5 on 0, phi of 3, M_b, R_34; of a vector its magnitude"
+        )
+    )
+    at: Number | None = Field(default=None, description="number of the position")
     between: Annotated[list[Number], Field(min_length=2, max_length=2)] | None = Field(
-        default=None, description="instead: its change from one position to another"
+        default=None, description="instead of at: change of the quantity from one position to another"
     )
     over: Literal["largest", "least", "range"] | None = Field(
-        default=None, description="instead: over the way of the driver, its turn or the positions asked"
+        default=None,
+        description=(
+            "instead of at: largest or least value, or range, over the range of the driver, its turn or the "
+            "requested positions"
+        ),
     )
     within: Value | None = Field(
-        default=None, description="with `at`: the way of the driver about there, on which it changes by no more"
+        default=None,
+        description=(
+            "with at: tolerance; the result is the range of the driver around this position in which the "
+            "quantity changes by no more than this"
+        ),
     )
     per: Value | None = Field(
         default=None,
-        description="divided by another quantity, place by place for largest and least, or by a value",
+        description="divide by another quantity (for largest and least: at each position) or by a value",
     )
-    set: dict[Name, Value] = Field(default_factory=dict, max_length=50, description="with these parameters instead")
-    without: Name | None = Field(default=None, description="of the structure: when this hinge has broken")
-    expected: Value | None = Field(default=None, description="what it should be, from elsewhere: a run compares it")
+    set: dict[Name, Value] = Field(
+        default_factory=dict, max_length=50, description="other values of parameters for this property"
+    )
+    without: Name | None = Field(default=None, description="structural properties only: name of a hinge to remove")
+    expected: Value | None = Field(
+        default=None, description="expected value from another source; `tmm run` compares it with the computed one"
+    )
 
 
 Shows = Annotated[dict[Annotated[str, Field(max_length=120)], ShownKeys], Field(max_length=50)]
@@ -133,24 +154,27 @@ class SpatialPairKeys(Strict):
     """A pair of two links."""
 
     between: list[Name] = Field(min_length=2, max_length=2, description="the two links; the frame is 0")
-    kind: Kind | None = Field(default=None, description="its kind, which says the freedoms")
-    freedoms: int | None = Field(default=None, ge=1, le=5, description="instead of kind: 1 to 5 freedoms")
+    kind: Kind | None = Field(default=None, description="kind of the pair, which determines its degrees of freedom")
+    freedoms: int | None = Field(
+        default=None, ge=1, le=5, description="instead of kind: number of degrees of freedom, 1 to 5"
+    )
 
 
 class Spatial(Strict):
     """A chain in space, given by pairs alone."""
 
     links: Annotated[int, Field(ge=1, le=MAX_LINKS)] | Annotated[list[Name], Field(max_length=MAX_LINKS)] | None = (
-        Field(default=None, description="moving links, names or how many; those of the pairs when left out")
+        Field(
+            default=None, description="moving links: their names or their number; default: the links named in `pairs`"
+        )
     )
     pairs: dict[Name, SpatialPairKeys] = Field(min_length=1, max_length=MAX_PAIRS)
-    output: Name | None = Field(default=None, description="the link that is held for the manoeuvrability")
+    output: Name | None = Field(default=None, description="output link, held fixed to compute the manoeuvrability")
     local: Freedoms | dict[Name, Freedoms] | None = Field(
-        default=None, description="local freedoms Wm, all of them or by link; found from the pairs when left out"
+        default=None,
+        description="local mobilities Wm: their total, or a number for each link; default: found from the pairs",
     )
-    wanted: Freedoms | None = Field(
-        default=None, description="mobility Wo that it is meant to have, for q = Wo + Wm - W"
-    )
+    wanted: Freedoms | None = Field(default=None, description="required mobility Wo, for q = Wo + Wm - W")
 
 
 class SpatialStructure(Strict):
@@ -162,8 +186,10 @@ class SpatialStructure(Strict):
 class SpatialFile(FileHead):
     """A chain in space without dimensions: only its structure is counted."""
 
-    reference: str = Field(default="", max_length=100, description="of the mechanism in a book or a list")
-    shows: Shows = Field(default={}, description="W, Wm, q or m: {mobility: {of: W, expected: 9}}")
+    reference: str = Field(default="", max_length=100, description="number or name of the mechanism in a book or list")
+    shows: Shows = Field(
+        default={}, description="properties to compute (W, Wm, q or m): {mobility: {of: W, expected: 9}}"
+    )
     structure: SpatialStructure
 
 
@@ -177,25 +203,37 @@ class SpatialFile(FileHead):
 class Guide(Strict):
     """A straight guide on the frame or on a link."""
 
-    on: Name = Field(default="0", description="the link that carries it; the frame when left out")
-    through: Place | None = Field(default=None, description="a point of that link, or [x, y] in its axes")
-    angle: Value | None = Field(default=None, description="direction, from the x axis of that link")
-    along: Name | None = Field(default=None, description="instead of through and angle: two points, CD")
+    on: Name = Field(default="0", description="link that carries the guide; default: the frame")
+    through: Place | None = Field(default=None, description="point of that link on the guide, or [x, y] in its axes")
+    angle: Value | None = Field(
+        default=None, description="direction of the guide, measured from the x axis of that link"
+    )
+    along: Name | None = Field(
+        default=None, description="instead of through and angle: two points on the guide, e.g. CD"
+    )
     offset: Value = Field(default=0, description="distance of the guide to the left of that line")
-    unbounded: bool = Field(default=False, description="on a moving link: it goes on beyond the points of `along`")
+    unbounded: bool = Field(
+        default=False, description="on a moving link: true if the guide extends beyond the points of `along`"
+    )
 
 
 class SlideKeys(Strict):
     """A sliding pair of this link."""
 
-    on: Name = Field(description="a guide's name, or the link that it slides on")
-    along: Name | None = Field(default=None, description="two points of that link: the guide runs from C to D")
-    through: Place | None = Field(default=None, description="a point of that link on the guide, or [x, y] in its axes")
-    angle: Value | None = Field(default=None, description="direction of the guide, from the x axis of that link")
+    on: Name = Field(description="name of the guide, or of the link on which this link slides")
+    along: Name | None = Field(default=None, description="two points of that link, e.g. CD: the guide runs from C to D")
+    through: Place | None = Field(default=None, description="point of that link on the guide, or [x, y] in its axes")
+    angle: Value | None = Field(
+        default=None, description="direction of the guide, measured from the x axis of that link"
+    )
     offset: Value = Field(default=0, description="distance of the guide to the left of that line")
-    point: Name | None = Field(default=None, description="the point of this link that runs on the guide; its first")
-    turned: Value = Field(default=0, description="angle of this link's axes from those of the link it slides on")
-    unbounded: bool = Field(default=False, description="the guide goes on beyond the points of `along`")
+    point: Name | None = Field(
+        default=None, description="point of this link that slides on the guide; default: its first point"
+    )
+    turned: Value = Field(
+        default=0, description="angle from the axes of the link with the guide to the axes of this link"
+    )
+    unbounded: bool = Field(default=False, description="true if the guide extends beyond the points of `along`")
 
 
 def _expand_guide_name(found: Any) -> Any:
@@ -208,12 +246,16 @@ SlideOrGuide = Annotated[SlideKeys, BeforeValidator(_expand_guide_name, json_sch
 class LinkKeys(Strict):
     """A moving link. Its axes: origin in its first point, x towards the second; or as coordinates say."""
 
-    name: str | None = Field(default=None, max_length=60, description="what the link is called in reports")
-    points: list[Name] | dict[Name, Vector] = Field(description="names of its points, or their coordinates in its axes")
-    length: Value | None = Field(default=None, description="distance of two points")
-    also: dict[Name, Place] = Field(default_factory=dict, description="further points, in its axes")
+    name: str | None = Field(default=None, max_length=60, description="name of the link in reports")
+    points: list[Name] | dict[Name, Vector] = Field(
+        description="names of the points of the link, or their coordinates in the axes of the link"
+    )
+    length: Value | None = Field(default=None, description="distance between the two points")
+    also: dict[Name, Place] = Field(
+        default_factory=dict, description="further points of the link, with their positions in its axes"
+    )
     slides: SlideOrGuide | list[SlideOrGuide] | None = Field(
-        default=None, description="what it slides on: a guide, or {on, along}, or several of them in a list"
+        default=None, description="prismatic pair of this link: a guide, or {on, along}, or a list of them"
     )
 
     @property
@@ -225,10 +267,16 @@ class LinkKeys(Strict):
 class Speeds(Strict):
     """A crank's speed, or its acceleration, by its angle."""
 
-    against: Literal["crank angle"] = Field(description="crank angle: from the x axis, counterclockwise")
-    table: list[Vector] = Field(min_length=2, max_length=10_000, description="rows [angle, size]")
+    against: Literal["crank angle"] = Field(
+        description="quantity in the first column. crank angle: from the x axis, counterclockwise"
+    )
+    table: list[Vector] = Field(min_length=2, max_length=10_000, description="rows [angle, value]")
     between: Literal["smooth", "linear"] = Field(
-        default="smooth", description="rows: a cubic spline, or lines; of squares of speeds"
+        default="smooth",
+        description=(
+            "interpolation between rows. smooth: cubic spline; linear: straight lines; speeds are interpolated "
+            "by their squares"
+        ),
     )
 
 
@@ -236,7 +284,7 @@ class CompoundHinge(Strict):
     """A hinge of three links or more."""
 
     attached_to: Name = Field(
-        alias="attached to", description="the link with which each of the others makes a pair; 0 is the frame"
+        alias="attached to", description="link with which each of the other links forms a pair; 0 is the frame"
     )
 
 
@@ -248,26 +296,40 @@ class DriverKeys(Strict):
     """An input: a crank, or a slider that is driven (cylinder), on the frame or on a moving link."""
 
     link: Name
-    on: Name = Field(default="0", description="the link that it is driven from: the frame, or the cylinder of a piston")
-    at: Value | None = Field(default=None, description="its place in the sketch, for drivers after the first")
+    on: Name = Field(
+        default="0", description="link relative to which it is driven: the frame, or the cylinder of a piston"
+    )
+    at: Value | None = Field(
+        default=None, description="driver coordinate in the sketch, for every driver after the first"
+    )
     speed: Annotated[Value | Speeds, BeforeValidator(_checked_speed)] = Field(
-        description="of rotation (82 rpm, 8 rad/s) or of sliding (0.2 m/s); of a crank {against, table} too"
+        description="speed of rotation (82 rpm, 8 rad/s) or of sliding (0.2 m/s); for a crank also {against, table}"
     )
     acceleration: Annotated[Value | Speeds, BeforeValidator(_checked_speed)] = Field(
-        default=0, description="in the sense of motion; the speed is that of position 0; beside a table: one too"
+        default=0,
+        description=(
+            "acceleration in the sense of motion; the speed is then that of position 0; if the speed is a "
+            "table, a table too"
+        ),
     )
-    stroke: Vector | None = Field(default=None, description="[from, to]: places between which a cylinder works")
+    stroke: Vector | None = Field(
+        default=None, description="stroke of a driven slider: [from, to], its two end coordinates"
+    )
     turns: Literal["ccw", "cw"] = Field(default="ccw", description="sense of rotation")
-    balance: Literal["moment", "force"] = Field(default="moment", description="what balances the crank")
-    end: Name | None = Field(default=None, description="the crank's point where the balancing force acts")
+    balance: Literal["moment", "force"] = Field(
+        default="moment", description="balance the crank by a moment or by a force"
+    )
+    end: Name | None = Field(default=None, description="point of the crank at which the balancing force acts")
 
 
 class OutputKeys(Strict):
     """The link whose stroke or swing is the purpose of the mechanism, or a point of a moving link: its x and y."""
 
     link: Name = Field(
-        description="of a link joined to the frame its stroke or swing, of a coupler its angle, of a stone its place "
-        "along the slot"
+        description=(
+            "output link or point. Its output is the stroke or swing of a link joined to the frame, the angle "
+            "of a coupler, the displacement of a sliding block along the slot"
+        )
     )
     working: Literal["auto", "forward", "backward"] = Field(
         default="auto", description="direction of the working stroke; auto: the slower one"
@@ -288,42 +350,60 @@ class Positions(Strict):
 
     count: int = Field(default=12, ge=1, le=MAX_POSITIONS)
     from_: Value | None = Field(
-        default=None, alias="from", description="place of position 0: an angle, or `working stroke`"
+        default=None, alias="from", description="crank angle of position 0, or `working stroke` for its start"
     )
     at: Annotated[
         list[Value] | None, BeforeValidator(_make_list, json_schema_input_type=list[Value] | Value | None)
-    ] = Field(default=None, max_length=MAX_POSITIONS, description="places one by one, instead")
-    detail: Annotated[list[int], BeforeValidator(_make_list, json_schema_input_type=list[int] | int)] = Field(
-        default_factory=list, max_length=24, description="numbers of positions drawn in detail"
+    ] = Field(
+        default=None, max_length=MAX_POSITIONS, description="instead of count and from: list of driver coordinates"
     )
-    centres: bool = Field(default=False, description="instantaneous centres in the positions in detail")
+    detail: Annotated[list[int], BeforeValidator(_make_list, json_schema_input_type=list[int] | int)] = Field(
+        default_factory=list, max_length=24, description="numbers of the positions drawn in detail"
+    )
+    centres: bool = Field(default=False, description="true to draw the instantaneous centres in the detailed positions")
 
 
 class Checks(Strict):
     """Limits above which a run says so and ends with exit code 1."""
 
-    lever: Value = Field(default="5 %", description="difference of the Zhukovsky lever from the force plan")
-    pressure_sliding: Value | None = Field(default=None, description="largest pressure angle on a sliding link; 30 deg")
-    pressure_turning: Value | None = Field(default=None, description="largest pressure angle on a turning link; 45 deg")
+    lever: Value = Field(
+        default="5 %", description="largest allowed difference between the Zhukovsky lever and the force plan"
+    )
+    pressure_sliding: Value | None = Field(
+        default=None, description="largest allowed pressure angle on a sliding output link; default: 30 deg"
+    )
+    pressure_turning: Value | None = Field(
+        default=None, description="largest allowed pressure angle on a rotating output link; default: 45 deg"
+    )
 
 
 class File(FileHead):
     """A problem of planar lever mechanisms."""
 
-    reference: str = Field(default="", max_length=100, description="of the mechanism, in a book or a list: M7, Fig. 7")
-    shows: Shows = Field(default={}, description="properties as numbers: {swing: {of: psi, expected: 2*a}}")
-    units: dict[str, str] = Field(default_factory=dict, description="what bare numbers mean: {length: mm, angle: deg}")
+    reference: str = Field(
+        default="", max_length=100, description="number or name of the mechanism in a book or list: M7, Fig. 7"
+    )
+    shows: Shows = Field(default={}, description="properties to compute as numbers: {swing: {of: psi, expected: 2*a}}")
+    units: dict[str, str] = Field(
+        default_factory=dict, description="units of numbers written without a unit: {length: mm, angle: deg}"
+    )
     parameters: dict[Name, Value] = Field(default_factory=dict, max_length=500)
-    synthesis: Any = Field(default=None, description="a task whose answer becomes parameters: {task: ...}")
-    variants: Any = Field(default=None, description="what is free in a task for a group: {OA: {from, to, step}}")
-    grading: Any = Field(default=None, description="what students are asked, and how it is marked: {answers: [...]}")
-    points: dict[Name, Vector] = Field(default_factory=dict, max_length=500, description="of the frame")
+    synthesis: Any = Field(default=None, description="synthesis task whose results become parameters: {task: ...}")
+    variants: Any = Field(
+        default=None, description="parameters varied among the students of a group: {OA: {from, to, step}}"
+    )
+    grading: Any = Field(
+        default=None, description="answers required from students and how they are graded: {answers: [...]}"
+    )
+    points: dict[Name, Vector] = Field(default_factory=dict, max_length=500, description="points of the frame")
     guides: dict[Name, Guide] = Field(default_factory=dict, max_length=200)
     links: dict[Name, LinkKeys] = Field(min_length=1, max_length=MAX_LINKS)
     hinges: dict[Name, CompoundHinge] = Field(
-        default_factory=dict, max_length=100, description="compound hinges that are not counted in the usual way"
+        default_factory=dict,
+        max_length=100,
+        description="compound hinges whose links are attached in another way than usual",
     )
-    driver: DriverKeys | list[DriverKeys] = Field(description="the input; several as a list, when W > 1")
+    driver: DriverKeys | list[DriverKeys] = Field(description="input link; a list of several if W > 1")
     gears: dict[Name, GearKeys] = Field(default_factory=dict, max_length=100)
     racks: dict[Name, RackKeys] = Field(default_factory=dict, max_length=100)
     cams: dict[Name, CamKeys] = Field(default_factory=dict, max_length=100)
@@ -331,31 +411,45 @@ class File(FileHead):
     friction: FrictionKeys | None = None
     sketch: dict[Name, Any] = Field(
         default_factory=dict,
-        description="how it looks at one place of the driver: at, points [x, y] and angles of links, roughly",
+        description=(
+            "approximate configuration for one driver coordinate: `at`, coordinates [x, y] of points, angles of links"
+        ),
     )
     change_points: Literal["smooth", "keep side"] = Field(
         default="smooth",
         alias="change points",
-        description="how a parallelogram and its like pass the positions in which they could go over into another "
-        "assembly: smoothly, or always on the side of the sketch",
+        description=(
+            "how a parallelogram linkage, and similar ones, passes positions at which its assembly could "
+            "change. smooth: smoothly; keep side: always on the side shown in the sketch"
+        ),
     )
     masses: dict[Name, MassKeys] = Field(default_factory=dict)
     loads: dict[Name, LoadKeys] = Field(default_factory=dict, max_length=200)
-    gravity: Any = Field(default=None, description="[x, y], or one number downwards; 9.81 m/s^2 when left out")
+    gravity: Any = Field(
+        default=None,
+        description="acceleration of gravity: [x, y], or one number, directed downwards; default: 9.81 m/s^2",
+    )
     output: Annotated[Name | OutputKeys | list[Name | OutputKeys], BeforeValidator(_list_outputs)] = Field(
-        default=[], max_length=20, description="a link or a point, or {link, working}, or several of them in a list"
+        default=[], max_length=20, description="output: a link or a point, or {link, working}, or a list of them"
     )
     cycle: Value | None = Field(
-        default=None, description="turns of the crank after which its loads come again: 2 turns of a four-stroke engine"
+        default=None,
+        description="number of crank turns after which the loads repeat, e.g. 2 turns for a four-stroke engine",
     )
-    intermittent: Wheels = Field(default={}, description="wheels that a link takes along on some strokes only")
+    intermittent: Wheels = Field(
+        default={}, description="wheels that a link carries along only in some strokes (ratchets, one-way clutches)"
+    )
     positions: Positions = Field(default_factory=Positions)
     checks: Checks = Field(default_factory=Checks)
-    dynamics: DynamicsKeys | None = Field(default=None, description="law of motion: motor, flywheel")
-    balancing: BalancingKeys | None = Field(default=None, description="what shakes the frame, and counterweights")
+    dynamics: DynamicsKeys | None = Field(default=None, description="law of motion of the machine: motor, flywheel")
+    balancing: BalancingKeys | None = Field(
+        default=None, description="shaking force and moment on the frame, and counterweights"
+    )
     sheet: SheetTexts = Field(default_factory=SheetTexts, description="texts of the title block of `tmm sheets`")
-    frame: Name = Field(default="0", description="the number of the frame that is printed: R_65 for R_05 where it is 6")
-    note: NoteStyle = Field(default_factory=NoteStyle, description="how the note and its drawings are written")
+    frame: Name = Field(
+        default="0", description="number of the frame in print; with 6, R_65 is printed instead of R_05"
+    )
+    note: NoteStyle = Field(default_factory=NoteStyle, description="style of the calculation note and its drawings")
 
 
 # The JSON Schema of problem files, for editors.

@@ -65,17 +65,17 @@ KEYS_IN_OTHER_LANGUAGES: Final = {word: key for key, words in _TRANSLATED_KEYS.i
 # The first mistake in the shape of a file: pydantic's errors in the file's own terms.
 
 
-KEYS_EXPECTED = N_("keys with values are wanted")
+KEYS_EXPECTED = N_("expected keys with values")
 MESSAGES = {  # what is wrong with a value, by pydantic's kind of error
-    "int": N_("a whole number is wanted"),
-    "greater_than_equal": N_("at least {ge} is wanted"),
-    "less_than_equal": N_("at most {le} is wanted"),
+    "int": N_("expected a whole number"),
+    "greater_than_equal": N_("expected a number not less than {ge}"),
+    "less_than_equal": N_("expected a number not greater than {le}"),
     "too_long": N_("this is too long: at most {max_length}"),
     "string_too_long": N_("this is too long: at most {max_length}"),
-    "too_short": N_("{min_length} are wanted here"),
-    "empty": N_("there is nothing here"),
-    "string_type": N_("text is wanted"),
-    "list_type": N_("a list [..., ...] is wanted"),
+    "too_short": N_("too few items; at least {min_length} expected here"),
+    "empty": N_("nothing is given here"),
+    "string_type": N_("expected a text"),
+    "list_type": N_("expected a list [..., ...]"),
     "dict_type": KEYS_EXPECTED,
     "model_type": KEYS_EXPECTED,
     "model_attributes_type": KEYS_EXPECTED,
@@ -173,7 +173,7 @@ def _make_error(
     if kind == "literal_error":
         words = str(context.get("expected", "")).replace("'", "").replace(" or ", ", ")
         return ProblemError(
-            _("this word is not known here"),
+            _("this value is not allowed here"),
             path=path,
             found=quote(value),
             allowed=described if described and "[" in described else words,  # a list may stand here too

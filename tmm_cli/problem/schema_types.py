@@ -14,7 +14,7 @@ MAX_POSITIONS = 100_000
 def checked_value(found: Any) -> Any:
     """A number, or text that may be one."""
     if isinstance(found, bool) or not isinstance(found, int | float | str):
-        raise PydanticCustomError("value", "a number, text with a unit, or arithmetic on parameters is wanted")
+        raise PydanticCustomError("value", "expected a number, a number with a unit, or an expression with parameters")
     return found
 
 
@@ -23,16 +23,16 @@ def checked_name(found: Any) -> str:
     if isinstance(found, int) and not isinstance(found, bool):
         return str(found)
     if not isinstance(found, str) or not found.strip():
-        raise PydanticCustomError("name", "a name is wanted")
+        raise PydanticCustomError("name", "expected a name")
     if len(found) > 40:
-        raise PydanticCustomError("name", "a name is at most 40 characters long")
+        raise PydanticCustomError("name", "a name can have at most 40 characters")
     return found
 
 
 def checked_vector(found: Any) -> Any:
     """Two coordinates."""
     if not isinstance(found, list) or len(found) != 2:
-        raise PydanticCustomError("vector", "two coordinates [x, y] are wanted")
+        raise PydanticCustomError("vector", "expected two coordinates [x, y]")
     return [checked_value(item) for item in found]
 
 
@@ -63,7 +63,7 @@ class Strict(BaseModel):
 class FileHead(Strict):
     """What every problem file begins with."""
 
-    tmm: Literal[1] = Field(description="version of this format; write tmm: 1")
+    tmm: Literal[1] = Field(description="version of the file format; write tmm: 1")
     lang: Literal["en", "ru", "sr"] = Field(default="en", description="language of drawings, tables and messages")
     title: str = Field(default="", max_length=200)
     description: str = Field(default="", max_length=4000)
@@ -77,7 +77,11 @@ class OnLine(Strict):
 
     on: Name = Field(description="two points of the link, written together: CD (or C-D)")
     at: Value = Field(
-        default=0.5, description="share of the way from the first to the second, 0.5 or 50 %; or a distance, 110 mm"
+        default=0.5,
+        description=(
+            "position between the two points, as a fraction of their distance (0.5 or 50 %) or as a distance "
+            "from the first (110 mm)"
+        ),
     )
     side: Value = Field(default=0, description="distance to the left of the line")
 

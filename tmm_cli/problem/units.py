@@ -165,11 +165,15 @@ def parse_unit(text: str) -> Unit:
     while position < len(source):
         match = _FACTOR.match(source, position)
         if not match or (match[1] and not position) or factors >= 8:
-            raise UnitError(_("not a unit"), found=quote(text), allowed=_("e.g. mm, deg, rpm, kN, N*m, kg*m^2, m/s^2"))
+            raise UnitError(
+                _("this is not a valid unit"), found=quote(text), allowed=_("e.g. mm, deg, rpm, kN, N*m, kg*m^2, m/s^2")
+            )
         sign, name, power, digit = match.groups()
         exponent = int((power or digit or "1")[:6]) * (-1 if sign == "/" else 1)
         if abs(exponent) > 4:
-            raise UnitError(_("not a unit: the power is too large"), found=quote(text), allowed=_("powers up to 4"))
+            raise UnitError(
+                _("this is not a valid unit: the power is too large"), found=quote(text), allowed=_("powers up to 4")
+            )
         if name != "1":
             found = find_unit(name)
             if found is None:
@@ -224,7 +228,9 @@ class UnitSystem:
                 found = parse_unit(name).dimension
                 if not found.fits(kind.dimension):
                     allowed = _("a unit of {full}, e.g. {default}").format(full=full, default=kind.default)
-                    raise UnitError(_("wrong unit"), found=f"{quote(name)}, {found}", allowed=allowed)
+                    raise UnitError(
+                        _("this unit measures another quantity"), found=f"{quote(name)}, {found}", allowed=allowed
+                    )
             self._names[kind.dimension] = to_latin_unit(name)
         self._units = {dimension: parse_unit(name) if name else Unit(NUMBER) for dimension, name in self._names.items()}
 
@@ -274,7 +280,7 @@ class UnitSystem:
     def describe(self, quantity: PhysicalValue) -> str:
         """For messages: `a length (110 mm)`, `a bare number (5)`."""
         if quantity.dimension is None:
-            return _("a bare number ({number})").format(number=f"{quantity.value:.6g}")
+            return _("a number without a unit ({number})").format(number=f"{quantity.value:.6g}")
         number, unit = self.from_si(quantity.value, quantity.dimension), self.symbol(quantity.dimension)
         return f"{quantity.dimension} ({number:.6g} {unit}".rstrip() + ")"
 

@@ -25,20 +25,20 @@ UNKNOWN_NAMES = {
     "link": N_("there is no link of that name"),
     "moving link": N_("there is no moving link of that name"),
     "point": N_("there is no point of that name"),
-    "point of link": N_("there is no point of link {link} of that name"),
-    "frame point": N_("there is no frame point of that name"),
+    "point of link": N_("link {link} has no point of that name"),
+    "frame point": N_("the frame has no point of that name"),
     "point or link": N_("there is no point or link of that name"),
     "link or point": N_("there is no link or point of that name"),
     "pair": N_("there is no pair of that name"),
     "hinge": N_("there is no hinge of that name"),
-    "turning or sliding pair": N_("there is no turning or sliding pair of that name"),
+    "turning or sliding pair": N_("there is no revolute or prismatic pair of that name"),
 }
 INVALID_NAMES = {
-    "link": N_("this cannot be the name of a link"),
-    "point": N_("this cannot be the name of a point"),
-    "pair": N_("this cannot be the name of a pair"),
-    "guide": N_("this cannot be the name of a guide"),
-    "load": N_("this cannot be the name of a load"),
+    "link": N_("invalid name of a link"),
+    "point": N_("invalid name of a point"),
+    "pair": N_("invalid name of a pair"),
+    "guide": N_("invalid name of a guide"),
+    "load": N_("invalid name of a load"),
 }
 POINT_NAME = re.compile(r"[^\W\d_][\w'′]{0,15}")
 LINK_NAME = re.compile(r"\w[\w'′.-]{0,15}")
@@ -59,7 +59,7 @@ class ValueReader:
             if not -limit <= number <= limit:
                 most = f"{self.units.from_si(limit, want):.6g} {self.units.symbol(want)}".rstrip()
                 raise ProblemError(
-                    _("this is too large for a mechanism"),
+                    _("this value is too large for a mechanism"),
                     found=quote(value),
                     allowed=_("{most} or less").format(most=most),
                 )
@@ -97,14 +97,14 @@ class ValueReader:
         number = self.positive(value, NUMBER, path, zero=zero)
         if number > 1:
             percent = f"{value} %" if isinstance(value, int | float) and value <= 100 else _("0 to 1, or 0 to 100 %")
-            raise ProblemError(_("a share is not above one"), path=path, found=quote(value), allowed=percent)
+            raise ProblemError(_("a fraction cannot be greater than 1"), path=path, found=quote(value), allowed=percent)
         return number
 
     def too_small(self, value: Any, least: float, want: Dimension, path: Path) -> ProblemError:
         """Of a value below the least (SI) that a mechanism can have."""
         shown = f"{self.units.from_si(least, want):.6g} {self.units.symbol(want)}".rstrip()
         return ProblemError(
-            _("this is too small for a mechanism"),
+            _("this value is too small for a mechanism"),
             path=path,
             found=quote(value),
             allowed=_("{least} or more").format(least=shown),
@@ -113,7 +113,7 @@ class ValueReader:
     def vector(self, value: Any, want: Dimension, path: Path) -> complex:
         """Two coordinates."""
         if not isinstance(value, list | tuple) or len(value) != 2:
-            raise ProblemError(_("two coordinates [x, y] are wanted"), path=path, found=quote(value))
+            raise ProblemError(_("expected two coordinates [x, y]"), path=path, found=quote(value))
         return make_complex(self.number(value[0], want, (*path, 0)), self.number(value[1], want, (*path, 1)))
 
     def place(self, value: Any, points: Mapping[str, complex], path: Path, link: str) -> complex:
@@ -141,12 +141,13 @@ class ValueReader:
         if dimension is None and not -MAX_BARE_FRACTION <= share <= MAX_BARE_FRACTION:
             number, (first, second) = f"{share:.6g}", points
             raise ProblemError(
-                _("a share of the way from {first} to {second} is wanted here").format(first=first, second=second),
+                _("expected a fraction of the distance from {first} to {second}").format(first=first, second=second),
                 path=path,
                 found=quote(value),
-                allowed=_("e.g. 0.5; with its unit {number} %, or {number} {unit} for a distance from {first}").format(
-                    number=number, unit=self.units.spelt(LENGTH), first=first
-                ),
+                allowed=_(
+                    "e.g. 0.5, or {number} % if a percentage is meant; for a distance from {first} write "
+                    "{number} {unit}"
+                ).format(number=number, unit=self.units.spelt(LENGTH), first=first),
             )
         return share
 
@@ -161,7 +162,7 @@ class ValueReader:
     def refuse_same(links: Sequence[str], path: Path) -> None:
         """Refuse one link in two places where different ones are wanted."""
         if len(set(links)) < len(links):
-            raise ProblemError(_("different links are wanted"), path=path, found=", ".join(links))
+            raise ProblemError(_("the links must be different"), path=path, found=", ".join(links))
 
     def two_points(self, text: str, points: Mapping[str, complex], path: Path) -> tuple[str, str]:
         """Two points of a link written together, CD or C-D."""
@@ -174,17 +175,17 @@ class ValueReader:
             return found[0]
         near = None
         if len(found) > 1:
-            message = _("this can be read in several ways: put a dash between the points")
+            message = _("this can be read in several ways; put a hyphen between the two points")
         elif found:
-            message = _("these two points lie on one another")
+            message = _("these two points coincide")
         else:
-            message = _("two points of one link are wanted")
+            message = _("expected two points of the same link")
             near = nearest_name(text, [a + b for a in points for b in points if a != b])
         raise ProblemError(
             message,
             path=path,
             found=quote(text),
-            allowed=_("two of {points}").format(points=", ".join(points)),
+            allowed=_("two of these: {points}").format(points=", ".join(points)),
             near=near,
         )
 
@@ -228,10 +229,10 @@ class FileSection:
             if first[k] == first[k - 1]:
                 if jumps and (k < 2 or first[k - 2] < first[k]):
                     continue
-                allowed = _("two rows: the value before the jump, and the value after it")
+                allowed = _("for a jump two rows: the value before it and the value after it")
                 if not jumps:
                     allowed = _("each value once")
-            message = _("the first column must grow")
+            message = _("the values in the first column must increase")
             raise ProblemError(message, path=(*path, k, 0), found=str(rows[k][0]), allowed=allowed)
         return first, second
 
@@ -252,7 +253,7 @@ class FileSection:
         told = [key for key in keys if getattr(self.keys, key) is not None]
         if len(told) != 1:
             found, allowed = ", ".join(told) or None, ", ".join(keys)
-            raise self.refusal("", _("one of these keys is wanted"), found, allowed)
+            raise self.refusal("", _("expected exactly one of these keys"), found, allowed)
         return told[0]
 
     def refusal(
@@ -277,13 +278,13 @@ def check_name(name: str, path: Path, what: str, taken: Container[str] = ()) -> 
             translated(INVALID_NAMES[what]),
             path=path,
             found=quote(name),
-            allowed=_("letters and figures, at most 16")
+            allowed=_("letters and digits, at most 16 characters")
             if what == "link"
-            else _("letters and figures, at most 16, a letter first"),
+            else _("letters and digits, at most 16 characters, beginning with a letter"),
             key=True,
         )
     if name in taken:
-        raise ProblemError(_("this name is taken"), path=path, found=quote(name), key=True)
+        raise ProblemError(_("this name is already in use"), path=path, found=quote(name), key=True)
 
 
 def make_complex(x: float, y: float) -> complex:

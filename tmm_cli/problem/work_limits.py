@@ -33,17 +33,19 @@ def refuse_work(linkage: Linkage, request: Request) -> None:
     if most < 1:
         whole = WORK_BUDGET // (_search_positions(linkage) + 1)
         raise ProblemError(
-            _("this linkage is too large"),
+            _("this mechanism is too large"),
             path=("links",),
             found=_describe_linkage(linkage),
-            allowed=_("6 a link, 1 a point, 2 a load: at most {most} in all").format(most=whole),
+            allowed=_("at most {most} in total, where a link counts as 6, a point as 1, a load as 2").format(
+                most=whole
+            ),
             key=True,
         )
     if count > most:
         raise ProblemError(
             _("too many positions for so many links, points and loads"),
             path=("positions", "count"),
-            found=_("{count} positions; {linkage}").format(count=count, linkage=_describe_linkage(linkage)),
+            found=_("positions: {count}; {linkage}").format(count=count, linkage=_describe_linkage(linkage)),
             allowed=_("at most {most}").format(most=most),
         )
 
@@ -74,9 +76,9 @@ def refuse_options(
             few = (left + count + each * min(count, MAX_JUDGED)) / (1 + each)
             most = int(few if few < MAX_JUDGED else left + count)
             raise ProblemError(
-                _("too many positions and too large a linkage for all digits to be judged"),
+                _("too many positions, or too large a mechanism, for the estimate of correct digits"),
                 path=("--digits",),
-                found=_("{count} positions; {linkage}").format(count=count, linkage=_describe_linkage(linkage)),
+                found=_("positions: {count}; {linkage}").format(count=count, linkage=_describe_linkage(linkage)),
                 allowed=_("without --digits")
                 if most < 1
                 else _("at most {most} positions, or without --digits").format(most=most),
@@ -85,33 +87,33 @@ def refuse_options(
     if each * centres > left:
         most = int(left // each)
         raise ProblemError(
-            _("these are too many instantaneous centres for so many links and positions"),
+            _("too many instantaneous centres for so many links and positions"),
             path=("--centres",),
-            found=_("{count} positions in detail; {linkage}").format(count=centres, linkage=_describe_linkage(linkage)),
-            allowed=_("without centres")
+            found=_("detailed positions: {count}; {linkage}").format(count=centres, linkage=_describe_linkage(linkage)),
+            allowed=_("without instantaneous centres")
             if most < 1
-            else _("at most {most} in detail, or without centres").format(most=most),
+            else _("at most {most} detailed positions, or without instantaneous centres").format(most=most),
         )
     if detail is not None and SHEET_POSITIONS * (
         _count_sheets(detail, large) + PLAN_SHEETS * plans
     ) > left >= SHEET_POSITIONS * _count_sheets(detail, large):
         raise ProblemError(
-            _("these are too many drawings for so many links, points and positions"),
+            _("too many drawings for so many links, points and positions"),
             path=("--positions",),
-            found=_("{count} positions; {linkage}").format(count=plans, linkage=_describe_linkage(linkage)),
-            allowed=_("plans of at most {most}, or --positions detail").format(
+            found=_("positions: {count}; {linkage}").format(count=plans, linkage=_describe_linkage(linkage)),
+            allowed=_("plans for at most {most} positions, or --positions detail").format(
                 most=int((left / SHEET_POSITIONS - _count_sheets(detail, large)) / PLAN_SHEETS)
             ),
         )
     if detail is not None and SHEET_POSITIONS * _count_sheets(detail, large) > left:
         most = max((few for few in range(detail) if SHEET_POSITIONS * _count_sheets(few, large) <= left), default=-1)
         raise ProblemError(
-            _("these are too many drawings for so many links, points and positions"),
+            _("too many drawings for so many links, points and positions"),
             path=("positions", "detail"),
-            found=_("{count} positions in detail; {linkage}").format(count=detail, linkage=_describe_linkage(linkage)),
+            found=_("detailed positions: {count}; {linkage}").format(count=detail, linkage=_describe_linkage(linkage)),
             allowed=_("without drawings")
             if most < 0
-            else _("at most {most} in detail, or without drawings").format(most=most),
+            else _("at most {most} detailed positions, or without drawings").format(most=most),
         )
 
 
@@ -126,7 +128,7 @@ def _search_positions(linkage: Linkage) -> int:
 
 def _describe_linkage(linkage: Linkage) -> str:
     links, points, loads = _count_elements(linkage)
-    return _("{links} links, {points} points, {loads} loads").format(links=links, points=points, loads=loads)
+    return _("links: {links}, points: {points}, loads: {loads}").format(links=links, points=points, loads=loads)
 
 
 def _count_elements(linkage: Linkage) -> tuple[int, int, int]:

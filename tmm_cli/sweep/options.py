@@ -77,7 +77,7 @@ def _read_axis(task: Task, text: str, usual: int) -> SweepAxis:
         said.append(task.value(f"{part[1]} {unit}".strip()))
     dimension = said[0].dimension
     if own and dimension and not dimension.fits(own):
-        raise ProblemError(_("{want} is wanted here").format(want=own), found=quote(text), allowed=own.example)
+        raise ProblemError(_("expected here: {want}").format(want=own), found=quote(text), allowed=own.example)
     low, high = (float(NUMBER_WITH_UNIT.fullmatch(end)[1]) for end in ends)  # type: ignore[index]
     if not low < high:
         raise ProblemError(_("the first bound must be smaller than the second"), found=quote(text), allowed=EXAMPLE)

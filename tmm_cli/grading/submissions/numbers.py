@@ -96,7 +96,9 @@ def plainly(text: str) -> str:
     """
     if len(text) > LONGEST:
         raise ProblemError(
-            _("this is too long"), found=quote(text), allowed=_("at most {most} characters").format(most=LONGEST)
+            _("this expression is too long"),
+            found=quote(text),
+            allowed=_("at most {most} characters").format(most=LONGEST),
         )
     return plain_text(text.translate(_SIGNS)).strip()
 
@@ -108,7 +110,7 @@ def read_number(source: str) -> tuple[float, str]:
     found = _NUMBER.match(source)
     if found is None or not _BEHIND.match(source, found.end()):
         if _NOT_FINITE.fullmatch(source):
-            raise ProblemError(_("not a finite number"), found=quote(source))
+            raise ProblemError(_("the number is not finite"), found=quote(source))
         if _DATE.fullmatch(source):
             raise ProblemError(
                 _("a spreadsheet made a date of this"), found=quote(source), allowed=_("a number in a cell of text")

@@ -39,26 +39,30 @@ def _build_speed_table(section: FileSection, turns: int) -> SpeedTable:
     for k, speed in enumerate(speeds):
         if speed < 0:
             raise ProblemError(
-                _("a speed is counted in the driver's sense, which is one alone"),
+                _("speeds in a table must not be negative: the driver moves in one sense"),
                 path=(*path, k, 1),
                 found=quote(keys.speed.table[k][1]),
-                allowed=_("zero or more; turns: cw for the other sense"),
+                allowed=_("zero or more; for the other sense of rotation turns: cw"),
             )
     if not any(speeds):
-        raise ProblemError(_("the driver stands still in all rows"), path=path, key=True)
+        raise ProblemError(_("the speed of the driver is zero in all rows"), path=path, key=True)
     closed = _is_closed(section, "speed", angles, speeds, turns)
     squares = InterpolationTable(angles, tuple(speed * speed for speed in speeds), keys.speed.between, closed)
     row, least = _find_least(squares)
     if least < -ROUNDING_OF_REST * float(to_float(max(speeds))) ** 2:
-        below = _("between this row and the next the smooth curve of squares of speeds goes below zero")
-        found, allowed = quote(keys.speed.table[row][0]), _("between: linear, or more rows there")
+        below = _("the smooth curve through the squares of the speeds falls below zero between this row and the next")
+        found, allowed = quote(keys.speed.table[row][0]), _("between: linear, or more rows between these two")
         raise ProblemError(below, path=(*path, row, 0), found=found, allowed=allowed)
     if not isinstance(keys.acceleration, schema.Speeds):
         return SpeedTable(squares)
     angles, gains = _columns(section, "acceleration", ANGULAR_ACCELERATION)
     closed_too = _is_closed(section, "acceleration", angles, gains, turns)
     if closed_too != closed or angles[0] > squares.arguments[0] or angles[-1] < squares.arguments[-1]:
-        raise section.refusal("acceleration", _("accelerations are given over the same angles as speeds"), at_key=True)
+        raise section.refusal(
+            "acceleration",
+            _("the table of accelerations must cover the same angles as the table of speeds"),
+            at_key=True,
+        )
     return SpeedTable(squares, InterpolationTable(angles, gains, keys.acceleration.between, closed_too))
 
 
@@ -81,17 +85,17 @@ def _is_closed(section: FileSection, key: str, angles: tuple[Any, ...], values: 
     end = units.format_value(float(angles[0]) + cycle, ANGLE)
     beyond: Iterable[int] = (k for k, angle in enumerate(angles) if angle - angles[0] > cycle + SAME_DRIVER_POSITION)
     if (row := next(iter(beyond), None)) is not None:
-        longer = _("at most {end}; a longer cycle is told by cycle: {turns} turns").format(end=end, turns=turns + 1)
-        never = _("this row is never reached: it is more than a cycle after the first one")
+        longer = _("at most {end}; for a longer cycle write cycle: {turns} turns").format(end=end, turns=turns + 1)
+        never = _("this row is never used: it lies more than one cycle after the first row")
         raise ProblemError(never, path=(*path, row, 0), found=quote(table[row][0]), allowed=longer)
     if angles[-1] - angles[0] < cycle - SAME_DRIVER_POSITION:
         return False
     if abs(values[-1] - values[0]) > SAME_RATIO * max(abs(value) for value in values):
         raise ProblemError(
-            _("the table does not close: its cycle ends otherwise than it begins"),
+            _("the table covers the whole cycle, but its last value differs from the first"),
             path=(*path, len(table) - 1, 1),
             found=quote(table[-1][1]),
-            allowed=_("{first}, as in the first row").format(first=table[0][1]),
+            allowed=_("{first}, the value of the first row").format(first=table[0][1]),
         )
     return True
 
@@ -128,16 +132,18 @@ def build_drivers(shape: schema.File, members: LinksAndPairs, values: ValueReade
     for section in sections:
         driver = _build_driver(section, members, section is sections[0])
         if any({driver.link, driver.base} == {d.link, d.base} or driver.link == d.link for d in found):
-            raise section.refusal("link", _("this link is driven already"), quote(driver.link))
+            raise section.refusal("link", _("this link has a driver already"), quote(driver.link))
         found.append(driver)
     lead, size = found[0], _linkage_size(members.links)
     for section, driver in zip(sections[1:], found[1:], strict=True):
         first, own = (d.rate / (size if d.kind == "slide" else 1.0) for d in (lead, driver))
         if first > 0 and own > MAX_SPEED_RATIO * first:
-            faster = _("a driver is far faster than the first one")
-            raise section.refusal("speed", faster, str(section.keys.speed), _("the fastest driver first"))
+            faster = _("this driver is more than 100 times faster than the first one")
+            raise section.refusal(
+                "speed", faster, str(section.keys.speed), _("the fastest driver as the first of the list")
+            )
     if len(found) > 1 and lead.rate == 0:
-        still = _("the first of several drivers counts the positions: it must move")
+        still = _("the first driver numbers the positions, so its speed must not be zero")
         raise sections[0].refusal("speed", still, str(sections[0].keys.speed))
     return tuple(found)
 
@@ -160,28 +166,33 @@ def _build_driver(section: FileSection, members: LinksAndPairs, first: bool) -> 
     want = ANGLE if turns else LENGTH
     by_angle = isinstance(keys.speed, schema.Speeds)
     if by_angle and (not turns or not first or section.path != ("driver",)):
-        raise section.refusal("speed", _("a table of speeds is for one crank alone"), at_key=True)
+        raise section.refusal(
+            "speed", _("a table of speeds is possible only if there is one driver and it is a crank"), at_key=True
+        )
     if by_angle != isinstance(keys.acceleration, schema.Speeds) and keys.acceleration != 0:
-        apart = _("an acceleration goes with a speed at position 0, a table of them with a table of speeds")
+        apart = _("speed and acceleration must be given in the same way: two values at position 0, or two tables")
         raise section.refusal("acceleration", apart, at_key=True)
     speed = _mean_speed(section) if by_angle else section.number("speed", ANGULAR_SPEED if turns else SPEED)
     acceleration = 0.0
     if not by_angle:
         acceleration = section.number("acceleration", ANGULAR_ACCELERATION if turns else ACCELERATION)
     if speed < 0 and "turns" in keys.model_fields_set:
-        twice = _("a negative speed and a sense of rotation say the sense twice")
-        raise section.refusal("speed", twice, str(keys.speed), _("a positive speed with turns: ccw or cw"))
+        twice = _("the sense of rotation is given twice: by the sign of the speed and by `turns`")
+        raise section.refusal("speed", twice, str(keys.speed), _("a positive speed together with turns: ccw or cw"))
     if keys.end is not None:
         section.known_name("end", members.links[link].points, f"point of link {link}")
         if keys.end == pivot:
-            has_no_arm = _("a balancing force in the pivot {point} has no arm").format(point=pivot)
+            has_no_arm = _("a balancing force at the pivot {point} has no moment arm").format(point=pivot)
             raise section.refusal("end", has_no_arm, quote(keys.end), _("another point of the link"))
     if first == (keys.at is not None):
         raise section.refusal(
             "at",
-            _("the place of the first driver stands in the sketch, that of each other one here"),
+            _(
+                "the coordinate of the first driver in the sketch is given in `sketch`, that of each further "
+                "driver here"
+            ),
             at_key=True,
-            allowed=_("sketch: {at: 30 deg} for the first, at: 30 deg for the others"),
+            allowed=_("for the first driver sketch: {at: 30 deg}, for the others at: 30 deg"),
         )
     at = 0.0 if keys.at is None else section.number("at", want)
     stroke = None
@@ -190,7 +201,9 @@ def _build_driver(section: FileSection, members: LinksAndPairs, first: bool) -> 
             section.values.number(value, want, (*section.path, "stroke", k)) for k, value in enumerate(keys.stroke)
         )
         if not low < high:
-            raise section.refusal("stroke", _("a stroke goes from its lesser end to its greater one"), str(keys.stroke))
+            raise section.refusal(
+                "stroke", _("the first end of the stroke must be less than the second"), str(keys.stroke)
+            )
         stroke = (low, high)
     return Driver(
         link,
@@ -213,16 +226,18 @@ def build_cycle(shape: schema.File, driver: Driver, values: ValueReader) -> int:
         return 1
     if driver.kind != "turn":
         raise ProblemError(
-            _("a cycle is told in turns of a crank: this driver slides"), path=("cycle",), found=quote(shape.cycle)
+            _("a cycle is given in turns of the crank, and this driver is a slider"),
+            path=("cycle",),
+            found=quote(shape.cycle),
         )
     turns = values.number(shape.cycle, ANGLE, ("cycle",)) / (2 * cmath.pi)
     whole = round(float(turns))
     if not 1 <= whole <= MOST_TURNS or abs(turns - whole) > SAME_DRIVER_POSITION:
         raise ProblemError(
-            _("a cycle is a whole number of turns"),
+            _("a cycle must be a whole number of turns"),
             path=("cycle",),
             found=quote(shape.cycle),
-            allowed=_("2 turns, or 720 deg; at most {most} turns").format(most=MOST_TURNS),
+            allowed=_("2 turns, or 720 deg; largest number of turns: {most}").format(most=MOST_TURNS),
         )
     return whole
 
@@ -235,13 +250,13 @@ def build_sketch(shape: schema.File, links: dict[str, Link], driver: Driver, val
         return Sketch(DEFAULT_SKETCH_ANGLE if driver.kind == "turn" else 0.0)
     if "at" not in keys:
         raise ProblemError(
-            _("the driver's place in the sketch is missing"),
+            _("the driver coordinate of the sketch is missing"),
             path=("sketch", "at"),
             allowed=_("at: {wanted}").format(wanted=wanted),
         )
     at = values.number(keys.pop("at"), wanted, ("sketch", "at"))
     if driver.stroke is not None and not driver.stroke[0] <= at <= driver.stroke[1]:
-        beyond = _("the sketch shows the driver beyond its stroke")
+        beyond = _("in the sketch the driver is outside its stroke")
         raise ProblemError(beyond, path=("sketch", "at"), found=str(shape.sketch["at"]))
     owners = {p: n for n, link in links.items() for p in link.points}
     points, angles = {}, {}
@@ -254,7 +269,7 @@ def build_sketch(shape: schema.File, links: dict[str, Link], driver: Driver, val
         else:
             values.known_name(name, {**owners, **links}, path, "point or link", key=True)
             raise ProblemError(
-                _("a point has coordinates and a link has an angle"),
+                _("in a sketch a point is given by coordinates and a link by an angle"),
                 path=path,
                 found=quote(value),
                 allowed="[x, y]" if name in owners else _("an angle"),
@@ -275,7 +290,7 @@ def build_request(shape: schema.File, driver: Driver, values: ValueReader) -> Re
     if keys.from_ is not None and driver.kind == "slide" and not places:
         raise section.refusal(
             "from",
-            _("positions of a driven slider go from one end of its way to the other"),
+            _("`from` is for cranks: the positions of a driven slider run from one end of its stroke to the other"),
             str(keys.from_),
             _("driver: {stroke: [first, last]}, or positions: {at: [...]}"),
             at_key=True,

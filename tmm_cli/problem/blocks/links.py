@@ -42,9 +42,9 @@ class LinksAndPairs:
         hinges = {h.point for h in self.hinges}
         free = next((p for p in self.links[link].points if p not in hinges), None)
         if base == FRAME and free is not None and "R" in kinds:
-            joined[_("a hinge on the frame: points: {{{point}: [x, y]}}").format(point=free)] = None
+            joined[_("for a hinge on the frame, points: {{{point}: [x, y]}}").format(point=free)] = None
         return ProblemError(
-            _("link {link} is not joined to link {base} as is needed here").format(link=link, base=base),
+            _("link {link} has no suitable pair with link {base}").format(link=link, base=base),
             path=path,
             found=quote(link),
             allowed=", ".join(joined) or None,
@@ -70,7 +70,11 @@ def _attach_links(hinges: tuple[Hinge, ...], shape: schema.File, values: ValueRe
         section = FileSection(hinge, ("hinges", point), values)
         values.known_name(point, links_at, section.path, "hinge", key=True)
         if len(links_at[point]) == 2:
-            raise section.refusal("", _("this hinge joins two links: they make one pair"), ", ".join(links_at[point]))
+            raise section.refusal(
+                "",
+                _("this hinge joins only two links, so there is nothing to attach: they form one pair"),
+                ", ".join(links_at[point]),
+            )
         if hinge.attached_to not in links_at[point]:
             raise section.refusal(
                 "attached_to",
@@ -89,7 +93,7 @@ def refuse_attachments(linkage: Linkage, shape: schema.File, values: ValueReader
             allowed = [link for link in hinge.links if _keeps_groups(linkage, hinge, link)]
             raise FileSection(shape.hinges[hinge.point], ("hinges", hinge.point), values).refusal(
                 "attached_to",
-                _("with the links attached to {link} the mechanism does not fall into the same groups").format(
+                _("with the links attached to {link} the mechanism is not divided into the same groups").format(
                     link=hinge.attached_to
                 ),
                 found=quote(hinge.attached_to),
@@ -122,7 +126,9 @@ class _LinkReader:
         for name, link in shape.links.items():
             check_name(name, ("links", name), "link")
             if name == FRAME:
-                raise ProblemError(_("0 is the frame; see points"), path=("links", name), key=True)
+                raise ProblemError(
+                    _("0 is the frame; its points are given in `points`"), path=("links", name), key=True
+                )
             self.links[name] = Link(name, self.points(link, name), label=link.name or "")
 
     def points(self, link: schema.LinkKeys, name: str) -> dict[str, complex]:
@@ -130,12 +136,12 @@ class _LinkReader:
         where: Path = (*section.path, "points")
         if isinstance(named, dict):
             if link.length is not None:
-                raise section.refusal("length", _("coordinates say the length already"))
+                raise section.refusal("length", _("the length already follows from the coordinates of the points"))
             points = {p: self.values.vector(xy, LENGTH, (*where, p)) for p, xy in named.items()}
         else:
             points = self.listed(named, section)
         if not points:
-            raise section.refusal("points", _("a link has at least one point"), allowed="[A, B]")
+            raise section.refusal("points", _("a link must have at least one point"), allowed="[A, B]")
         for number, point in enumerate(points):
             check_name(point, (*where, point if isinstance(named, dict) else number), "point")
         for point, place in link.also.items():
@@ -150,13 +156,13 @@ class _LinkReader:
         if len(names) > 2:
             raise section.refusal(
                 "points",
-                _("three points and more need coordinates in the link's own axes"),
+                _("a link with three or more points needs their coordinates in the axes of the link"),
                 ", ".join(names),
                 f"{{{names[0]}: [0, 0], {names[1]}: [x, 0], {names[2]}: [x, y]}}",
             )
         if len(names) < 2:
             if section.keys.length is not None:
-                raise section.refusal("length", _("a length belongs to two points"))
+                raise section.refusal("length", _("`length` is the distance between two points, and this link has one"))
             return dict.fromkeys(names, 0j)
         if section.keys.length is None:
             wanted = _("length: the distance from {first} to {second}").format(first=names[0], second=names[1])
@@ -181,7 +187,12 @@ class _LinkReader:
         self.values.known_name(point, points, (*section.path, "point"), f"point of link {runner}")
         if keys.on in guides:
             if any(told is not None for told in (keys.along, keys.through, keys.angle)):
-                raise ProblemError(_("guide {on} says where it runs already").format(on=keys.on), path=section.path)
+                raise ProblemError(
+                    _(
+                        "the line of guide {on} is already given in `guides`; remove along, through and angle here"
+                    ).format(on=keys.on),
+                    path=section.path,
+                )
             name, line = keys.on, FileSection(guides[keys.on], ("guides", keys.on), self.values)
             carrier = line.known_name("on", self.links, "link")
         elif keys.on in self.links:
@@ -192,7 +203,7 @@ class _LinkReader:
             )
             known = [*guides, *(n for n in self.links if n != runner)]
             raise unknown_name_error(
-                keys.on, known, _("there is no such guide or link"), among, path=(*section.path, "on")
+                keys.on, known, _("there is no guide or link of that name"), among, path=(*section.path, "on")
             )
         self.values.refuse_same((runner, carrier), (*section.path, "on"))
         through, angle, ends = self.guide(line, carrier)
@@ -209,7 +220,7 @@ class _LinkReader:
         if along is None and not placed and carrier != FRAME and len(points) == 2:
             along = "-".join(points)
         if along is not None and placed:
-            raise section.refusal("along", _("along says through and angle already"))
+            raise section.refusal("along", _("`along` already determines `through` and `angle`; remove either"))
         ends = None
         if along is not None:
             first, second = ends = self.values.two_points(along, points, (*section.path, "along"))
@@ -219,7 +230,7 @@ class _LinkReader:
             angle = 0.0 if keys.angle is None else section.number("angle", ANGLE)
         else:
             allowed = _("along: CD, or through: [x, y] and angle")
-            raise section.refusal("through", _("where does this guide run?"), allowed=allowed)
+            raise section.refusal("through", _("the line of this guide is not given"), allowed=allowed)
         return through + 1j * section.number("offset", LENGTH) * unit_vector(angle), angle, ends
 
 
@@ -236,7 +247,7 @@ def _refuse_lookalikes(shape: schema.File) -> None:
         other = alike.setdefault(to_latin(name), name)
         if other != name:
             raise ProblemError(
-                _("this name looks like another one, but its letters differ"),
+                _("this name looks like another one, but is written with other letters"),
                 path=named[name],
                 found=quote(name),
                 near=other,
@@ -256,7 +267,7 @@ def refuse_unused(shape: schema.File, data: dict[str, Any], members: LinksAndPai
                 _("this link is joined to nothing"),
                 path=("links", name),
                 found=", ".join(links[name].points),
-                allowed=_("a point that another link or the frame has too, or slides"),
+                allowed=_("a point shared with another link or the frame, or `slides`"),
                 key=True,
             )
     used = {s.on for link in shape.links.values() for s in link.sliding}
@@ -279,10 +290,13 @@ def refuse_unused(shape: schema.File, data: dict[str, Any], members: LinksAndPai
         if point not in elsewhere:
             path: Path = ("points", point) if name == FRAME else ("links", name, "points", number)
             raise ProblemError(
-                _("this point is named nowhere else"),
+                _("this point is not used anywhere else"),
                 path=path,
                 found=quote(point),
-                allowed=_("a point of another link or the frame; one that is only watched has coordinates (see also:)"),
+                allowed=_(
+                    "a point of another link or the frame; a point that is only observed is given under `also`, with "
+                    "coordinates"
+                ),
                 near=nearest_name(point, [p for p in everything if p != point and p not in links[name].points]),
                 key=name == FRAME,
             )

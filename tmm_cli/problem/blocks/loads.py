@@ -41,18 +41,20 @@ class PointMassKeys(Strict):
     """A mass in one point of a link."""
 
     mass: Value
-    at: Place = Field(description="point, [x, y] in the link's axes, or {on: CD, at: 0.5}")
+    at: Place = Field(description="position: name of a point, [x, y] in the axes of the link, or {on: CD, at: 0.5}")
 
 
 class MassKeys(Strict):
     """Mass properties of a link."""
 
     mass: Value | None = None
-    weight: Value | None = Field(default=None, description="instead of mass: m = G / g")
+    weight: Value | None = Field(default=None, description="weight, instead of mass: m = G / g")
     inertia: Value = Field(default=0, description="moment of inertia about the centre of mass")
-    centre: Place | None = Field(default=None, description="point, [x, y] in the link's axes, or {on: CD, at: 0.5}")
+    centre: Place | None = Field(
+        default=None, description="position: name of a point, [x, y] in the axes of the link, or {on: CD, at: 0.5}"
+    )
     points: list[PointMassKeys] = Field(
-        default_factory=list, max_length=50, description="masses in points of it, beside the others or alone"
+        default_factory=list, max_length=50, description="point masses on the link, in addition to `mass` or alone"
     )
 
 
@@ -89,24 +91,30 @@ class TabulatedKeys(Strict):
 
     size: Value | None = None
     resists: Value | None = Field(
-        default=None, description="instead of size: a constant friction, against the motion of the point or link"
+        default=None, description="instead of size: constant friction, directed against the motion of the point or link"
     )
     angle: Value | None = Field(default=None, description="direction of the force from the x axis")
     against: Against | None = Field(
         default=None,
-        description="what the table's first column is: run of the load's link, if that slides on the frame, else of "
-        "the output, from the start of its working stroke; `stroke of 5` is that of link 5; "
-        "the same as a share of the stroke, 0 to 1 or 0 to 100 %; "
-        "angle of the crank from the x axis; its turn from the start of the working stroke of the output, in its sense",
+        description=(
+            "quantity in the first column of the table. stroke: displacement from the start of the working "
+            "stroke, of the loaded link if it slides on the frame, otherwise of the output (`stroke of 5`: of "
+            "link 5); share of stroke: the same as a fraction, 0 to 1 or 0 to 100 %; crank angle: from the x "
+            "axis; crank turn: rotation of the crank from the start of the working stroke of the output, in "
+            "its sense of rotation"
+        ),
     )
     table: list[Vector] | None = Field(
         default=None,
         min_length=2,
         max_length=10_000,
-        description="rows [argument, size]; two with one argument: a jump",
+        description="rows [argument, value]; two rows with the same argument are a jump",
     )
     between: Literal["linear", "step", "smooth"] = Field(
-        default="linear", description="rows; step: each holds up to the next, smooth: a cubic spline"
+        default="linear",
+        description=(
+            "interpolation between rows. linear; step: each value holds up to the next row; smooth: cubic spline"
+        ),
     )
 
 
@@ -136,25 +144,34 @@ When = Annotated[
 class LoadKeys(Strict):
     """A force, a moment, or both, on a link."""
 
-    on: Name = Field(description="the link")
-    from_: Name = Field(default="0", alias="from", description="the link that has the opposite of it; the frame")
-    at: Place | None = Field(default=None, description="where the force acts: its first point when left out")
+    on: Name = Field(description="link on which the load acts")
+    from_: Name = Field(
+        default="0", alias="from", description="link on which the opposite load acts; default: the frame"
+    )
+    at: Place | None = Field(
+        default=None, description="point of application of the force; default: the first point of the link"
+    )
     force: Annotated[list[Any] | TabulatedKeys | None, BeforeValidator(_checked_force)] = Field(
-        default=None, description="[Fx, Fy], or {size, angle}, or {angle, against, table}"
+        default=None, description="force: [Fx, Fy], or {size, angle}, or {angle, against, table}"
     )
     moment: Annotated[Value | TabulatedKeys | None, BeforeValidator(_checked_moment)] = Field(
-        default=None, description="positive counterclockwise; a value, or {against, table}"
+        default=None, description="moment, positive counterclockwise: a value, or {against, table}"
     )
     pressure: TabulatedKeys | None = Field(
-        default=None, description="instead of force: {size, angle} or {angle, against, table}, on an area or a bore"
+        default=None,
+        description="pressure instead of force: {size, angle} or {angle, against, table}; needs `area` or `bore`",
     )
-    area: Value | None = Field(default=None, description="that the pressure acts on")
-    bore: Value | None = Field(default=None, description="instead of area: diameter of the piston")
-    axes: Literal["drawing", "link"] = Field(default="drawing", description="whether the force turns with its link")
+    area: Value | None = Field(default=None, description="area on which the pressure acts")
+    bore: Value | None = Field(default=None, description="diameter of the piston, instead of area")
+    axes: Literal["drawing", "link"] = Field(
+        default="drawing", description="drawing: the force keeps its direction; link: it rotates with the link"
+    )
     when: When = Field(
         default="always",
-        description="always, working stroke (of the load's link, if that slides on the frame, else of the output), "
-        "working stroke of 5, or [from, to]: angles of the crank, counterclockwise",
+        description=(
+            "when the load acts: always; working stroke (of the loaded link if it slides on the frame, "
+            "otherwise of the output); working stroke of 5; or [from, to], crank angles, counterclockwise"
+        ),
     )
 
 
@@ -191,7 +208,7 @@ def _add_mass(link: Link, section: FileSection, gravity: complex) -> Link:
     if keys.centre is None and len(link.points) > 1 and mass > 0:
         a, b = list(link.points)[:2]
         allowed = _("centre: {a}, centre: [x, y], or centre: {{on: {a}{b}, at: 0.5}}").format(a=a, b=b)
-        raise section.refusal("centre", _("where is the centre of mass of this link?"), allowed=allowed)
+        raise section.refusal("centre", _("the centre of mass of this link is not given"), allowed=allowed)
     centre = (
         next(iter(link.points.values())) if keys.centre is None else section.place("centre", link.points, link.name)
     )
@@ -222,7 +239,10 @@ def _refuse_ambiguous_centre(links: Mapping[str, Link], name: str, section: File
     if own.mass and of and (of != [name] or abs(own.points[point] - own.centre) > SAME_DRIVER_POSITION):
         raise section.refusal(
             "centre",
-            _("this centre of mass is called {point}, and so is another point").format(point=point),
+            _(
+                "the centre of mass of this link is called {point} in tables and drawings, but another point has "
+                "this name"
+            ).format(point=point),
             allowed=_("centre: {point}, or another name of the point").format(point=point),
         )
 
@@ -252,7 +272,7 @@ def _build_load(name: str, section: FileSection, linkage: Linkage) -> LoadRecord
     points = linkage.links[link].points
     at = next(iter(points.values())) if keys.at is None else section.place("at", points, link)
     if keys.force is None and keys.moment is None and keys.pressure is None:
-        raise section.refusal("", _("a load has a force or a moment"), "neither")
+        raise section.refusal("", _("this load has neither `force` nor `moment` nor `pressure`"), "neither")
     pushes = (
         _build_pressure(section, linkage)
         if keys.pressure is not None
@@ -261,10 +281,12 @@ def _build_load(name: str, section: FileSection, linkage: Linkage) -> LoadRecord
     turns = _build_component("moment", MOMENT, linkage, section)
     both = bool(pushes.size) and bool(turns.size)
     if (pushes.table is not None and turns.table is not None) or ((pushes.table or turns.table) and both):
-        raise section.refusal("", _("a tabulated load is a force or a moment"), "both", _("two loads"))
+        raise section.refusal(
+            "", _("a load given by a table cannot be both a force and a moment"), "both", _("two loads")
+        )
     if both and pushes.resists != turns.resists:
         raise section.refusal(
-            "", _("one part of this load resists a motion, the other does not"), "both", _("two loads")
+            "", _("the force and the moment of one load must both have `resists`, or neither"), "both", _("two loads")
         )
     window = None if isinstance(keys.when, str) else _crank_window(section, linkage)
     when, stroke_link = "always", ""
@@ -329,7 +351,9 @@ def _build_component(key: str, want: Dimension, linkage: Linkage, load: FileSect
 def _build_pressure(load: FileSection, linkage: Linkage) -> _LoadComponent:
     """The force of a pressure on an area, or on a piston of a bore."""
     if load.keys.force is not None:
-        raise load.refusal("pressure", _("a load has a force or a pressure"), "both", _("two loads"), at_key=True)
+        raise load.refusal(
+            "pressure", _("a load cannot have both `force` and `pressure`"), "both", _("two loads"), at_key=True
+        )
     if load.one_of("area", "bore") == "area":
         area = load.positive("area", AREA)
     else:
@@ -337,7 +361,12 @@ def _build_pressure(load: FileSection, linkage: Linkage) -> _LoadComponent:
         area = pi(bore) * bore * bore / 4
     section = FileSection(load.keys.pressure, (*load.path, "pressure"), load.values)
     if section.keys.resists is not None:
-        raise section.refusal("resists", _("a pressure has a direction"), allowed=_("angle: 180 deg"), at_key=True)
+        raise section.refusal(
+            "resists",
+            _("a pressure needs a direction; `resists` is for forces and moments"),
+            allowed=_("angle: 180 deg"),
+            at_key=True,
+        )
     found = _build_sized(section, PRESSURE, linkage, load.keys.on, angled=True)
     if found.table is None:
         return _LoadComponent(found.size * area)
@@ -350,14 +379,15 @@ def _build_sized(
     """By one size or by a table, at an angle or about the axis of the drawing."""
     keys: TabulatedKeys = section.keys
     if angled == (keys.angle is None):
-        wanted = _("a force by its size has an angle, a moment has none")
+        wanted = _("a force given by `size` or `table` needs `angle`; a moment has no `angle`")
         raise section.refusal("angle", wanted, allowed=_("angle: 180 deg"))
     if (keys.against is None) != (keys.table is None):
         raise section.refusal(
             "against",
-            _("a table has two columns: what it is against, and the size"),
+            _("`against` and `table` go together: `against` names the quantity in the first column"),
             allowed=_(
-                "against: stroke, share of stroke, crank angle or crank turn, and table: [[argument, size], ...]"
+                "against: stroke, share of stroke, crank angle or crank turn, together with table: [[argument, "
+                "value], ...]"
             ),
         )
     along = unit_vector(section.number("angle", ANGLE)) if angled else 1.0
@@ -369,7 +399,7 @@ def _build_sized(
 def _crank_window(section: FileSection, linkage: Linkage) -> tuple[float, float]:
     """Between which angles of the crank the load acts."""
     if linkage.driver.kind == "slide":
-        raise section.refusal("when", _("a load between two angles of the crank: this driver slides"))
+        raise section.refusal("when", _("`when` with two angles needs a crank, but this driver is a slider"))
     cycle = 2 * np.pi * linkage.turns
     low, high = (
         section.values.number(value, ANGLE, (*section.path, "when", k)) for k, value in enumerate(section.keys.when)
@@ -378,10 +408,10 @@ def _crank_window(section: FileSection, linkage: Linkage) -> tuple[float, float]
     for k, place in enumerate((low, high)):
         if not -SAME_DRIVER_POSITION <= place + cycle <= 2 * cycle + SAME_DRIVER_POSITION:
             raise ProblemError(
-                _("the crank does not come to this angle in its cycle"),
+                _("the crank does not reach this angle within a cycle"),
                 path=(*section.path, "when", k),
                 found=quote(section.keys.when[k]),
-                allowed=_("at most {end}; a longer cycle of loads is told by cycle: {turns} turns").format(
+                allowed=_("at most {end}; for a longer cycle of loads write cycle: {turns} turns").format(
                     end=end, turns=max(2, math.ceil(place / math.tau))
                 ),
             )
@@ -389,9 +419,9 @@ def _crank_window(section: FileSection, linkage: Linkage) -> tuple[float, float]
     if length < SAME_DRIVER_POSITION or cycle - length < SAME_DRIVER_POSITION:
         raise section.refusal(
             "when",
-            _("between these two angles there is nothing, or all"),
+            _("the two angles are equal, or a whole cycle apart: the load would act never or always"),
             str(section.keys.when),
-            _("two angles less than {end} apart, or when: always").format(end=end),
+            _("two different angles less than {end} apart, or when: always").format(end=end),
         )
     return low, high
 
@@ -402,9 +432,9 @@ def _build_table(section: FileSection, want: Dimension, linkage: Linkage, loaded
     if linkage.driver.kind == "slide":
         raise section.refusal(
             "against",
-            _("a table is against a crank, or the strokes that it gives: this driver slides"),
+            _("a table of a load needs a crank as the driver, but this driver is a slider"),
             str(keys.against),
-            _("size: one value"),
+            _("size: a single value"),
         )
     shares = against.startswith("share")
     if shares or against.startswith("stroke"):
@@ -437,7 +467,7 @@ def _refuse_beyond_stroke(section: FileSection, shares: Sequence[Any]) -> None:
     for row, share in enumerate(shares):
         if not -SAME_RATIO <= share <= 1 + SAME_RATIO:
             raise ProblemError(
-                _("this is no share of the stroke"),
+                _("this is not a fraction of the stroke"),
                 path=(*section.path, "table", row, 0),
                 found=quote(section.keys.table[row][0]),
                 allowed=_("0 to 1, or 0 to 100 %; for lengths or angles of the stroke write against: stroke"),

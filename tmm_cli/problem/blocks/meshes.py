@@ -27,17 +27,27 @@ if TYPE_CHECKING:
 class GearKeys(Strict):
     """Two toothed wheels in mesh, hinged to a common carrier."""
 
-    between: list[Name] = Field(min_length=2, max_length=2, description="the two wheels; the frame may be one (fixed)")
-    carrier: Name = Field(default="0", description="the link that carries both axes; not the frame: planetary")
-    teeth: list[Value] | None = Field(default=None, min_length=2, max_length=2, description="numbers of teeth of both")
+    between: list[Name] = Field(
+        min_length=2, max_length=2, description="the two gears; one may be the frame (a fixed gear)"
+    )
+    carrier: Name = Field(
+        default="0", description="link that carries both axes; if it is not the frame, the gears are planetary"
+    )
+    teeth: list[Value] | None = Field(
+        default=None, min_length=2, max_length=2, description="numbers of teeth of both gears"
+    )
     radii: list[Value] | None = Field(
         default=None, min_length=2, max_length=2, description="radii of both pitch circles"
     )
-    ratio: Value | None = Field(default=None, description="first radius over second, instead of teeth or radii")
-    module: Value | None = Field(default=None, description="with teeth: checked against the distance of the axes")
-    inner: bool = Field(default=False, description="whether one wheel is toothed inside")
+    ratio: Value | None = Field(
+        default=None, description="ratio of the first radius to the second, instead of teeth or radii"
+    )
+    module: Value | None = Field(
+        default=None, description="module; with teeth it is checked against the distance of the axes"
+    )
+    inner: bool = Field(default=False, description="true if one of the gears is internal")
     offset: Value = Field(
-        default=0, description="angle of the second wheel from the carrier where that of the first is zero"
+        default=0, description="angle of the second gear relative to the carrier when that of the first is zero"
     )
     pressure: Value = Field(default="20 deg", description="pressure angle of the teeth")
 
@@ -46,38 +56,52 @@ class RackKeys(Strict):
     """A wheel that rolls on a rack."""
 
     wheel: Name
-    rack: Name = Field(description="the link with the rack; it slides on the carrier")
-    carrier: Name = Field(default="0", description="the link that holds both")
-    radius: Value = Field(description="of the wheel's pitch circle")
+    rack: Name = Field(description="link with the rack; it slides on the carrier")
+    carrier: Name = Field(default="0", description="link that carries the gear and the rack; default: the frame")
+    radius: Value = Field(description="radius of the pitch circle of the gear")
     side: Literal["left", "right"] | None = Field(
-        default=None, description="on which side of the rack's guide the wheel lies, if its axis does not tell"
+        default=None,
+        description=(
+            "side of the guide of the rack on which the gear lies; needed if the axis of the gear lies on the guide"
+        ),
     )
-    offset: Value = Field(default=0, description="run of the rack where the wheel's angle is zero")
+    offset: Value = Field(default=0, description="displacement of the rack when the angle of the gear is zero")
     pressure: Value = Field(default="20 deg", description="pressure angle of the teeth")
 
 
 class CamPieceKeys(Strict):
     """A part of a cam's turn."""
 
-    over: Value = Field(description="angle of the cam")
-    rise: Value = Field(default=0, description="of the follower: negative for a return, zero for a dwell")
+    over: Value = Field(description="angle of rotation of the cam during this part")
+    rise: Value = Field(default=0, description="rise of the follower; negative: return, zero: dwell")
     law: Literal["linear", "parabolic", "cosine", "sine", "3-4-5", "4-5-6-7"] = "sine"
 
 
 class CamKeys(Strict):
     """A cam and its follower on a common carrier, by the follower's law of motion."""
 
-    cam: Name = Field(description="it is hinged to the carrier; the frame may be one (a fixed cam)")
-    follower: Name = Field(description="it slides on the carrier, or swings about a hinge on the frame")
-    carrier: Name = Field(
-        default="0", description="the link that carries both; a moving one: its cam changes a length of it"
+    cam: Name = Field(description="link that is the cam, hinged to the carrier; it may be the frame (a fixed cam)")
+    follower: Name = Field(
+        description="link that is the follower: it slides on the carrier, or swings about a hinge on the frame"
     )
-    law: list[CamPieceKeys] = Field(min_length=1, max_length=100, description="piece by piece over a full turn")
-    start: Value = Field(default=0, description="angle of the cam from the carrier where the first piece starts")
-    offset: Value = Field(default=0, description="run (or angle) of the follower there")
+    carrier: Name = Field(
+        default="0", description="link that carries both; on a moving link the cam changes a length of that link"
+    )
+    law: list[CamPieceKeys] = Field(
+        min_length=1, max_length=100, description="law of motion, part by part over a full turn"
+    )
+    start: Value = Field(
+        default=0, description="angle of the cam relative to the carrier at which the first part begins"
+    )
+    offset: Value = Field(
+        default=0, description="displacement (or angle) of the follower at the beginning of the first part"
+    )
     roller: Name | None = Field(
         default=None,
-        description="number of a roller on the follower, a link that the structure counts; it moves nothing",
+        description=(
+            "number of the roller on the follower; the structural analysis counts it as a link, it does not "
+            "affect the motion"
+        ),
     )
 
 
@@ -108,10 +132,10 @@ def _refuse_shared_rollers(meshes: Sequence[Mesh]) -> None:
     for index, mesh in enumerate(meshes):
         if mesh.roller and mesh.roller in rollers[:index]:
             raise ProblemError(
-                _("a link has this number already"),
+                _("a link already has this number"),
                 path=("cams", mesh.name, "roller"),
                 found=quote(mesh.roller),
-                allowed=_("a number of its own for each roller"),
+                allowed=_("a different number for each roller"),
             )
 
 
@@ -130,9 +154,9 @@ def _refuse_locked_trains(gears: list[Mesh]) -> None:
                 trains[gear.carrier, wheel] = one
         elif abs(wanted - found) > PITCHES_TOUCH * max(abs(wanted), abs(found)) or abs(angle - there) > IN_PHASE:
             raise ProblemError(
-                _("gear {name} contradicts those before it: the wheels lock one another").format(name=gear.name),
+                _("gear pair {name} contradicts the ones before it: the gears lock each other").format(name=gear.name),
                 path=("gears", gear.name),
-                allowed=_("ratios and offsets that agree round a ring, or one gear less"),
+                allowed=_("ratios and offsets that agree around the closed train, or one gear pair less"),
                 key=True,
             )
 
@@ -155,7 +179,7 @@ def _axis_on_carrier(link: str, carrier: str, members: LinksAndPairs, path: Path
 def _pressure_angle(section: FileSection) -> float:
     angle = section.number("pressure", ANGLE)
     if not 0 <= angle < math.pi / 2:
-        beyond = _("a pressure angle of teeth lies between 0 and 90 deg")
+        beyond = _("the pressure angle of the teeth must be between 0 and 90 deg")
         raise section.refusal("pressure", beyond, str(section.keys.pressure))
     return angle
 
@@ -168,7 +192,9 @@ def _build_gear(name: str, section: FileSection, members: LinksAndPairs) -> Mesh
     first, second = (_axis_on_carrier(n, carrier, members, (*between, k)) for k, n in enumerate((i, j)))
     distance = abs(second - first)
     if distance == 0:
-        raise section.refusal("between", _("wheels {i} and {j} turn about one axis").format(i=i, j=j), f"{i}, {j}")
+        raise section.refusal(
+            "between", _("gears {i} and {j} rotate about the same axis").format(i=i, j=j), f"{i}, {j}"
+        )
     ratio = _radius_ratio(section, keys, distance)
     return Mesh(name, "gear", i, j, carrier, ratio, section.number("offset", ANGLE), pressure=_pressure_angle(section))
 
@@ -187,18 +213,18 @@ def _radius_ratio(section: FileSection, keys: GearKeys, distance: float) -> floa
     if keys.ratio is not None:
         found["ratio"] = section.positive("ratio", NUMBER)
     if not found or (keys.module is not None and teeth is None):
-        wanted = _("teeth, radii or ratio is wanted, with a module teeth")
+        wanted = _("expected `teeth`, `radii` or `ratio`; together with `module` it must be `teeth`")
         raise section.refusal("", wanted, allowed=_("teeth: [20, 40]"))
     size = next(iter(found.values()))
     i, j = keys.between
     if any(abs(other - size) > PITCHES_TOUCH * size for other in found.values()):
         raise section.refusal(
             "",
-            _("contradictory gear ratios of wheels {i} and {j}").format(i=i, j=j),
+            _("contradictory ratios of gears {i} and {j}").format(i=i, j=j),
             ", ".join(f"by {key} {value:.6g}" for key, value in found.items()),
         )
     if not 1 / MAX_GEAR_RATIO <= size <= MAX_GEAR_RATIO or (keys.inner and size == 1):
-        raise section.refusal("", _("no pair of wheels has this ratio"), f"{size:.6g}")
+        raise section.refusal("", _("no pair of gears can have this ratio"), f"{size:.6g}")
     if keys.module is not None and teeth is not None and radii is None:
         module = section.positive("module", LENGTH)
         radii = [module * number / 2 for number in teeth]
@@ -211,7 +237,9 @@ def _radius_ratio(section: FileSection, keys: GearKeys, distance: float) -> floa
             )
             raise section.refusal(
                 "",
-                _("wheels {i} and {j} do not mesh: their axes are {distance} apart").format(i=i, j=j, distance=apart),
+                _("gears {i} and {j} do not mesh: the distance of their axes is {distance}").format(
+                    i=i, j=j, distance=apart
+                ),
                 allowed=_("a distance of {wanted}").format(wanted=needed),
             )
     return size if keys.inner else -size
@@ -222,7 +250,7 @@ def _count_teeth(values: ValueReader, value: object, path: Path) -> float:
     teeth = values.positive(value, NUMBER, path)
     whole: float = np.floor(teeth + 0.5)
     if whole < 1 or abs(float(teeth) - float(whole)) > WHOLE_TEETH:
-        raise ProblemError(_("a number of teeth is whole"), path=path, found=quote(value))
+        raise ProblemError(_("a number of teeth must be a whole number"), path=path, found=quote(value))
     return whole
 
 
@@ -241,7 +269,14 @@ def _build_rack(name: str, section: FileSection, members: LinksAndPairs) -> Mesh
     side = {"left": 1.0, "right": -1.0}[keys.side] if keys.side else math.copysign(1.0, high)
     if keys.side is None and abs(high) < 1e-9 * radius:
         allowed = _("side: left or right, looking along the guide")
-        raise section.refusal("side", _("on which side of the rack is the wheel?"), allowed=allowed)
+        raise section.refusal(
+            "side",
+            _(
+                "the axis of the gear lies on the line of the guide: on which side of the rack the gear is must be "
+                "given"
+            ),
+            allowed=allowed,
+        )
     forward = 1.0 if slide.runner == rack else -1.0
     return Mesh(
         name,
@@ -263,13 +298,13 @@ def _build_cam(sense: int, name: str, section: FileSection, members: LinksAndPai
     _axis_on_carrier(cam, carrier, members, (*section.path, "cam"))
     slide = members.slide(follower, carrier)
     if slide is None and carrier != FRAME:
-        text = _("on a moving carrier a follower slides: link {follower} has no guide on link {carrier}")
+        text = _("on a moving carrier the follower must slide, but link {follower} has no guide on link {carrier}")
         allowed = _("slides: {{on: {carrier}, along: ...}} of link {follower}")
         names = {"follower": follower, "carrier": carrier}
         raise section.refusal("follower", text.format(**names), allowed=allowed.format(**names))
     if keys.roller is not None and keys.roller in (FRAME, *members.links):
-        wanted = _("a number of no link, such as {number}").format(number=len(members.links))
-        raise section.refusal("roller", _("a link has this number already"), keys.roller, wanted)
+        wanted = _("a number that no link has, e.g. {number}").format(number=len(members.links))
+        raise section.refusal("roller", _("a link already has this number"), keys.roller, wanted)
     if slide is None:
         _axis_on_carrier(follower, FRAME, members, (*section.path, "follower"))
     want = ANGLE if slide is None else LENGTH
@@ -278,10 +313,14 @@ def _build_cam(sense: int, name: str, section: FileSection, members: LinksAndPai
     turn, rise = sum(p.over for p in pieces), sum(p.rise for p in pieces)
     if abs(turn - 2 * math.pi) > 1e-9:
         found = f"{math.degrees(turn):.6g} deg"
-        raise section.refusal("law", _("the pieces of the law do not make a full turn"), found, "360 deg")
+        raise section.refusal(
+            "law", _("the parts of the law of motion do not add up to a full turn of the cam"), found, "360 deg"
+        )
     if abs(rise) > 1e-9 * max(abs(p.rise) for p in pieces):
-        allowed = _("rises that add up to 0")
-        raise section.refusal("law", _("after a turn the follower is not back where it was"), allowed=allowed)
+        allowed = _("values of `rise` that add up to 0")
+        raise section.refusal(
+            "law", _("after a full turn the follower does not return to its initial position"), allowed=allowed
+        )
     law = CamLaw(pieces, section.number("start", ANGLE), -sense if cam == FRAME else sense)
     offset = section.number("offset", want)
     return Mesh(

@@ -60,9 +60,9 @@ def build_dynamics(shape: schema.File, linkage: Linkage, values: ValueReader) ->
     if delta is not None and delta >= 1:
         raise section.refusal(
             "delta",
-            _("a machine whose speed changes so much does not run"),
+            _("no machine runs with so large a fluctuation of speed"),
             quote(keys.delta),
-            _("less than 1; usual are 1/5 to 1/100"),
+            _("less than 1; usual values are 1/5 to 1/100"),
         )
     wheel = FileSection(keys.flywheel, ("dynamics", "flywheel"), values)
     ratio = wheel.positive("ratio", NUMBER)
@@ -72,15 +72,17 @@ def build_dynamics(shape: schema.File, linkage: Linkage, values: ValueReader) ->
     if form is RimFlywheel and size.height >= 1:
         raise wheel.refusal(
             "height",
-            _("a rim as high as that has no hole"),
+            _("a rim of this height leaves no hole in the middle"),
             quote(keys.flywheel.height),
-            _("less than 1, the mean diameter"),
+            _("less than 1 (ratio to the mean diameter)"),
         )
     motor = None if keys.motor is None else _build_motor(FileSection(keys.motor, ("dynamics", "motor"), values))
     if keys.run is not None:
         return _build_run(section, FileSection(keys.run, ("dynamics", "run"), values), driver, motor, own * ratio**2)
     if mean == 0:
-        raise section.refusal("", _("a driver that stands has no fluctuation of speed"), allowed="mean speed")
+        raise section.refusal(
+            "", _("the speed of the driver is zero, so the law of motion cannot be computed"), allowed="mean speed"
+        )
     return SteadyTask(mean, delta, motor, own * ratio**2, ratio, size)
 
 
@@ -90,7 +92,14 @@ def _build_run(
     keys: optional_keys.RunKeys = section.keys
     for key in ("mean_speed", "delta"):
         if getattr(whole.keys, key) is not None:
-            raise whole.refusal(key, _("a single run has no mean speed and no fluctuation"), at_key=True)
+            raise whole.refusal(
+                key,
+                _(
+                    "this key belongs to steady running: a single run has no mean speed and no coefficient of "
+                    "fluctuation"
+                ),
+                at_key=True,
+            )
     turns = driver.kind == "turn"
     place, size = (ANGLE, MOMENT) if turns else (LENGTH, FORCE)
     first, last = (None if getattr(keys, key) is None else section.number(key, place) for key in ("from_", "to"))
@@ -98,12 +107,12 @@ def _build_run(
         if turns and end is not None and abs(end) > MAX_RUN_TURNS * 2 * math.pi:
             raise section.refusal(
                 key,
-                _("a run is of few turns"),
+                _("this run is too long"),
                 str(getattr(keys, key)),
-                _("within {most} turns of the x axis").format(most=MAX_RUN_TURNS),
+                _("an angle of no more than {most} turns from the x axis").format(most=MAX_RUN_TURNS),
             )
     if first is not None and first == last:
-        raise section.refusal("to", _("a run ends elsewhere than it begins"), str(keys.to))
+        raise section.refusal("to", _("the run begins and ends at the same position of the driver"), str(keys.to))
     drive = None
     if isinstance(keys.drive, optional_keys.ProfileKeys):
         drive = _build_profile(FileSection(keys.drive, (*section.path, "drive"), section.values), place, size)
@@ -119,9 +128,9 @@ def _build_profile(section: FileSection, place: Dimension, size: Dimension) -> D
     if keys.area is not None and size == MOMENT:
         raise section.refusal(
             "area",
-            _("a pressure is on a piston, and this driver is a crank"),
+            _("a pressure acts on a piston, but this driver is a crank"),
             quote(keys.area),
-            _("a table of moments, or a driver that slides"),
+            _("a table of moments without `area`, or a driven slider"),
             at_key=True,
         )
     if keys.area is not None:
@@ -142,23 +151,28 @@ def _build_motor(section: FileSection) -> MotorCharacteristic:
     wanted = MOTOR_KEYS[keys.kind]
     for key in wanted:
         if getattr(keys, key) is None:
-            raise section.refusal("", _("this motor is told by other numbers"), allowed=", ".join(wanted))
+            raise section.refusal("", _("a motor of this kind is specified by other keys"), allowed=", ".join(wanted))
     for key in keys.model_fields_set - {"kind", "ratio", *wanted}:
-        raise section.refusal(key, _("this motor is told by other numbers"), quote(key), ", ".join(wanted), at_key=True)
+        raise section.refusal(
+            key, _("a motor of this kind is specified by other keys"), quote(key), ", ".join(wanted), at_key=True
+        )
     if keys.kind == "linear":
         return LinearMotor(ratio * section.positive("stall", MOMENT), section.positive("free", ANGULAR_SPEED) / ratio)
     synchronous, speed = section.positive("synchronous", ANGULAR_SPEED), section.positive("speed", ANGULAR_SPEED)
     if speed >= synchronous:
         raise section.refusal(
             "speed",
-            _("the rated speed is below the synchronous one"),
+            _("the rated speed must be less than the synchronous speed"),
             f"{quote(keys.speed)} = {_format_speed(speed)}",
             _("less than {speed}").format(speed=_format_speed(synchronous)),
         )
     overload = section.positive("overload", NUMBER)
     if overload < 1:
         raise section.refusal(
-            "overload", _("the breakdown moment is not below the rated one"), quote(keys.overload), _("1 or more")
+            "overload",
+            _("the breakdown torque cannot be less than the rated torque"),
+            quote(keys.overload),
+            _("1 or more"),
         )
     return KlossMotor.rated(synchronous / ratio, speed / ratio, ratio * section.positive("moment", MOMENT), overload)
 
@@ -171,7 +185,9 @@ def build_balancing(shape: schema.File, linkage: Linkage, values: ValueReader) -
     section = FileSection(keys, ("balancing",), values)
     heavy = any(np.any(linkage.links[name].mass != 0) for name in linkage.moving)
     if not heavy and (keys.counterweights or keys.rotor is None):
-        raise section.refusal("", _("nothing shakes: no link has a mass"), allowed=_("masses: {1: {mass: 2 kg, ...}}"))
+        raise section.refusal(
+            "", _("there is nothing to balance: no link has a mass"), allowed=_("masses: {1: {mass: 2 kg, ...}}")
+        )
     places = tuple(_build_counterweight_place(name, own, linkage, values) for name, own in keys.counterweights.items())
     share, along = 0.5, 1 + 0j
     if keys.share is not None:
@@ -181,9 +197,9 @@ def build_balancing(shape: schema.File, linkage: Linkage, values: ValueReader) -
         if not guides:
             raise section.refusal(
                 "share",
-                _("a share is of the force along a guide on the frame, and there is none"),
+                _("`share` applies to the force along a guide of the frame, and this mechanism has no such guide"),
                 str(keys.share),
-                _("no share: the force counts alike in all directions"),
+                _("leave out `share`: then the force counts equally in all directions"),
             )
         along = unit_vector((output if output in guides else guides[0]).direction)
     rotor = None if keys.rotor is None else _build_rotor(keys.rotor, values)
@@ -196,7 +212,7 @@ def _build_counterweight_place(
     section = FileSection(keys, ("balancing", "counterweights", name), values)
     values.known_name(name, linkage.moving, section.path, "link", key=True)
     if linkage.slides_on_frame(name):
-        raise section.refusal("", _("a counterweight on a link that does not turn balances nothing"))
+        raise section.refusal("", _("a counterweight on a link that does not rotate balances nothing"))
     points = linkage.links[name].points
     fixed = [p for p in points if any(h.point == p and {FRAME, name} <= set(h.links) for h in linkage.hinges)]
     about = points[(fixed or list(points))[0]] if keys.about is None else section.place("about", points, name)
@@ -204,8 +220,11 @@ def _build_counterweight_place(
     if not radius and not any(about == points[p] for p in fixed):
         raise section.refusal(
             "radius",
-            _("this counterweight moves with its link: its mass counts, and so its radius is wanted"),
-            allowed=_("radius: 80 mm, or about: a hinge of this link on the frame"),
+            _(
+                "the point about which this counterweight is placed moves, so its mass must be known: `radius` is "
+                "missing"
+            ),
+            allowed=_("radius: 80 mm; or `about`: the hinge of this link on the frame"),
         )
     return CounterweightPlace(name, about, radius)
 
@@ -228,7 +247,7 @@ def _build_rotor(keys: optional_keys.RotorKeys, values: ValueReader) -> Unbalanc
         )
     if len(planes) > 1 and planes[0].at == planes[1].at:
         raise FileSection(keys, path, values).refusal(
-            "planes", _("two different planes are wanted"), str(keys.planes[1].at)
+            "planes", _("the two planes must be different"), str(keys.planes[1].at)
         )
     return UnbalancedShaft(np.array(sizes), np.array(at), tuple(planes))
 
@@ -257,7 +276,10 @@ def _build_wheel(
     turning = [own for own in linkage.moving if linkage.hinged_to_frame(own)]
     if link not in turning:
         raise section.refusal(
-            "moves_with", _("a wheel moves with a link that turns on the frame"), quote(link), ", ".join(turning)
+            "moves_with",
+            _("the wheel must move with a link that is hinged to the frame"),
+            quote(link),
+            ", ".join(turning),
         )
     settings = [
         _build_setting(own, (*section.path, "settings", k), shape.parameters, other)
@@ -276,7 +298,7 @@ def _build_setting(
                 path=(*path, name),
                 found=quote(name),
                 key=True,
-                allowed=", ".join(known) or _("none: the file has no parameters"),
+                allowed=", ".join(known) or _("none: the file has no block `parameters`"),
                 near=nearest_name(name, known),
             )
     if not keys:

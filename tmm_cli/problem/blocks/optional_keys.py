@@ -22,48 +22,69 @@ def _checked_drive(found: Any) -> Any:
 class MotorKeys(Strict):
     """A motor by its characteristic; speeds and moments are those of its own shaft."""
 
-    kind: Literal["linear", "asynchronous"] = Field(description="direct current; or induction, by Kloss")
-    ratio: Value = Field(default=1, description="its speed over that of the driver")
-    stall: Value | None = Field(default=None, description="linear: moment at rest")
-    free: Value | None = Field(default=None, description="linear: speed without load")
-    synchronous: Value | None = Field(default=None, description="asynchronous: speed without load")
+    kind: Literal["linear", "asynchronous"] = Field(
+        description=(
+            "kind of motor. linear: direct current, straight characteristic; asynchronous: induction, by the "
+            "Kloss formula"
+        )
+    )
+    ratio: Value = Field(default=1, description="ratio of the motor speed to the driver speed")
+    stall: Value | None = Field(default=None, description="linear: stall torque (at zero speed)")
+    free: Value | None = Field(default=None, description="linear: no-load speed")
+    synchronous: Value | None = Field(default=None, description="asynchronous: synchronous speed")
     speed: Value | None = Field(default=None, description="asynchronous: rated speed")
-    moment: Value | None = Field(default=None, description="asynchronous: rated moment")
-    overload: Value = Field(default=2, description="asynchronous: breakdown moment over the rated one")
+    moment: Value | None = Field(default=None, description="asynchronous: rated torque")
+    overload: Value = Field(default=2, description="asynchronous: ratio of breakdown torque to rated torque")
 
 
 class FlywheelKeys(Strict):
     """A flywheel: where it sits and what it looks like; with `inertia` it is given, without one it is found."""
 
-    inertia: Value | None = Field(default=None, description="of a given flywheel, on its own shaft")
-    ratio: Value = Field(default=1, description="speed of its shaft over that of the driver")
+    inertia: Value | None = Field(
+        default=None,
+        description="moment of inertia of a given flywheel about its own shaft; without it the flywheel is sized",
+    )
+    ratio: Value = Field(default=1, description="ratio of the speed of the flywheel shaft to the driver speed")
     shape: Literal["disk", "rim"] = "disk"
-    width: Value = Field(default="1/5", description="of the disk or the rim, over its mean diameter")
-    height: Value = Field(default="1/8", description="of the rim, over its mean diameter")
-    density: Value = Field(default=7800, description="of its material; a bare number: kg/m^3")
+    width: Value = Field(default="1/5", description="width of the disk or rim, as a fraction of the mean diameter")
+    height: Value = Field(default="1/8", description="height of the rim, as a fraction of the mean diameter")
+    density: Value = Field(default=7800, description="density of the material; kg/m^3 if no unit is given")
 
 
 class ProfileKeys(Strict):
     """What drives, by a table; linear between its rows."""
 
-    against: Literal["time", "way"] = Field(description="s since the beginning, or the way that the driver has gone")
-    table: list[Vector] = Field(
-        min_length=2, max_length=10_000, description="rows [argument, size]; two with one argument: a jump"
+    against: Literal["time", "way"] = Field(
+        description=(
+            "first column of the table. time: seconds from the start; way: displacement of the driver from the start"
+        )
     )
-    area: Value | None = Field(default=None, description="of a piston: the table is then of pressures")
+    table: list[Vector] = Field(
+        min_length=2,
+        max_length=10_000,
+        description="rows [argument, value]; two rows with the same argument are a jump",
+    )
+    area: Value | None = Field(default=None, description="area of the piston; the table then contains pressures")
 
 
 class RunKeys(Strict):
     """A single run of the driver, integrated by time."""
 
-    from_: Value | None = Field(default=None, alias="from", description="place of the driver; that of position 0")
-    to: Value | None = Field(default=None, description="place where it ends; that of the last position")
-    speed: Value = Field(default=0, description="at the beginning")
+    from_: Value | None = Field(
+        default=None, alias="from", description="driver coordinate at the start; default: that of position 0"
+    )
+    to: Value | None = Field(
+        default=None, description="driver coordinate at the end; default: that of the last position"
+    )
+    speed: Value = Field(default=0, description="speed of the driver at the start")
     drive: Annotated[Value | ProfileKeys | None, BeforeValidator(_checked_drive)] = Field(
         default=None,
-        description="moment, positive ccw, or force, positive along the guide: a value, or {against, table, area}",
+        description=(
+            "driving moment (positive counterclockwise) or driving force (positive along the guide): a value, "
+            "or {against, table, area}"
+        ),
     )
-    brake: Value = Field(default=0, description="moment or force against the motion")
+    brake: Value = Field(default=0, description="braking moment or force, against the motion")
 
 
 class DynamicsKeys(Strict):
@@ -72,12 +93,14 @@ class DynamicsKeys(Strict):
     mean_speed: Value | None = Field(
         default=None,
         alias="mean speed",
-        description="mean of the largest and the least speed; the driver's",
+        description="mean of the largest and the smallest speed; default: the driver speed",
     )
-    delta: Value | None = Field(default=None, description="fluctuation of speed that a flywheel is to keep: 1/30")
-    motor: MotorKeys | None = Field(default=None, description="what drives; a constant moment when left out")
+    delta: Value | None = Field(
+        default=None, description="coefficient of fluctuation of speed for which the flywheel is sized, e.g. 1/30"
+    )
+    motor: MotorKeys | None = Field(default=None, description="motor; a constant driving moment if omitted")
     flywheel: FlywheelKeys = Field(default_factory=FlywheelKeys)
-    run: RunKeys | None = Field(default=None, description="a single run, in place of steady running")
+    run: RunKeys | None = Field(default=None, description="a single run instead of steady running")
 
 
 # The shape of the block `balancing`: counterweights that are sought, and a shaft with masses in planes.
@@ -86,8 +109,16 @@ class DynamicsKeys(Strict):
 class CounterweightKeys(Strict):
     """A counterweight on a link; its size and its angle are found."""
 
-    about: Place | None = Field(default=None, description="its hinge on the frame, or its first point, if left out")
-    radius: Value | None = Field(default=None, description="of its centre of mass: then its mass is told too")
+    about: Place | None = Field(
+        default=None,
+        description=(
+            "point of the link about which the counterweight is placed; default: the hinge on the frame, else "
+            "the first point"
+        ),
+    )
+    radius: Value | None = Field(
+        default=None, description="radius of the centre of mass of the counterweight; with it the mass is reported too"
+    )
 
 
 class RotorMassKeys(Strict):
@@ -96,14 +127,19 @@ class RotorMassKeys(Strict):
     mass: Value
     radius: Value
     angle: Value = 0
-    at: Value = Field(default=0, description="place of its plane along the shaft")
+    at: Value = Field(default=0, description="coordinate of the plane of this mass along the shaft")
 
 
 class RotorPlaneKeys(Strict):
     """A plane in which a mass is sought."""
 
-    at: Value = Field(description="place along the shaft")
-    radius: Value | None = Field(default=None, description="of the mass that is sought there")
+    at: Value = Field(description="coordinate of the plane along the shaft")
+    radius: Value | None = Field(
+        default=None,
+        description=(
+            "radius of the balancing mass; with it the mass is reported, not only the product of mass and radius"
+        ),
+    )
 
 
 def _expand_plane(found: Any) -> Any:
@@ -123,12 +159,15 @@ class BalancingKeys(Strict):
     """What shakes the frame at constant speed of the driver, and what balances it."""
 
     counterweights: dict[Name, CounterweightKeys] = Field(
-        default_factory=dict, max_length=20, description="by their links"
+        default_factory=dict, max_length=20, description="counterweights by the names of the links that carry them"
     )
     share: Value | None = Field(
         default=None,
-        description="how much the force along the guide of the output counts, the rest of one across it; of a "
-        "crank-slider the share of the reciprocating masses that is balanced. Without it both count alike",
+        description=(
+            "weight of the force along the guide of the output, 0 to 1; the force across it has the rest. In a "
+            "crank-slider: the fraction of the reciprocating masses that is balanced. Without it both "
+            "directions count equally"
+        ),
     )
     rotor: RotorKeys | None = None
 
@@ -143,12 +182,16 @@ Settings = Annotated[list[Values], Field(min_length=1, max_length=12)]
 class WheelKeys(Strict):
     """A ratchet wheel, a shaft on a one-way clutch, or a flange with slots, on the axis of the link that moves it."""
 
-    moves_with: Name = Field(description="the link that takes it along; it turns on the frame")
+    moves_with: Name = Field(description="link that carries the wheel along; it must be hinged to the frame")
     when: Literal["forward", "backward", "working stroke", "idle stroke"] = Field(
-        description="while that link turns forward (counterclockwise) or backward, or in strokes of the output"
+        description=(
+            "when the wheel moves: while that link rotates forward (counterclockwise) or backward, or during a "
+            "stroke of the output"
+        )
     )
     settings: Settings = Field(
-        default=[{}], description="values of parameters that take turns, one a cycle of the driver: [{}, {R: 125}]"
+        default=[{}],
+        description="values of parameters used in turn, one set for each cycle of the driver: [{}, {R: 125}]",
     )
 
 

@@ -34,29 +34,32 @@ class SpringKeys(Strict):
 
     between: list[Name] = Field(min_length=2, max_length=2, description="two links; the frame may be one")
     at: list[Place] | None = Field(
-        default=None, min_length=2, max_length=2, description="its ends, one on each link; their first points"
+        default=None,
+        min_length=2,
+        max_length=2,
+        description="ends of the spring, one on each link; default: the first points of the links",
     )
     rate: Value | None = Field(default=None, description="stiffness, N/m; 0 for a constant force")
     torsion: Value | None = Field(default=None, description="stiffness of a torsion spring, N*m/rad")
-    free: Value | None = Field(default=None, description="length (or angle) at which it exerts `preload` alone")
+    free: Value | None = Field(default=None, description="length (or angle) at which the spring exerts only `preload`")
     preload: Value = Field(
-        default=0, description="pull (negative: push) at the free length; moment of a torsion spring"
+        default=0, description="tension at the free length (compression if negative); moment of a torsion spring"
     )
-    damping: Value = Field(default=0, description="N*s/m, or N*m*s/rad: resists lengthening and shortening")
+    damping: Value = Field(default=0, description="damping coefficient, N*s/m or N*m*s/rad")
 
 
 class PairFrictionKeys(Strict):
     """Friction in one pair."""
 
     coefficient: Value | None = None
-    radius: Value | None = Field(default=None, description="of the journal of a hinge")
+    radius: Value | None = Field(default=None, description="radius of the journal of this hinge")
 
 
 class FrictionKeys(Strict):
     """Coulomb friction in pairs. Without this block nothing of it is computed."""
 
-    coefficient: Value = Field(default=0, description="in every pair that is not named")
-    radius: Value = Field(default=0, description="of the journal of every hinge that is not named")
+    coefficient: Value = Field(default=0, description="coefficient of friction in every pair not listed in `pairs`")
+    radius: Value = Field(default=0, description="radius of the journal of every hinge not listed in `pairs`")
     pairs: dict[Name, PairFrictionKeys] = Field(default_factory=dict, max_length=300)
 
 
@@ -97,8 +100,8 @@ def _build_spring(name: str, keys: SpringKeys, linkage: Linkage, section: FileSe
                 ),
             )
     elif not twists and any(len(linkage.links[n].points) > 1 for n in (i, j)):
-        allowed = _("at: [point of one, point of the other]")
-        raise section.refusal("at", _("where are the ends of the spring?"), allowed=allowed)
+        allowed = _("at: [point of the first link, point of the second link]")
+        raise section.refusal("at", _("the ends of the spring are not given"), allowed=allowed)
     rate = section.positive("torsion", TORSION, zero=True) if twists else section.positive("rate", STIFFNESS, zero=True)
     free = 0.0
     if keys.free is None and rate > 0:
@@ -109,7 +112,7 @@ def _build_spring(name: str, keys: SpringKeys, linkage: Linkage, section: FileSe
     if twists and abs(free) > math.pi:
         raise section.refusal(
             "free",
-            _("a free angle lies within half a turn; what a spring is wound up beyond that is its preload"),
+            _("the free angle must be within half a turn; any further winding is given as `preload`"),
             found=str(keys.free),
         )
     preload = section.number("preload", MOMENT if twists else FORCE)
@@ -132,7 +135,7 @@ def _build_friction(linkage: Linkage, shape: schema.File, values: ValueReader) -
     for name, section in own.items():
         values.known_name(name, pairs, section.path, "turning or sliding pair", key=True)
         if pairs[name].kind == "P" and section.keys.radius is not None:
-            raise section.refusal("radius", _("a sliding pair has no journal"), at_key=True)
+            raise section.refusal("radius", _("a prismatic pair has no journal, so it has no `radius`"), at_key=True)
     found = []
     for name, pair in pairs.items():
         rubs, journal = coefficient, radius

@@ -29,4 +29,4 @@ def read_mechanism(text: str, file: str) -> ImportedMechanism:
     for one in FORMATS.values():
         if one.recognised(text):
             return one.read(text, file)
-    raise ProblemError(_("this file is of no format that is known here"), allowed="; ".join(FORMATS), file=file)
+    raise ProblemError(_("the format of this file is not supported"), allowed="; ".join(FORMATS), file=file)

@@ -131,7 +131,7 @@ class FileNode:
     def mapping(self) -> dict[str, Any]:
         """Its keys."""
         if not isinstance(self.data, dict):
-            raise self.refused(_("keys with values are wanted"))
+            raise self.refused(_("expected keys with values"))
         self._bounded(len(self.data))
         return self.data
 
@@ -147,36 +147,36 @@ class FileNode:
     def items(self) -> list[FileNode]:
         """Of a list."""
         if not isinstance(self.data, list):
-            raise self.refused(_("a list [..., ...] is wanted"))
+            raise self.refused(_("expected a list [..., ...]"))
         self._bounded(len(self.data))
         return [FileNode(self.tree, value, (*self.path, k)) for k, value in enumerate(self.data)]
 
     def text(self) -> str:
         """A name."""
         if isinstance(self.data, bool) or not isinstance(self.data, str | int) or len(str(self.data)) > 100:
-            raise self.refused(_("a name is wanted"))
+            raise self.refused(_("expected a name"))
         return str(self.data)
 
     def one_of(self, names: Iterable[str]) -> str:
         """One of the names that are known."""
         known, found = list(names), self.text()
         if found not in known:
-            raise self.refused(_("this word is not known here"), ", ".join(known), nearest_name(found, known))
+            raise self.refused(_("this value is not allowed here"), ", ".join(known), nearest_name(found, known))
         return found
 
     def number(self) -> float:
         """A number that a mechanism can have."""
         if isinstance(self.data, bool) or not isinstance(self.data, int | float):
-            raise self.refused(_("a number is wanted"))
+            raise self.refused(_("expected a number"))
         if not -LARGEST <= self.data <= LARGEST:
-            raise self.refused(_("this is too large for a mechanism"))
+            raise self.refused(_("this value is too large for a mechanism"))
         return float(self.data)
 
     def vector(self) -> complex:
         """Two coordinates; a third one, of a plane mechanism, is left out."""
         items = self.items()
         if len(items) not in (2, 3):
-            raise self.refused(_("two coordinates [x, y] are wanted"))
+            raise self.refused(_("expected two coordinates [x, y]"))
         return complex(items[0].number(), items[1].number())
 
 
@@ -220,10 +220,10 @@ class _ProblemFileWriter:
         yield f"# {told}"
         for name, new in {**self.names, **self.links}.items():
             if name != new:
-                yield "# " + _("{name} is called {new} here.").format(name=clean(name, 60), new=new)
+                yield "# " + _("{name} is called {new} in this file.").format(name=clean(name, 60), new=new)
         yield from (f"# {clean(note, 300)}" for note in it.notes)
         if it.left:
-            yield "# " + _("Not taken over:")
+            yield "# " + _("Not imported:")
             yield from (f"# - {clean(line, 300)}" for line in it.left)
         yield "tmm: 1"
         yield f"title: {_quote_text(it.title or source)}"

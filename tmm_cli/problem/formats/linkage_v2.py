@@ -46,7 +46,7 @@ class PointConstruction:
             if not isinstance(node.data, str):
                 return node.number()
             node = self.parameters[node.one_of(self.parameters)]
-        raise node.refused(_("parameters stand for one another in a circle"))
+        raise node.refused(_("the parameters refer to each other in a circle"))
 
     def of(self, step: FileNode, key: str) -> complex:
         """The place that a key names."""
@@ -65,7 +65,7 @@ def _circle_circle(points: PointConstruction, step: FileNode) -> complex:
     a, b = points.of(step, "center1"), points.of(step, "center2")
     r, s, apart = points.number(step["radius1"]), points.number(step["radius2"]), abs(b - a)
     if not apart:
-        raise step.refused(_("the circles have one centre"))
+        raise step.refused(_("the circles have the same centre"))
     along = (r * r - s * s + apart * apart) / (2 * apart)
     ends = _two_points(a + along * (b - a) / apart, (b - a) / apart * 1j, r * r - along * along, step)
     return _choose_branch(step, ends, b - a)
@@ -95,7 +95,7 @@ def _circle_ray(points: PointConstruction, step: FileNode) -> complex:
     foot = (centre - start) / along
     square = radius * radius - foot.imag * foot.imag
     if square < 0:
-        raise step.refused(_("they do not meet"))
+        raise step.refused(_("the lines of this construction step do not intersect"))
     ends = foot.real - math.sqrt(square), foot.real + math.sqrt(square)
     ahead = [end for end in ends if end > 0] or list(ends)
     wanted = {"positive": ahead[0], "far_positive": ahead[-1], "near": min(ends, key=abs), "far": max(ends, key=abs)}
@@ -104,7 +104,7 @@ def _circle_ray(points: PointConstruction, step: FileNode) -> complex:
 
 def _two_points(foot: complex, along: complex, square: float, step: FileNode) -> tuple[complex, complex]:
     if square < 0:
-        raise step.refused(_("they do not meet"))
+        raise step.refused(_("the lines of this construction step do not intersect"))
     half = math.sqrt(square) * along
     return foot - half, foot + half
 
@@ -155,7 +155,7 @@ def _offset(points: PointConstruction, step: FileNode) -> complex:
 
 def _unit_vector(along: complex, step: FileNode) -> complex:
     if not along:
-        raise step.refused(_("both points are in one place"))
+        raise step.refused(_("the two points coincide"))
     return along / abs(along)
 
 
@@ -225,15 +225,15 @@ class _LinkageV2Reader:
         )
         massed = [self._with_points(body) for body in bodies]
         places = {found: self.points.place(point) for (__, point), found in names.items()}
-        left = [_("Key `{key}` is not read.").format(key=key) for key in self.top.mapping() if key not in KEYS]
+        left = [_("Key `{key}` was ignored.").format(key=key) for key in self.top.mapping() if key not in KEYS]
         if self.top.get("dynamics"):
-            left.append(_("Block `dynamics`: motor and flywheel are said otherwise here."))
-        notes = [_("The file is about one place of the driver; `positions` asks for that one.")]
+            left.append(_("Block `dynamics`: motor and flywheel have other keys here; write them by hand."))
+        notes = [_("The file describes one position of the driver; `positions` requests this position.")]
         if (ratio := self._value(self._driven(), "q_ratio")) < 0:
             notes.append(
-                _("q_ratio is {ratio}: the sign of omega is taken for that of the link itself.").format(
-                    ratio=f"{ratio:g}"
-                )
+                _(
+                    "q_ratio is {ratio}: the sign of omega was taken as the sense of rotation of the link itself."
+                ).format(ratio=f"{ratio:g}")
             )
         output = said.one_of(self.top["bodies"].mapping()) if (said := self.top.get("output_body")) else ""
         gravity = given.vector() if (given := self.top.get("gravity")) else None
@@ -269,7 +269,7 @@ class _LinkageV2Reader:
             if joint["type"].one_of((HINGE, GUIDE)) == HINGE:
                 ends = joint["endpoints"].items()
                 if len(ends) < 2:
-                    raise joint["endpoints"].refused(_("a hinge joins two links"))
+                    raise joint["endpoints"].refused(_("a hinge must join at least two links"))
                 found.append([(self._body(end["body"]), end["point"].one_of(self.points.known)) for end in ends])
         return found
 
@@ -329,7 +329,7 @@ class _LinkageV2Reader:
     def _driven(self) -> FileNode:
         drives = [self.top["drive"]] if self.top.get("drive") else self.top["drives"].items()
         if len(drives) != 1:
-            raise self.top.refused(_("one driving link is wanted"))
+            raise self.top.refused(_("expected exactly one driving link"))
         return drives[0]
 
     def _drive(self) -> ImportedDrive:
@@ -364,7 +364,7 @@ class _LinkageV2Reader:
         else:
             along = given.vector()
         if not along:
-            raise given.refused(_("a direction is wanted"))
+            raise given.refused(_("this vector has no direction: its length is zero"))
         return self.points.number(load["magnitude"]) * along / abs(along)
 
 

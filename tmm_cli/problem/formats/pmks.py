@@ -113,7 +113,7 @@ def _refuse_wrong_names(saved: PmksFile, file: str) -> None:
     for names in (joints, links):
         for k, name in enumerate(names):
             if name in names[:k]:
-                raise ProblemError(_("a name is given twice"), found=quote(name), file=file)
+                raise ProblemError(_("this name occurs twice"), found=quote(name), file=file)
     wanted = [(("forces", force.id), force.link) for force in saved.forces]
     wanted += [(("joints", joint.id), joint.carrier) for joint in saved.joints if joint.carrier]
     for path, name in wanted:
@@ -129,7 +129,7 @@ def _refuse_wrong_names(saved: PmksFile, file: str) -> None:
     on += [(("joints", joint.id), end) for joint in saved.joints if joint.carrier for end in joint.slot]
     for path, name in on:
         if name not in joints:
-            raise ProblemError(_("a joint that is not there"), path=path, found=name, file=file)
+            raise ProblemError(_("there is no joint of that name"), path=path, found=name, file=file)
 
 
 def _fold_blocks(saved: PmksFile, file: str) -> PmksFile:
@@ -141,7 +141,7 @@ def _fold_blocks(saved: PmksFile, file: str) -> PmksFile:
         pins = [joints[name] for name in block.joints if not joints[name].slides]
         if len(rails) != 1 or len(pins) != 1:
             raise ProblemError(
-                _("a sliding block with one joint that slides and one pin is expected"),
+                _("expected a sliding block with one sliding joint and one pin"),
                 path=("links", block.id),
                 found=", ".join(block.joints),
                 file=file,
@@ -214,16 +214,16 @@ class _PmksMechanism:
         pushes = list(self._pushes())
         known = used.union(*(link.joints for link in self.saved.links if link.id in self.frame))
         self.left.extend(
-            _("Joint {name} is on no moving link.").format(name=name) for name in self.joints if name not in known
+            _("Joint {name} belongs to no moving link.").format(name=name) for name in self.joints if name not in known
         )
         notes = [
             *self.saved.notes,
-            _("Masses, moments of inertia about the centre of mass and forces are read in {units}.").format(
-                units=UNIT_NAMES[self.saved.length]
-            ),
+            _(
+                "Masses, moments of inertia about the centre of mass and forces were read in these units: {units}."
+            ).format(units=UNIT_NAMES[self.saved.length]),
         ]
         notes += [
-            _("Link {name} is pinned to the frame twice: it is part of the frame.").format(name=name)
+            _("Link {name} is pinned to the frame at two points, so it is part of the frame.").format(name=name)
             for name in sorted(self.frame)
         ]
         return ImportedMechanism(
@@ -263,14 +263,18 @@ class _PmksMechanism:
             riders = self._riders(joint)
             if not joint.slides:
                 if joint.welded and len(riders) > 1:
-                    raise self._refused(joint, _("a welded joint of links that are not one link"), ", ".join(riders))
+                    raise self._refused(
+                        joint, _("this joint is welded, but its links are not recorded as one link"), ", ".join(riders)
+                    )
                 continue
             carrier = self._carrier(joint)
             if not joint.ground and not joint.carrier:
-                raise self._refused(joint, _("a joint that slides neither on the frame nor on a link"))
+                raise self._refused(joint, _("this sliding joint has no guide on the frame or on a link"))
             through, angle = self._slot(joint) if any(joint.slot) else (joint.place, joint.angle)
             if joint.welded and len(riders) > 1:
-                raise self._refused(joint, _("links that slide together and are not one link"), ", ".join(riders))
+                raise self._refused(
+                    joint, _("these links slide together, but are not recorded as one link"), ", ".join(riders)
+                )
             if riders:
                 yield ImportedSlide(self._block(joint) or riders[0], joint.id, carrier, through, angle)
 
@@ -278,11 +282,11 @@ class _PmksMechanism:
         """A point of the slot and its angle."""
         carrier = next(link for link in self.saved.links if link.id == self.owner[joint.carrier])
         if joint.ground:
-            raise self._refused(joint, _("a slot that is on the frame and on a link"), quote(joint.carrier))
+            raise self._refused(joint, _("this slot is recorded both on the frame and on a link"), quote(joint.carrier))
         if joint.id in carrier.joints or any(end not in carrier.joints for end in joint.slot):
             raise self._refused(
                 joint,
-                _("a slot between two joints of another link is expected"),
+                _("the slot must lie between two joints of another link"),
                 ", ".join((joint.carrier, *joint.slot)),
             )
         a, b = (self.joints[end].place for end in joint.slot)
@@ -305,25 +309,27 @@ class _PmksMechanism:
         driven = [joint for joint in self.joints.values() if joint.input]
         if len(driven) != 1:
             raise ProblemError(
-                _("one driving joint is wanted"), found=", ".join(joint.id for joint in driven) or "0", file=self.file
+                _("expected exactly one driving joint"),
+                found=", ".join(joint.id for joint in driven) or "0",
+                file=self.file,
             )
         (joint,) = driven
         if joint.slides:
             slide = next((slide for slide in slides if slide.point == joint.id), None)
             if slide is None:
-                raise self._refused(joint, _("one driving link is wanted"), "0")
+                raise self._refused(joint, _("expected exactly one driving link"), "0")
             at = ((joint.place - slide.through) * cmath.rect(1, -slide.angle)).real
             return ImportedDrive(slide.runner, joint.speed or self.saved.linear, "length/s", on=slide.carrier, at=at)
         cranks = self._riders(joint)
         if not joint.ground:
             raise self._refused(
                 joint,
-                _("a motor between two moving links is not taken over"),
+                _("a motor between two moving links cannot be imported"),
                 ", ".join(cranks),
-                _("a crank on the frame; else write the block `driver` by hand"),
+                _("a crank on the frame; otherwise write the block `driver` by hand"),
             )
         if len(cranks) != 1:
-            raise self._refused(joint, _("one driving link is wanted"), ", ".join(cranks) or "0")
+            raise self._refused(joint, _("expected exactly one driving link"), ", ".join(cranks) or "0")
         return ImportedDrive(cranks[0], joint.speed or self.saved.rpm, "rpm")
 
     def _pushes(self) -> Iterator[ImportedLoad]:

@@ -53,9 +53,9 @@ def read(text: str, file: str) -> ImportedMechanism:
     """The mechanism of a file. Raises ProblemError."""
     if NEW_DOCUMENT.fullmatch(text.strip()):
         raise ProblemError(
-            _("a document of the newer editor of PMKS+ is not read"),
+            _("documents of the new PMKS+ editor are not supported"),
             found="pmks2:...",
-            allowed=_("a link that begins with its settings, as ?2v.Ay,1E8.5,..."),
+            allowed=_("a PMKS+ web link that begins with its settings, such as ?2v.Ay,1E8.5,..."),
             file=file,
         )
     found = LINK_TEXT.fullmatch(text.strip())
@@ -68,17 +68,17 @@ def _strip_checks(content: str, file: str) -> str:
     body, mark, digest = content.rpartition("*")
     if mark and digest != _digest(body):
         raise ProblemError(
-            _("this link is damaged: its digest does not fit its text"),
+            _("this web link is damaged: its checksum does not match its text"),
             found=quote(digest),
-            allowed=_("a link as PMKS+ copies it, or its file .pmks"),
+            allowed=_("a web link as copied from PMKS+, or a .pmks file"),
             file=file,
         )
     body = body if mark else content
     if CHECKS[(len(body) - 1) % 62] != body[-1:]:
         raise ProblemError(
-            _("this link is not whole: its last character does not fit its length"),
+            _("this web link is incomplete: its check character does not match its length"),
             found=quote(body[-1:]),
-            allowed=_("a link as PMKS+ copies it, or its file .pmks"),
+            allowed=_("a web link as copied from PMKS+, or a .pmks file"),
             file=file,
         )
     return body[:-1]
@@ -124,9 +124,7 @@ class _LinkRecords:
         flags, decimals, whole, words = self.settings
         on = self._integer(flags, ("settings",), signed=False)
         if not words or words[0] not in DIGITS[: len(LENGTHS)]:
-            raise self._refused(
-                ("settings",), _("a unit of length that is not known here"), quote(words[:1]), ", ".join(LENGTHS)
-            )
+            raise self._refused(("settings",), _("unknown unit of length"), quote(words[:1]), ", ".join(LENGTHS))
         rpm = self.exact.get(("I", "", 0), self._integer(whole.split(",")[0], ("settings",)))
         linear = self._number(("settings",), "D", "", 1, [*decimals.split(","), "", ""][1]) or 5.0
         left = list(self.left)
@@ -139,7 +137,8 @@ class _LinkRecords:
             if kind in AUTOMATIC and kind in ROOT_LINKS:
                 notes.append(
                     _(
-                        "PMKS+ computes inertia or centre of link {name} from its shape: the stored values are taken."
+                        "PMKS+ computes the moment of inertia or the centre of mass of link {name} from its shape; the "
+                        "stored values were taken."
                     ).format(name=link.id)
                 )
         joints = tuple(self._joint(fields, left) for fields in self.joints)
@@ -160,7 +159,9 @@ class _LinkRecords:
         head, name = fields[0], fields[0][1:]
         path = ("joints", name)
         if not name or len(fields) < 5:
-            raise self._refused(path, _("a record of a joint with five fields is expected"), quote(",".join(fields)))
+            raise self._refused(
+                path, _("expected a record of a joint with at least five fields"), quote(",".join(fields))
+            )
         flags = self._integer(head[0], path, signed=False)
         x, y, angle = (self._number(path, "J", name, k, text, needed=True) for k, text in enumerate(fields[2:5]))
         carrier, a, b, speed, mass, *more = [*fields[5:], "", "", "", "", ""][: max(5, len(fields) - 5)]
@@ -169,11 +170,11 @@ class _LinkRecords:
             mass, more = "", []
         welded, __, *unknown = [*more, "", ""]
         if welded not in ("", "0", "Fe") or any(unknown):
-            raise self._refused(path, _("a field of a joint that is not known here"), quote(",".join(more)))
+            raise self._refused(path, _("unknown field in the record of a joint"), quote(",".join(more)))
         if any((carrier, a, b)) and not (all((carrier, a, b)) and flags & SLIDES and a != b):
             raise self._refused(
                 path,
-                _("a slot needs a joint that slides, a link and two joints of that link"),
+                _("a slot needs a sliding joint, a link and two joints of that link"),
                 quote(",".join((carrier, a, b))),
             )
         return PmksJoint(
@@ -195,11 +196,11 @@ class _LinkRecords:
         kind, form, name = fields[0][:1], fields[0][1:2], fields[0][2:]
         path = ("links", name)
         if not name or len(fields) < 9 or form not in ("R", "P"):
-            raise self._refused(path, _("a record of a link with nine fields is expected"), quote(",".join(fields)))
-        if kind not in ROOT_LINKS + WELDED_LINKS:
             raise self._refused(
-                path, _("a link of a kind that is not known here"), quote(kind), " ".join(ROOT_LINKS + WELDED_LINKS)
+                path, _("expected a record of a link with at least nine fields"), quote(",".join(fields))
             )
+        if kind not in ROOT_LINKS + WELDED_LINKS:
+            raise self._refused(path, _("unknown kind of link"), quote(kind), " ".join(ROOT_LINKS + WELDED_LINKS))
         mass, inertia, x, y = (self._number(path, "L", name, k, text) for k, text in enumerate(fields[2:6]))
         others = fields[7:]
         stop = others.index("") if "" in others else len(others)
@@ -224,7 +225,7 @@ class _LinkRecords:
         head, name = fields[0], fields[0][1:]
         path = ("forces", name)
         if not name or len(fields) != 8:
-            raise self._refused(path, _("a record of a force with eight fields is expected"), quote(",".join(fields)))
+            raise self._refused(path, _("expected a record of a force with eight fields"), quote(",".join(fields)))
         flags = self._integer(head[0], path, signed=False)
         x0, y0, x1, y1, size = (self._number(path, "F", name, k, text) for k, text in enumerate(fields[3:]))
         return PmksForce(
@@ -242,7 +243,7 @@ class _LinkRecords:
     def _integer(self, text: str, path: tuple[str, ...], *, signed: bool = True) -> int:
         negative = signed and text[:1] == "0"
         if not text or len(text) > MAX_NUMBER_LENGTH or any(char not in DIGITS for char in text):
-            raise self._refused(path, _("this is no number to the base 64"), quote(text))
+            raise self._refused(path, _("this is not a base-64 number"), quote(text))
         found = 0
         for char in text[negative:]:
             found = found * 64 + DIGITS.index(char)
@@ -277,9 +278,13 @@ def _read_entries(tail: str, file: str) -> tuple[dict[tuple[str, str, int], floa
                 raise _unknown_entry_error(entry, file)
             exact[target[1], target[2:], index] = value
         elif tag == "G":
-            raise ProblemError(_("gears of PMKS+ are not read"), found=quote(entry), file=file)
+            raise ProblemError(_("gears of PMKS+ are not supported"), found=quote(entry), file=file)
         elif tag in "ST":
-            what = _("The design of its synthesis.") if tag == "S" else _("Materials, sections and their load cases.")
+            what = (
+                _("Data of the synthesis in PMKS+.")
+                if tag == "S"
+                else _("Materials, cross-sections and their load cases.")
+            )
             if what not in left:
                 left.append(what)
         elif tag not in IGNORED_TAGS:
@@ -288,6 +293,4 @@ def _read_entries(tail: str, file: str) -> tuple[dict[tuple[str, str, int], floa
 
 
 def _unknown_entry_error(entry: str, file: str) -> ProblemError:
-    return ProblemError(
-        _("an entry that is not known here"), found=quote(entry), allowed="J L F C H K P S T", file=file
-    )
+    return ProblemError(_("unknown entry"), found=quote(entry), allowed="J L F C H K P S T", file=file)

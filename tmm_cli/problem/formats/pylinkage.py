@@ -32,18 +32,18 @@ def read(text: str, file: str) -> ImportedMechanism:
     joints: dict[str, FileNode] = {}
     for joint in top["joints"].items():
         if joints.setdefault(joint["id"].text(), joint) is not joint:
-            raise joint["id"].refused(_("a name is given twice"))
+            raise joint["id"].refused(_("this name occurs twice"))
     links = top["links"].items()
     frame = _frame_joints(joints, links)
     places = {name: _joint_place(joint) for name, joint in joints.items()}
     kinds = {name: _joint_type(joint) for name, joint in joints.items()}
     bodies: list[ImportedBody] = []
     drive, left = None, []
-    notes = [_("Lengths have no unit in pylinkage: they are taken for millimetres.")]
+    notes = [_("Lengths have no unit in pylinkage; they were taken as millimetres.")]
     for link in links:
         kind, name = link["type"].one_of(LINK_TYPES), link["id"].text()
         if name in (body.name for body in bodies):
-            raise link["id"].refused(_("a name is given twice"))
+            raise link["id"].refused(_("this name occurs twice"))
         if kind == "ground":
             continue
         own = [one.one_of(joints) for one in link["joints"].items()]
@@ -52,30 +52,31 @@ def read(text: str, file: str) -> ImportedMechanism:
         bodies.append(ImportedBody(name, tuple(own), _link_label(link, name)))
         if kind != "link":
             if drive is not None:
-                raise link.refused(_("one driving link is wanted"))
+                raise link.refused(_("expected exactly one driving link"))
             rate = speed.number() if (speed := link.get("angular_velocity")) else math.tau / 360
             drive = ImportedDrive(name, rate)
-            notes.append(_("The angular velocity of pylinkage, rad per unit of time, is taken for rad/s."))
+            notes.append(_("The angular velocity of pylinkage, in rad per unit of time, was taken as rad/s."))
             if kind == "arc_driver":
                 left.append(
-                    _("Link {link} is driven to and fro over an arc there; here it goes its whole way.").format(
-                        link=name
-                    )
+                    _(
+                        "In pylinkage link {link} is driven back and forth over an arc; here it moves over its whole "
+                        "range."
+                    ).format(link=name)
                 )
     if drive is None:
-        raise ProblemError(_("no link is driven"), allowed="type: driver", file=file)
+        raise ProblemError(_("there is no driving link"), allowed="type: driver", file=file)
     slides = []
     for name, kind in kinds.items():
         if kind == "prismatic":
             joint, stone = joints[name], _block_name(name, [body.name for body in bodies])
             axis = vector.vector() if (vector := joint.get("axis")) else 1 + 0j
             if not axis:
-                raise joint["axis"].refused(_("a direction is wanted"))
+                raise joint["axis"].refused(_("this vector has no direction: its length is zero"))
             through = at.vector() if (at := joint.get("line_point")) else 0j
             bodies.append(ImportedBody(stone, (name,)))
             slides.append(ImportedSlide(stone, name, FRAME, through, cmath.phase(axis)))
             notes.append(
-                _("Joint {joint} runs on a line of the frame: slider {link} is put there.").format(
+                _("Joint {joint} moves along a line of the frame; slider {link} was added for it.").format(
                     joint=name, link=stone
                 )
             )
@@ -83,7 +84,7 @@ def read(text: str, file: str) -> ImportedMechanism:
             left.append(_("Point {point} follows two joints that are not on one link.").format(point=name))
     used = {point for body in bodies for point in body.points}
     left += [
-        _("Joint {joint} is on no moving link.").format(joint=j)
+        _("Joint {joint} belongs to no moving link.").format(joint=j)
         for j in joints
         if j not in used and kinds[j] != "tracker"
     ]
@@ -120,7 +121,10 @@ def _joint_type(joint: FileNode) -> str:
 
 def _joint_place(joint: FileNode) -> complex:
     if joint["position"].data == [None, None]:
-        raise joint["position"].refused(_("the mechanism was saved before it was assembled"), _("places of all joints"))
+        raise joint["position"].refused(
+            _("the mechanism was saved before it was assembled: the positions of its joints are missing"),
+            _("positions of all joints"),
+        )
     return joint["position"].vector()
 
 

@@ -358,7 +358,7 @@ def read(shape: FourBarByAnglesBlock, values: ValueReader) -> AnglePairsTask:
             raise ProblemError(
                 _("pairs and a function cannot be given together"),
                 path=(extra[0],),
-                allowed=_("one of the two"),
+                allowed=_("either a value or a list"),
                 key=True,
             )
         pairs = [
