@@ -86,8 +86,8 @@ def test_a_unit_of_the_sheet_counts_where_the_cell_has_none():
     assert read_answer("1.2 at 3", "N", "rad") == Given(1.2, 3.0, "polar", "N", "rad", "1.2 at 3")
 
 
-ONE = "this is no number\n  found:   '{}'\n  allowed: 1,31 m/s, 1.31 or 3·10^-3"
-TWO = "a vector has two numbers\n  found:   '{}'\n  allowed: (1,2; -3,4) N or 1,2 kN at 34 deg"
+ONE = "not a number\n  found:   '{}'\n  allowed: 1,31 m/s, 1.31 or 3·10^-3"
+TWO = "a vector needs two numbers\n  found:   '{}'\n  allowed: (1,2; -3,4) N or 1,2 kN at 34 deg"
 LARGE = "the number is too large or too small\n  found:   '{}'"
 
 
@@ -106,11 +106,18 @@ LARGE = "the number is too large or too small\n  found:   '{}'"
         ("1.2.3", ONE),
         ("1_000", ONE),
         ("--5", ONE),
-        ("2026-05-01", "a spreadsheet made a date of this\n  found:   '{}'\n  allowed: a number in a cell of text"),
+        (
+            "2026-05-01",
+            (
+                "the spreadsheet has turned this number into a date\n"
+                "  found:   '{}'\n"
+                "  allowed: a number in a cell formatted as text"
+            ),
+        ),
         ("(5)", TWO),
         ("1 N; 2 N; 3 N", TWO),
-        ("1 N; 2 kN", "the components have two units\n  found:   '{}'\n  allowed: (1,2; -3,4) N"),
-        ("Fz = 1, Fy = 2", "these are no components\n  found:   '{}'\n  allowed: Fx = 1,2 N, Fy = -3,4 N"),
+        ("1 N; 2 kN", ("the components have different units\n  found:   '{}'\n  allowed: (1,2; -3,4) N")),
+        ("Fz = 1, Fy = 2", "these are not the components x and y\n  found:   '{}'\n  allowed: Fx = 1,2 N, Fy = -3,4 N"),
     ],
 )
 def test_what_is_no_answer_is_refused(text, message):
@@ -156,9 +163,9 @@ def test_a_position_may_be_named_by_the_angle_of_the_driver(text):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("v of e at 7, m/s", "there is no quantity of this name\n  found:   'v of e'"),
-        ("v of E at seven", "this heading is not understood\n  found:   '{}'\n  allowed: v of E at 7, m/s"),
-        ("v of E at 7.5", "this is no position\n  found:   '7.5'\n  allowed: 7, or phi = 210 deg"),
+        ("v of e at 7, m/s", ("there is no quantity with this name\n  found:   'v of e'")),
+        ("v of E at seven", ("unknown form of heading\n  found:   '{}'\n  allowed: v of E at 7, m/s")),
+        ("v of E at 7.5", "not a position\n  found:   '7.5'\n  allowed: 7, or phi = 210 deg"),
         ("v of E at 7, foo", "unknown unit\n  found:   'foo'\n  allowed: e.g. mm, deg, rpm, kg, N, N*m"),
     ],
 )

@@ -67,19 +67,21 @@ def refusal(path):
 
 def test_what_only_looks_like_a_table_is_refused(tmp_path):
     bomb = packed(tmp_path / "bomb.xlsx", {"xl/sharedStrings.xml": b"0" * 30_000_000})
-    assert refusal(bomb) == "far more is packed in it than in a table\n  allowed: a smaller file"
+    assert refusal(bomb) == ("the file unpacks to far more than a table can hold\n  allowed: a smaller file")
     far = book(tmp_path / "far.xlsx", [("A1", 1), ("B12000", 1)])
-    assert refusal(far) == "a cell is too far out\n  found:   'B12000'\n  allowed: 10000 rows, 500 columns"
+    assert (
+        refusal(far) == "a cell is outside the permitted range\n  found:   'B12000'\n  allowed: 10000 rows, 500 columns"
+    )
     copies = book(tmp_path / "c.xlsx", [(f"A{n + 1}", "x" * 32_000) for n in range(9000)])
-    assert refusal(copies).startswith("far more is packed in it")
+    assert refusal(copies).startswith("the file unpacks to far more")
     macros = packed(tmp_path / "macros.xlsx", {"xl/vbaProject.bin": b""})
-    assert refusal(macros) == "it has macros: save it as .xlsx without them"
+    assert refusal(macros) == "the file contains macros: save it as .xlsx without macros"
     linked = packed(tmp_path / "linked.xlsx", {"xl/externalLinks/externalLink1.xml": b""})
-    assert refusal(linked) == "it takes values from other files: put the values themselves in"
+    assert refusal(linked) == "the file refers to other files: replace the references by their values"
     empty = packed(tmp_path / "empty.xlsx", {"a.txt": b""})
-    assert refusal(empty) == "this is no XLSX\n  allowed: a table as CSV or XLSX"
+    assert refusal(empty) == "not an XLSX file\n  allowed: a table in CSV or XLSX"
     (tmp_path / "cut.xlsx").write_bytes(far.read_bytes()[:900])
-    assert refusal(tmp_path / "cut.xlsx").startswith("this is no sound XLSX: ")
+    assert refusal(tmp_path / "cut.xlsx").startswith("damaged XLSX file: ")
 
 
 def rewritten(path, sheet):
@@ -102,7 +104,7 @@ SHEET = b'<worksheet xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006
     ],
 )
 def test_cells_that_do_not_say_where_they_stand_are_not_counted_through(row, tmp_path):
-    told = "a cell does not say where it stands\n  allowed: a file that a spreadsheet has saved"
+    told = "a cell has no address\n  allowed: a file saved by a spreadsheet program"
     assert refusal(rewritten(tmp_path / "t.xlsx", b"<row>" + row + b"</row>")) == told
 
 
@@ -121,7 +123,7 @@ def test_more_texts_than_the_file_holds_are_refused_before_it_is_read(count, tmp
     with zipfile.ZipFile(book(path, [("A1", "OA")])) as sound:
         parts = {name: sound.read(name) for name in sound.namelist()}
     path = packed(path, {**parts, "xl/sharedStrings.xml": SHARED.format(count=count)})
-    assert refusal(path).startswith("it announces more than it holds\n  found:   '")
+    assert refusal(path).startswith("the file declares more content than it contains\n  found:   '")
 
 
 @pytest.mark.parametrize("ref", ["A1:B2000000", "A1:ZZZ3", "A0", "A1:B99999999999"])
@@ -132,7 +134,8 @@ def test_a_range_that_no_sheet_has_is_refused(ref, tmp_path):
         parts = {name: sound.read(name) for name in sound.namelist()}
     parts["xl/worksheets/sheet1.xml"] = sheet.replace(b"ROWS", b"<row r='1'><c r='A1'><v>1</v></c></row>")
     assert refusal(packed(path, parts)) == (
-        f"it announces more than it holds\n  found:   '{ref}'\n  allowed: a file that a spreadsheet has saved"
+        f"the file declares more content than it contains\n  found:   '{ref}'\n"
+        "  allowed: a file saved by a spreadsheet program"
     )
 
 
@@ -148,7 +151,9 @@ def test_a_file_that_ends_the_process_which_reads_it_is_refused_and_the_next_one
         pytest.skip("this version of python-calamine reserves no memory by what a file announces")
     with monkeypatch.context() as blind:
         blind.setattr(cells, "_inspect", lambda *unused: None)
-        told = "reading it takes too much memory, or ends the process that reads it\n  allowed: a table as CSV"
+        told = (
+            "reading the file requires too much memory or crashes the process that reads it\n  allowed: a table in CSV"
+        )
         assert [refusal(path), refusal(path)] == [told, told]
     assert rows_of(book(tmp_path / "sound.xlsx", [("A1", "OA")])) == [["OA"]]
     assert capfd.readouterr().err == ""
@@ -157,7 +162,7 @@ def test_a_file_that_ends_the_process_which_reads_it_is_refused_and_the_next_one
 def test_other_spreadsheets_than_xlsx_are_not_read_as_one(tmp_path):
     repeated = b'<table:table-cell table:number-columns-repeated="16384" office:value="1"/>'
     path = packed(tmp_path / "ods.xlsx", {"mimetype": b"application/vnd.oasis", "content.xml": repeated})
-    assert refusal(path) == "this is no XLSX\n  allowed: a table as CSV or XLSX"
+    assert refusal(path) == "not an XLSX file\n  allowed: a table in CSV or XLSX"
 
 
 def test_a_packed_size_that_lies_is_no_sound_file(tmp_path):
@@ -165,16 +170,16 @@ def test_a_packed_size_that_lies_is_no_sound_file(tmp_path):
     packed(stream, {"xl/workbook.xml": b"0" * 1_000_000})
     lying = tmp_path / "lying.xlsx"
     lying.write_bytes(stream.getvalue().replace((1_000_000).to_bytes(4, "little"), (10).to_bytes(4, "little")))
-    assert refusal(lying).startswith("this is no sound XLSX: ")
+    assert refusal(lying).startswith("damaged XLSX file: ")
 
 
 def test_files_that_are_no_tables_are_refused(tmp_path):
     (tmp_path / "own.csv").write_text("a\n")
     (tmp_path / "link.csv").symlink_to(tmp_path / "own.csv")
-    assert refusal(tmp_path / "link.csv") == "this is no file of its own but a link, a folder or a device"
+    assert refusal(tmp_path / "link.csv") == "this is not a regular file but a link, a folder or a device"
     assert refusal(tmp_path / "none.csv") == "no such file"
     (tmp_path / "old.xls").write_bytes(b"\xd0\xcf\x11\xe0\x00\x00")
-    assert refusal(tmp_path / "old.xls") == "this is no text\n  allowed: a table as CSV or XLSX"
+    assert refusal(tmp_path / "old.xls") == "this is not a text file\n  allowed: a table in CSV or XLSX"
     (tmp_path / "large.csv").write_text("1" * 2_000_001)
     assert refusal(tmp_path / "large.csv") == "the file is too large\n  found:   2000001\n  allowed: at most 2000000"
     (tmp_path / "rows.csv").write_text("1\n" * 10_001)

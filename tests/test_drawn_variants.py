@@ -49,7 +49,7 @@ def test_drawn_variants_are_sound_as_files_of_their_own():
 
 def test_what_was_thrown_away_is_counted_by_its_reason():
     variety, _table = drawn()
-    assert variety.thrown["its pressure angle goes beyond 30 deg"] > 0
+    assert variety.thrown["the pressure angle exceeds 30 deg"] > 0
     assert sum(variety.thrown.values()) < variety.tried
 
 
@@ -77,7 +77,11 @@ def test_one_by_one_they_are_judged_as_together():
     together = variety.judged(picks)
     variety.alone = True
     alone = variety.judged(picks)
-    assert together.why.tolist() == alone.why.tolist() == ["", "its output moves otherwise than that of the file", ""]
+    assert (
+        together.why.tolist()
+        == alone.why.tolist()
+        == ["", "the output moves differently from that of the problem file", ""]
+    )
     assert together.values == pytest.approx(alone.values, rel=1e-9)
 
 

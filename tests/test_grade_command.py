@@ -53,7 +53,7 @@ def test_what_cannot_be_read_is_told_and_stops_nothing(course):
     done = graded(course, "--formats", "csv")
     assert done.returncode == 1
     assert done.stderr.endswith("marks; graded: 9, without an answer: 2, could not be graded: 2\n")
-    assert "there is no variant of this student" in done.stdout and "there is no answer in S6.csv" in done.stdout
+    assert "this student has no variant" in done.stdout and "there is no answer in S6.csv" in done.stdout
     assert points(course)["S4"] == "2" and points(course)["S3"] == "0"
     assert {path.name for path in (course / "marks").iterdir()} == {".graded", "marks.csv", "answers.csv"}
     again = graded(course, "--formats", "csv")
@@ -124,7 +124,7 @@ def test_an_empty_sheet_is_written_and_no_more(name, course):
         ),
         (
             ["--template", "sheet.odt"],
-            "error: an answer sheet has another ending\n  found:   '.odt'\n  allowed: .xlsx, .csv, .yaml\n",
+            ("error: unknown file extension of an answer sheet\n  found:   '.odt'\n  allowed: .xlsx, .csv, .yaml\n"),
         ),
     ],
 )

@@ -61,8 +61,8 @@ HOSTILE = (
     "con",
 )
 TEXTS = tuple(name for name in EXPORTS if name != "drawing")  # quick ones
-LOST = "The Coriolis acceleration of link 2 on link 3 was left out, or points the other way."
-OWN = "It is right given your own v of E at 3."
+LOST = "The Coriolis acceleration of link 2 on link 3 was left out or has the opposite direction."
+OWN = "This is right with your earlier values of v of E at 3."
 
 
 def task(reveal=True):
@@ -223,7 +223,7 @@ def test_feedback_says_what_was_read_what_was_allowed_and_why(own, tmp_path):
 | H | 0.41 m † | 420 mm | 2.4 % | 3 % | 1 / 1 | right |
 | class | - | 2 | - | exact | 0 / 1 | no answer |
 | v of E at 3 | 1.5 m/s | 1.2 m/s at 180° | 19 % | 3 % | 0 / 1 | wrong |
-| a of E at 7 | 5 m/s² at 53.13° | 4 m/s² at 90° | 33 % | 4.5 %, usually 3 % | 1 / 1 | right given yours |
+| a of E at 7 | 5 m/s² at 53.13° | 4 m/s² at 90° | 33 % | 4.5 %, usually 3 % | 1 / 1 | right with your earlier values |
 | M_b at 3 | 200 N·m | 200 N·m | 0 % | 5 % | 0.1 / 0.1 | right |
 
 ## Why
@@ -231,12 +231,12 @@ def test_feedback_says_what_was_read_what_was_allowed_and_why(own, tmp_path):
 - {LOST} (v of E at 3)
 - {OWN} (a of E at 7)
 
-† no unit was written: it was read in the one that fits.
+† no unit given: the one that fits was assumed.
 
-Errors are shares of the largest value of a quantity in the cycle.
+Errors are given in per cent of the largest value of the quantity in the cycle.
 
-More than usual is allowed where lengths drawn 0.5 mm in 100 mm off move the value that far: nobody can measure it \
-more exactly there.
+The tolerance is larger than usual where an error of 0.5 mm per 100 mm in the drawn lengths changes the value by that \
+much: it cannot be measured more accurately there.
 """
     )
     assert b"Bob" not in b"".join(files.values())
@@ -259,8 +259,8 @@ def test_gradescope_takes_a_record_a_student(own, tmp_path):
         "status": "passed",
         "output_format": "text",
         "visibility": "visible",
-        "output": "result: right given yours\nyour answer: 5 m/s² at 53.13°"
-        "\nright value: 4 m/s² at 90°\noff by 33 % of the largest value in the cycle; allowed: 4.5 %, usually 3 %\n"
+        "output": "result: right with your earlier values\nyour answer: 5 m/s² at 53.13°"
+        "\nright value: 4 m/s² at 90°\nerror: 33 % of the largest value in the cycle; allowed: 4.5 %, usually 3 %\n"
         + OWN,
     }
 
@@ -352,7 +352,7 @@ def test_statistics_are_of_those_who_handed_in(own):
     assert commonest(group) == [("Coriolis", 2, 2)]
     found = {table.name: table for table in statistics_tables(own, group)}
     assert list(found) == ["group", "histogram", "hardest", "mistakes", "copies", "problems"]
-    assert found["group"].notes == ("students: 3", "without an answer, and not counted: 1")
+    assert found["group"].notes == ("students: 3", "without an answer (not counted): 1")
     console = Console(file=io.StringIO(), width=100)
     for table in found.values():
         print_on_terminal(table, own.units, console)
@@ -362,4 +362,4 @@ def test_statistics_are_of_those_who_handed_in(own):
 def test_a_group_without_an_answer_has_no_figures(own):
     assert [table.name for table in statistics_tables(own, [absent("Ann", "no such file")])] == ["problems"]
     assert [table.name for table in statistics_tables(own, [])] == []
-    assert "none was recognised" in chart(own, [absent("Ann")]).texts()
+    assert "no typical mistake was recognised" in chart(own, [absent("Ann")]).texts()

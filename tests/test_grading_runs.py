@@ -70,7 +70,7 @@ FORMS = [
 @pytest.mark.parametrize("mark", FORMS, ids=lambda mark: mark.state)
 def test_marks_of_every_form_come_back_as_they_were_kept(mark, tmp_path):
     marks = {
-        "key": StudentMarks("Ана", (mark, mark), ("there is no variant of this student",)),
+        "key": StudentMarks("Ана", (mark, mark), ("this student has no variant",)),
         "none": StudentMarks("", ()),
     }
     keep(tmp_path / ".graded", marks)
@@ -139,7 +139,7 @@ def test_what_fails_is_told_of_its_student_and_stops_nothing():
         "S3": "could not be graded: task.yaml:16:44: links.1.length: expected here: a length; "
         "found:   'r', a force (90 N); allowed: a length, e.g. 110 mm or 0.11 m",
         "S4": "could not be graded: there is no such parameter; found:   'four'; allowed: none is given",
-        "nobody": "there is no variant of this student",
+        "nobody": "this student has no variant",
     }
     assert [one.student for one in marks] == [*TABLE.rows, "nobody"]
 

@@ -135,13 +135,13 @@ def test_a_table_is_read_student_by_student(tmp_path):
 def test_a_comma_in_a_heading_does_not_shift_the_answers(tmp_path):
     found = of_ana(tmp_path, "Ana.csv", "H, mm,k\n400,1.5\n")
     assert found.problems == (
-        """Ana.csv: a heading with a comma needs quotes; found: 'mm'; allowed: "H, mm" or H [mm]""",
+        "Ana.csv: a heading that contains a comma must be in quotes; found: 'mm'; allowed: \"H, mm\" or H [mm]",
     )
 
 
 def test_a_table_without_students_is_refused(tmp_path):
     (tmp_path / "t.csv").write_text("quantity,value\nH,1\n")
-    with pytest.raises(ProblemError, match="no column names the students"):
+    with pytest.raises(ProblemError, match="no column contains the names of the students"):
         read(tmp_path / "t.csv")
     with pytest.raises(ProblemError, match="no such file"):
         read(tmp_path / "none.csv")
@@ -153,27 +153,33 @@ HEAD = "quantity,position,value\n"
 @pytest.mark.parametrize(
     ("content", "told"),
     [
-        (HEAD + "v of D,7,1\nv of E,5,1\n", "not asked, so not counted: v of D at 7 (v of E is asked), v of E at 5"),
-        (HEAD + "R_43,7,1\n", "not asked, so not counted: R_43 at 7 (R_34 is asked)"),
-        (HEAD + "v of e,7,1\n", "there is no quantity of this name; found: 'v of e'; did you mean 'v of E'?"),
+        (
+            HEAD + "v of D,7,1\nv of E,5,1\n",
+            "not requested, so not counted: v of D at 7 (requested: v of E), v of E at 5",
+        ),
+        (HEAD + "R_43,7,1\n", "not requested, so not counted: R_43 at 7 (requested: R_34)"),
+        (HEAD + "v of e,7,1\n", "there is no quantity with this name; found: 'v of e'; did you mean 'v of E'?"),
         (HEAD + "M_b,7,1\nM_b,7,2\n", "M_b at 7 is given twice: the first counts"),
         (HEAD + "H,,nan\n", "H: the number is not finite; found: 'nan'"),
-        (HEAD + "H,,(1; 2)\n", "H: one number is wanted here; found: '(1; 2)'"),
+        (HEAD + "H,,(1; 2)\n", "H: expected one number; found: '(1; 2)'"),
         (HEAD + "M_b,7,3 foo\n", "M_b at 7: unknown unit; found: 'foo'; allowed: e.g. mm, deg, rpm, kg, N, N*m"),
         (
             HEAD + "H,,1,5\n",
-            "a row with more cells than the header is not counted: has it a decimal comma without quotes?",
+            ("a row with more cells than the header is not counted. Does it contain a decimal comma without quotes?"),
         ),
-        ('"R_34 x at 7, N","R_34 y at 7, kN"\n5,6\n', "R_34 at 7: the components have two units; found: 'N', 'kN'"),
+        (
+            '"R_34 x at 7, N","R_34 y at 7, kN"\n5,6\n',
+            "R_34 at 7: the components have different units; found: 'N', 'kN'",
+        ),
         ("R_34 x at 7\n5\n", "R_34 at 7: one component is missing; found: x; allowed: x, y"),
-        ("R_34 angle at 7\n5\n", "R_34 at 7: the size is missing; found: angle; allowed: size, angle"),
+        ("R_34 angle at 7\n5\n", "R_34 at 7: the magnitude is missing; found: angle; allowed: size, angle"),
         # minutes, were there several ways of dividing the blanks between the commas
         (
             HEAD + f'"H{", " * 28}[",,1\n',
-            f"this heading is not understood; found: 'H{', ' * 28}['; allowed: v of E at 7, m/s",
+            f"unknown form of heading; found: 'H{', ' * 28}['; allowed: v of E at 7, m/s",
         ),
-        ("student,quantity,value\nIvan,H,3\n", "the file names another student: 'Ivan'"),
-        ("student,quantity,value\n../Ivan,H,3\n", "the file names another student: '∕Ivan'"),
+        ("student,quantity,value\nIvan,H,3\n", "the file contains the name of another student: 'Ivan'"),
+        ("student,quantity,value\n../Ivan,H,3\n", "the file contains the name of another student: '∕Ivan'"),
     ],
 )
 def test_what_cannot_be_counted_is_told_in_a_line(content, told, tmp_path):
@@ -232,22 +238,24 @@ def test_far_more_cells_than_are_asked_are_not_read(tmp_path, monkeypatch):
         (
             "Ana.yaml",
             "answers: [1, 2]\n",
-            "Ana.yaml: this is no answer sheet; found: '[1, 2]'; allowed: answers: {v of E at 7: 1.31 m/s}",
+            "Ana.yaml: not an answer sheet; found: '[1, 2]'; allowed: answers: {v of E at 7: 1.31 m/s}",
         ),
-        ("Ana.csv", b"\x00\x01\x02", "Ana.csv: this is no text; allowed: a table as CSV or XLSX"),
+        ("Ana.csv", b"\x00\x01\x02", "Ana.csv: this is not a text file; allowed: a table in CSV or XLSX"),
         ("Ana.csv", b"", "Ana.csv: the table is empty"),
         (
             "Ana.csv",
             "what;where;number\nH;;414\nv of E;7;1,3\n",
-            "Ana.csv: no heading of this table is understood; found: 'what; where; number'; "
-            "allowed: quantity; position; unit; value, or names of answers such as v of E at 7",
+            (
+                "Ana.csv: none of the headings of this table is recognised; found: 'what; where; number'; allowed: "
+                "quantity; position; unit; value, or names of answers such as v of E at 7"
+            ),
         ),
         ("Ana.csv", "\n".join("1" * 2001), "Ana.csv: there are too many rows; allowed: at most 2000"),
         ("Ana.csv", b"1" * 1_000_001, "Ana.csv: the file is too large; found: 1000001; allowed: at most 1000000"),
         ("Ana.yaml", b"#" * 1_000_001, "Ana.yaml: the file is too large; found: 1000001; allowed: at most 1000000"),
-        ("Ana.xlsx", b"PK\x03\x04", "Ana.xlsx: this is no sound XLSX: File is not a zip file"),
-        ("Ana.xlsm", b"PK\x03\x04", "Ana.xlsm: this is no answer sheet; allowed: CSV, XLSX without macros, YAML"),
-        ("Ana.pdf", b"%PDF", "Ana.pdf: this is no answer sheet; allowed: CSV, XLSX without macros, YAML"),
+        ("Ana.xlsx", b"PK\x03\x04", "Ana.xlsx: damaged XLSX file: File is not a zip file"),
+        ("Ana.xlsm", b"PK\x03\x04", "Ana.xlsm: not an answer sheet; allowed: CSV, XLSX without macros, YAML"),
+        ("Ana.pdf", b"%PDF", "Ana.pdf: not an answer sheet; allowed: CSV, XLSX without macros, YAML"),
     ],
 )
 def test_a_broken_file_gets_one_line(name, content, told, tmp_path):
@@ -270,12 +278,12 @@ def test_a_broken_file_stops_nothing(tmp_path):
     for of_the_system in (".DS_Store", "Thumbs.db", "desktop.ini"):
         (folder / of_the_system).write_text("")
     found = read(folder, ["A", "E", "F"])
-    none = "this is no file of its own but a link, a folder or a device"
+    none = "this is not a regular file but a link, a folder or a device"
     assert {name: one.problems for name, one in found.items()} == {
         "A": (f"A.csv: {none}",),
         "B": (f"B: {none}",),
         "C": (f"C.csv: {none}",),
-        "D": ("there are 2 files of this student: D.csv, D.yaml",),
+        "D": ("more than one file of this student (2): D.csv, D.yaml",),
         "E": (),
         "F": ("nothing was handed in",),
     }
@@ -321,8 +329,9 @@ def test_a_position_by_its_crank_angle_is_that_of_the_students_variant(tmp_path)
     marks = next(grade(OWN, TABLE, list(read_submissions(tmp_path / "t.csv", OWN, ["1"]))))
     assert [mark.key for mark in marks.marks if mark.state == "right"] == [("M_b", 3)]
     assert marks.problems == (
-        f"M_b at phi = {place + 10:.0f} deg: the nearest position, 3, is at {place % 360:.6g} deg",
-        "not asked, so not counted: M_b at 2",
+        f"M_b at phi = {place + 10:.0f} deg: there is no position at this angle; "
+        f"the nearest one, 3, is at {place % 360:.6g} deg",
+        "not requested, so not counted: M_b at 2",
     )
 
 
@@ -380,4 +389,6 @@ def test_a_sheet_that_is_filled_in_gives_what_was_put_in(kind, tmp_path):
 def test_another_ending_of_a_sheet_is_refused(tmp_path):
     with pytest.raises(ProblemError) as caught:
         write_template(OWN, tmp_path / "sheet.docx")
-    assert str(caught.value) == "an answer sheet has another ending\n  found:   '.docx'\n  allowed: .xlsx, .csv, .yaml"
+    assert str(caught.value) == (
+        "unknown file extension of an answer sheet\n  found:   '.docx'\n  allowed: .xlsx, .csv, .yaml"
+    )

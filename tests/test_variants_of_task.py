@@ -117,7 +117,7 @@ def test_answers_are_judged_against_the_largest_value_of_the_cycle():
     states = {mark.key: mark.state for mark in marks.marks}
     assert [states[key] for key in given] == ["right", "right", "wrong"]
     assert {mark.reading for mark in marks.marks if mark.key == ("H", None)} == {"mm"}
-    assert marks.points == 2 and none.problems == ("there is no variant of this student",)
+    assert marks.points == 2 and none.problems == ("this student has no variant",)
 
 
 def test_a_tolerance_in_bare_per_cent_is_refused():

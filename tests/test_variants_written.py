@@ -56,7 +56,7 @@ def test_every_student_has_a_sheet_and_a_problem_that_is_his_variant(written):
 
 def test_a_sheet_says_what_every_name_stands_for_and_how_vectors_are_answered(written):
     page = (written[0] / "Иванов_Иван.md").read_text(encoding="utf-8")
-    assert "| M\\_b | 3 | N\\*m | 1 | balancing moment on the driver, positive counterclockwise |" in page
+    assert "| M\\_b | 3 | N\\*m | 1 | balancing moment on the input link, positive counterclockwise |" in page
     assert "3.6 at 34 deg" in page
     assert all(map(meaning, task().quantities))
     assert meaning("v of 2 on 3") != meaning("v of E") and meaning("M of 3") != meaning("M_b")
@@ -99,7 +99,9 @@ def test_the_key_has_every_answer_of_every_student(written):
 def test_what_can_tell_nothing_is_said():
     own = task("\ngrading: {answers: [{of: v of E, at: [0, 3]}]}\n")
     lines = list(compute_answer_key(own, VariantTable(("OA",), {"Ana": ("110",), "Iva": ("115",)})))
-    assert list(idle_questions(lines)) == ["v of E at 0: tells nothing: zero passes, for 2 of 2"]
+    assert list(idle_questions(lines)) == [
+        "v of E at 0: not informative: zero counts as a right answer (students: 2 of 2)"
+    ]
 
 
 def test_one_variant_of_a_table_is_run_by_its_number_or_its_student(tmp_path):
@@ -115,7 +117,7 @@ def test_one_variant_of_a_table_is_run_by_its_number_or_its_student(tmp_path):
         )
     done = tmm("forces", SHAPER, "--variants", table, "--variant", "3")
     assert done.returncode == 2 and done.stderr == (
-        f"error: {table}: there is no such variant\n  found:   '3'\n  allowed: 1 to 2, or a student of the table\n"
+        f"error: {table}: unknown variant\n  found:   '3'\n  allowed: 1 to 2, or a student of the table\n"
     )
 
 
@@ -139,12 +141,12 @@ def test_too_few_variants_are_refused():
         ),
         (
             "student,OA\nAna,80\nAna,90\n",
-            "row 3: every row wants a student of its own\n  found:   'Ana'\n  allowed: each name once",
+            ("row 3: each row needs its own student\n  found:   'Ana'\n  allowed: each name once"),
         ),
-        ("student,OA\nAna,\n", "row 2.OA: a value is wanted\n  found:   an empty cell"),
+        ("student,OA\nAna,\n", "row 2.OA: expected a value\n  found:   an empty cell"),
         ("student,n1\nAna,80 mm\n", None),
-        ("OA\n", "a heading and a row a variant are wanted\n  allowed: student;OA, mm;n1, rpm"),
-        ("OA,OA\n1,2\n", "two columns have one name\n  found:   'OA'"),
+        ("OA\n", ("expected a header row and one row for each variant\n  allowed: student;OA, mm;n1, rpm")),
+        ("OA,OA\n1,2\n", ("two columns have the same name\n  found:   'OA'")),
     ],
 )
 def test_tables_that_are_none_are_refused(text, message, tmp_path):

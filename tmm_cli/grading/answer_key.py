@@ -37,8 +37,8 @@ class KeyLine:
         if self.asked.quantity.against == "exact":
             return ""
         if self.share > WIDE:
-            return _("tells nothing: too much is allowed")
-        return _("tells nothing: zero passes") if abs(self.value) <= self.allowed else ""
+            return _("not informative: the tolerance is too large")
+        return _("not informative: zero counts as a right answer") if abs(self.value) <= self.allowed else ""
 
     def cells(self, task: Task) -> list[str]:
         """By the header."""
@@ -85,4 +85,4 @@ def idle_questions(lines: list[KeyLine]) -> Iterator[str]:
     students = len({line.student for line in lines})
     found = Counter((line.asked.name, line.idle) for line in lines if line.idle)
     for (name, why), count in found.items():
-        yield _("{asked}: {why}, for {count} of {all}").format(asked=name, why=why, count=count, all=students)
+        yield _("{asked}: {why} (students: {count} of {all})").format(asked=name, why=why, count=count, all=students)

@@ -45,7 +45,9 @@ class Claim:
         sentences = list(dict.fromkeys(case.told for case in self.alternatives))
         if len(sentences) == 1:
             return sentences[0]
-        return _("One of these, which look alike here: {sentences}").format(sentences=" ".join(sentences))
+        return _("One of these mistakes, which cannot be distinguished here: {sentences}").format(
+            sentences=" ".join(sentences)
+        )
 
     @property
     def called(self) -> str:

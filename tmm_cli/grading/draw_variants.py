@@ -64,8 +64,8 @@ class Faults:
         alike = family.strokes is None or _strokes(family.strokes) == self.strokes
         with np.errstate(all="ignore"):
             found = [
-                (np.all(states.moving, axis=1), _("it cannot be assembled in all its positions")),
-                (family.sound & alike, _("its output moves otherwise than that of the file")),
+                (np.all(states.moving, axis=1), _("the mechanism cannot be assembled in all positions")),
+                (family.sound & alike, _("the output moves differently from that of the problem file")),
                 *_margins(states),
                 *_slots(states),
                 *self._pressures(states),
@@ -79,7 +79,7 @@ class Faults:
             for lead in driven_links(kernel.group):
                 limit = self.limits.get((lead[0], driving_pair_names(lead)))
                 if limit is not None:
-                    beyond = _("its pressure angle goes beyond {limit} deg")
+                    beyond = _("the pressure angle exceeds {limit} deg")
                     told = beyond.format(limit=numeral(np.degrees(limit), ".4g"))
                     yield _top(pressure_angle(states, kernel, at, lead)) <= limit, told
 
@@ -118,7 +118,7 @@ def _strokes(strokes: Strokes | None) -> int:
 def _margins(states: LinkStates) -> Iterator[tuple[Real, str]]:
     for kernel, at in zip(states.kernels, states.placements, strict=True):
         margin = np.broadcast_to(at.margin, states.q.shape)
-        yield -_top(-margin) > kernel.near, _("it comes near a dead position")
+        yield -_top(-margin) > kernel.near, _("the mechanism comes close to a dead position")
 
 
 def _slots(states: LinkStates) -> Iterator[tuple[Real, str]]:
@@ -129,7 +129,7 @@ def _slots(states: LinkStates) -> Iterator[tuple[Real, str]]:
             length = np.ravel(abs(last - first))
             run = np.broadcast_to(states.run(slide), states.q.shape)
             beyond = np.maximum(_top(run) - length, _top(-run))
-            yield beyond <= END_OF_SLOT * length, _("a stone leaves its slot")
+            yield beyond <= END_OF_SLOT * length, _("a sliding block leaves its slot")
 
 
 def _top(values: Real) -> Real:
@@ -208,14 +208,14 @@ class Variety:
         rows, found = [np.zeros(0, dtype=int)], [(np.zeros((0, len(self.asked) or len(self.free))),) * 2]
         for at, family in self._families(columns):
             if isinstance(family, LinkageError):
-                why[at] = _("it cannot be assembled in all its positions")
+                why[at] = _("the mechanism cannot be assembled in all positions")
                 continue
             own = self.faults.of(family)
             sound = np.flatnonzero(own == "")
             if self.asked and sound.size:
                 wanted = right(family.take(sound), self.asked)
                 good = _well_conditioned(wanted)
-                own[sound[~good]] = _("what is asked hangs too much on its lengths")
+                own[sound[~good]] = _("the requested quantities are too sensitive to the lengths")
                 found.append((wanted.value[good], (wanted.allowed * wanted.scale)[good]))
                 sound = sound[good]
             elif sound.size:
@@ -266,7 +266,7 @@ class Variety:
     def as_drawn(self, picks: Real) -> bool:
         """Whether a variant as a file of its own is assembled as the file's own variant is."""
         if not self._assembled_alike(picks):
-            self.thrown[_("its sketch shows another assembly than that of the file")] += 1
+            self.thrown[_("the sketch shows a different assembly from that of the problem file")] += 1
             return False
         return True
 
@@ -332,7 +332,9 @@ def _spread(values: Vector, allowed: Real, thrown: Counter[str]) -> Iterator[int
         apart = np.abs(places - places[row])
         far = np.minimum(far, np.sqrt(np.sum(apart**2, axis=1)))
         alike = ~np.any(np.abs(values - values[row]) > allowed, axis=1) & (far > 0)
-        thrown[_("its answers are those of another one")] += int(np.count_nonzero(alike)) - int(alike[row])
+        thrown[_("the answers coincide with those of another variant")] += int(np.count_nonzero(alike)) - int(
+            alike[row]
+        )
         far[alike] = 0
         far[row] = 0
         row = int(np.argmax(far))

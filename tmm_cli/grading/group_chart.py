@@ -35,7 +35,7 @@ UPPER, LOWER, GAP = 55.0, 75.0, 12.0  # mm: heights of the panels, and between t
 BLUE, ORANGE, PALE, BAD = "#4a6fa5", "#c77700", "#f9ecd6", "#c4574b"
 STATES: dict[State, tuple[str, str]] = {
     "right": (N_("right"), "#4c9a68"),
-    "follows": (N_("right given own"), "#a9d6b8"),
+    "follows": (N_("error carried forward"), "#a9d6b8"),
     "wrong": (N_("wrong"), BAD),
     "missing": (N_("missing"), "#d0d0d0"),
 }
@@ -44,7 +44,7 @@ STATES: dict[State, tuple[str, str]] = {
 def chart(task: Task, marks: Sequence[StudentMarks]) -> Drawing:
     """A landscape sheet of A4."""
     own = percents(marks)
-    told = _("{students} students, {there} handed in; median {median:.0f} %, mean {mean:.0f} % of the points")
+    told = _("students: {students}, handed in: {there}; median {median:.0f} %, mean {mean:.0f} % of the points")
     caption = told.format(
         students=len(marks),
         there=len(handed_in(marks)),
@@ -74,7 +74,7 @@ def _spread(panel: Panel, counts: Real, own: Real) -> None:
         median = float(panel.x.on(np.median(own)))
         panel.upright(median, ORANGE, 2, z=4)
         at = panel.x.start + 1j * (panel.y.end + 3)
-        entries = [(_("median"), ORANGE), (_("middle half"), PALE)]
+        entries = [(_("median"), ORANGE), (_("middle 50 %"), PALE)]
         _legend(panel, entries, at + panel.x.length - _room(entries))
     _counts(panel)
     panel.text(complex(panel.x.start - 1.5, panel.y.end + 3), _("students"), "right")
@@ -116,7 +116,7 @@ def _difficulties(panel: Panel, found: Sequence[Difficulty]) -> None:
 def _mistakes(panel: Panel, found: Sequence[tuple[str, int, int]]) -> None:
     _title(panel, _("Commonest mistakes"))
     if not found:
-        panel.text(complex(panel.x.start, panel.y.end - 4), _("none was recognised"))
+        panel.text(complex(panel.x.start, panel.y.end - 4), _("no typical mistake was recognised"))
         return
     _across(panel, [(value, text) for value, text in panel.x.ticks(8) if value == round(value)])
     for row, (name, students, __) in enumerate(found):

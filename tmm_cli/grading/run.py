@@ -132,7 +132,7 @@ def _chunk(task: Task, table: VariantTable, submissions: Sequence[Submission]) -
                 there = [own[row] for row in part]
                 found |= dict(zip(there, _marks(task, begun, [submissions[n] for n in there]), strict=True))
     for n, submission in enumerate(submissions):
-        yield found.get(n) or ungraded(task, submission, _("there is no variant of this student"))
+        yield found.get(n) or ungraded(task, submission, _("this student has no variant"))
 
 
 def numbers_of(task: Task, table: VariantTable, students: Sequence[str]) -> tuple[tuple[Dimension | None, ...], Real]:
@@ -231,7 +231,7 @@ def _marks_of(
             reasons = [refused[n, k]] if (n, k) in refused else [claim.told for claim in named]
             if state == "follows":
                 sources = ", ".join(asked_all[j].name for j in follows[n, k])
-                reasons = [_("It is right given your own {sources}.").format(sources=sources)]
+                reasons = [_("This is right with your earlier values of {sources}.").format(sources=sources)]
             marks.append(
                 Mark(
                     asked.key,

@@ -81,7 +81,7 @@ def statistics_tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Tab
     own = percents(marks)
     absent = len(marks) - len(handed_in(marks))
     notes = [_("students: {count}").format(count=len(marks))]
-    notes += [_("without an answer, and not counted: {count}").format(count=absent)] if absent else []
+    notes += [_("without an answer (not counted): {count}").format(count=absent)] if absent else []
     if own.size:
         rows = {
             _("best"): own.max(),
@@ -112,7 +112,7 @@ def statistics_tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Tab
 def _difficulties(found: Sequence[Difficulty]) -> Table:
     states: dict[str, State] = {
         _("right, %"): "right",
-        _("given own, %"): "follows",
+        _("carried forward, %"): "follows",
         _("wrong, %"): "wrong",
         _("missing, %"): "missing",
     }

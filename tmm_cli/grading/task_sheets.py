@@ -31,30 +31,30 @@ MEANINGS = {  # of what is asked, by the name before ` of ` or `_`
     "W": N_("mobility"),
     "class": N_("class of the mechanism"),
     "n": N_("number of moving links"),
-    "p1": N_("number of pairs of one freedom"),
-    "p2": N_("number of pairs of two freedoms"),
-    "passive": N_("number of passive constraints"),
+    "p1": N_("number of pairs with one degree of freedom"),
+    "p2": N_("number of pairs with two degrees of freedom"),
+    "passive": N_("number of redundant constraints"),
     "H": N_("stroke of the output link"),
     "strokes": N_("number of strokes of the output in a cycle"),
-    "psi": N_("swing of the output"),
-    "k": N_("time of the working stroke over that of the idle one"),
-    "x": N_("from the frame's origin"),
-    "y": N_("from the frame's origin"),
+    "psi": N_("swing angle of the output"),
+    "k": N_("time ratio: time of the working stroke to time of the return stroke"),
+    "x": N_("coordinate in the axes of the frame"),
+    "y": N_("coordinate in the axes of the frame"),
     "v": N_("velocity, a vector"),
     "a": N_("acceleration, a vector"),
-    "phi": N_("from the x axis to the link, from its first point to its second; counterclockwise"),
-    "s": N_("place along the guide, from the point that it goes through; angle of what swings"),
-    "omega": N_("angular speed, positive counterclockwise"),
+    "phi": N_("angle of the link from the x axis, taken from its first point to its second; positive counterclockwise"),
+    "s": N_("displacement along the guide from its reference point; of an oscillating output, its angle"),
+    "omega": N_("angular velocity, positive counterclockwise"),
     "epsilon": N_("angular acceleration, positive counterclockwise"),
-    "v on": N_("of the one link along its guide on the other"),
-    "a on": N_("of the one link along its guide on the other"),
+    "v on": N_("relative motion of one link along its guide on the other"),
+    "a on": N_("relative motion of one link along its guide on the other"),
     "Coriolis": N_("Coriolis acceleration, a vector"),
-    "U": N_("force of inertia, a vector"),
-    "M": N_("couple of inertia, positive counterclockwise"),
+    "U": N_("inertia force, a vector"),
+    "M": N_("inertia couple, positive counterclockwise"),
     "R": N_("force of the first link on the second, a vector"),
-    "arm": N_("where this force acts, from the point that slides, along the guide"),
-    "M_b": N_("balancing moment on the driver, positive counterclockwise"),
-    "F_b": N_("balancing force on the driver"),
+    "arm": N_("point of action of this force: distance along the guide from the sliding point"),
+    "M_b": N_("balancing moment on the input link, positive counterclockwise"),
+    "F_b": N_("balancing force on the input link"),
 }
 STYLE = """
 body{font:16px/1.45 system-ui,sans-serif;color:#1a1a1a;max-width:52rem;margin:2rem auto;padding:0 1rem}
@@ -181,25 +181,25 @@ def _asked(task: Task) -> Iterator[Table]:
     if task.blocks.grading is None:
         return
     if task.rules.from_ == "either":
-        told = _("Positions are counted from {first}, the first one at either extreme position of the output.")
+        told = _("Positions are numbered from {first}; the first one is at either extreme position of the output.")
     else:
-        told = _("Positions are counted from {first}.")
+        told = _("Positions are numbered from {first}.")
     rows = []
     for name, group in groupby(task.asked, lambda one: one.quantity.name):
         every = list(group)
         numbers = ", ".join(str(one.number) for one in every if one.number is not None)
         points = f"{sum(one.points for one in every):.10g}"
         rows.append((name, numbers, _unit(task, every[0]), points, meaning(name)))
-    headers = (_("quantity"), _("at positions"), _("unit"), _("worth"), _("what it is"))
+    headers = (_("quantity"), _("at positions"), _("unit"), _("worth"), _("meaning"))
     notes = [told.format(first=task.rules.count)]
     if any(one.quantity.vector for one in task.asked):
         notes.append(
             _(
-                "Vectors are answered with size and direction, counterclockwise from x, or with components: "
-                "3.6 at 34 deg; (1.2; -3.4)."
+                "Give a vector by its magnitude and its direction, counterclockwise from the x axis, or by its "
+                "components: 3.6 at 34 deg; (1.2; -3.4)."
             )
         )
-    yield text_table("asked", _("What is asked"), headers, rows, notes)
+    yield text_table("asked", _("Requested quantities"), headers, rows, notes)
 
 
 def meaning(name: str) -> str:

@@ -122,8 +122,8 @@ SHEET = 1_048_576, 16_384  # rows and columns of a sheet, at most
 SHORTEST_TEXT = 5  # bytes: <si/>
 OTHERS = {"content.xml", "xl/workbook.bin"}  # in what is not XLSX, and might be read as a table all the same
 REFUSED = {  # parts of an XLSX
-    "vbaproject": N_("it has macros: save it as .xlsx without them"),
-    "externallink": N_("it takes values from other files: put the values themselves in"),
+    "vbaproject": N_("the file contains macros: save it as .xlsx without macros"),
+    "externallink": N_("the file refers to other files: replace the references by their values"),
 }
 
 
@@ -152,7 +152,7 @@ def bytes_of(path: Path | str, largest: int) -> bytes:
     try:
         found = os.lstat(file)
         if not stat.S_ISREG(found.st_mode):
-            raise ProblemError(_("this is no file of its own but a link, a folder or a device"))
+            raise ProblemError(_("this is not a regular file but a link, a folder or a device"))
         if found.st_size > largest:
             raise _too_much(_("the file is too large"), found.st_size, largest)
         with open(file, "rb") as stream:
@@ -171,7 +171,7 @@ def _too_much(message: str, found: int, allowed: int) -> ProblemError:
 def _of_csv(data: bytes, most: int) -> list[list[str]]:
     text = decoded(data)
     if "\0" in text:
-        raise ProblemError(_("this is no text"), allowed=_("a table as CSV or XLSX"))
+        raise ProblemError(_("this is not a text file"), allowed=_("a table in CSV or XLSX"))
     told = re.match(r"sep=(.)\r?\n", text)  # as Excel begins some
     body = text[told.end() :] if told else text
     head = re.sub(r'"[^"]*"', "", body.lstrip().partition("\n")[0])
@@ -186,7 +186,7 @@ def _of_csv(data: bytes, most: int) -> list[list[str]]:
             if row:
                 found.append(row)
     except csv.Error as error:
-        raise ProblemError(_("this is no CSV: {reason}").format(reason=error)) from None
+        raise ProblemError(_("not a valid CSV file: {reason}").format(reason=error)) from None
     return found
 
 
@@ -207,12 +207,13 @@ def _of_xlsx(data: bytes, largest: int, most: int) -> list[list[str]]:
         return READER.call(_read_sheet, data)
     except ImportError:
         raise ProblemError(
-            _("XLSX is read by python-calamine, which is not installed"),
+            _("XLSX requires the package python-calamine, which is not installed"),
             allowed=_("CSV; or: pip install 'tmm-cli[excel]'"),
         ) from None
     except (MemoryError, ProcessEndedError):
         raise ProblemError(
-            _("reading it takes too much memory, or ends the process that reads it"), allowed=_("a table as CSV")
+            _("reading the file requires too much memory or crashes the process that reads it"),
+            allowed=_("a table in CSV"),
         ) from None
     except ValueError as error:
         raise _damaged(error) from None
@@ -235,7 +236,7 @@ def _read_sheet(data: bytes) -> list[list[str]]:
 
 
 def _damaged(error: BaseException) -> ProblemError:
-    return ProblemError(_("this is no sound XLSX: {reason}").format(reason=error))
+    return ProblemError(_("damaged XLSX file: {reason}").format(reason=error))
 
 
 def _inspect(data: bytes, largest: int, most: int) -> None:
@@ -244,13 +245,13 @@ def _inspect(data: bytes, largest: int, most: int) -> None:
         with zipfile.ZipFile(io.BytesIO(data)) as packed:
             parts = packed.infolist()
             if len(parts) > PARTS or sum(part.file_size for part in parts) > UNPACKED * largest:
-                raise ProblemError(_("far more is packed in it than in a table"), allowed=_("a smaller file"))
+                raise ProblemError(_("the file unpacks to far more than a table can hold"), allowed=_("a smaller file"))
             names = {part.filename.casefold() for part in parts}
             for name, why in REFUSED.items():
                 if any(name in part for part in names):
                     raise ProblemError(_(why))
             if "xl/workbook.xml" not in names or names & OTHERS:
-                raise ProblemError(_("this is no XLSX"), allowed=_("a table as CSV or XLSX"))
+                raise ProblemError(_("not an XLSX file"), allowed=_("a table in CSV or XLSX"))
             cells, longest, whole = 0, 0, sum(part.file_size for part in parts)
             for part in parts:
                 content = packed.read(part)  # with its checksum: its size is what it says
@@ -262,7 +263,9 @@ def _inspect(data: bytes, largest: int, most: int) -> None:
                 if b"sst" in content:
                     longest = max(longest, *map(len, TEXT.split(content)))
             if cells * longest > COPIED * largest:
-                raise ProblemError(_("far more is packed in it than in a table"), allowed=_("shorter texts in cells"))
+                raise ProblemError(
+                    _("the file unpacks to far more than a table can hold"), allowed=_("shorter texts in the cells")
+                )
     except (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, OSError, RuntimeError, ValueError) as error:
         raise _damaged(error) from None
 
@@ -273,18 +276,18 @@ def _refuse_announced(content: bytes, whole: int) -> None:
         most = len(content) // SHORTEST_TEXT if kind == b"uniqueC" else whole
         if len(digits) > 12 or int(digits) > most:
             raise ProblemError(
-                _("it announces more than it holds"),
+                _("the file declares more content than it contains"),
                 found=quote(digits[:20].decode()),
-                allowed=_("a file that a spreadsheet has saved"),
+                allowed=_("a file saved by a spreadsheet program"),
             )
     for cells in DIMENSION.findall(content):
         for corner in cells.split(b":"):
             match = CORNER.fullmatch(corner)
             if match is None or int(match[2]) > SHEET[0] or _column(match[1]) > SHEET[1]:
                 raise ProblemError(
-                    _("it announces more than it holds"),
+                    _("the file declares more content than it contains"),
                     found=quote(cells[:40].decode(errors="replace")),
-                    allowed=_("a file that a spreadsheet has saved"),
+                    allowed=_("a file saved by a spreadsheet program"),
                 )
 
 
@@ -299,11 +302,11 @@ def _refuse_far(content: bytes, cells: int, most: int) -> None:
     """A cell far out makes a table of all the empty ones before it. cells: how many there are. Raises ProblemError."""
     places = PLACE.findall(content)
     if len(places) != cells:
-        raise ProblemError(_("a cell does not say where it stands"), allowed=_("a file that a spreadsheet has saved"))
+        raise ProblemError(_("a cell has no address"), allowed=_("a file saved by a spreadsheet program"))
     for letters, digits in set(places):
         if len(digits) > 8 or int(digits) > most or _column(letters) > MOST_COLUMNS:
             raise ProblemError(
-                _("a cell is too far out"),
+                _("a cell is outside the permitted range"),
                 found=quote((letters + digits).decode()),
                 allowed=_("{rows} rows, {columns} columns").format(rows=most, columns=MOST_COLUMNS),
             )

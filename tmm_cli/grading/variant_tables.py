@@ -41,7 +41,7 @@ def read_students(path: Path | str) -> tuple[str, ...]:
     names = [FORMULA.sub("", row[at or 0]) for row in rows if len(row) > (at or 0)]
     found = tuple(dict.fromkeys(" ".join(name.split()) for name in names if name))
     if not found:
-        raise ProblemError(_("there are no students"), allowed=_("a name in each row"), file=str(path))
+        raise ProblemError(_("the table contains no students"), allowed=_("a name in each row"), file=str(path))
     return found
 
 
@@ -52,7 +52,7 @@ def variant_in(table: VariantTable, asked: str) -> dict[str, str]:
         asked = students[int(asked) - 1]
     if asked not in table.rows:
         allowed = _("1 to {last}, or a student of the table").format(last=len(students))
-        raise unknown_name_error(asked, students, _("there is no such variant"), allowed)
+        raise unknown_name_error(asked, students, _("unknown variant"), allowed)
     return dict(zip(table.names, table.rows[asked], strict=True))
 
 
@@ -107,7 +107,7 @@ def _named(head: Sequence[str], names: Sequence[str]) -> int | None:
 
 def _table(rows: list[list[str]], task: Task) -> VariantTable:
     if len(rows) < 2:
-        raise ProblemError(_("a heading and a row a variant are wanted"), allowed="student;OA, mm;n1, rpm")
+        raise ProblemError(_("expected a header row and one row for each variant"), allowed="student;OA, mm;n1, rpm")
     head, *rest = rows
     who, which = _named(head, WHO), _named(head, WHICH)
     key = which if who is None else who
@@ -116,7 +116,7 @@ def _table(rows: list[list[str]], task: Task) -> VariantTable:
     dimensions = task.dimensions(names)
     if len(set(names)) < len(names):
         twice = next(name for name in names if names.count(name) > 1)
-        raise ProblemError(_("two columns have one name"), found=quote(twice))
+        raise ProblemError(_("two columns have the same name"), found=quote(twice))
     found: dict[str, tuple[str, ...]] = {}
     for number, row in enumerate(rest, 2):
         cells = [*row, *[""] * (len(head) - len(row))]
@@ -124,7 +124,7 @@ def _table(rows: list[list[str]], task: Task) -> VariantTable:
         with prefix_errors(_("row {number}").format(number=number)):
             if not student or student in found:
                 raise ProblemError(
-                    _("every row wants a student of its own"), found=quote(student), allowed=_("each name once")
+                    _("each row needs its own student"), found=quote(student), allowed=_("each name once")
                 )
             found[student] = tuple(
                 _value(task, name, cells[k], unit, dimension)
@@ -149,7 +149,7 @@ def _value(task: Task, name: str, cell: str, unit: str, dimension: Any) -> str:
     text = COMMA.sub(r"\1.\2", cell.translate(MINUS))
     with prefix_errors(name):
         if not text:
-            raise ProblemError(_("a value is wanted"), found=_("an empty cell"))
+            raise ProblemError(_("expected a value"), found=_("an empty cell"))
         value = task.value(text)
         if unit and value.dimension is None:
             text = f"{text} {unit}"

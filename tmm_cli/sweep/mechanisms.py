@@ -149,7 +149,7 @@ class SweptMechanisms:
         left = [self._taped(points, part, found, values) for part in parts]
         unsure, otherwise = (np.concatenate(rows) for rows in zip(*left, strict=True))
         for row in unsure[MOST_DOUBTFUL:]:
-            found.why[row] = _("its output moves otherwise than that of the file")
+            found.why[row] = _("the output moves differently from that of the problem file")
         for row in otherwise[MOST_DOUBTFUL:]:
             found.state[row] = REFUSED
             found.why[row] = _("one of very many that are built otherwise than the file's own")

@@ -98,7 +98,7 @@ def _card_html(card: Card, file: str) -> str:
     return (
         f'<li class="card">{_picture_html(card)}<h2{tongue}>{_escape(card.title)}</h2>{source}'
         f'<div class="tags">{"".join(_tag_html(*tag) for tag in tags)}</div>{formula}<table>{facts}</table>'
-        f"<details><summary>{_escape(_('what it is'))}</summary>{about}<p><code>{_escape(file)}</code></p></details>"
+        f"<details><summary>{_escape(_('meaning'))}</summary>{about}<p><code>{_escape(file)}</code></p></details>"
         "</li>"
     )
 

@@ -20,7 +20,7 @@ from tmm_cli.reports import folder_name
 
 STATES = {
     "right": N_("right"),
-    "follows": N_("right given yours"),
+    "follows": N_("right with your earlier values"),
     "wrong": N_("wrong"),
     "missing": N_("no answer"),
 }
@@ -58,8 +58,8 @@ class Answer:
 
 OF = {
     "largest": N_("the largest value in the cycle"),
-    "range": N_("the whole way"),
-    "angle": N_("a radian"),
+    "range": N_("the whole range of motion"),
+    "angle": N_("one radian"),
     "exact": "",
 }
 

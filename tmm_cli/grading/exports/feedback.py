@@ -19,9 +19,9 @@ from tmm_cli.language import N_, _, numeral
 WIDENED = 1.05  # times the usual error: less more is not worth telling
 UNSAID = "†"  # marks answers without a unit
 SHARES = {
-    "largest": N_("Errors are shares of the largest value of a quantity in the cycle."),
-    "range": N_("Errors of places are shares of the whole way."),
-    "angle": N_("Errors of angles are shares of a radian: 1 % is 0.57 degrees."),
+    "largest": N_("Errors are given in per cent of the largest value of the quantity in the cycle."),
+    "range": N_("Errors of displacements are given in per cent of the whole range of motion."),
+    "angle": N_("Errors of angles are given in per cent of one radian: 1 % is 0.57 degrees."),
 }
 
 
@@ -69,7 +69,7 @@ def sheets(book: Gradebook) -> Iterator[StudentSheet]:
 
 
 def _unsaid() -> str:
-    return _("{mark} no unit was written: it was read in the one that fits.").format(mark=UNSAID)
+    return _("{mark} no unit given: the one that fits was assumed.").format(mark=UNSAID)
 
 
 def _total(student: StudentMarks) -> str:
@@ -130,11 +130,14 @@ def _why_more(both: Iterable[tuple[Answer, Mark]]) -> Iterator[str]:
     drawn = {answer.asked.drawn for answer, mark in both if _widened(answer, mark)}
     if True in drawn:
         yield _(
-            "More than usual is allowed where lengths drawn 0.5 mm in 100 mm off move the value that far: nobody can "
-            "measure it more exactly there."
+            "The tolerance is larger than usual where an error of 0.5 mm per 100 mm in the drawn lengths "
+            "changes the value by that much: it cannot be measured more accurately there."
         )
     if False in drawn:
-        yield _("More than usual is allowed where lengths rounded to 0.05 % move a computed value that far.")
+        yield _(
+            "The tolerance is larger than usual where rounding the lengths to 0.05 % changes a computed value "
+            "by that much."
+        )
 
 
 def _widened(answer: Answer, mark: Mark) -> bool:
@@ -153,7 +156,7 @@ def _reasons(both: list[tuple[Answer, Mark]]) -> Iterator[tuple[str, str]]:
     for reason, names in found.items():
         yield sentence(reason), ", ".join(names)
     if left:
-        yield _("No typical mistake explains what is wrong here."), ", ".join(left)
+        yield _("No typical mistake explains this error."), ", ".join(left)
 
 
 def output(answer: Answer, mark: Mark, reveal: bool) -> str:
@@ -164,7 +167,7 @@ def output(answer: Answer, mark: Mark, reveal: bool) -> str:
     if reveal and mark.judged:
         lines.append(_("right value: {value}").format(value=answer.text(mark.right)))
     if mark.value is not None and answer.asked.quantity.against != "exact":
-        told = _("off by {error} of {whole}; allowed: {allowed}")
+        told = _("error: {error} of {whole}; allowed: {allowed}")
         lines.append(told.format(error=share_text(mark.error), whole=answer.of, allowed=_allowed(answer, mark)))
     if mark.reading and mark.value is not None:
         lines.append(_unsaid())

@@ -21,10 +21,8 @@ class Degrees(Mistake):
 
     factor: float = 1.0
 
-    name = N_("degrees for radians")
-    sentence = N_(
-        "This is the right value in the other unit of angles: degrees were taken for radians, or the reverse."
-    )
+    name = N_("degrees instead of radians")
+    sentence = N_("This is the right value in another unit of angle: degrees were taken for radians, or the reverse.")
     solves = False
 
     @classmethod
@@ -44,7 +42,7 @@ class Millimetres(Mistake):
 
     factor: float = 1.0
 
-    name = N_("mm for m")
+    name = N_("mm instead of m")
     sentence = N_("This is 1000 times the right value, or a thousandth of it: millimetres and metres were mixed up.")
     solves = False
 
@@ -63,8 +61,8 @@ class Millimetres(Mistake):
 class Rpm(Mistake):
     """Velocities are 9.55 times too large, accelerations and inertia forces 91 times."""
 
-    name = N_("rpm for rad/s")
-    sentence = N_("The speed of the crank was put in as revolutions a minute; omega = pi n / 30 is wanted, in rad/s.")
+    name = N_("rpm instead of rad/s")
+    sentence = N_("The speed of the crank was substituted in revolutions per minute; use omega = pi n / 30 in rad/s.")
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
@@ -85,8 +83,8 @@ class OtherZero(Mistake):
 
     extreme: bool = True
 
-    name = N_("other zero of the crank")
-    sentence = N_("The positions were counted from another zero of the crank than the task's.")
+    name = N_("different zero position of the crank")
+    sentence = N_("The positions were counted from a different zero position of the crank than in the task.")
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
@@ -136,7 +134,7 @@ class Sense(Mistake):
     counted: bool = False
 
     name = N_("sense of rotation")
-    sentence = N_("This belongs to a crank that turns the other way.")
+    sentence = N_("This answer is for a crank that rotates in the opposite sense.")
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
@@ -168,7 +166,8 @@ class ScaleInverted(Mistake):
 
     name = N_("scale factor inverted")
     sentence = N_(
-        "All values of this plan are wrong by one factor: lengths divided by the scale in place of multiplied."
+        "All values from this plan are wrong by the same factor: the lengths were divided by the scale "
+        "factor instead of multiplied."
     )
     solves = False
     price = 25.0

@@ -24,8 +24,10 @@ class InertiaReversed(Mistake):
 
     parts: tuple[str, ...] = ()
 
-    name = N_("inertia not reversed")
-    sentence = N_("Inertia acts against the acceleration: U = -m a_S and M = -J epsilon; here it acts along it.")
+    name = N_("inertia forces not reversed")
+    sentence = N_(
+        "Inertia forces act opposite to the acceleration, U = -m a_S and M = -J epsilon; here they act along it."
+    )
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
@@ -47,7 +49,9 @@ class HingeInertia(Mistake):
     link: str = ""
 
     name = N_("moment of inertia about the hinge")
-    sentence = N_("The moment of inertia was taken about the hinge; the couple wants it about the centre of mass.")
+    sentence = N_(
+        "The moment of inertia was taken about the hinge; the inertia couple requires the one about the centre of mass."
+    )
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
@@ -106,8 +110,8 @@ class NoInertia(Mistake):
 class NoCouple(NoInertia):
     """Of one link, or of all."""
 
-    name = N_("couple of inertia left out")
-    sentence = N_("The couple of inertia J epsilon was left out.")
+    name = N_("inertia couple left out")
+    sentence = N_("The inertia couple J epsilon was left out.")
     part, of = "moment", "inertia"
 
 
@@ -121,8 +125,8 @@ class NoWeight(Mistake):
     link: str = ""
     mass: bool = False
 
-    name = N_("weight forgotten")
-    sentence = N_("A weight G = m g was left out, or the mass was put in for it.")
+    name = N_("weight left out")
+    sentence = N_("The weight G = m g was left out, or the mass was used in its place.")
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
@@ -146,9 +150,9 @@ class NoWeight(Mistake):
 class WeightForMass(Mistake):
     """Inertia forces are g times too large."""
 
-    name = N_("weight for mass")
+    name = N_("weight instead of mass")
     sentence = N_(
-        "The weight G was put in where the mass m = G/g is wanted: the inertia force is 9.81 times too large."
+        "The weight G was used where the mass m = G/g is required: the inertia force is 9.81 times too large."
     )
 
     @classmethod
@@ -167,8 +171,11 @@ class WeightForMass(Mistake):
 class GuideThroughHinge(Mistake):
     """It acts where moments about the hinge vanish, which is seldom the hinge itself."""
 
-    name = N_("guide's reaction through the hinge")
-    sentence = N_("The reaction of a guide does not act through the hinge: its place follows from moments about it.")
+    name = N_("reaction of a guide drawn through the hinge")
+    sentence = N_(
+        "The reaction of a guide does not pass through the hinge: its point of action follows from the "
+        "equation of moments."
+    )
     solves = False
 
     def value(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
@@ -182,8 +189,8 @@ class GuideThroughHinge(Mistake):
 class OppositeReaction(Mistake):
     """Reactions with the opposite direction."""
 
-    name = N_("R_ik for R_ki")
-    sentence = N_("This is the opposite of the reaction that was asked: R_ik acts from link i on link k.")
+    name = N_("R_ik instead of R_ki")
+    sentence = N_("This is the opposite of the requested reaction: R_ik acts from link i on link k.")
     solves = False
 
     def value(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
@@ -200,7 +207,7 @@ class WrongStroke(Mistake):
     both: bool = False
 
     name = N_("load in the wrong stroke")
-    sentence = N_("The useful resistance acts in the working stroke only; here it acts in the idle one.")
+    sentence = N_("The useful resistance acts in the working stroke only; here it acts in the return stroke.")
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:

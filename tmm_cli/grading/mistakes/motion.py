@@ -35,8 +35,8 @@ class Mirror(Mistake):
 
     links: str = ""
 
-    name = N_("mirror assembly")
-    sentence = N_("This belongs to another assembly: links {links} were drawn on the other side.")
+    name = N_("mirror-image assembly")
+    sentence = N_("This answer is for another assembly: links {links} were drawn on the other side.")
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
@@ -94,8 +94,8 @@ class Normal(Mistake):
 
     link: str = ""
 
-    name = N_("normal part left out")
-    sentence = N_("The normal part omega^2 r of the acceleration of link {link} was left out.")
+    name = N_("normal component left out")
+    sentence = N_("The normal component omega^2 r of the acceleration of link {link} was left out.")
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
@@ -160,8 +160,8 @@ class Tangential(Mistake):
 
     link: str = ""
 
-    name = N_("tangential part left out")
-    sentence = N_("The tangential part epsilon r of the acceleration of link {link} was left out.")
+    name = N_("tangential component left out")
+    sentence = N_("The tangential component epsilon r of the acceleration of link {link} was left out.")
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
@@ -210,7 +210,9 @@ class Coriolis(Mistake):
     sense: int = 0
 
     name = N_("Coriolis acceleration")
-    sentence = N_("The Coriolis acceleration of link {runner} on link {carrier} was left out, or points the other way.")
+    sentence = N_(
+        "The Coriolis acceleration of link {runner} on link {carrier} was left out or has the opposite direction."
+    )
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:

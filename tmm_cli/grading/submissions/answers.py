@@ -116,12 +116,16 @@ class Answers:
                 if given is None:
                     continue
                 if given.form != "number" and not self.vectors[place.quantity]:
-                    raise ProblemError(_("one number is wanted here"), found=quote(given.text))
+                    raise ProblemError(_("expected one number"), found=quote(given.text))
             except ProblemError as error:
                 told.append(error.at(_called(place)))
                 continue
             if {"x", "y"} & parts.keys() and {"", "size", "angle"} & parts.keys():
-                told.append(_("{name}: the components count, not what stands beside them").format(name=_called(place)))
+                told.append(
+                    _("{name}: the components count; the size and direction beside them are ignored").format(
+                        name=_called(place)
+                    )
+                )
             if place.angle is None:
                 answers[_key(place)] = given
             else:
@@ -144,9 +148,9 @@ class Answers:
         names = []
         for place in places[:MOST_TOLD]:
             near = None if place.quantity in self.names else nearest_name(place.quantity, self.names)
-            names.append(_called(place) + (_(" ({near} is asked)").format(near=near) if near else ""))
+            names.append(_called(place) + (_(" (requested: {near})").format(near=near) if near else ""))
         more = [_("{count} more").format(count=len(places) - MOST_TOLD)] if len(places) > MOST_TOLD else []
-        return _("not asked, so not counted: {names}").format(names=", ".join([*names, *more]))
+        return _("not requested, so not counted: {names}").format(names=", ".join([*names, *more]))
 
 
 def one_line(error: ProblemError) -> str:
@@ -178,15 +182,15 @@ def _given(cells: Cells) -> Given | None:
             raise ProblemError(_("one component is missing"), found=", ".join(cells), allowed="x, y")
         x, y = (_number(*cells[part]) for part in ("x", "y"))
         if x.unit and y.unit and x.unit != y.unit:
-            raise ProblemError(_("the components have two units"), found=f"{quote(x.unit)}, {quote(y.unit)}")
+            raise ProblemError(_("the components have different units"), found=f"{quote(x.unit)}, {quote(y.unit)}")
         return Given(x.first, y.first, "components", x.unit or y.unit, text=f"{x.text}; {y.text}")
     size = cells.get("size") or cells.get("")
     if size is None:
-        raise ProblemError(_("the size is missing"), found=", ".join(cells), allowed="size, angle")
+        raise ProblemError(_("the magnitude is missing"), found=", ".join(cells), allowed="size, angle")
     if "angle" in cells:
         given, turn = _number(*size), _number(*cells["angle"])
         if turn.unit and parse_unit(turn.unit).dimension != ANGLE:
-            raise ProblemError(_("a direction is an angle"), found=quote(turn.unit), allowed="deg, rad")
+            raise ProblemError(_("expected an angle as the direction"), found=quote(turn.unit), allowed="deg, rad")
         return Given(
             given.first,
             turn.first,
@@ -201,7 +205,7 @@ def _given(cells: Cells) -> Given | None:
 def _number(text: str, unit: str) -> Given:
     found = read_answer(text, unit)
     if found is None or found.form != "number":
-        raise ProblemError(_("one number is wanted here"), found=quote(text))
+        raise ProblemError(_("expected one number"), found=quote(text))
     return found
 
 
@@ -226,12 +230,15 @@ def at_positions(submission: Submission, task: Task, places: Real) -> Submission
         number = nearest + task.rules.count
         if away[nearest] > NEAR:
             told.append(
-                _("{quantity} at phi = {angle:.6g} deg: the nearest position, {number}, is at {own:.6g} deg").format(
+                _(
+                    "{quantity} at phi = {angle:.6g} deg: there is no position at this angle; the nearest one, "
+                    "{number}, is at {own:.6g} deg"
+                ).format(
                     quantity=quantity, angle=np.degrees(angle), number=number, own=np.degrees(places[nearest]) % 360
                 )
             )
         elif (quantity, number) not in asked:
-            told.append(_("not asked, so not counted: {names}").format(names=f"{quantity} at {number}"))
+            told.append(_("not requested, so not counted: {names}").format(names=f"{quantity} at {number}"))
         elif (quantity, number) in answers:
             told.append(twice(Heading(quantity, number)))
         else:

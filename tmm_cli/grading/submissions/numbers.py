@@ -70,21 +70,25 @@ def read_answer(text: str, unit: str = "", turn_unit: str = "") -> Given | None:
         return Given(number, unit=own or unit, text=told)
     if len(parts) != 2:
         raise ProblemError(
-            _("a vector has two numbers"), found=quote(source), allowed=_("(1,2; -3,4) N or 1,2 kN at 34 deg")
+            _("a vector needs two numbers"), found=quote(source), allowed=_("(1,2; -3,4) N or 1,2 kN at 34 deg")
         )
     labels, numbers = zip(*(_labelled(part) for part in parts), strict=True)
     (first, one), (second, other) = (read_number(part) for part in numbers)
     polar = polar or labels[1] in _DIRECTIONS or (_turns(other) and not _turns(one))
     if polar:
         if other and not _turns(other):
-            raise ProblemError(_("a direction is an angle"), found=quote(other), allowed=_("1,2 kN at 34 deg"))
+            raise ProblemError(
+                _("expected an angle as the direction"), found=quote(other), allowed=_("1,2 kN at 34 deg")
+            )
         return Given(first, second, "polar", one or of_both or unit, other or turn_unit, told)
     units = {name for name in (one, other, of_both) if name}
     if len(units) > 1:
-        raise ProblemError(_("the components have two units"), found=quote(source), allowed=_("(1,2; -3,4) N"))
+        raise ProblemError(_("the components have different units"), found=quote(source), allowed=_("(1,2; -3,4) N"))
     ends = tuple(label[-1:].lower() for label in labels)
     if ends not in (("", ""), ("x", "y"), ("y", "x")):
-        raise ProblemError(_("these are no components"), found=quote(source), allowed=_("Fx = 1,2 N, Fy = -3,4 N"))
+        raise ProblemError(
+            _("these are not the components x and y"), found=quote(source), allowed=_("Fx = 1,2 N, Fy = -3,4 N")
+        )
     x, y = (second, first) if ends == ("y", "x") else (first, second)
     return Given(x, y, "components", units.pop() if units else unit, text=told)
 
@@ -113,9 +117,11 @@ def read_number(source: str) -> tuple[float, str]:
             raise ProblemError(_("the number is not finite"), found=quote(source))
         if _DATE.fullmatch(source):
             raise ProblemError(
-                _("a spreadsheet made a date of this"), found=quote(source), allowed=_("a number in a cell of text")
+                _("the spreadsheet has turned this number into a date"),
+                found=quote(source),
+                allowed=_("a number in a cell formatted as text"),
             )
-        raise ProblemError(_("this is no number"), found=quote(source), allowed=_("1,31 m/s, 1.31 or 3·10^-3"))
+        raise ProblemError(_("not a number"), found=quote(source), allowed=_("1,31 m/s, 1.31 or 3·10^-3"))
     sign, alone, digits, exponent, power = found.groups()
     digits = (digits or "1").replace(" ", "")
     if "," in digits and "." in digits:  # the first parts thousands
@@ -194,7 +200,7 @@ class UnknownQuantityError(ProblemError):
     """A name that no quantity has."""
 
     def __init__(self, name: str) -> None:
-        super().__init__(_("there is no quantity of this name"), found=quote(name))
+        super().__init__(_("there is no quantity with this name"), found=quote(name))
         self.name = name
 
 
@@ -215,7 +221,7 @@ class Headings:
                 return _heading(name, *rest.groups(default=""))
         called = re.split(r" at |, | ?\[", source)[0]
         if to_latin(called) in self.names:
-            raise ProblemError(_("this heading is not understood"), found=quote(source), allowed=_("v of E at 7, m/s"))
+            raise ProblemError(_("unknown form of heading"), found=quote(source), allowed=_("v of E at 7, m/s"))
         raise UnknownQuantityError(called)
 
 
@@ -238,8 +244,8 @@ def read_position(text: str) -> tuple[int | None, float | None]:
     value, unit = read_number(rest)
     if by_angle or unit:
         if unit and parse_unit(unit).dimension != ANGLE:
-            raise ProblemError(_("this is no position"), found=quote(source), allowed=_("7, or phi = 210 deg"))
+            raise ProblemError(_("not a position"), found=quote(source), allowed=_("7, or phi = 210 deg"))
         return None, parse_unit(unit or "deg").si(value)
     if value != int(value):
-        raise ProblemError(_("this is no position"), found=quote(source), allowed=_("7, or phi = 210 deg"))
+        raise ProblemError(_("not a position"), found=quote(source), allowed=_("7, or phi = 210 deg"))
     return int(value), None

@@ -62,14 +62,16 @@ def shape_of(header: Row, answers: Answers, *, filled: bool = True) -> Shape:
     first = 0 if _known(header[0], answers) else 1
     if filled and "student" not in columns and not any(_known(text, answers) for text in header):
         raise ProblemError(
-            _("no heading of this table is understood"),
+            _("none of the headings of this table is recognised"),
             found=quote("; ".join(header)),
             allowed=_("quantity; position; unit; value, or names of answers such as v of E at 7"),
         )
     for text in header[first:]:
         if _is_unit(text) and not _known(text, answers):
             raise ProblemError(
-                _("a heading with a comma needs quotes"), found=quote(text), allowed=_('"H, mm" or H [mm]')
+                _("a heading that contains a comma must be in quotes"),
+                found=quote(text),
+                allowed=_('"H, mm" or H [mm]'),
             )
 
     def entries(row: Row) -> Iterator[Entry]:
@@ -139,7 +141,7 @@ def read_sheet(text: str, file: str) -> tuple[str, list[Entry]]:
     answers: Any = data.pop("answers", data) or {}
     if not isinstance(student, str) or not isinstance(answers, dict):
         raise ProblemError(
-            _("this is no answer sheet"), found=quote(answers), allowed="answers: {v of E at 7: 1.31 m/s}", file=file
+            _("not an answer sheet"), found=quote(answers), allowed="answers: {v of E at 7: 1.31 m/s}", file=file
         )
     return student, list(_entries(answers))
 
@@ -161,7 +163,7 @@ def _text(value: Any) -> str:
 
 LARGEST, MOST_ROWS = 1_000_000, 2_000  # of a student's file: bytes, rows
 LARGEST_TABLE, MOST_ROWS_OF_ALL = 20_000_000, 500_000
-LONGER = N_("a row with more cells than the header is not counted: has it a decimal comma without quotes?")
+LONGER = N_("a row with more cells than the header is not counted. Does it contain a decimal comma without quotes?")
 NO_PATH = str.maketrans("/\\", "\u2215\u29f5")  # a name never leads to another folder
 OF_WINDOWS = ("thumbs.db", "desktop.ini")  # files that Windows leaves in folders
 TABLES, SHEETS = (".csv", ".tsv", ".txt", ".xlsx"), (".yaml", ".yml")
@@ -213,7 +215,8 @@ class _Reader:
             else:
                 told = ", ".join(clean(name, 60) for name in names[:4])
                 yield _unread(
-                    student, _("there are {count} files of this student: {names}").format(count=len(names), names=told)
+                    student,
+                    _("more than one file of this student ({count}): {names}").format(count=len(names), names=told),
                 )
 
     def file(self, path: Path, student: str) -> Submission:
@@ -229,13 +232,13 @@ class _Reader:
                 found = [(shape.named(row), list(shape.entries(row))) for row in rows[1:] if not shape.longer(row)]
                 problems = dict.fromkeys([_(LONGER)] if any(map(shape.longer, rows[1:])) else [])
             else:
-                raise ProblemError(_("this is no answer sheet"), allowed=_("CSV, XLSX without macros, YAML"))
+                raise ProblemError(_("not an answer sheet"), allowed=_("CSV, XLSX without macros, YAML"))
         except ProblemError as error:
             return _unread(student, one_line(error.located(clean(path.name))))
         for name, entries in found:
             other = self.student(name)
             if name and other != student:
-                problems[_("the file names another student: {name}").format(name=quote(other))] = None
+                problems[_("the file contains the name of another student: {name}").format(name=quote(other))] = None
                 if other in self.students:
                     continue
             own += entries
@@ -254,7 +257,10 @@ class _Reader:
         shape = self.shape(rows, str(path))
         if shape.student is None:
             raise ProblemError(
-                _("no column names the students"), found=", ".join(rows[0]), allowed="student", file=str(path)
+                _("no column contains the names of the students"),
+                found=", ".join(rows[0]),
+                allowed="student",
+                file=str(path),
             )
         for row in rows[1:]:
             by_student.setdefault(self.student(shape.named(row)), []).append(row)

@@ -25,7 +25,9 @@ def write_template(task: Task, path: str | os.PathLike[str]) -> None:
     """An empty sheet for one student, in the format of the path's ending. Raises ProblemError."""
     kind = Path(path).suffix.lower()
     if kind not in FORMATS:
-        raise ProblemError(_("an answer sheet has another ending"), found=quote(kind), allowed=", ".join(FORMATS))
+        raise ProblemError(
+            _("unknown file extension of an answer sheet"), found=quote(kind), allowed=", ".join(FORMATS)
+        )
     write_atomically(Path(path), FORMATS[kind](task))
 
 
@@ -72,7 +74,10 @@ def _xlsx(task: Task) -> bytes:
 def _yaml(task: Task) -> bytes:
     """A line for every answer; a vector may be written in a line as well."""
     lines = [
-        _("# Write behind the colon, another unit beside the number: 1.31 m/s. Vectors: (1.2; -3.4) or 3.6 at 34 deg."),
+        _(
+            "# Write the answer after the colon; a different unit goes after the number: 1.31 m/s. Vectors: "
+            "(1.2; -3.4) or 3.6 at 34 deg."
+        ),
         "answers:",
     ]
     for one in task.asked:
