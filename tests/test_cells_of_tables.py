@@ -177,7 +177,7 @@ def test_files_that_are_no_tables_are_refused(tmp_path):
     (tmp_path / "own.csv").write_text("a\n")
     (tmp_path / "link.csv").symlink_to(tmp_path / "own.csv")
     assert refusal(tmp_path / "link.csv") == "this is not a regular file but a link, a folder or a device"
-    assert refusal(tmp_path / "none.csv") == "no such file"
+    assert refusal(tmp_path / "none.csv") == "there is no such file"
     (tmp_path / "old.xls").write_bytes(b"\xd0\xcf\x11\xe0\x00\x00")
     assert refusal(tmp_path / "old.xls") == "this is not a text file\n  allowed: a table in CSV or XLSX"
     (tmp_path / "large.csv").write_text("1" * 2_000_001)
