@@ -1,4 +1,4 @@
-"""Drawings and table of the four-bars by k: extreme positions, admissible arcs, lengths and pressure angles along them."""
+"""Drawings and table of the four-bars by k: extreme positions, admissible arcs, and the family along them."""
 
 from __future__ import annotations
 
