@@ -416,7 +416,7 @@ REFUSED = {
         "  found:   a list, number of items: 6"
     ),
     "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, l3: 80, phi0: 5": (
-        "synthesis.phi0: three pairs and two lengths determine phi0 too\n  found:   phi0\n  allowed: psi0"
+        "synthesis.phi0: three pairs and two lengths also determine phi0\n  found:   phi0\n  allowed: psi0"
     ),
     "pairs: [[20, 35], [35, 45], [50, 60]], l1: 100, l3: 80": (
         "synthesis: give exactly one length: it determines the size of the four-bar\n"
@@ -424,7 +424,7 @@ REFUSED = {
         "  allowed: one of l1, l2, l3, l4; or l4 and one of l1, l3"
     ),
     "function: ln(x), x: [-1, 2], input: [30, 120], output: [60, 120], l4: 100": (
-        "synthesis.x: the function is undefined in this range, or equal at both ends\n  allowed: x more than 0"
+        "synthesis.x: the function is undefined in this range, or equal at both ends\n  allowed: x greater than 0"
     ),
     "function: x^2, x: [-1, 1], input: [30, 120], output: [60, 120], l4: 100": (
         "synthesis.x: the function is undefined in this range, or equal at both ends\n"

@@ -29,10 +29,10 @@ from tmm_cli.synthesis.record import SMALLEST, Kind
 from tmm_cli.synthesis.tasks import TASKS, block_module
 
 
-def _check_range(found: Any) -> Any:
-    if not isinstance(found, list) or len(found) != 2:
+def _check_range(bounds: Any) -> Any:
+    if not isinstance(bounds, list) or len(bounds) != 2:
         raise PydanticCustomError("range", "expected two numbers [from, to]")
-    return [checked_value(item) for item in found]
+    return [checked_value(item) for item in bounds]
 
 
 Range = Annotated[
@@ -60,13 +60,21 @@ def choose_key_set(
     Raises:
         ProblemError: no set fits; `refusal`, with the missing or surplus keys.
     """
-    keys = dict.fromkeys([*(key for one in sets for key in one), *others])
-    here = tuple(key for key in keys if getattr(shape, key) is not None)
-    for one in sets:
-        if set(one) == set(here):
-            return one
-    missing = [tuple(key for key in one if key not in here) for one in sets if here and set(here) < set(one)]
-    surplus = [tuple(key for key in here if key not in one) for one in sets if one and set(one) < set(here)]
+    keys = dict.fromkeys([*(key for key_set in sets for key in key_set), *others])
+    present = tuple(key for key in keys if getattr(shape, key) is not None)
+    for key_set in sets:
+        if set(key_set) == set(present):
+            return key_set
+    missing = [
+        tuple(key for key in key_set if key not in present)
+        for key_set in sets
+        if present and set(present) < set(key_set)
+    ]
+    surplus = [
+        tuple(key for key in present if key not in key_set)
+        for key_set in sets
+        if key_set and set(key_set) < set(present)
+    ]
     mend = ""
     if missing:
         mend = _("; missing: {keys}").format(keys=_alternatives(missing))
@@ -74,8 +82,8 @@ def choose_key_set(
         mend = _("; remove: {keys}").format(keys=_alternatives(surplus))
     raise ProblemError(
         translated(refusal) + mend,
-        found=", ".join(here) or _("none of these keys"),
-        allowed=_("; or ").join(_(" and ").join(one) or _("nothing") for one in sets),
+        found=", ".join(present) or _("none of these keys"),
+        allowed=_("; or ").join(_(" and ").join(key_set) or _("nothing") for key_set in sets),
         key=True,
     )
 
@@ -86,8 +94,10 @@ def _alternatives(sets: Sequence[tuple[str, ...]]) -> str:
 
 def read_numbers(shape: TaskBlock, values: ValueReader, quantities: Mapping[str, tuple[Kind, str]]) -> dict[str, Any]:
     """Read the given quantities of a block into SI, by key. Raises ProblemError."""
-    given = {key: value for key in quantities if (value := getattr(shape, key)) is not None}
-    return {key: values.number(value, DIMENSIONS[quantities[key][0]].dimension, (key,)) for key, value in given.items()}
+    raw_values = {key: value for key in quantities if (value := getattr(shape, key)) is not None}
+    return {
+        key: values.number(value, DIMENSIONS[quantities[key][0]].dimension, (key,)) for key, value in raw_values.items()
+    }
 
 
 class TriedFileError(Exception):
@@ -114,15 +124,19 @@ class TaskName(BaseModel):
 
 def check_block(tree: Tree) -> TaskBlock:
     """Validate the block of a file against the keys of its task; only that task is imported. Raises ProblemError."""
-    given, shape = tree.data["synthesis"], TaskBlock
+    block_data, shape = tree.data["synthesis"], TaskBlock
     try:
-        if not isinstance(given, dict) or not isinstance(given.get("task"), str) or given["task"] not in TASKS:
-            TaskName.model_validate(given)
-        shape = block_module(given["task"]).BLOCK
-        found: TaskBlock = shape.model_validate(given)
+        if (
+            not isinstance(block_data, dict)
+            or not isinstance(block_data.get("task"), str)
+            or block_data["task"] not in TASKS
+        ):
+            TaskName.model_validate(block_data)
+        shape = block_module(block_data["task"]).BLOCK
+        model: TaskBlock = shape.model_validate(block_data)
     except ValidationError as error:
         raise shape_error(error, tree, shape, ("synthesis",)) from None
-    return found
+    return model
 
 
 # Limits of the values of a task: beyond them numbers overflow and solutions are meaningless.
@@ -159,12 +173,12 @@ class BoundedReader(ValueReader):
 
     def number(self, value: Any, want: Dimension, path: Path) -> float:
         """Return a value in SI. Raises ProblemError if no mechanism can have it."""
-        found = super().number(value, want, path)
-        self.given[path] = found, want
+        number = super().number(value, want, path)
+        self.given[path] = number, want
         key = path[-1] if path else ""
         sized = isinstance(key, str) and key not in COORDINATE_KEYS and (want in SIZE_DIMENSIONS or key in RATIO_KEYS)
-        if not sized or _exempt(path) or found >= SMALLEST:
-            return found
+        if not sized or _exempt(path) or number >= SMALLEST:
+            return number
         raise self.too_small(value, SMALLEST, want, path)
 
 

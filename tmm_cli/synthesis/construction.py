@@ -48,10 +48,10 @@ def full_circle(centre: complex, radius: float) -> Arc:
     return Arc(centre, radius, 0.0, 2 * np.pi, "dashed")
 
 
-def swept_arc(centre: complex, places: Any, style: Style = "thin", beyond: float = 0.0) -> Arc:
+def swept_arc(centre: complex, points: Any, style: Style = "thin", beyond: float = 0.0) -> Arc:
     """Return the arc about a centre through successive points (an array), extended by `beyond` (rad) at both ends."""
-    turns = np.unwrap(np.angle(places - centre))
-    return Arc(centre, float(abs(places[0] - centre)), float(turns.min()) - beyond, float(turns.max()) + beyond, style)
+    turns = np.unwrap(np.angle(points - centre))
+    return Arc(centre, float(abs(points[0] - centre)), float(turns.min()) - beyond, float(turns.max()) + beyond, style)
 
 
 @dataclass(frozen=True)
@@ -145,7 +145,7 @@ class GeometricConstruction:
 
 def circle_extent(centre: complex, radius: float) -> tuple[complex, ...]:
     """Return four points whose bounding box contains the circle."""
-    return tuple(centre + radius * way for way in (1, 1j, -1, -1j))
+    return tuple(centre + radius * direction for direction in (1, 1j, -1, -1j))
 
 
 @dataclass(frozen=True)

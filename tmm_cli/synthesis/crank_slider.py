@@ -37,14 +37,14 @@ from tmm_cli.synthesis.record import Demand, Infeasible, NamedValue, SynthesisOu
 SMALLEST_DRAWN_THETA: Final = 0.01  # rad: smallest theta visible in a drawing
 
 
-def draw_construction(found: CrankSliderSolution) -> GeometricConstruction:
+def draw_construction(solution: CrankSliderSolution) -> GeometricConstruction:
     """Draw the extreme positions, and the circle from which B1B2 is seen at the angle theta, with O on it at the offset
     e.
 
     B1 is the far extreme position (rod in line with the crank), B2 the near one; the crank pivot O is the origin. O may
     lie on the circle between B2 and the point above B2, where e = H cot(theta).
     """
-    r, l, e, height, theta = (float(getattr(found, n)) for n in ("r", "l", "e", "stroke", "theta"))  # noqa: E741
+    r, l, e, height, theta = (float(getattr(solution, n)) for n in ("r", "l", "e", "stroke", "theta"))  # noqa: E741
     near, far = (float(np.sqrt((x - e) * (x + e))) for x in (l - r, l + r))
     o, b1, b2 = 0j, complex(far, -e), complex(near, -e)
     pin1, pin2 = r * b1 / abs(b1), -r * b2 / abs(b2)
@@ -348,11 +348,11 @@ def _refuse_k(task: CrankSliderTask) -> float:
 def solve(task: CrankSliderTask) -> SynthesisOutcome:
     """Solve the task of one file: given values, solution, values to be measured, drawing. Raises Infeasible."""
     refuse(task)
-    found = find_crank_slider(task)
-    lengths = tuple(NamedValue(name, getattr(found, name), *FOUND_QUANTITIES[name]) for name in PARAMETERS)
+    solution = find_crank_slider(task)
+    lengths = tuple(NamedValue(name, getattr(solution, name), *FOUND_QUANTITIES[name]) for name in PARAMETERS)
     rest = [name for name in ("stroke", "ratio", "nu", "k", "pressure") if getattr(task, name) is None]
     more = tuple(
-        NamedValue("", getattr(found, name), *(QUANTITIES | FOUND_QUANTITIES)[name])
+        NamedValue("", getattr(solution, name), *(QUANTITIES | FOUND_QUANTITIES)[name])
         for name in ("h", *rest, "theta", "printed", "error")
     )
     demands = [Demand(N_("crank rotates fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False)]
@@ -360,8 +360,8 @@ def solve(task: CrankSliderTask) -> SynthesisOutcome:
         demands.append(Demand(N_("mean speed of the slider"), float(task.speed), "speed", mean_output_speed))
     for name, measure in (("stroke", output_stroke), ("k", time_ratio), ("pressure", largest_pressure_angle)):
         kind, text = QUANTITIES[name]
-        wanted = float(getattr(found, name))
-        demands.append(Demand(text, wanted, kind, measure, getattr(task, name) is not None, of=name))
+        predicted = float(getattr(solution, name))
+        demands.append(Demand(text, predicted, kind, measure, getattr(task, name) is not None, of=name))
     return SynthesisOutcome(
         given_values(task, QUANTITIES),
         lengths + more,
@@ -371,7 +371,7 @@ def solve(task: CrankSliderTask) -> SynthesisOutcome:
             "sin(lambda) = (r + e)/l"
         ),
         tuple(demands),
-        (draw_construction(found),),
+        (draw_construction(solution),),
         output="slide",
     )
 

@@ -117,11 +117,11 @@ def extreme_cosine(lengths: tuple[Any, Any, Any, Any], low: Any, high: Any) -> t
     """
     l1, l2, l3, l4, low, high = (np.asarray(x)[..., None] for x in (*lengths, low, high))
     on_frame = np.pi * (np.ceil(low / np.pi) + np.arange(2))
-    places = np.concatenate([low, high, np.where(on_frame <= high, on_frame, low)], axis=-1)
-    sizes = np.abs(cosine_bcd(l2, l3, l1 * l1 + l4 * l4 - 2 * l1 * l4 * np.cos(places)))
-    worst = np.argmax(sizes, axis=-1)[..., None]  # nan counts as the worst
-    size, place = (np.take_along_axis(x, worst, axis=-1)[..., 0] for x in (sizes, places))
-    return size, place
+    angles = np.concatenate([low, high, np.where(on_frame <= high, on_frame, low)], axis=-1)
+    cosines = np.abs(cosine_bcd(l2, l3, l1 * l1 + l4 * l4 - 2 * l1 * l4 * np.cos(angles)))
+    worst = np.argmax(cosines, axis=-1)[..., None]  # nan counts as the worst
+    largest, angle = (np.take_along_axis(x, worst, axis=-1)[..., 0] for x in (cosines, angles))
+    return largest, angle
 
 
 @dataclass(frozen=True)
@@ -167,18 +167,18 @@ def output_angles(results: Results, phi: Any, near: Any) -> Any:
     """Return the angles of DC from AD (rad) at angles phi of AB, plus the whole turns that bring them nearest to
     `near`.
     """
-    found = pin_positions(results, phi)
-    if found is None:
+    pins = pin_positions(results, phi)
+    if pins is None:
         return np.full(np.shape(near), np.nan)
-    a, _, c, d = found
+    a, _, c, d = pins
     return near + np.angle((c - d) / (d - a) * np.exp(-1j * np.asarray(near)))
 
 
 def transmission_angle(phi: float, results: Results) -> float:
     """Return the transmission angle (rad, acute) at the angle phi of AB from AD."""
-    found = pin_positions(results, np.array([phi]))
-    if found is None:
+    pins = pin_positions(results, np.array([phi]))
+    if pins is None:
         return float("nan")
-    _, b, c, d = found
+    _, b, c, d = pins
     turned = ((c - b) * np.conj(c - d))[0]
     return float(np.arctan2(np.abs(turned.imag), np.abs(turned.real)))

@@ -133,13 +133,13 @@ def solve(task: CrankConditionTask) -> SynthesisOutcome:
     if isinstance(task, FourBarLinks):
         return _solve_four_bar(task)
     if isinstance(task, CrankSlider):
-        found, kinds, margin = classify_crank_slider(task), CRANK_SLIDER_TYPES, N_("l - (r + e)")
+        condition, types, margin = classify_crank_slider(task), CRANK_SLIDER_TYPES, N_("l - (r + e)")
         source = N_("Grashof's condition in the limit of an infinitely long rocker: l >= r + e")
     else:
-        found, kinds, margin = classify_slotted_lever(task), SLOTTED_LEVER_TYPES, N_("|OC - OA| - e")
+        condition, types, margin = classify_slotted_lever(task), SLOTTED_LEVER_TYPES, N_("|OC - OA| - e")
         source = N_("the sliding block cannot come closer to C than the centre line of the slot: |OC - OA| >= e")
-    name = list(kinds)[int(found.kind)]
-    values = (NamedValue("", kinds[name], "word", N_("type")), NamedValue("", found.margin, "length", margin))
+    name = list(types)[int(condition.kind)]
+    values = (NamedValue("", types[name], "word", N_("type")), NamedValue("", condition.margin, "length", margin))
     return SynthesisOutcome(
         given_values(task, LINKS),
         values,
@@ -149,29 +149,29 @@ def solve(task: CrankConditionTask) -> SynthesisOutcome:
 
 
 def _solve_four_bar(task: FourBarLinks) -> SynthesisOutcome:
-    found = classify_four_bar(task)
-    change = int(found.kind) >= FIRST_CHANGE_POINT
+    four_bar = classify_four_bar(task)
+    change = int(four_bar.kind) >= FIRST_CHANGE_POINT
     at_change, fully, rocks = (
         N_("rotates fully or rocks, depending on the motion through the change points"),
         N_("rotates fully"),
         N_("rocks"),
     )
-    asked = (
+    given_rows = (
         *given_values(task, LINKS),
         NamedValue("frame", f"l{task.frame}", "word", N_("frame")),
         NamedValue("driver", f"l{task.driver}", "word", N_("driver")),
     )
     values = [
-        NamedValue("", FOUR_BAR_TITLES[FOUR_BAR_TYPES[int(found.kind)]], "word", N_("type")),
-        NamedValue("", found.excess, "length", N_("(sum of the middle two) - (shortest + longest)")),
+        NamedValue("", FOUR_BAR_TITLES[FOUR_BAR_TYPES[int(four_bar.kind)]], "word", N_("type")),
+        NamedValue("", four_bar.excess, "length", N_("(sum of the middle two) - (shortest + longest)")),
     ]
-    for role, turns in zip((N_("input link"), N_("coupler"), N_("output link")), found.turns, strict=True):
+    for role, turns in zip((N_("input link"), N_("coupler"), N_("output link")), four_bar.turns, strict=True):
         values.append(NamedValue("", (at_change if change else fully) if turns else rocks, "word", role))
     source = N_(
         "F. Grashof: compare s + l with p + q; types after C. R. Barker, A complete classification of "
         "planar four-bar linkages, Mechanism and Machine Theory 20 (1985)"
     )
-    return SynthesisOutcome(asked, tuple(values), source, _rotation_demands(bool(found.turns[0]), change))
+    return SynthesisOutcome(given_rows, tuple(values), source, _rotation_demands(bool(four_bar.turns[0]), change))
 
 
 def _rotation_demands(turns: bool, change: bool) -> tuple[Demand, ...]:
@@ -215,13 +215,13 @@ BLOCK = GrashofBlock
 
 def read(shape: GrashofBlock, values: ValueReader) -> CrankConditionTask:
     """Read the lengths (m). Raises ProblemError."""
-    found = read_numbers(shape, values, LINKS)
-    given = {*found, *(key for key in ("frame", "driver") if getattr(shape, key) is not None)}
-    fitting = [one for one, needed, more in KEY_SETS if set(needed) <= given <= {*needed, *more}]
+    lengths = read_numbers(shape, values, LINKS)
+    given_keys = {*lengths, *(key for key in ("frame", "driver") if getattr(shape, key) is not None)}
+    fitting = [record_type for record_type, needed, more in KEY_SETS if set(needed) <= given_keys <= {*needed, *more}]
     if not fitting:
         raise ProblemError(
             translated(UNDETERMINED),
-            found=", ".join(sorted(given)) or _("none"),
+            found=", ".join(sorted(given_keys)) or _("none"),
             allowed="; ".join(f"{', '.join(needed)} (+ {', '.join(more)})" for __, needed, more in KEY_SETS),
             key=True,
         )
@@ -237,6 +237,6 @@ def read(shape: GrashofBlock, values: ValueReader) -> CrankConditionTask:
                 found=_("'l{driver}', which lies opposite the frame l{frame}").format(driver=driver, frame=frame),
                 allowed=allowed,
             )
-        found |= {"frame": frame, "driver": driver}
-    made: CrankConditionTask = record(**found)
-    return made
+        lengths |= {"frame": frame, "driver": driver}
+    task: CrankConditionTask = record(**lengths)
+    return task

@@ -75,9 +75,11 @@ DriverEnds = tuple[float, float] | None  # ends of the driver range (rad or m); 
 def output_stroke(results: Results, ends: DriverEnds = None) -> float:
     """Return the stroke H (m) or swing angle psi (rad) of the output in a cycle, or over a range of the driver."""
     if results.driver_range is not None and (ends or not results.driver_range.full):
-        way, link = results.driver_range, results.mechanism.output
-        found = link and find_travel(results.linkage, results.kernels, np.array(ends or (way.start, way.end)), link)
-        return found.high - found.low if found else NO_VALUE
+        driver_range, link = results.driver_range, results.mechanism.output
+        travel = link and find_travel(
+            results.linkage, results.kernels, np.array(ends or (driver_range.start, driver_range.end)), link
+        )
+        return travel.high - travel.low if travel else NO_VALUE
     strokes = results.strokes
     return strokes.travel if strokes is not None and strokes.strokes else NO_VALUE
 
@@ -103,12 +105,12 @@ def time_ratio_uncertainty(results: Results) -> float:
     ends, lengths = np.array([s.start for s in strokes.strokes]), np.array([s.length for s in strokes.strokes])
     works = np.array([s.working for s in strokes.strokes])
     away = 2.0 ** np.arange(-52, -6)
-    places = ends[:, None, None] + np.array([[1.0], [-1.0]]) * away
+    positions = ends[:, None, None] + np.array([[1.0], [-1.0]]) * away
     around = ends[0] + strokes.cycle * np.arange(64) / 64
-    every = np.abs(output_slope(motion_at_positions(results, np.append(places, around)), strokes.link))
-    speed = every[:-64].reshape(places.shape)
+    slopes = np.abs(output_slope(motion_at_positions(results, np.append(positions, around)), strokes.link))
+    speed = slopes[:-64].reshape(positions.shape)
     dwells = np.any(speed[:, :, -1:] == 0, axis=1)  # their ends are exact
-    sure = np.all(speed > SURE_SIGN * np.nanmax(every), axis=1) | dwells
+    sure = np.all(speed > SURE_SIGN * np.nanmax(slopes), axis=1) | dwells
     doubtful = np.sum(
         np.logical_or.accumulate(~sure[:, ::-1], axis=1), axis=1
     )  # number of steps, with all smaller ones
@@ -121,10 +123,10 @@ def largest_pressure_angle(results: Results, ends: DriverEnds = None) -> float:
     strokes, over = results.strokes, results.pressure
     link = strokes.link if strokes is not None else None
     if ends and results.motion is not None:
-        way = DriverRange(*ends, False, inclusive=True)
-        over = find_pressure(results.linkage, results.kernels, way, results.inputs.pressure_limits)
-    found = [p.largest for p in over if p.link == link] or [p.largest for p in over]
-    return max(found, default=NO_VALUE)
+        driver_range = DriverRange(*ends, False, inclusive=True)
+        over = find_pressure(results.linkage, results.kernels, driver_range, results.inputs.pressure_limits)
+    largest = [p.largest for p in over if p.link == link] or [p.largest for p in over]
+    return max(largest, default=NO_VALUE)
 
 
 def mean_output_speed(results: Results) -> float:
@@ -132,17 +134,19 @@ def mean_output_speed(results: Results) -> float:
     strokes, driver = results.strokes, results.linkage.driver
     if strokes is None or not strokes.strokes or strokes.kind != "slide":
         return NO_VALUE
-    way = math.fsum(abs(s.run) for s in strokes.strokes)
+    travel = math.fsum(abs(s.run) for s in strokes.strokes)
     last = driver.rate**2 + 2 * driver.acceleration * strokes.cycle
-    return NO_VALUE if last < 0 else way * (driver.rate + math.sqrt(last)) / (2 * strokes.cycle)
+    return NO_VALUE if last < 0 else travel * (driver.rate + math.sqrt(last)) / (2 * strokes.cycle)
 
 
 def completes_range(results: Results, ends: DriverEnds = None) -> bool:
     """Return True if the driver rotates fully, covers its stroke, or moves from one end of `ends` to the other."""
-    way = results.driver_range
-    if way is None:
+    driver_range = results.driver_range
+    if driver_range is None:
         return False
-    return way.full or (way.start <= ends[0] and ends[1] <= way.end if ends else way.inclusive)
+    return driver_range.full or (
+        driver_range.start <= ends[0] and ends[1] <= driver_range.end if ends else driver_range.inclusive
+    )
 
 
 def driver_completes_range(results: Results, ends: DriverEnds = None) -> float:
@@ -200,12 +204,12 @@ def measure_problem(results: Results) -> tuple[MeasuredDemand, ...]:
 
 def measure_demands(outcome: SynthesisOutcome, results: Results) -> tuple[MeasuredDemand, ...]:
     """Measure every demand on the mechanism, on the link that the task is about even if the output is another."""
-    results, found = _with_output(synthesised_link(outcome, results), results), []
+    results, measured = _with_output(synthesised_link(outcome, results), results), []
     for demand in outcome.demands:
         value = _without_rounding(demand, float(demand.measure(results)))
         left = demand.open(results) if demand.open is not None else 0.0
-        found.append(MeasuredDemand(demand, value, demand.difference(value), left if left > DEMAND_MET else 0.0))
-    return tuple(found)
+        measured.append(MeasuredDemand(demand, value, demand.difference(value), left if left > DEMAND_MET else 0.0))
+    return tuple(measured)
 
 
 def synthesised_link(outcome: SynthesisOutcome, results: Results) -> str | None:

@@ -61,36 +61,36 @@ ALONE: Final = 1e-3
 NO_NEAREST: Final = N_("other given values: changing this one alone does not help")
 
 
-def refusal_error(error: Infeasible, given: Any, units: UnitSystem, searched: str | None = None) -> ProblemError:
+def refusal_error(error: Infeasible, entry: Any, units: UnitSystem, searched: str | None = None) -> ProblemError:
     """Return the refusal of a task as it is printed: the reason, and the nearest feasible value.
 
     That value comes from the task itself, or else from a search (`searched`). given: the block of the file.
     """
-    told = error.nearest if isinstance(error.nearest, str) else searched
+    nearest_text = error.nearest if isinstance(error.nearest, str) else searched
     if isinstance(error.nearest, tuple):
         value, kind, side = error.nearest
         dimension = DIMENSIONS[kind].dimension
-        told = _nearest_message(error.path, round_to_side(units, value, dimension, side), dimension, units)
+        nearest_text = _nearest_message(error.path, round_to_side(units, value, dimension, side), dimension, units)
     for step in error.path:
-        inside = isinstance(given, list) or (isinstance(given, dict) and step in given)
-        given = given[step] if inside else None
-    found = quote(given) if error.path and given is not None else None
-    return ProblemError(translated(error.reason), path=error.path, found=found, allowed=told)
+        inside = isinstance(entry, list) or (isinstance(entry, dict) and step in entry)
+        entry = entry[step] if inside else None
+    quoted = quote(entry) if error.path and entry is not None else None
+    return ProblemError(translated(error.reason), path=error.path, found=quoted, allowed=nearest_text)
 
 
 def describe_nearest(
-    given: Mapping[Path, tuple[float, Dimension]], solved: Callable[[Path, float], bool], units: UnitSystem
+    given_numbers: Mapping[Path, tuple[float, Dimension]], solved: Callable[[Path, float], bool], units: UnitSystem
 ) -> str:
     """Describe the nearest feasible value of the first of these numbers (SI) that has one, in the units of the file.
 
     solved: returns True if the task is feasible with another value at a path.
     """
-    for path, (value, want) in given.items():
-        found = _find_nearest(value, want, partial(solved, path))
-        if found is not None:
-            number = round_to_side(units, found, want, 1 if found > value else -1)
+    for path, (value, want) in given_numbers.items():
+        feasible = _find_nearest(value, want, partial(solved, path))
+        if feasible is not None:
+            number = round_to_side(units, feasible, want, 1 if feasible > value else -1)
             if not solved(path, units.si(number, want)):
-                number = float(units.from_si(found, want))
+                number = float(units.from_si(feasible, want))
             return _nearest_message(path, number, want, units)
     return NO_NEAREST
 
@@ -102,19 +102,19 @@ def _nearest_message(path: Path, number: float, want: Dimension, units: UnitSyst
 
 def _find_nearest(value: float, want: Dimension, solved: Callable[[float], bool]) -> float | None:
     """Find the feasible value nearest to an infeasible one: try growing changes, then bisect; None if none is found."""
-    places = [value + (abs(value) or 1.0) * STEPS]
-    places += [fixed + abs(value - fixed) * SHARES for fixed in SPECIAL_VALUES.get(want, (0.0,))]
+    trials = [value + (abs(value) or 1.0) * STEPS]
+    trials += [fixed + abs(value - fixed) * SHARES for fixed in SPECIAL_VALUES.get(want, (0.0,))]
     reach = 2 * np.pi if want == ANGLE else np.inf
     last = {-1.0: np.array(value), 1.0: np.array(value)}
-    for place in sorted(np.concatenate(places).tolist(), key=lambda place: abs(place - value)):
-        side = 1.0 if place > value else -1.0
-        if abs(place - value) <= reach and solved(place):
-            edge = float(bisect(lambda x: np.asarray(solved(float(x))), np.array(place), last[side], HALVINGS)[0])
-            if abs(edge - value) < ALONE * abs(place - value):  # only the given value itself is infeasible
-                return float(place)
+    for trial in sorted(np.concatenate(trials).tolist(), key=lambda trial: abs(trial - value)):
+        side = 1.0 if trial > value else -1.0
+        if abs(trial - value) <= reach and solved(trial):
+            edge = float(bisect(lambda x: np.asarray(solved(float(x))), np.array(trial), last[side], HALVINGS)[0])
+            if abs(edge - value) < ALONE * abs(trial - value):  # only the given value itself is infeasible
+                return float(trial)
             inside = edge + side * INWARDS * min(abs(edge), abs(edge - value))
             return inside if solved(inside) else edge
-        last[side] = np.array(place)
+        last[side] = np.array(trial)
     return None
 
 
@@ -196,32 +196,32 @@ class TaskFile:
             self.units = build_unit_system(self.shape.units, extended=extended)
             self.kinds = self._find_kinds()
             self.names = self._find_names()
-            raw, found = self.shape.parameters, self.placeholders()
-            resting = self._dependent_parameters(set(found))
+            raw, placeholders = self.shape.parameters, self.placeholders()
+            resting = self._dependent_parameters(set(placeholders))
             self.dependent = {name: raw[name] for name in raw if name in resting}
             self.independent = build_parameters(
-                {name: raw[name] for name in raw if name not in resting}, self.units, found
+                {name: raw[name] for name in raw if name not in resting}, self.units, placeholders
             )
             self._check_independence()
 
     def _find_kinds(self) -> dict[str, str]:
         """Return names and kinds of the parameters that the task finds; they may depend on the block."""
-        own = getattr(block_module(self.block.task), "parameters", None)
-        return dict(solver_module(self.block.task).PARAMETERS if own is None else own(self.block))
+        own_parameters = getattr(block_module(self.block.task), "parameters", None)
+        return dict(solver_module(self.block.task).PARAMETERS if own_parameters is None else own_parameters(self.block))
 
     def _find_names(self) -> dict[str, str]:
         """Map the standard names of the parameters to be found to their names in the file. Raises ProblemError."""
-        raw, own, task = self.shape.parameters, self.block.names, self.block.task
-        for name, other in own.items():
+        raw, aliases, task = self.shape.parameters, self.block.names, self.block.task
+        for name, other in aliases.items():
             path = ("synthesis", "names", name)
             if name not in self.kinds:
                 nothing = _("the synthesis {task} has no result with this name").format(task=task)
                 none = None if self.kinds else _("this synthesis finds no parameters")
                 raise unknown_name_error(name, self.kinds, nothing, none, path=path, key=True)
             check_parameter(other, path, key=False)
-        names = {name: own.get(name, name) for name in self.kinds}
+        names = {name: aliases.get(name, name) for name in self.kinds}
         for name, other in names.items():
-            first = next(one for one in names if names[one] == other)
+            first = next(candidate for candidate in names if names[candidate] == other)
             if first != name:
                 raise ProblemError(
                     _("the results {first} and {second} of the synthesis have the same name").format(
@@ -252,30 +252,30 @@ class TaskFile:
         """
         return {
             name: PhysicalValue(
-                1 + k * GOLDEN_RATIO % 1, None if self.searches else DIMENSIONS[self.kinds[own]].dimension
+                1 + k * GOLDEN_RATIO % 1, None if self.searches else DIMENSIONS[self.kinds[standard_name]].dimension
             )
-            for k, (own, name) in enumerate(self.names.items())
+            for k, (standard_name, name) in enumerate(self.names.items())
         }
 
-    def _dependent_parameters(self, found: set[str]) -> set[str]:
+    def _dependent_parameters(self, found_names: set[str]) -> set[str]:
         """Return the given parameters that depend, directly or through others, on those that the task finds."""
         raw = self.shape.parameters
-        known = dict.fromkeys([*raw, *found], PhysicalValue(0.0))
+        dummies = dict.fromkeys([*raw, *found_names], PhysicalValue(0.0))
         needs = {
-            name: set(Parser(plain_text(source[:200]), known, self.units).names())
+            name: set(Parser(plain_text(source[:200]), dummies, self.units).names())
             for name, source in raw.items()
             if isinstance(source, str)
         }
         late: set[str] = set()
-        while more := {name for name, used in needs.items() if used & (found | late)} - late:
+        while more := {name for name, used in needs.items() if used & (found_names | late)} - late:
             late |= more
         return late
 
     def _check_independence(self) -> None:
         """Raise ProblemError if the task depends on its solution. An optimal synthesis may refer to what it varies."""
-        known = dict.fromkeys([*self.dependent, *(() if self.searches else self.names.values())], PhysicalValue(0.0))
+        dummies = dict.fromkeys([*self.dependent, *(() if self.searches else self.names.values())], PhysicalValue(0.0))
         for path, text in _iterate_texts(self.block):
-            used = Parser(plain_text(text[:200]), known, self.units).names()
+            used = Parser(plain_text(text[:200]), dummies, self.units).names()
             if path[0] not in ("task", "names") and used:
                 raise ProblemError(
                     _("the task depends on parameters that the synthesis itself finds"),
@@ -302,18 +302,18 @@ class TaskFile:
         except TriedFileError as error:
             raise error.error from None
 
-    def try_values(self, found: Parameters, units: UnitSystem) -> Problem:
+    def try_values(self, trial_values: Parameters, units: UnitSystem) -> Problem:
         """Build the problem with trial values of the parameters of an optimal synthesis. Raises TriedFileError."""
         try:
-            return self.with_values(found, units)
+            return self.with_values(trial_values, units)
         except ProblemError as error:
             raise TriedFileError(error) from None
 
-    def with_values(self, found: Parameters, units: UnitSystem) -> Problem:
+    def with_values(self, found_values: Parameters, units: UnitSystem) -> Problem:
         """Build the problem with these values of the parameters to be found."""
         assert isinstance(self.shape, schema.File)
-        known = self.independent | found
-        everything = known | build_parameters(self.dependent, units, known)
+        known_values = self.independent | found_values
+        everything = known_values | build_parameters(self.dependent, units, known_values)
         return build_from_shape(self.shape, self.tree, ValueReader(everything, units))
 
     def solved(self) -> Synthesised:
@@ -334,12 +334,12 @@ class TaskFile:
 
     def find_nearest(self, at_fault: Path) -> str:
         """Describe the nearest feasible value of one of the numbers at this path, starting with the last one."""
-        read, refuse, own = (
+        read, refuse, reader = (
             block_module(self.block.task).read,
             solver_module(self.block.task).refuse,
             BoundedReader(self.independent, self.units),
         )
-        read(self.block, own)
+        read(self.block, reader)
 
         def solved(path: Path, value: float) -> bool:
             try:
@@ -348,9 +348,11 @@ class TaskFile:
                 return False
             return True
 
-        given = {path: own.given[path] for path in reversed(own.given) if path[: len(at_fault)] == at_fault}
+        given_numbers = {
+            path: reader.given[path] for path in reversed(reader.given) if path[: len(at_fault)] == at_fault
+        }
         with np.errstate(all="ignore"):
-            return describe_nearest(given, solved, self.units)
+            return describe_nearest(given_numbers, solved, self.units)
 
     def values(self, outcome: SynthesisOutcome) -> Parameters:
         """Return the parameters found, under their names in the file."""

@@ -159,7 +159,7 @@ def solve(task: ShaperTask) -> SynthesisOutcome:
     refuse(task)
     f = find_shaper(task)
     kind, text = QUANTITIES["pressure"]
-    found = (
+    rows = (
         NamedValue("OA", f.crank, "length", N_("crank OA")),
         NamedValue("OC", f.frame, "length", N_("frame OC, C below O")),
         NamedValue("CD", f.lever, "length", N_("slotted lever CD")),
@@ -180,7 +180,7 @@ def solve(task: ShaperTask) -> SynthesisOutcome:
         "(k - 1)/(k + 1), OA = OC sin(theta/2); the guide is at half the height of D's arc"
     )
     return SynthesisOutcome(
-        given_values(task, QUANTITIES), found, source, demands, (draw_construction(f),), output="slide"
+        given_values(task, QUANTITIES), rows, source, demands, (draw_construction(f),), output="slide"
     )
 
 

@@ -48,8 +48,8 @@ def lever_elements(
     c, o = complex(f.c), complex(f.o)
     lever, crank, frame = float(f.lever), float(f.crank), float(f.frame)
     ways = [complex(np.exp(1j * float(psi))) for psi in (f.psi1, f.psi2)]
-    pins = [c + frame * float(np.cos(f.theta / 2)) * way for way in ways]
-    ends = [c + lever * way for way in ways]
+    pins = [c + frame * float(np.cos(f.theta / 2)) * direction for direction in ways]
+    ends = [c + lever * direction for direction in ways]
     first, last = sorted((float(f.psi1), float(f.psi1) + float(np.angle(ways[1] / ways[0]))))
     axis = (o - c) / abs(o - c)
     top = c + 1.1 * max(lever, frame + crank) * axis
@@ -108,11 +108,11 @@ def tabulate_family(task: SlottedLeverTask, f: SlottedLeverSolution) -> tuple[Di
         ("nearest", N_("distance of the sliding block from C, smallest"), frame - crank),
         ("farthest", N_("distance of the sliding block from C, largest"), frame + crank),
     )
-    own = np.array([f.crank, f.frame - f.crank, f.frame + f.crank], dtype=float)
+    chosen = np.array([f.crank, f.frame - f.crank, f.frame + f.crank], dtype=float)
     lines = (
         *(DiagramLine(text, frame, values) for __, text, values in rows),
         DiagramLine(N_("slotted lever CB"), frame, np.full(FAMILY_SIZE, float(f.lever))),
-        DiagramLine(N_("chosen"), np.full(3, float(f.frame)), own, dots=True),
+        DiagramLine(N_("chosen"), np.full(3, float(f.frame)), chosen, dots=True),
     )
     title = N_("Crank OA and distance of the sliding block from C over OC")
     drawn = Diagram("family-lengths", title, (N_("frame OC"), "length"), (N_("length"), "length"), lines)
@@ -200,10 +200,10 @@ def find_slotted_lever(task: SlottedLeverTask) -> SlottedLeverSolution:
     theta = task.theta
     sine = np.sin(theta / 2)
     if task.CB is None:
-        way = np.asarray(task.b2) - task.b1
-        lever = np.abs(way) / 2 / sine
-        c = (np.asarray(task.b1) + task.b2) / 2 + task.side * 1j * way / 2 / np.tan(theta / 2)
-        along = -task.side * 1j * way / np.abs(way)
+        segment = np.asarray(task.b2) - task.b1
+        lever = np.abs(segment) / 2 / sine
+        c = (np.asarray(task.b1) + task.b2) / 2 + task.side * 1j * segment / 2 / np.tan(theta / 2)
+        along = -task.side * 1j * segment / np.abs(segment)
         psi1, psi2 = np.angle(task.b1 - c), np.angle(task.b2 - c)
     else:
         lever, c = np.asarray(task.CB), task.c
@@ -218,10 +218,10 @@ def find_slotted_lever(task: SlottedLeverTask) -> SlottedLeverSolution:
         frame = np.minimum(task.within[1], longest)
     else:
         frame = np.asarray(task.within[0])
-    size = lever + frame + np.abs(c)
-    along, c = zero_within_rounding(along, 1.0), zero_within_rounding(c, size)
+    extent = lever + frame + np.abs(c)
+    along, c = zero_within_rounding(along, 1.0), zero_within_rounding(c, extent)
     return SlottedLeverSolution(
-        frame * sine, frame, lever, zero_within_rounding(c + frame * along, size), c, psi1, psi2, theta, longest
+        frame * sine, frame, lever, zero_within_rounding(c + frame * along, extent), c, psi1, psi2, theta, longest
     )
 
 
@@ -360,17 +360,17 @@ def read(shape: SlottedLeverBlock, values: ValueReader) -> SlottedLeverTask:
     """Read the task into SI. Raises ProblemError."""
     ends, *__ = (choose_key_set(shape, sets) for sets in (END_KEYS, SWING_KEYS, FRAME_KEYS))
     _check_companions(shape, {"C": ("B1", "B2"), "support": ("CB",), "axis": ("CB",), "choose": ("within",)})
-    found = read_numbers(shape, values, QUANTITIES)
+    fields = read_numbers(shape, values, QUANTITIES)
     if ends == ("CB",):
-        found["c"] = values.vector(shape.support or [0, 0], LENGTH, ("support",))
-        found["axis"] = values.number("90 deg" if shape.axis is None else shape.axis, ANGLE, ("axis",))
+        fields["c"] = values.vector(shape.support or [0, 0], LENGTH, ("support",))
+        fields["axis"] = values.number("90 deg" if shape.axis is None else shape.axis, ANGLE, ("axis",))
     else:
-        found |= {name.lower(): values.vector(getattr(shape, name), LENGTH, (name,)) for name in ends}
+        fields |= {name.lower(): values.vector(getattr(shape, name), LENGTH, (name,)) for name in ends}
     if shape.within is not None:
         low, high = (values.number(v, LENGTH, ("within", n)) for n, v in enumerate(shape.within))
-        found["within"] = (low, high)
+        fields["within"] = (low, high)
     choose = "shortest" if shape.choose == "shortest" else "force"
-    return SlottedLeverTask(**found, side=1 if shape.C == "left" else -1, choose=choose)
+    return SlottedLeverTask(**fields, side=1 if shape.C == "left" else -1, choose=choose)
 
 
 def _check_companions(shape: SlottedLeverBlock, needs: dict[str, tuple[str, ...]]) -> None:

@@ -109,7 +109,7 @@ def redrive(problem: Problem | TaskProblem, link: str) -> Problem:
     with translate_errors(whole):
         linkage = with_driver(whole.linkage, link)
     loads = tuple(
-        own for own in linkage.loads if own.window is None and (own.table is None or own.table.against == "stroke")
+        load for load in linkage.loads if load.window is None and (load.table is None or load.table.against == "stroke")
     )
     linkage, request = replace(linkage, loads=loads, turns=1), replace(whole.request, places=(), start=0.0)
     return replace(

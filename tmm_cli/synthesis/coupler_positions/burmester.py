@@ -47,8 +47,8 @@ class CouplerPoses:
 
         P_j - P_1, e^(i alpha_j) - 1, d2, d3, |d3|, |d4|, d2 + d3 + d4.
         """
-        places, angles = np.asarray(self.places, COMPLEX), np.asarray(self.angles, EXACT)
-        d, a = places[..., 1:] - places[..., :1], unit_vector(angles[..., 1:] - angles[..., :1]) - 1
+        origins, angles = np.asarray(self.places, COMPLEX), np.asarray(self.angles, EXACT)
+        d, a = origins[..., 1:] - origins[..., :1], unit_vector(angles[..., 1:] - angles[..., :1]) - 1
         d2, d3, d4 = (
             a[..., 1] * d[..., 2] - a[..., 2] * d[..., 1],
             a[..., 2] * d[..., 0] - a[..., 0] * d[..., 2],
@@ -79,24 +79,24 @@ def equal_angles(angles: Any) -> bool:
     return bool(np.all(np.abs(unit_vector(np.asarray(angles) - angles[0]) - 1) < NO_TURN))
 
 
-def circle_centre(places: Any) -> Any:
+def circle_centre(points: Any) -> Any:
     """Return the centre of the circle through three points (last axis); infinite or nan if they lie on a line."""
-    first, second = places[..., 1] - places[..., 0], places[..., 2] - places[..., 0]
+    first, second = points[..., 1] - points[..., 0], points[..., 2] - points[..., 0]
     with np.errstate(all="ignore"):
         area = (np.conj(first) * second).imag
         square = (first * np.conj(first)).real * second - (second * np.conj(second)).real * first
-        return places[..., 0] - 1j * square / (2 * area)
+        return points[..., 0] - 1j * square / (2 * area)
 
 
-def point_at_distance(places: Any, radius: Any, side: float) -> Any:
+def point_at_distance(points: Any, radius: Any, side: float) -> Any:
     """Return the point at distance `radius` from two points (last axis), on the left (1) or right (-1) of the line from
     the first to the second.
     """
-    way = places[..., 1] - places[..., 0]
-    half = np.abs(way) / 2
+    segment = points[..., 1] - points[..., 0]
+    half = np.abs(segment) / 2
     with np.errstate(all="ignore"):
         height = np.sqrt((radius - half) * (radius + half))
-    return (places[..., 0] + places[..., 1]) / 2 + 1j * side * height * way / (2 * half)
+    return (points[..., 0] + points[..., 1]) / 2 + 1j * side * height * segment / (2 * half)
 
 
 def dyads_by_rotation(poses: CouplerPoses, turn: Any, branch: Any, ends: bool = False) -> Dyads:
@@ -107,7 +107,7 @@ def dyads_by_rotation(poses: CouplerPoses, turn: Any, branch: Any, ends: bool = 
         branch: 0 or 1, which of the two solutions.
         ends: True if the rotations are known to have dyads, and exceed the limits only by rounding.
     """
-    places, (d, a, d2, d3, size3, size4, total) = np.asarray(poses.places, COMPLEX), poses.loop
+    origins, (d, a, d2, d3, size3, size4, total) = np.asarray(poses.places, COMPLEX), poses.loop
     second = unit_vector(turn)
     rest = total - d2 * second
     with np.errstate(all="ignore"):
@@ -120,7 +120,7 @@ def dyads_by_rotation(poses: CouplerPoses, turn: Any, branch: Any, ends: bool = 
         w = (d[..., 0] * a[..., 1] - d[..., 1] * a[..., 0]) / least
         z = ((second - 1) * d[..., 1] - (third - 1) * d[..., 0]) / least
     pin = -z * unit_vector(-np.asarray(poses.angles, EXACT)[..., 0])
-    return Dyads(places[..., 0] - z - w, pin)
+    return Dyads(origins[..., 0] - z - w, pin)
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ def rate_guidance(poses: CouplerPoses, first: Dyads, second: Dyads) -> GuidanceQ
             2 * l2 * l3
         )  # dead position, as for a kite with pin C on pivot A
     branch = np.any(side != side[..., :1], axis=-1)
-    found = []
+    ratings = []
     for turn in (steps.sum(-1), (steps - 2 * np.pi).sum(-1)):
         low, high = phi[..., 0] + np.minimum(turn, 0), phi[..., 0] + np.maximum(turn, 0)
         with np.errstate(all="ignore"):
@@ -162,10 +162,10 @@ def rate_guidance(poses: CouplerPoses, first: Dyads, second: Dyads) -> GuidanceQ
         locks = ~(largest < dead)
         back = np.abs(turn) >= 2 * np.pi
         defect = np.where(branch, 1, np.where(back, 2, np.where(locks, 3, 0)))
-        found.append((defect, np.arccos(np.clip(largest, 0, 1)), turn, where))
-    one, other = found
-    better = (one[0] < other[0]) | ((one[0] == other[0]) & (one[1] >= other[1]))
-    return GuidanceQuality(*(np.where(better, x, y) for x, y in zip(one, other, strict=True)))
+        ratings.append((defect, np.arccos(np.clip(largest, 0, 1)), turn, where))
+    forward, backward = ratings
+    better = (forward[0] < backward[0]) | ((forward[0] == backward[0]) & (forward[1] >= backward[1]))
+    return GuidanceQuality(*(np.where(better, x, y) for x, y in zip(forward, backward, strict=True)))
 
 
 # The task.
@@ -221,19 +221,19 @@ class CouplerPositionsTask:
         The largest distance between positions, or of a given pin from the coupler's origin; if these are zero, the
         largest distance of a given pivot, or a given length.
         """
-        places = np.asarray(self.places, complex)
-        given = [abs(complex(s.pin)) for s in self.sides.values() if s.pin is not None]
-        found = float(max(np.max(np.abs(places[:, None] - places)), *given, 0.0))
-        if found == 0:
-            away = [abs(complex(s.pivot) - places[0]) for s in self.sides.values() if s.pivot is not None]
-            found = float(max([*away, *(s.length for s in self.sides.values() if s.length is not None), 0.0]))
-        return found
+        origins = np.asarray(self.places, complex)
+        pin_distances = [abs(complex(s.pin)) for s in self.sides.values() if s.pin is not None]
+        length = float(max(np.max(np.abs(origins[:, None] - origins)), *pin_distances, 0.0))
+        if length == 0:
+            away = [abs(complex(s.pivot) - origins[0]) for s in self.sides.values() if s.pivot is not None]
+            length = float(max([*away, *(s.length for s in self.sides.values() if s.length is not None), 0.0]))
+        return length
 
-    def outside(self, places: Any) -> Any:
+    def outside(self, points: Any) -> Any:
         """Return the distance (m) of points from the box, 0 inside it."""
         if self.within is None:
-            return np.zeros(np.shape(places))
+            return np.zeros(np.shape(points))
         (x, y), (u, v) = ((corner.real, corner.imag) for corner in self.within)
-        at = np.asarray(places, complex)
+        at = np.asarray(points, complex)
         across = np.maximum(min(x, u) - at.real, at.real - max(x, u))
         return np.hypot(np.maximum(across, 0.0), np.maximum(np.maximum(min(y, v) - at.imag, at.imag - max(y, v)), 0.0))

@@ -105,9 +105,9 @@ class CurveSamples:
 
     def at(self, x: Any) -> Dyads:
         """Return the dyads at sample indices x, which may lie between two samples."""
-        here = np.minimum(np.floor(x).astype(int), len(self.t) - 1)
-        beyond = np.minimum(here + 1, len(self.t) - 1)
-        return self.curve.at(self.loop[here], self.t[here] + (x - here) * (self.t[beyond] - self.t[here]))
+        lower = np.minimum(np.floor(x).astype(int), len(self.t) - 1)
+        beyond = np.minimum(lower + 1, len(self.t) - 1)
+        return self.curve.at(self.loop[lower], self.t[lower] + (x - lower) * (self.t[beyond] - self.t[lower]))
 
 
 def burmester_curve(poses: CouplerPoses) -> DyadCurve:
@@ -143,55 +143,55 @@ def _pin_circle(poses: CouplerPoses, equal: list[int], odd: int) -> PinCircle:
     return PinCircle(poses, first, arm, -(poses.places[odd] - poses.places[first] + arm) / g, np.abs(arm / g))
 
 
-def scan_curve(found: DyadCurve, size: float) -> list[Any]:
+def scan_curve(curve: DyadCurve, size: float) -> list[Any]:
     """Return parameters around every loop, denser where nearby dyads change fast."""
-    return [] if isinstance(found, GivenDyad) else [_scan_loop(found, loop, size) for loop in range(len(found))]
+    return [] if isinstance(curve, GivenDyad) else [_scan_loop(curve, loop, size) for loop in range(len(curve))]
 
 
 def sample_parts(
-    found: DyadCurve, scans: list[Any], good: Callable[[Dyads], Any], size: float, count: int
+    curve: DyadCurve, scans: list[Any], good: Callable[[Dyads], Any], size: float, count: int
 ) -> CurveSamples | None:
     """Sample the parts of a curve on which dyads are `good`, about `count` samples in all; the ends are found by
     bisection.
 
     None if there are no such parts.
     """
-    if isinstance(found, GivenDyad):
-        return CurveSamples(found, np.zeros(1), *np.zeros((3, 1), dtype=int))
+    if isinstance(curve, GivenDyad):
+        return CurveSamples(curve, np.zeros(1), *np.zeros((3, 1), dtype=int))
     rows = []
     for loop, t in enumerate(scans):
-        here = good(found.at(loop, t))
-        starts, ends = (np.flatnonzero(x) for x in (here[1:] & ~here[:-1], here[:-1] & ~here[1:]))
+        is_good = good(curve.at(loop, t))
+        starts, ends = (np.flatnonzero(x) for x in (is_good[1:] & ~is_good[:-1], is_good[:-1] & ~is_good[1:]))
         inside, outside = np.concatenate([t[starts + 1], t[ends]]), np.concatenate([t[starts], t[ends + 1]])
-        edges, __ = bisect(lambda at, loop=loop: good(found.at(loop, at)), inside, outside, HALVINGS)  # type: ignore[misc]
+        edges, __ = bisect(lambda at, loop=loop: good(curve.at(loop, at)), inside, outside, HALVINGS)  # type: ignore[misc]
         low, high = np.split(edges, [len(starts)])
-        low = np.concatenate([t[:1] if here[0] else t[:0], low])
-        high = np.concatenate([high, t[-1:] if here[-1] else t[:0]])
+        low = np.concatenate([t[:1] if is_good[0] else t[:0], low])
+        high = np.concatenate([high, t[-1:] if is_good[-1] else t[:0]])
         for a, b in zip(low, high, strict=True):
             inner = np.concatenate([[a], t[(t > a) & (t < b)], [b]])
-            way = np.cumsum(np.concatenate([[0], _relative_gaps(found.at(loop, inner), size)]))
-            rows.append((loop, inner, np.asarray(way, float)))
-    total = sum(way[-1] for _, _, way in rows)
-    made = []
-    for loop, inner, way in rows:
-        n = int(np.ceil(count * way[-1] / total)) + 3 if total > 0 else 3
-        even = np.interp(np.linspace(0, way[-1], n), way, np.asarray(inner - inner[0], float))
+            path_length = np.cumsum(np.concatenate([[0], _relative_gaps(curve.at(loop, inner), size)]))
+            rows.append((loop, inner, np.asarray(path_length, float)))
+    total = sum(path_length[-1] for _, _, path_length in rows)
+    samples = []
+    for loop, inner, path_length in rows:
+        n = int(np.ceil(count * path_length[-1] / total)) + 3 if total > 0 else 3
+        even = np.interp(np.linspace(0, path_length[-1], n), path_length, np.asarray(inner - inner[0], float))
         t = inner[0] + even.astype(EXACT)
         t[-1] = inner[-1]
-        made.append((loop, t))
-    if not made:
+        samples.append((loop, t))
+    if not samples:
         return None
-    counts = [len(t) for __, t in made]
+    counts = [len(t) for __, t in samples]
     ends = np.cumsum(counts)
-    loops = np.repeat([loop for loop, __ in made], counts)
+    loops = np.repeat([loop for loop, __ in samples], counts)
     first, last = np.repeat(ends - counts, counts), np.repeat(ends - 1, counts)
-    return CurveSamples(found, np.concatenate([t for __, t in made]), loops, first, last)
+    return CurveSamples(curve, np.concatenate([t for __, t in samples]), loops, first, last)
 
 
-def _scan_loop(found: RotationLoops | PinCircle, loop: int, size: float) -> Any:
+def _scan_loop(curve: RotationLoops | PinCircle, loop: int, size: float) -> Any:
     def wide(t: Any) -> Any:
-        dyads = found.at(loop, t)
-        near = np.abs(dyads.pivot - found.poses.places[0]) + np.abs(dyads.pin) < 8 * size
+        dyads = curve.at(loop, t)
+        near = np.abs(dyads.pivot - curve.poses.places[0]) + np.abs(dyads.pin) < 8 * size
         return (near[1:] | near[:-1]) & ~(_relative_gaps(dyads, size) < APART) & (np.diff(t) > 1e-12)
 
     return refine_parameters(wide, FIRST, ROUNDS)
@@ -201,10 +201,10 @@ def refine_parameters(wide: Callable[[Any], Any], first: int, rounds: int) -> An
     """Return parameters around a loop: `first` equal steps, then repeatedly midpoints of steps that are too wide."""
     t = FULL * np.linspace(0, 1, first + 1, dtype=EXACT)
     for _ in range(rounds):
-        here = wide(t)
-        if not np.any(here):
+        too_wide = wide(t)
+        if not np.any(too_wide):
             break
-        t = np.sort(np.concatenate([t, ((t[1:] + t[:-1]) / 2)[here]]))
+        t = np.sort(np.concatenate([t, ((t[1:] + t[:-1]) / 2)[too_wide]]))
     return t
 
 
@@ -238,65 +238,65 @@ def burmester_lines(poses: CouplerPoses, about: Sequence[complex]) -> tuple[list
     """
     if equal_angles(poses.angles):
         return [], []
-    found, box = burmester_curve(poses), np.array(about)
+    curve, box = burmester_curve(poses), np.array(about)
     middle = complex(box.real.max() + box.real.min(), box.imag.max() + box.imag.min()) / 2
     size = float(max(np.ptp(box.real), np.ptp(box.imag)))
 
     def pivots(loop: int, t: Any) -> Any:
-        return (np.asarray(found.at(loop, t).pivot, complex) - middle) / size
+        return (np.asarray(curve.at(loop, t).pivot, complex) - middle) / size
 
     def pins(loop: int, t: Any) -> Any:
-        return (np.asarray(poses.on_frame(found.at(loop, t).pin)[..., 0], complex) - middle) / size
+        return (np.asarray(poses.on_frame(curve.at(loop, t).pin)[..., 0], complex) - middle) / size
 
     kinds = pivots, pins
-    rows = [[tuple((middle + size * part).tolist()) for part in _split_pieces(found, at)] for at in kinds]
+    rows = [[tuple((middle + size * piece).tolist()) for piece in _split_pieces(curve, at)] for at in kinds]
     return rows[0], rows[1]
 
 
-def _split_pieces(found: DyadCurve, at: Callable[[int, Any], Any]) -> Iterator[Any]:
+def _split_pieces(curve: DyadCurve, at: Callable[[int, Any], Any]) -> Iterator[Any]:
     """Yield the pieces of a curve in the drawn area, or whole loops; unit: size of the mechanism, its middle at 0."""
-    for loop in range(len(found)):
+    for loop in range(len(curve)):
         with np.errstate(all="ignore"):
-            places = _sample_densely(lambda t, loop=loop: at(loop, t))  # type: ignore[misc]
-            broken = ~(np.abs(np.diff(places)) < BREAK * np.maximum(1, np.abs(places[1:])))
-            broken |= ~(_is_near(places[1:]) | _is_near(places[:-1]))
-        parts = [part for part in np.split(places, np.flatnonzero(broken) + 1) if len(part) > 1]
-        if len(parts) > 1 and not (broken[0] or broken[-1]):  # the loop starts inside a piece
-            parts = [np.concatenate([parts[-1], parts[0][1:]]), *parts[1:-1]]
-        yield from parts
+            points = _sample_densely(lambda t, loop=loop: at(loop, t))  # type: ignore[misc]
+            broken = ~(np.abs(np.diff(points)) < BREAK * np.maximum(1, np.abs(points[1:])))
+            broken |= ~(_is_near(points[1:]) | _is_near(points[:-1]))
+        pieces = [piece for piece in np.split(points, np.flatnonzero(broken) + 1) if len(piece) > 1]
+        if len(pieces) > 1 and not (broken[0] or broken[-1]):  # the loop starts inside a piece
+            pieces = [np.concatenate([pieces[-1], pieces[0][1:]]), *pieces[1:-1]]
+        yield from pieces
 
 
 def _sample_densely(at: Callable[[Any], Any]) -> Any:
     """Return points around a loop, as dense as a drawing needs."""
 
     def wide(t: Any) -> Any:
-        places = at(t)
-        steps, reach = np.diff(places), np.maximum(1, np.abs(places))
-        found = ~(np.abs(steps) < DRAWN_APART * np.minimum(reach[1:], reach[:-1]))
+        points = at(t)
+        steps, reach = np.diff(points), np.maximum(1, np.abs(points))
+        too_wide = ~(np.abs(steps) < DRAWN_APART * np.minimum(reach[1:], reach[:-1]))
         bends = np.abs(np.angle(steps[1:] / steps[:-1])) > BEND
         seen = np.abs(steps) > SHORT
-        found[1:] |= bends & seen[1:]
-        found[:-1] |= bends & seen[:-1]
-        return found & (_is_near(places[1:]) | _is_near(places[:-1])) & (np.diff(t) > CLOSE * FULL)
+        too_wide[1:] |= bends & seen[1:]
+        too_wide[:-1] |= bends & seen[:-1]
+        return too_wide & (_is_near(points[1:]) | _is_near(points[:-1])) & (np.diff(t) > CLOSE * FULL)
 
-    places = at(refine_parameters(wide, FIRST_STEPS, BENDING_ROUNDS))
-    return places[np.isfinite(places)]
-
-
-def _is_near(places: Any) -> Any:
-    return np.isfinite(places) & (np.abs(places.real) < FAR) & (np.abs(places.imag) < FAR)
+    points = at(refine_parameters(wide, FIRST_STEPS, BENDING_ROUNDS))
+    return points[np.isfinite(points)]
 
 
-def sheet_extent(bar: Sequence[complex], found: Sequence[Places]) -> Places:
+def _is_near(points: Any) -> Any:
+    return np.isfinite(points) & (np.abs(points.real) < FAR) & (np.abs(points.imag) < FAR)
+
+
+def sheet_extent(bar: Sequence[complex], curves: Sequence[Places]) -> Places:
     """Return two corners (m) of the area of the curves' sheet.
 
     It contains the four-bar, the curves near it, and pieces of curves that leave it only a little before they return.
     """
-    places = np.array(bar)
-    low, high = (complex(f(places.real), f(places.imag)) for f in (np.min, np.max))
+    corners = np.array(bar)
+    low, high = (complex(f(corners.real), f(corners.imag)) for f in (np.min, np.max))
     size = max((high - low).real, (high - low).imag)
-    held = [places]
-    for line in found:
+    held = [corners]
+    for line in curves:
         z = np.array(line)
         off = np.maximum.reduce([low.real - z.real, z.real - high.real, low.imag - z.imag, z.imag - high.imag]) / size
         held.append(z[off < AROUND])
@@ -307,5 +307,5 @@ def sheet_extent(bar: Sequence[complex], found: Sequence[Places]) -> Places:
             ends = number in (0, len(runs) - 1)
             if np.max(off[run]) < RETURN and (closed or not ends) and len(runs) > 1:
                 held.append(z[run])
-    every = np.concatenate(held)
-    return tuple(complex(f(every.real), f(every.imag)) for f in (np.min, np.max))
+    all_points = np.concatenate(held)
+    return tuple(complex(f(all_points.real), f(all_points.imag)) for f in (np.min, np.max))

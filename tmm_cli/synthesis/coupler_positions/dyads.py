@@ -62,7 +62,7 @@ class LinkLimits:
 
 
 def best_on_curves(
-    poses: CouplerPoses, size: float, limits: LinkLimits, given: dict[str, Dyads], loose: bool = False
+    poses: CouplerPoses, size: float, limits: LinkLimits, given_dyads: dict[str, Dyads], loose: bool = False
 ) -> tuple[Dyads, Dyads, float] | None:
     """Return the best dyads AB and DC on Burmester's curves and their rating; None if no link is sensible.
 
@@ -73,28 +73,33 @@ def best_on_curves(
     scans = scan_curve(whole, size)
 
     def rows(name: str, order: CouplerPoses | None) -> CurveSamples | None:
-        found = GivenDyad(given[name]) if name in given else whole
-        return _sample_sensible(poses, found, scans, size, limits, order)
+        source = GivenDyad(given_dyads[name]) if name in given_dyads else whole
+        return _sample_sensible(poses, source, scans, size, limits, order)
 
-    one, other = rows("AB", None if loose else poses), rows("DC", None)
-    if one is None and not loose:
-        one = rows("AB", None)
-    if one is None or other is None:
+    first, second = rows("AB", None if loose else poses), rows("DC", None)
+    if first is None and not loose:
+        first = rows("AB", None)
+    if first is None or second is None:
         return None
 
     def score(x: Any, y: Any) -> Any:
-        return rate_pairs(poses, one.at(x), other.at(y), limits, loose)
+        return rate_pairs(poses, first.at(x), second.at(y), limits, loose)
 
-    table = score(np.arange(len(one.t))[:, None], np.arange(len(other.t))[None, :])
-    x, y = _local_peaks(table, one, other)
-    x, y, value = _climb(score, x, y, one, other)
-    x, y, value = _refine_best(score, x, y, value, one, other)
+    table = score(np.arange(len(first.t))[:, None], np.arange(len(second.t))[None, :])
+    x, y = _local_peaks(table, first, second)
+    x, y, value = _climb(score, x, y, first, second)
+    x, y, value = _refine_best(score, x, y, value, first, second)
     at = int(np.argmax(value))
-    return one.at(x[at : at + 1])[0], other.at(y[at : at + 1])[0], float(value[at])
+    return first.at(x[at : at + 1])[0], second.at(y[at : at + 1])[0], float(value[at])
 
 
 def _sample_sensible(
-    poses: CouplerPoses, found: DyadCurve, scans: list[Any], size: float, limits: LinkLimits, order: CouplerPoses | None
+    poses: CouplerPoses,
+    source: DyadCurve,
+    scans: list[Any],
+    size: float,
+    limits: LinkLimits,
+    order: CouplerPoses | None,
 ) -> CurveSamples | None:
     def good(dyads: Dyads) -> Any:
         with np.errstate(all="ignore"):
@@ -109,28 +114,30 @@ def _sample_sensible(
             turn = steps.sum(-1)
             return sound & ((turn < 2 * np.pi) | (turn > 2 * np.pi * (steps.shape[-1] - 1)))
 
-    return sample_parts(found, scans, good, size, COUNT)
+    return sample_parts(source, scans, good, size, COUNT)
 
 
-def rate_pairs(poses: CouplerPoses, one: Dyads, other: Dyads, limits: LinkLimits, loose: bool = False) -> Any:
+def rate_pairs(poses: CouplerPoses, first: Dyads, second: Dyads, limits: LinkLimits, loose: bool = False) -> Any:
     """Rate four-bars of dyads AB and DC (broadcast together): smallest transmission angle (rad) through the positions.
 
     Negative if the four-bar is not feasible; the further from feasible, the lower.
     """
-    b, c = (np.asarray(poses.on_frame(x.pin), complex) for x in (one, other))
-    a, d = (np.asarray(x.pivot, complex) for x in (one, other))
+    b, c = (np.asarray(poses.on_frame(x.pin), complex) for x in (first, second))
+    a, d = (np.asarray(x.pivot, complex) for x in (first, second))
     with np.errstate(all="ignore"):
         l1, l3 = np.abs(b[..., 0] - a), np.abs(c[..., 0] - d)
         turned = np.mod(np.diff(np.angle(b - a[..., None]), axis=-1), 2 * np.pi)
-        l2, l4 = np.abs(np.asarray(one.pin - other.pin, complex)), np.abs(a - d)
+        l2, l4 = np.abs(np.asarray(first.pin - second.pin, complex)), np.abs(a - d)
         start = np.angle((b[..., 0] - a) / (d - a))
         sines = ((c - b) * np.conj(c - d[..., None])).imag / (l2 * l3)[..., None]
         branch = 0.0 if loose else np.maximum(0, -np.maximum(sines.min(-1), -sines.max(-1)))
         value: Any = -np.inf
         for steps in (turned, turned - 2 * np.pi):
-            way = steps.sum(-1)
-            worst, __ = extreme_cosine((l1, l2, l3, l4), start + np.minimum(way, 0), start + np.maximum(way, 0))
-            back = np.maximum(0, np.abs(way) - 2 * np.pi + 1e-12)
+            rotation = steps.sum(-1)
+            worst, __ = extreme_cosine(
+                (l1, l2, l3, l4), start + np.minimum(rotation, 0), start + np.maximum(rotation, 0)
+            )
+            back = np.maximum(0, np.abs(rotation) - 2 * np.pi + 1e-12)
             wrong = branch + np.maximum(0, worst - 1) + (0 if loose else back)
             value = np.maximum(value, np.where(wrong > 0, -wrong, np.arccos(np.minimum(worst, 1))))
         unfair: Any = 0.0
@@ -140,10 +147,10 @@ def rate_pairs(poses: CouplerPoses, one: Dyads, other: Dyads, limits: LinkLimits
     return np.where(np.isfinite(value), value, -99.0)
 
 
-def _local_peaks(table: Any, one: CurveSamples, other: CurveSamples) -> tuple[Any, Any]:
+def _local_peaks(table: Any, first: CurveSamples, second: CurveSamples) -> tuple[Any, Any]:
     """Return the indices of the pairs not worse than their neighbours on the same parts, best first."""
     top = np.ones(table.shape, bool)
-    for axis, rows in enumerate((one, other)):
+    for axis, rows in enumerate((first, second)):
         values, peak = np.moveaxis(table, axis, 0), np.moveaxis(top, axis, 0)
         same = (rows.low[1:] == rows.low[:-1])[:, None]
         peak[:-1] &= ~same | (values[:-1] >= values[1:])
@@ -153,10 +160,10 @@ def _local_peaks(table: Any, one: CurveSamples, other: CurveSamples) -> tuple[An
     return x[order].astype(float), y[order].astype(float)
 
 
-def _climb(score: Any, x: Any, y: Any, one: CurveSamples, other: CurveSamples) -> tuple[Any, Any, Any]:
+def _climb(score: Any, x: Any, y: Any, first: CurveSamples, second: CurveSamples) -> tuple[Any, Any, Any]:
     """Improve all starting points together: rate a small grid around each, and shrink it where its middle is best."""
     shifts = np.linspace(-1.5, 1.5, 7)
-    ends = [(rows.low[at.astype(int)], rows.high[at.astype(int)]) for rows, at in ((one, x), (other, y))]
+    ends = [(rows.low[at.astype(int)], rows.high[at.astype(int)]) for rows, at in ((first, x), (second, y))]
     step = np.ones(len(x))
     for __ in range(ROUNDS):
         near = [
@@ -196,8 +203,8 @@ def _refine_best(
 
 def _search_interval(rows: CurveSamples, at: Any) -> tuple[Any, Any]:
     """Return the ends of the interval around each index in which its peak is searched."""
-    here = at.astype(int)
-    return np.maximum(at - REACH, rows.low[here]), np.minimum(at + REACH, rows.high[here])
+    sample = at.astype(int)
+    return np.maximum(at - REACH, rows.low[sample]), np.minimum(at + REACH, rows.high[sample])
 
 
 # Dyads AB and DC of a four-bar for 2, 3 or 4 coupler positions: from given data, or the best on a curve.
@@ -225,13 +232,13 @@ NO_LINKS: Final = N_(
 
 def find_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads, GuidanceQuality]:
     """Return the dyads AB and DC and their quality. Raises Infeasible."""
-    one, other = solve_both_dyads(task)
-    if not min(abs(one.pivot - other.pivot), abs(one.pin - other.pin)) > SAME_POINTS * task.size:
+    first, second = solve_both_dyads(task)
+    if not min(abs(first.pivot - second.pivot), abs(first.pin - second.pin)) > SAME_POINTS * task.size:
         raise Infeasible(_given_key(task, "DC"), _("AB and DC have a common pin or pivot: this is not a four-bar"))
-    mark = rate_guidance(task.poses, one, other)
+    mark = rate_guidance(task.poses, first, second)
     if mark.defect and not task.keep:
         raise Infeasible("positions", DEFECTS[int(mark.defect)], search=_search_is_quick(task))
-    return one, other, mark
+    return first, second, mark
 
 
 def _search_is_quick(task: CouplerPositionsTask) -> bool:
@@ -252,8 +259,8 @@ def solve_both_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
         return solve_dyad(task, "AB"), solve_dyad(task, "DC")
     if task.still:
         return parallelogram_dyads(task)
-    given = given_dyads(task)
-    return (given["AB"], given["DC"]) if len(given) == 2 else best_dyads(task, given)
+    specified = given_dyads(task)
+    return (specified["AB"], specified["DC"]) if len(specified) == 2 else best_dyads(task, specified)
 
 
 def solve_dyad(task: CouplerPositionsTask, name: str) -> Dyads:
@@ -261,24 +268,24 @@ def solve_dyad(task: CouplerPositionsTask, name: str) -> Dyads:
     side, poses = task.sides[name], task.poses
     pin_given = side.pin is not None
     point = name[1] if pin_given else name[0]
-    given = side.pin if pin_given else side.pivot
-    places = poses.on_frame(given) if pin_given else poses.in_plane(given)
-    if np.max(np.abs(np.diff(places))) <= (1 if len(places) == 3 else 2) * SAME_POINTS * task.size:
+    given_point = side.pin if pin_given else side.pivot
+    points = poses.on_frame(given_point) if pin_given else poses.in_plane(given_point)
+    if np.max(np.abs(np.diff(points))) <= (1 if len(points) == 3 else 2) * SAME_POINTS * task.size:
         raise Infeasible(point, _(POLE_REASON).format(point=point))
-    if len(places) == 3:
-        found = circle_centre(places)
-        if not np.isfinite(found) or abs(found - places[0]) > task.size / SAME_POINTS:
+    if len(points) == 3:
+        other_end = circle_centre(points)
+        if not np.isfinite(other_end) or abs(other_end - points[0]) > task.size / SAME_POINTS:
             reason = _(
                 "the three positions of {point} lie on a straight line: the other end of the link would be "
                 "infinitely far away"
             )
             raise Infeasible(point, reason.format(point=point))
     else:
-        if not side.length > abs(places[1] - places[0]) / 2:
+        if not side.length > abs(points[1] - points[0]) / 2:
             raise Infeasible(name, _("link {name} is too short to reach both positions").format(name=name))
-        found = point_at_distance(places, side.length, SIDES[side.side])
-    fixed = np.asarray(given, np.clongdouble)
-    return Dyads(found, fixed) if pin_given else Dyads(fixed, found)
+        other_end = point_at_distance(points, side.length, SIDES[side.side])
+    fixed = np.asarray(given_point, np.clongdouble)
+    return Dyads(other_end, fixed) if pin_given else Dyads(fixed, other_end)
 
 
 def given_dyads(task: CouplerPositionsTask) -> dict[str, Dyads]:
@@ -286,69 +293,69 @@ def given_dyads(task: CouplerPositionsTask) -> dict[str, Dyads]:
 
     Raises Infeasible.
     """
-    found = {
+    dyads = {
         name: dyads_by_rotation(task.poses, np.asarray(side.turn, np.longdouble), side.branch)
         if side.near is None
         else nearest_dyad(task, name)
         for name, side in task.sides.items()
     }
-    for name, own in found.items():
-        if not are_sensible(task, own):
+    for name, candidate in dyads.items():
+        if not are_sensible(task, candidate):
             reason = _(
                 "no link of reasonable length rotates by this angle from position 1 to 2: near the rotation angle "
                 "of the coupler the links become infinitely long"
             )
             raise Infeasible(f"{name}_turn", reason, search=_search_is_quick(task))
-    return found
+    return dyads
 
 
 def nearest_dyad(task: CouplerPositionsTask, name: str) -> Dyads:
     """Return the dyad of four positions whose pivot, on the centre-point curve, is nearest to the required point."""
-    wanted = complex(task.sides[name].near)
+    target = complex(task.sides[name].near)
 
     def away(turns: Any, branch: int) -> Any:
-        found = dyads_by_rotation(task.poses, np.asarray(turns, np.longdouble), branch)
-        distance = np.abs(np.asarray(found.pivot, complex) - wanted)
-        return np.where(are_sensible(task, found) & np.isfinite(distance), distance, np.inf)
+        dyads = dyads_by_rotation(task.poses, np.asarray(turns, np.longdouble), branch)
+        distance = np.abs(np.asarray(dyads.pivot, complex) - target)
+        return np.where(are_sensible(task, dyads) & np.isfinite(distance), distance, np.inf)
 
     grid = -np.pi + 2 * np.pi * (np.arange(FINE) + 0.5) / FINE
-    step, found = grid[1] - grid[0], []
+    step, minima = grid[1] - grid[0], []
     for branch in (0, 1):
         turn = float(grid[int(np.argmin(away(grid, branch)))])
         turn, distance = find_minima(partial(away, branch=branch), turn - step, turn + step)
-        found.append((distance, turn, branch))
-    distance, turn, branch = min(found)
+        minima.append((distance, turn, branch))
+    distance, turn, branch = min(minima)
     if not np.isfinite(distance):
         raise Infeasible(f"{name[0]}_near", NO_LINKS, search=_search_is_quick(task))
     return dyads_by_rotation(task.poses, np.asarray(turn, np.longdouble), branch)
 
 
-def are_sensible(task: CouplerPositionsTask, found: Dyads) -> Any:
+def are_sensible(task: CouplerPositionsTask, dyads: Dyads) -> Any:
     """Return True for dyads that exist, with ends not far from position 1 and a length greater than zero."""
     with np.errstate(all="ignore"):
-        reach = np.maximum(np.abs(found.pivot - task.poses.places[0]), np.abs(found.pin))
-        length = np.abs(task.poses.on_frame(found.pin)[..., 0] - found.pivot)
+        reach = np.maximum(np.abs(dyads.pivot - task.poses.places[0]), np.abs(dyads.pin))
+        length = np.abs(task.poses.on_frame(dyads.pin)[..., 0] - dyads.pivot)
         return (reach < FAR * task.size) & np.isfinite(length) & (length > SAME_POINTS * task.size)
 
 
-def best_dyads(task: CouplerPositionsTask, given: dict[str, Dyads]) -> tuple[Dyads, Dyads]:
+def best_dyads(task: CouplerPositionsTask, specified: dict[str, Dyads]) -> tuple[Dyads, Dyads]:
     """Return the dyads on Burmester's curves with the best transmission angle, without defects if possible.
 
     Raises Infeasible.
     """
     first, size = task.poses.places[0], task.size
-    frame = max((float(abs(one.pivot - first)) for one in given.values()), default=0.0)
-    coupler = max((float(abs(one.pin)) for one in given.values()), default=0.0)
+    frame = max((float(abs(dyad.pivot - first)) for dyad in specified.values()), default=0.0)
+    coupler = max((float(abs(dyad.pin)) for dyad in specified.values()), default=0.0)
     box = None if task.within is None else task.outside
     bounds = LinkLimits(SHORTEST * size, LONGEST * size, LONGEST * size + frame, LONGEST * size + coupler, box)
     for loose in (False, True):  # loose: accept positions on different assemblies as a last resort
-        found = best_on_curves(task.poses, size, bounds, given, loose)
-        if found is None or found[2] > SURE:
+        rated = best_on_curves(task.poses, size, bounds, specified, loose)
+        if rated is None or rated[2] > SURE:
             break
-    if found is not None:
-        frame, coupler = float(abs(found[0].pivot - found[1].pivot)), float(abs(found[0].pin - found[1].pin))
+    if rated is not None:
+        frame, coupler = float(abs(rated[0].pivot - rated[1].pivot)), float(abs(rated[0].pin - rated[1].pin))
         if bounds.shortest <= min(frame, coupler) and frame <= bounds.frame and coupler <= bounds.coupler:
-            return found[:2]
+            return rated[:2]
     if task.within is not None:
         reason = _(
             "the box contains no two pivots for which links, frame and coupler have reasonable lengths; enlarge the box"
@@ -363,10 +370,10 @@ def parallelogram_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
 
     AD is free; it is taken perpendicular to the arms in the middle of their range. Raises Infeasible.
     """
-    places, angles = task.poses.places, task.poses.angles
-    centres = [circle_centre(np.delete(places, out)) for out in range(4)]
+    origins, angles = task.poses.places, task.poses.angles
+    centres = [circle_centre(np.delete(origins, out)) for out in range(4)]
     middle = min(centres, key=lambda z: float(np.nan_to_num(abs(z), nan=np.inf)))
-    arms = places - middle
+    arms = origins - middle
     radius = abs(arms[0])
     if not (np.isfinite(radius) and radius < FAR * task.size):
         reason = _(
@@ -387,8 +394,8 @@ def parallelogram_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
             )
             raise Infeasible(f"{name}_turn", reason, (turn, "angle", 0))
     steps = np.mod(np.angle(np.asarray(arms[1:] / arms[:-1], complex)), 2 * np.pi)
-    way = min(float(steps.sum()), float((steps - 2 * np.pi).sum()), key=abs)
-    frame = 1j * arms[0] / radius * np.exp(0.5j * way) * min(radius, task.size)
+    rotation = min(float(steps.sum()), float((steps - 2 * np.pi).sum()), key=abs)
+    frame = 1j * arms[0] / radius * np.exp(0.5j * rotation) * min(radius, task.size)
     if task.within is not None:
         low, high = task.within
         frame *= min(1.0, ROOM * min(abs((high - low).real), abs((high - low).imag)) / float(abs(frame)))
@@ -399,7 +406,7 @@ def parallelogram_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
         task.sides[name].near if name in task.sides and task.sides[name].near is not None else at
         for name, at in zip(("AB", "DC"), middles, strict=True)
     ]
-    one, other = (
+    first, second = (
         Dyads(a, (a - middle) * unit_vector(-angles[0])) for a in (np.asarray(a, np.clongdouble) for a in pivots)
     )
-    return one, other
+    return first, second

@@ -69,22 +69,22 @@ def draw_construction(
     arcs: list[Arc] = []
     for k, (name, pin) in enumerate((("A", "B"), ("D", "C"))):
         dyad, inverted = (one, other)[k], by_pivot[k]
-        places, pivot = rows[k]
-        first = complex(places[0])
-        arcs.append(swept_arc(pivot, places))
+        pin_points, pivot = rows[k]
+        first = complex(pin_points[0])
+        arcs.append(swept_arc(pivot, pin_points))
         segments.append(Segment(pivot, first, "link", "l1" if name == "A" else "l3"))
         spots += [LetteredPoint(name, pivot, "support"), LetteredPoint(f"{pin}1", first, "hinge")]
-        spots += [LetteredPoint(f"{pin}{n + 1}", complex(places[n]), "dot") for n in range(1, count)]
+        spots += [LetteredPoint(f"{pin}{n + 1}", complex(pin_points[n]), "dot") for n in range(1, count)]
         if count == 4:
             continue
-        row, centre = [complex(z) for z in places], pivot
+        row, centre = [complex(z) for z in pin_points], pivot
         if inverted:
             local = np.asarray(poses.in_plane(dyad.pivot), complex)
             row, centre = [complex(z) for z in np.asarray(poses.on_frame(local), complex)[:, 0]], first
             arcs.append(swept_arc(centre, np.array(row), "dashed"))
             spots += [LetteredPoint(f"{name}{n + 1}′", row[n], "dot") for n in range(1, count)]
-        for before, here in pairwise(row):
-            segments += [Segment(before, here, "thin"), Segment((before + here) / 2, centre, "dashed")]
+        for before, point in pairwise(row):
+            segments += [Segment(before, point, "thin"), Segment((before + point) / 2, centre, "dashed")]
     (b, a), (c, d) = rows
     segments += [Segment(a, d, "axis", "l4"), Segment(complex(b[0]), complex(c[0]), "link", "l2")]
     for k in range(count):
@@ -98,7 +98,7 @@ def draw_construction(
         for name, z in (("l1", b[0] - a), ("l2", c[0] - b[0]), ("l3", c[0] - d), ("l4", d - a))
     )
     if count < 4:
-        notes = sorted({BY_PIVOT if given else BY_PIN for given in by_pivot})
+        notes = sorted({BY_PIVOT if pivot_given else BY_PIN for pivot_given in by_pivot})
         return (
             GeometricConstruction(
                 TITLES[sum(by_pivot)],
@@ -110,8 +110,10 @@ def draw_construction(
                 values=values,
             ),
         )
-    found = burmester_lines(poses, [s.at for s in spots])
-    curves = tuple(ConstructionCurve(line, *kind) for kind, row in zip(CURVES, found, strict=True) for line in row)
+    curve_lines = burmester_lines(poses, [s.at for s in spots])
+    curves = tuple(
+        ConstructionCurve(line, *kind) for kind, row in zip(CURVES, curve_lines, strict=True) for line in row
+    )
     note = N_("red: centre-point curve m (pivots); dashed: circle-point curve k1 (pins), in position 1")
     near = GeometricConstruction(
         N_("Four positions: pivots on the centre-point curve, pins on the circle-point curve"),
@@ -134,7 +136,7 @@ def draw_construction(
         curves,
         "curves",
         chain="four-bar",
-        around=sheet_extent([s.at for s in few], [line for row in found for line in row]),
+        around=sheet_extent([s.at for s in few], [line for row in curve_lines for line in row]),
     )
     return near, wide
 
@@ -205,8 +207,8 @@ def refuse(task: CouplerPositionsTask) -> None:
 
 def solve(task: CouplerPositionsTask) -> SynthesisOutcome:
     """Solve the task of one file. Raises Infeasible."""
-    one, other, mark = find_dyads(task)
-    numbers = _parameter_values(task, one, other)
+    first, second, mark = find_dyads(task)
+    numbers = _parameter_values(task, first, second)
     values = [NamedValue(name, float(numbers[name]), kind, NAMES[name]) for name, kind in PARAMETERS.items()]
     values += [
         NamedValue(
@@ -225,41 +227,41 @@ def solve(task: CouplerPositionsTask) -> SynthesisOutcome:
             )
         )
     elif count == 4:
-        values += [*_curve_values(task, "AB", one), *_curve_values(task, "DC", other)]
+        values += [*_curve_values(task, "AB", first), *_curve_values(task, "DC", second)]
         listings.append(_tabulate_curve(task))
     by_pivot = [name in task.sides and task.sides[name].pivot is not None for name in ("AB", "DC")]
-    drawn = draw_construction(task.poses, one, other, (by_pivot[0], by_pivot[1]))
-    source, demands = SOURCES[1 if task.still else count], tuple(_demands(task, one, other, mark))
+    drawn = draw_construction(task.poses, first, second, (by_pivot[0], by_pivot[1]))
+    source, demands = SOURCES[1 if task.still else count], tuple(_demands(task, first, second, mark))
     return SynthesisOutcome(
         tuple(_given_values(task)), tuple(values), source, demands, drawn, tuple(notes), tuple(listings)
     )
 
 
-def _parameter_values(task: CouplerPositionsTask, one: Dyads, other: Dyads) -> dict[str, Any]:
+def _parameter_values(task: CouplerPositionsTask, first: Dyads, second: Dyads) -> dict[str, Any]:
     """Return all parameters in extended precision."""
-    b, c = (task.poses.on_frame(x.pin)[..., 0] for x in (one, other))
-    a, d = one.pivot, other.pivot
+    b, c = (task.poses.on_frame(x.pin)[..., 0] for x in (first, second))
+    a, d = first.pivot, second.pivot
     size = task.size + np.max(np.abs(np.asarray(task.places))) + np.abs(a) + np.abs(d)
     a, b, c, d = (zero_within_rounding(x, size) for x in (a, b, c, d))
-    span = other.pin - one.pin
-    p = zero_within_rounding(-one.pin * np.conj(span) / np.abs(span), size)
-    found = {"Ax": a.real, "Ay": a.imag, "Dx": d.real, "Dy": d.imag, "Px": p.real, "Py": p.imag}
-    found |= {"l1": np.abs(b - a), "l2": np.abs(span), "l3": np.abs(c - d), "l4": np.abs(d - a)}
-    return found | {"Cx": c.real, "Cy": c.imag, "phi1": np.arctan2((b - a).imag, (b - a).real)}
+    span = second.pin - first.pin
+    p = zero_within_rounding(-first.pin * np.conj(span) / np.abs(span), size)
+    parameters = {"Ax": a.real, "Ay": a.imag, "Dx": d.real, "Dy": d.imag, "Px": p.real, "Py": p.imag}
+    parameters |= {"l1": np.abs(b - a), "l2": np.abs(span), "l3": np.abs(c - d), "l4": np.abs(d - a)}
+    return parameters | {"Cx": c.real, "Cy": c.imag, "phi1": np.arctan2((b - a).imag, (b - a).real)}
 
 
-def _curve_values(task: CouplerPositionsTask, name: str, found: Dyads) -> Iterator[NamedValue]:
+def _curve_values(task: CouplerPositionsTask, name: str, dyad: Dyads) -> Iterator[NamedValue]:
     """Yield rotation and branch of a dyad on Burmester's curves, as a file can specify them."""
     side = task.sides.get(name, DyadData())
     if side.turn is None:
-        pins = task.poses.on_frame(found.pin)
-        turn = float(np.angle(complex((pins[1] - found.pivot) / (pins[0] - found.pivot))))
+        pins = task.poses.on_frame(dyad.pin)
+        turn = float(np.angle(complex((pins[1] - dyad.pivot) / (pins[0] - dyad.pivot))))
         ends = [dyads_by_rotation(task.poses, np.asarray(turn, np.longdouble), branch).pivot for branch in (0, 1)]
-        branch = int(np.argmin(np.nan_to_num(np.abs(np.array(ends, complex) - complex(found.pivot)), nan=np.inf)))
+        branch = int(np.argmin(np.nan_to_num(np.abs(np.array(ends, complex) - complex(dyad.pivot)), nan=np.inf)))
         yield NamedValue("", turn, "angle", GIVEN[name]["turn"])
         yield NamedValue("", str(branch + 1), "word", BRANCH[name])
     if side.near is not None:
-        yield NamedValue("", float(abs(complex(found.pivot) - complex(side.near))), "length", AWAY[name])
+        yield NamedValue("", float(abs(complex(dyad.pivot) - complex(side.near))), "length", AWAY[name])
 
 
 def _tabulate_curve(task: CouplerPositionsTask) -> Listing:
@@ -278,12 +280,12 @@ def _tabulate_curve(task: CouplerPositionsTask) -> Listing:
     turns = -np.pi + 2 * np.pi * np.arange(1, LISTED + 1) / LISTED
     rows = []
     for branch in (0, 1):
-        found = dyads_by_rotation(task.poses, turns, branch)
-        first = task.poses.on_frame(found.pin)[..., 0]
-        for k in np.flatnonzero(are_sensible(task, found)):
-            a, b, b1 = (complex(x[k]) for x in (found.pivot, found.pin, first))
-            places = (a.real, a.imag, b.real, b.imag, b1.real, b1.imag)
-            rows.append((str(branch + 1), float(turns[k]), *places, abs(b1 - a)))
+        dyads = dyads_by_rotation(task.poses, turns, branch)
+        first = task.poses.on_frame(dyads.pin)[..., 0]
+        for k in np.flatnonzero(are_sensible(task, dyads)):
+            a, b, b1 = (complex(x[k]) for x in (dyads.pivot, dyads.pin, first))
+            coordinates = (a.real, a.imag, b.real, b.imag, b1.real, b1.imag)
+            rows.append((str(branch + 1), float(turns[k]), *coordinates, abs(b1 - a)))
     title = N_("Burmester's curves: pivots and pins")
     return Listing("curve", title, columns, tuple(rows), long=True)
 
@@ -297,11 +299,11 @@ def _position_names(k: int) -> tuple[str, str, str]:
     )
 
 
-def _demands(task: CouplerPositionsTask, one: Dyads, other: Dyads, mark: GuidanceQuality) -> Iterator[Demand]:
-    b = task.poses.on_frame(one.pin)
-    phi = np.angle(np.asarray((b - one.pivot) / (other.pivot - one.pivot), complex))
-    span = complex(other.pin - one.pin)
-    local, slope = complex(-one.pin) * np.conj(span) / abs(span), float(np.angle(span))
+def _demands(task: CouplerPositionsTask, first: Dyads, second: Dyads, mark: GuidanceQuality) -> Iterator[Demand]:
+    b = task.poses.on_frame(first.pin)
+    phi = np.angle(np.asarray((b - first.pivot) / (second.pivot - first.pivot), complex))
+    span = complex(second.pin - first.pin)
+    local, slope = complex(-first.pin) * np.conj(span) / abs(span), float(np.angle(span))
     for k, (place, angle) in enumerate(zip(task.places, task.angles, strict=True)):
         at = {"phi": float(phi[k]), "local": local, "slope": slope, "near": float(angle)}
         x, y, turned = _position_names(k)
@@ -313,16 +315,16 @@ def _demands(task: CouplerPositionsTask, one: Dyads, other: Dyads, mark: Guidanc
     yield Demand(name, float(mark.least), "angle", measure, asked=False, at=1.0)
 
 
-def _measured_pose(part: str, at: dict[str, Any], results: Any) -> float:
+def _measured_pose(coordinate: str, at: dict[str, Any], results: Any) -> float:
     """Measure a coordinate of the coupler at the angle of AB from AD that belongs to a position."""
-    found = four_bar.pin_positions(results, np.array([at["phi"]]))
-    if found is None:
+    pins = four_bar.pin_positions(results, np.array([at["phi"]]))
+    if pins is None:
         return float("nan")
-    b, c = found[1][0], found[2][0]
+    b, c = pins[1][0], pins[2][0]
     along = (c - b) / abs(c - b)
     place = b + along * at["local"]
     turned = at["near"] + float(np.angle(complex(along) * np.exp(-1j * (at["near"] + at["slope"]))))
-    return float({"x": place.real, "y": place.imag, "angle": turned}[part])
+    return float({"x": place.real, "y": place.imag, "angle": turned}[coordinate])
 
 
 def _given_values(task: CouplerPositionsTask) -> Iterator[NamedValue]:
@@ -332,12 +334,12 @@ def _given_values(task: CouplerPositionsTask) -> Iterator[NamedValue]:
         yield NamedValue("", angle, "angle", turned)
     for name, side in task.sides.items():
         texts = GIVEN[name]
-        for part in ("pin", "pivot", "length", "turn", "near"):
-            value = getattr(side, part)
-            if value is not None and isinstance(texts[part], tuple):
-                yield from _coordinate_values(value, *texts[part])
+        for field_name in ("pin", "pivot", "length", "turn", "near"):
+            value = getattr(side, field_name)
+            if value is not None and isinstance(texts[field_name], tuple):
+                yield from _coordinate_values(value, *texts[field_name])
             elif value is not None:
-                yield NamedValue("", value, "length" if part == "length" else "angle", texts[part])
+                yield NamedValue("", value, "length" if field_name == "length" else "angle", texts[field_name])
     if task.within is not None:
         yield from _coordinate_values(
             task.within[0], N_("box for free pivots: first corner, x"), N_("box for free pivots: first corner, y")
@@ -351,10 +353,10 @@ def _coordinate_values(place: Any, x: str, y: str) -> tuple[NamedValue, NamedVal
     return NamedValue("", place.real, "length", x), NamedValue("", place.imag, "length", y)
 
 
-def _check_position(found: Any) -> Any:
-    if not isinstance(found, list) or len(found) != 3 or any(isinstance(x, list | dict | bool) for x in found):
+def _check_position(position: Any) -> Any:
+    if not isinstance(position, list) or len(position) != 3 or any(isinstance(x, list | dict | bool) for x in position):
         raise PydanticCustomError("position", "expected a point and an angle: [x, y, angle]")
-    return found
+    return position
 
 
 Position = Annotated[list[Value], BeforeValidator(_check_position)]
@@ -432,9 +434,9 @@ def read(shape: CouplerPositionsBlock, values: ValueReader) -> CouplerPositionsT
                 allowed=_("a different position, e.g. rotated by 20 deg"),
             )
     sides = {name: side for name in DYADS if (side := _read_dyad(shape, values, name, count)) is not None}
-    places, angles = zip(*poses, strict=True)
+    origins, angles = zip(*poses, strict=True)
     return CouplerPositionsTask(
-        tuple(places), tuple(angles), sides, shape.defects == "keep", _read_box(shape, values, count, sides)
+        tuple(origins), tuple(angles), sides, shape.defects == "keep", _read_box(shape, values, count, sides)
     )
 
 
@@ -453,8 +455,8 @@ def _read_box(
             allowed=_("four positions, with AB or DC not given"),
             key=True,
         )
-    one, other = (values.vector(v, LENGTH, ("pivots_within", k)) for k, v in enumerate(shape.pivots_within))
-    return one, other
+    corner, opposite = (values.vector(v, LENGTH, ("pivots_within", k)) for k, v in enumerate(shape.pivots_within))
+    return corner, opposite
 
 
 def _read_dyad(shape: CouplerPositionsBlock, values: ValueReader, name: str, count: int) -> DyadData | None:
@@ -462,15 +464,15 @@ def _read_dyad(shape: CouplerPositionsBlock, values: ValueReader, name: str, cou
     pivot, pin, turn, near = name[0], name[1], f"{name}_turn", f"{name[0]}_near"
     sets = {2: ((pin, name), (pivot, name)), 3: ((pin,), (pivot,)), 4: ((turn,), (near,), ())}[count]
     refusal = _("these keys do not determine link {link}; number of positions: {count}").format(link=name, count=count)
-    given = choose_key_set(shape, sets, (pivot, pin, name, turn, near), refusal)
-    if not given:
+    keys = choose_key_set(shape, sets, (pivot, pin, name, turn, near), refusal)
+    if not keys:
         return None
-    found: dict[str, Any] = {
+    dyad_data: dict[str, Any] = {
         field: values.vector(getattr(shape, key), LENGTH, (key,))
         for field, key in (("pivot", pivot), ("pin", pin), ("near", near))
-        if key in given
+        if key in keys
     }
     for field, key, want in (("length", name, LENGTH), ("turn", turn, ANGLE)):
-        if key in given:
-            found[field] = values.number(getattr(shape, key), want, (key,))
-    return DyadData(side=getattr(shape, f"{name}_side"), branch=getattr(shape, f"{name}_branch") - 1, **found)
+        if key in keys:
+            dyad_data[field] = values.number(getattr(shape, key), want, (key,))
+    return DyadData(side=getattr(shape, f"{name}_side"), branch=getattr(shape, f"{name}_branch") - 1, **dyad_data)

@@ -153,26 +153,26 @@ class FourBarQuality(NamedTuple):
     reversed: Any
 
 
-def rate_four_bars(found: FourBarRatios, task: AnglePairsTask) -> FourBarQuality:
+def rate_four_bars(four_bars: FourBarRatios, task: AnglePairsTask) -> FourBarQuality:
     """Rate four-bars: transmission angle, defect, full rotation of the input link."""
-    l1, l2, l3, phi0 = (np.asarray(x, dtype=float) for x in (found.l1, found.l2, found.l3, found.phi0))
+    l1, l2, l3, phi0 = (np.asarray(x, dtype=float) for x in (four_bars.l1, four_bars.l2, four_bars.l3, four_bars.phi0))
     l4 = np.ones(np.shape(l1))
     with np.errstate(all="ignore"):
         ends = np.sort(phi0[..., None] + np.asarray(task.span, dtype=float), axis=-1)
-        size, worst = extreme_cosine((l1, l2, l3, l4), ends[..., 0], ends[..., 1])
+        cosine, worst = extreme_cosine((l1, l2, l3, l4), ends[..., 0], ends[..., 1])
         terms = (l2 * l2 + l3 * l3 + 1 + l1 * l1) / (2 * l2 * l3)
-        b, c = found.at((..., None)).pins(np.asarray(task.phi, EXACT), np.asarray(task.psi, EXACT))
+        b, c = four_bars.at((..., None)).pins(np.asarray(task.phi, EXACT), np.asarray(task.psi, EXACT))
         sides = np.sign(np.asarray(((c - b) * np.conj(c - 1)).imag, dtype=float))
         branch = np.any(sides != sides[..., :1], axis=-1) & (
             not task.approximate
         )  # an approximate fit uses one assembly only
         turned = np.zeros(np.shape(branch), dtype=bool)
-        for given, zero in ((task.phi0, found.phi0), (task.psi0, found.psi0)):
-            if given is not None:
-                turned |= np.cos(np.asarray(given - zero, dtype=float)) < 0
-    defect = np.where(branch, "branch", np.where(1 - size <= DEAD_COSINE_DOUBLE * terms, "locks", ""))
+        for given_zero, zero in ((task.phi0, four_bars.phi0), (task.psi0, four_bars.psi0)):
+            if given_zero is not None:
+                turned |= np.cos(np.asarray(given_zero - zero, dtype=float)) < 0
+    defect = np.where(branch, "branch", np.where(1 - cosine <= DEAD_COSINE_DOUBLE * terms, "locks", ""))
     turns = classify_four_bar(FourBarLinks(l1, l2, l3, l4)).turns[..., 0]
-    return FourBarQuality(np.arccos(np.minimum(1.0, size)), worst, defect[()], turns, turned)
+    return FourBarQuality(np.arccos(np.minimum(1.0, cosine)), worst, defect[()], turns, turned)
 
 
 def four_bars_through(task: AnglePairsTask) -> FourBarRatios:
@@ -181,21 +181,21 @@ def four_bars_through(task: AnglePairsTask) -> FourBarRatios:
     If l4/l1 is free, or no four-bar passes through all pairs exactly, only the best one is returned.
     """
     if len(task.phi) == 3 and len(task.lengths) == 2:
-        found = _four_bar_of_circle(task)
-        return found.at(are_real(found))
-    if len(task.phi) > 2 and (one := find_parallelogram(task.phi, task.psi, task.phi0, task.psi0)) is not None:
-        return one.at(None)
+        four_bars = _four_bar_of_circle(task)
+        return four_bars.at(are_real(four_bars))
+    if len(task.phi) > 2 and (parallel := find_parallelogram(task.phi, task.psi, task.phi0, task.psi0)) is not None:
+        return parallel.at(None)
     if task.approximate:
-        found, __ = least_squares.fit_least_squares(task.phi, task.psi, task.phi0, task.psi0)
-        found = found.at(are_real(found))
-        return found.at(np.argsort(rate_four_bars(found, task).defect != "", kind="stable")[:1])
+        four_bars, __ = least_squares.fit_least_squares(task.phi, task.psi, task.phi0, task.psi0)
+        four_bars = four_bars.at(are_real(four_bars))
+        return four_bars.at(np.argsort(rate_four_bars(four_bars, task).defect != "", kind="stable")[:1])
     if task.free:
-        found = _best_ratio(task)
+        four_bars = _best_ratio(task)
     elif len(task.phi) == 2:
-        found = _four_bars_of_lengths(task)
+        four_bars = _four_bars_of_lengths(task)
     else:
-        found = freudenstein.solve_exact_pairs(task.phi, task.psi, task.phi0, task.psi0).at(0)
-    return found.at(are_real(found))
+        four_bars = freudenstein.solve_exact_pairs(task.phi, task.psi, task.phi0, task.psi0).at(0)
+    return four_bars.at(are_real(four_bars))
 
 
 def four_bars_of_ratios(task: AnglePairsTask, ratios: Any) -> FourBarRatios:
@@ -207,11 +207,11 @@ def _four_bars_of_lengths(task: AnglePairsTask) -> FourBarRatios:
     """Find the four-bars through two pairs with two given lengths; either link may be drawn the opposite way."""
     a, b = sorted(task.lengths)
     ratio, sense = task.lengths[b] / task.lengths[a], np.array([1.0, -1.0])
-    one, zero = np.ones(2), np.zeros(2)
+    ones, zeros = np.ones(2), np.zeros(2)
     if b == "l3":  # p = ratio q
-        return _four_bars_through_two(task, np.stack([one, -ratio * sense, zero], axis=-1), zero)
+        return _four_bars_through_two(task, np.stack([ones, -ratio * sense, zeros], axis=-1), zeros)
     return _four_bars_through_two(
-        task, np.stack([one, zero, zero] if a == "l1" else [zero, one, zero], axis=-1), ratio * sense
+        task, np.stack([ones, zeros, zeros] if a == "l1" else [zeros, ones, zeros], axis=-1), ratio * sense
     )
 
 
@@ -223,35 +223,37 @@ def _four_bar_of_circle(task: AnglePairsTask) -> FourBarRatios:
     """
     phi, psi = (np.asarray(x, EXACT) + (zero or 0.0) for x, zero in ((task.phi, task.phi0), (task.psi, task.psi0)))
     by_input = "l1" in task.lengths
-    own, back, base = (phi, psi, -1.0) if by_input else (psi, phi, 1.0)
+    link_angles, inverse_angles, base = (phi, psi, -1.0) if by_input else (psi, phi, 1.0)
     length = EXACT(task.lengths["l1" if by_input else "l3"]) / task.lengths["l4"]
-    places = (base + length * np.exp(1j * own)) * np.exp(-1j * back)
-    rows = np.stack([2 * places.real, 2 * places.imag, np.ones_like(phi)], axis=-1)
-    x, y, __ = freudenstein.solve_linear(rows, np.abs(places) ** 2)
-    found, zero, l2 = np.hypot(x, y), np.arctan2(y, x), np.abs(places[0] - x - 1j * y)
-    one = (length, l2, found, task.phi0, zero) if by_input else (found, l2, length, zero, task.psi0)
-    return FourBarRatios(*one).at(None)
+    points = (base + length * np.exp(1j * link_angles)) * np.exp(-1j * inverse_angles)
+    rows = np.stack([2 * points.real, 2 * points.imag, np.ones_like(phi)], axis=-1)
+    x, y, __ = freudenstein.solve_linear(rows, np.abs(points) ** 2)
+    other_length, zero, l2 = np.hypot(x, y), np.arctan2(y, x), np.abs(points[0] - x - 1j * y)
+    ratios = (length, l2, other_length, task.phi0, zero) if by_input else (other_length, l2, length, zero, task.psi0)
+    return FourBarRatios(*ratios).at(None)
 
 
-def _four_bars_through_two(task: AnglePairsTask, known: Any, value: Any) -> FourBarRatios:
+def _four_bars_through_two(task: AnglePairsTask, coefficients: Any, value: Any) -> FourBarRatios:
     """Find the four-bars through two pairs with the conditions known . (p, q, s) = value, shapes (n, 3) and (n,)."""
     phi0, psi0 = task.phi0 or 0.0, task.psi0 or 0.0
     phi, psi = (
-        np.broadcast_to(np.asarray(row, EXACT) + zero, (len(known), 2))
+        np.broadcast_to(np.asarray(row, EXACT) + zero, (len(coefficients), 2))
         for row, zero in ((task.phi, phi0), (task.psi, psi0))
     )
-    values = freudenstein.solve_two_pairs(phi, psi, known, value)
-    found = freudenstein.lengths_from_pqs(np.concatenate([values, np.zeros((len(phi), 2))], -1), phi, psi)
-    return found._replace(phi0=found.phi0 + phi0, psi0=found.psi0 + psi0)
+    values = freudenstein.solve_two_pairs(phi, psi, coefficients, value)
+    four_bars = freudenstein.lengths_from_pqs(np.concatenate([values, np.zeros((len(phi), 2))], -1), phi, psi)
+    return four_bars._replace(phi0=four_bars.phi0 + phi0, psi0=four_bars.psi0 + psi0)
 
 
 def _best_ratio(task: AnglePairsTask) -> FourBarRatios:
     """Find the four-bar through two pairs with the best transmission angle, l4/l1 being free."""
 
     def badness(ratios: Any) -> Any:
-        found = four_bars_of_ratios(task, ratios)
-        mark = rate_four_bars(found, task)
-        return np.where(are_real(found), np.where(mark.defect != "", 4.0, 2.0 * mark.reversed) - mark.least, 9.0)
+        four_bars = four_bars_of_ratios(task, ratios)
+        rating = rate_four_bars(four_bars, task)
+        return np.where(
+            are_real(four_bars), np.where(rating.defect != "", 4.0, 2.0 * rating.reversed) - rating.least, 9.0
+        )
 
     values = badness(RATIOS)
     k = int(np.argmin(values))
@@ -263,30 +265,32 @@ def _best_ratio(task: AnglePairsTask) -> FourBarRatios:
     return four_bars_of_ratios(task, np.array([best]))
 
 
-def are_real(found: FourBarRatios) -> Any:
+def are_real(four_bars: FourBarRatios) -> Any:
     """Return True for each four-bar that exists and whose link lengths are neither zero nor infinite."""
-    numbers = np.stack([np.asarray(x, dtype=float) for x in found])
+    numbers = np.stack([np.asarray(x, dtype=float) for x in four_bars])
     lengths = numbers[:3]
     with np.errstate(all="ignore"):
         return np.isfinite(numbers).all(0) & (lengths > SHORT).all(0) & (lengths < LONG).all(0)
 
 
-def choose_four_bar(task: AnglePairsTask, found: FourBarRatios) -> int:
+def choose_four_bar(task: AnglePairsTask, four_bars: FourBarRatios) -> int:
     """Return the index of the four-bar to take; at least one must be free of defects, or defects be accepted."""
     if task.choose.isdigit():
         return int(task.choose) - 1
-    mark = rate_four_bars(found, task)
-    crank = mark.crank & (task.choose == "crank")
-    fair = np.flatnonzero((mark.defect == "") | task.keep)
-    return int(max(fair, key=lambda k: (mark.defect[k] == "", crank[k], not mark.reversed[k], mark.least[k])))
+    rating = rate_four_bars(four_bars, task)
+    crank = rating.crank & (task.choose == "crank")
+    admissible = np.flatnonzero((rating.defect == "") | task.keep)
+    return int(
+        max(admissible, key=lambda k: (rating.defect[k] == "", crank[k], not rating.reversed[k], rating.least[k]))
+    )
 
 
 DOMAINS = {
-    "log10(x)": "x more than 0",
-    "ln(x)": "x more than 0",
-    "sqrt(x)": "x of 0 or more",
-    "x^1.5": "x of 0 or more",
-    "1/x": "x on one side of 0",
+    "log10(x)": N_("x greater than 0"),
+    "ln(x)": N_("x greater than 0"),
+    "sqrt(x)": N_("x of 0 or more"),
+    "x^1.5": N_("x of 0 or more"),
+    "1/x": N_("x on one side of 0"),
 }
 MOST = 361  # pairs of angles
 OF_FUNCTION = ("function", "table", "x", "input", "output", "points")
@@ -376,7 +380,7 @@ def read(shape: FourBarByAnglesBlock, values: ValueReader) -> AnglePairsTask:
 
 def _check_lengths(lengths: dict[str, float], count: int) -> None:
     two = len(lengths) == 2 and "l2" not in lengths and (count == 2 or (count == 3 and "l4" in lengths))
-    other = {2: "; or two of l1, l3, l4", 3: "; or l4 and one of l1, l3"}.get(count, "")
+    other = {2: _("; or two of l1, l3, l4"), 3: _("; or l4 and one of l1, l3")}.get(count, "")
     if len(lengths) != 1 and not two:
         raise ProblemError(
             _("give exactly one length: it determines the size of the four-bar"),
@@ -391,39 +395,39 @@ def _complete_zero_angles(zeros: dict[str, Any], count: int, lengths: dict[str, 
 
     Four pairs determine one zero angle, five and more both (if neither is given). Raises ProblemError.
     """
-    given = [key for key, value in zeros.items() if value is not None]
+    given_keys = [key for key, value in zeros.items() if value is not None]
     if count == 3 and len(lengths) == 2:
-        found, other = ("psi0", "phi0") if "l1" in lengths else ("phi0", "psi0")
-        if found in given:
+        determined, other = ("psi0", "phi0") if "l1" in lengths else ("phi0", "psi0")
+        if determined in given_keys:
             raise ProblemError(
-                f"three pairs and two lengths determine {found} too",
-                path=(found,),
-                found=", ".join(given),
+                _("three pairs and two lengths also determine {angle}").format(angle=determined),
+                path=(determined,),
+                found=", ".join(given_keys),
                 allowed=other,
                 key=True,
             )
         zeros[other] = zeros[other] or 0.0
-    elif count == 5 and len(given) == 1:
+    elif count == 5 and len(given_keys) == 1:
         raise ProblemError(
             _("5 pairs also determine both zero angles"),
-            path=(given[0],),
-            found=given[0],
+            path=(given_keys[0],),
+            found=given_keys[0],
             allowed=_("neither phi0 nor psi0; or both, for a least-squares fit"),
             key=True,
         )
     elif count < 4:
         zeros.update({key: value or 0.0 for key, value in zeros.items()})
-    elif count == 4 and not given:
+    elif count == 4 and not given_keys:
         zeros["psi0"] = 0.0
 
 
 def _read_function(shape: FourBarByAnglesBlock, values: ValueReader) -> GeneratedFunction:
     missing = [key for key in ("input", "output") if getattr(shape, key) is None]
     if (shape.function is None) == (shape.table is None) or missing:
-        given = [key for key in OF_FUNCTION if getattr(shape, key) is not None]
+        given_keys = [key for key in OF_FUNCTION if getattr(shape, key) is not None]
         raise ProblemError(
             translated(UNDETERMINED),
-            found=", ".join(given) or _("none"),
+            found=", ".join(given_keys) or _("none"),
             allowed=_("pairs; or function (or table), x, input, output"),
             key=True,
         )
@@ -453,9 +457,9 @@ def _read_function(shape: FourBarByAnglesBlock, values: ValueReader) -> Generate
         x = (rows[0][0], rows[-1][0])
     else:
         raise ProblemError(_("the range of x is missing"), path=("function",), allowed="x: [from, to]", key=True)
-    found = GeneratedFunction((x[0], x[1]), ends["input"], ends["output"], name, rows)
-    _check_function(found)
-    return found
+    function = GeneratedFunction((x[0], x[1]), ends["input"], ends["output"], name, rows)
+    _check_function(function)
+    return function
 
 
 def _check_function(function: GeneratedFunction) -> None:
@@ -467,9 +471,10 @@ def _check_function(function: GeneratedFunction) -> None:
             _("this range is empty: both ends are equal"), path=(key,), allowed=_("two different values [from, to]")
         )
     if not np.all(np.isfinite(y)) or y[0] == y[-1]:
-        other = "two ends at which the function differs"
+        differing = _("two ends at which the function differs")
+        domain = translated(DOMAINS.get(function.name, N_("another range")))
         raise ProblemError(
             _("the function is undefined in this range, or equal at both ends"),
             path=("x",),
-            allowed=other if np.all(np.isfinite(y)) else DOMAINS.get(function.name, "another range"),
+            allowed=differing if np.all(np.isfinite(y)) else domain,
         )

@@ -66,22 +66,22 @@ def pseudo_inverse(rows: Any) -> Any:
 def solve_linear(rows: Any, right: Any) -> Any:
     """Solve linear systems (..., n, m), (..., n) with refinement in extended precision; nan if singular."""
     back = pseudo_inverse(rows)
-    found = np.zeros((*np.shape(rows)[:-2], np.shape(rows)[-1]), dtype=EXACT)
+    unknowns = np.zeros((*np.shape(rows)[:-2], np.shape(rows)[-1]), dtype=EXACT)
     for _ in range(REFINEMENTS):
-        rest = np.asarray(right - (rows * found[..., None, :]).sum(-1), dtype=float)
-        found = found + (back * rest[..., None, :]).sum(-1)
-    return found
+        rest = np.asarray(right - (rows * unknowns[..., None, :]).sum(-1), dtype=float)
+        unknowns = unknowns + (back * rest[..., None, :]).sum(-1)
+    return unknowns
 
 
 def solve_homogeneous(rows: Any) -> Any:
     """Return two vectors (..., m, 2) that span the null space of matrices (..., m - 2, m), in extended precision."""
     near, back = np.asarray(rows, dtype=float), pseudo_inverse(rows)
     near = np.where(np.isfinite(near), near, 0.0)
-    found = np.swapaxes(np.linalg.svd(near)[2][..., -2:, :], -1, -2).astype(EXACT)
+    vectors = np.swapaxes(np.linalg.svd(near)[2][..., -2:, :], -1, -2).astype(EXACT)
     for _ in range(REFINEMENTS):
-        rest = np.asarray((rows[..., None] * found[..., None, :, :]).sum(-2), dtype=float)
-        found = found - np.matmul(back, rest)
-    return found
+        rest = np.asarray((rows[..., None] * vectors[..., None, :, :]).sum(-2), dtype=float)
+        vectors = vectors - np.matmul(back, rest)
+    return vectors
 
 
 def solve_pqs(phi: Any, psi: Any) -> Any:
@@ -89,9 +89,9 @@ def solve_pqs(phi: Any, psi: Any) -> Any:
     return solve_linear(_equation_rows(phi, psi), np.cos(phi - psi))
 
 
-def solve_two_pairs(phi: Any, psi: Any, known: Any, value: Any) -> Any:
+def solve_two_pairs(phi: Any, psi: Any, coefficients: Any, value: Any) -> Any:
     """Return p, q, s (tasks, 3) from two pairs and a linear condition known . (p, q, s) = value."""
-    rows = np.concatenate([_equation_rows(phi, psi), np.asarray(known, dtype=EXACT)[..., None, :]], axis=-2)
+    rows = np.concatenate([_equation_rows(phi, psi), np.asarray(coefficients, dtype=EXACT)[..., None, :]], axis=-2)
     right = np.concatenate([np.cos(phi - psi), np.asarray(value, dtype=EXACT)[..., None]], axis=-1)
     return solve_linear(rows, right)
 
@@ -111,8 +111,8 @@ def zero_angles_of_four(phi: Any, psi: Any, free: str) -> tuple[Any, Any]:
         (-np.sin(angle), sign * np.sin(turn)),
     )  # columns that depend on the zero angle
 
-    def form(one: Any, other: Any) -> Any:  # the column of ones reduces the determinant to row differences
-        (a, b, c), (d, e, f), (g, h, i) = (np.moveaxis(x[..., 1:] - x[..., :1], -1, 0) for x in (still, one, other))
+    def form(cosines: Any, sines: Any) -> Any:  # the column of ones reduces the determinant to row differences
+        (a, b, c), (d, e, f), (g, h, i) = (np.moveaxis(x[..., 1:] - x[..., :1], -1, 0) for x in (still, cosines, sines))
         return a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g)
 
     a, c = form(*over_cos), form(*over_sin)
@@ -153,14 +153,14 @@ def roots_of_cubic_forms(forms: Any) -> Any:
     The form is a cubic in the tangent. Close real roots are found to half the digits; `refine_by_newton` makes them
     exact.
     """
-    found = np.full((len(forms), 3), EXACT(np.nan))
-    size = np.max(np.abs(forms), axis=-1)
-    for k in np.flatnonzero(np.isfinite(size) & (size > 0)):
-        tangents = np.roots(np.asarray(forms[k] / size[k], dtype=float))
+    roots = np.full((len(forms), 3), EXACT(np.nan))
+    largest = np.max(np.abs(forms), axis=-1)
+    for k in np.flatnonzero(np.isfinite(largest) & (largest > 0)):
+        tangents = np.roots(np.asarray(forms[k] / largest[k], dtype=float))
         real = tangents.real[np.abs(tangents.imag) < REAL * (1 + np.abs(tangents) ** 2)]
         angles = np.sort([*np.arctan(real), *[np.pi / 2] * (3 - len(tangents))])  # leading coefficients of zero
-        found[k, : len(angles)] = angles
-    return found
+        roots[k, : len(angles)] = angles
+    return roots
 
 
 def refine_by_newton(values: Any, phi: Any, psi: Any, free: tuple[str, ...]) -> Any:
@@ -172,12 +172,12 @@ def refine_by_newton(values: Any, phi: Any, psi: Any, free: tuple[str, ...]) -> 
     values, phi, psi = (_to_double_double(numbers) for numbers in (values, phi, psi))
     for _ in range(NEWTON_STEPS):
         p, q, s, phi0, psi0 = (values[:, k, None] for k in range(5))
-        one, other = phi + phi0, psi + psi0
-        rest = p * np.cos(other) - q * np.cos(one) + s - np.cos(one - other)
-        p, q, one, other = (numbers.astype(float) for numbers in (p, q, one, other))
-        step = (pseudo_inverse(equation_slopes(p, q, one, other)[..., columns]) * rest.astype(float)[..., None, :]).sum(
-            -1
-        )
+        input_angles, output = phi + phi0, psi + psi0
+        rest = p * np.cos(output) - q * np.cos(input_angles) + s - np.cos(input_angles - output)
+        p, q, input_angles, output = (numbers.astype(float) for numbers in (p, q, input_angles, output))
+        step = (
+            pseudo_inverse(equation_slopes(p, q, input_angles, output)[..., columns]) * rest.astype(float)[..., None, :]
+        ).sum(-1)
         step = np.where(np.isfinite(step), step, 0.0)  # derivatives are singular at a double root
         values[:, columns] = values[:, columns] - step
     return values.hi.astype(EXACT) + values.lo
@@ -196,19 +196,19 @@ def equation_slopes(p: Any, q: Any, phi: Any, psi: Any) -> Any:
     return np.stack(columns, -1)
 
 
-def output_angles(one: FourBarRatios, phi: Any, near: Any, side: float, open_: float | None = None) -> Any:
+def output_angles(four_bar: FourBarRatios, phi: Any, near: Any, side: float, open_: float | None = None) -> Any:
     """Return the output angles (rad, without psi0) of a four-bar at input angles phi.
 
     side: sign of (BC x DC); near: angles to which the results are made nearest by whole turns. open_: the value where
     the four-bar does not close; None: the angle at which it comes nearest to closing.
     """
-    l1, l2, l3 = (np.asarray(x, dtype=float) for x in (one.l1, one.l2, one.l3))
-    way = l1 * np.exp(1j * (float(one.phi0) + phi)) - 1
-    cosine = (l3 * l3 + np.abs(way) ** 2 - l2 * l2) / (2 * l3 * np.abs(way))
-    psi = np.angle(way) + side * np.arccos(np.clip(cosine, -1, 1))
-    gap = psi - float(one.psi0) - near
-    found = near + gap - 2 * np.pi * np.round(gap / (2 * np.pi))
-    return found if open_ is None else np.where(np.abs(cosine) <= 1, found, open_)
+    l1, l2, l3 = (np.asarray(x, dtype=float) for x in (four_bar.l1, four_bar.l2, four_bar.l3))
+    diagonal = l1 * np.exp(1j * (float(four_bar.phi0) + phi)) - 1
+    cosine = (l3 * l3 + np.abs(diagonal) ** 2 - l2 * l2) / (2 * l3 * np.abs(diagonal))
+    psi = np.angle(diagonal) + side * np.arccos(np.clip(cosine, -1, 1))
+    gap = psi - float(four_bar.psi0) - near
+    nearest = near + gap - 2 * np.pi * np.round(gap / (2 * np.pi))
+    return nearest if open_ is None else np.where(np.abs(cosine) <= 1, nearest, open_)
 
 
 def lengths_from_pqs(values: Any, phi: Any, psi: Any) -> FourBarRatios:
@@ -232,13 +232,13 @@ def solve_exact_pairs(phi: Any, psi: Any, phi0: Any = 0.0, psi0: Any = 0.0) -> F
     free = tuple(name for name, value in (("phi0", phi0), ("psi0", psi0)) if value is None)
     given_phi, given_psi = (np.asarray(0.0 if zero is None else zero, EXACT)[..., None] for zero in (phi0, psi0))
     if not free:
-        one, other = np.zeros((len(phi), 1)), np.zeros((len(phi), 1))
+        zero_phi, zero_psi = np.zeros((len(phi), 1)), np.zeros((len(phi), 1))
     elif len(free) == 1:
-        one, other = zero_angles_of_four(phi + given_phi, psi + given_psi, free[0])
+        zero_phi, zero_psi = zero_angles_of_four(phi + given_phi, psi + given_psi, free[0])
     else:
-        one, other = zero_angles_of_five(phi, psi)
-    shape = one.shape
-    a, b = (one + given_phi).reshape(-1, 1), (other + given_psi).reshape(-1, 1)
+        zero_phi, zero_psi = zero_angles_of_five(phi, psi)
+    shape = zero_phi.shape
+    a, b = (zero_phi + given_phi).reshape(-1, 1), (zero_psi + given_psi).reshape(-1, 1)
     phi, psi = (np.repeat(row, shape[1], axis=0) for row in (phi, psi))
     values = np.concatenate([solve_pqs(phi + a, psi + b), a, b], axis=-1)
     values = refine_by_newton(values, phi, psi, free) if free else values
@@ -331,9 +331,9 @@ def fitted_lengths(values: Any) -> FourBarRatios:
     """Return positive lengths from p, q, s, phi0, psi0 (..., 5); the coupler follows from s, as the pairs are not
     exact.
     """
-    found, (p, q, s) = lengths_from_pqs(values, np.zeros(1), np.zeros(1)), (values[..., k] for k in range(3))
+    ratios, (p, q, s) = lengths_from_pqs(values, np.zeros(1), np.zeros(1)), (values[..., k] for k in range(3))
     with np.errstate(all="ignore"):
-        return found._replace(l2=np.sqrt(1 + 1 / p**2 + 1 / q**2 - 2 * s / (p * q)))
+        return ratios._replace(l2=np.sqrt(1 + 1 / p**2 + 1 / q**2 - 2 * s / (p * q)))
 
 
 def _squared_errors(x: Any, phi: Any, psi: Any, side: float) -> tuple[Any, float]:
@@ -363,9 +363,9 @@ def _descend(x: Any, phi: Any, psi: Any, free: list[int]) -> tuple[Any, float] |
         step = np.linalg.lstsq(damped, np.concatenate([-off, np.zeros(len(free))]), rcond=None)[0] / sizes
         tried = x.copy()
         tried[free] += step
-        there, total = _squared_errors(tried, phi, psi, side)
+        errors, total = _squared_errors(tried, phi, psi, side)
         if total < least * (1 - GAIN):
-            x, off, least, damping = tried, there, total, damping / 9
+            x, off, least, damping = tried, errors, total, damping / 9
         elif damping > LARGEST or total <= least * (1 + GAIN):
             return x, least
         else:

@@ -54,33 +54,41 @@ def error_extremes(error: Callable[[Any], Any], function: GeneratedFunction) -> 
     A peak may lie at a corner of a table; between two angles of the scan the error has at most one extreme.
     """
     phi = _scan_angles(function)
-    size = np.abs(error(phi))
-    inner = (size[1:-1] >= size[:-2]) & (size[1:-1] >= size[2:]) & (size[1:-1] > NEAR * np.max(size))
+    magnitudes = np.abs(error(phi))
+    inner = (
+        (magnitudes[1:-1] >= magnitudes[:-2])
+        & (magnitudes[1:-1] >= magnitudes[2:])
+        & (magnitudes[1:-1] > NEAR * np.max(magnitudes))
+    )
     peaks = [find_minima(lambda x: -np.abs(error(x)), phi[k], phi[k + 2]) for k in np.flatnonzero(inner)]
-    places = np.array([place for place, __ in peaks])
-    return places, float(max(np.max(size), *(-value for __, value in peaks))) if peaks else float(np.max(size))
+    angles = np.array([angle for angle, __ in peaks])
+    return angles, float(max(np.max(magnitudes), *(-value for __, value in peaks))) if peaks else float(
+        np.max(magnitudes)
+    )
 
 
-def assembly_of(one: FourBarRatios, task: AnglePairsTask) -> float:
+def assembly_of(four_bar: FourBarRatios, task: AnglePairsTask) -> float:
     """Return the sign of (BC x DC) of the assembly that passes through the pairs."""
     phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
-    return min((1.0, -1.0), key=lambda side: float(np.sum((output_angles(one, phi, psi, side) - psi) ** 2)))
+    return min((1.0, -1.0), key=lambda side: float(np.sum((output_angles(four_bar, phi, psi, side) - psi) ** 2)))
 
 
-def output_errors(one: FourBarRatios, task: AnglePairsTask) -> Any:
+def output_errors(four_bar: FourBarRatios, task: AnglePairsTask) -> Any:
     """Return the errors of the output angle (rad) at the pairs."""
     phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
-    return output_angles(one, phi, psi, assembly_of(one, task)) - psi
+    return output_angles(four_bar, phi, psi, assembly_of(four_bar, task)) - psi
 
 
-def draw_reached(one: FourBarRatios, task: AnglePairsTask) -> Diagram:
+def draw_reached(four_bar: FourBarRatios, task: AnglePairsTask) -> Diagram:
     """Draw the output angle over the input angle, with the required pairs."""
-    side, (start, end) = assembly_of(one, task), task.span
+    side, (start, end) = assembly_of(four_bar, task), task.span
     phi, at_pairs = np.linspace(float(start), float(end), ERRORS), np.asarray(task.phi, dtype=float)
     psi = np.asarray(task.psi, dtype=float)
     order = np.argsort(at_pairs)
     lines = (
-        DiagramLine(N_("reached"), phi, output_angles(one, phi, np.interp(phi, at_pairs[order], psi[order]), side)),
+        DiagramLine(
+            N_("reached"), phi, output_angles(four_bar, phi, np.interp(phi, at_pairs[order], psi[order]), side)
+        ),
         DiagramLine(N_("required"), at_pairs, psi, dots=True),
     )
     return Diagram(
@@ -92,18 +100,18 @@ def draw_reached(one: FourBarRatios, task: AnglePairsTask) -> Diagram:
     )
 
 
-def draw_structural_error(one: FourBarRatios, task: AnglePairsTask) -> tuple[Diagram, float]:
+def draw_structural_error(four_bar: FourBarRatios, task: AnglePairsTask) -> tuple[Diagram, float]:
     """Draw the structural error over the input angle, with the points of the task; return the largest |error| (rad)."""
     assert task.function
     function = task.function
-    side = assembly_of(one, task)
+    side = assembly_of(four_bar, task)
 
     def error(phi: Any) -> Any:
-        wanted = function.required_output(phi)
-        return output_angles(one, phi, wanted, side) - wanted
+        required = function.required_output(phi)
+        return output_angles(four_bar, phi, required, side) - required
 
-    places, largest = error_extremes(error, function)
-    phi = np.unique(np.concatenate((_scan_angles(function), places)))
+    peaks, largest = error_extremes(error, function)
+    phi = np.unique(np.concatenate((_scan_angles(function), peaks)))
     at_points = np.asarray(task.phi, dtype=float)
     lines = (
         DiagramLine(N_("structural error of the output angle"), phi, error(phi)),
@@ -118,12 +126,12 @@ def draw_structural_error(one: FourBarRatios, task: AnglePairsTask) -> tuple[Dia
 # Construction of a four-bar by pairs of angles: all positions rotated back to the first input angle.
 
 
-def draw_construction(one: FourBarRatios, given_phi: Any, given_psi: Any, size: float) -> GeometricConstruction:
+def draw_construction(one: FourBarRatios, given_phi: Any, given_psi: Any, frame_length: float) -> GeometricConstruction:
     """Draw all positions rotated back about A to the first input: C1, C2', C3' ... lie on a circle about B1."""
     phi, psi = np.asarray(given_phi, float), np.asarray(given_psi, float)
-    b, c = (np.asarray(x, dtype=complex) * size for x in one.pins(phi, psi))
+    b, c = (np.asarray(x, dtype=complex) * frame_length for x in one.pins(phi, psi))
     back = c * np.exp(-1j * (phi - phi[0]))
-    a, d = 0j, complex(size)
+    a, d = 0j, complex(frame_length)
     segments = [
         Segment(a, d, "axis", "l4"),
         Segment(a, complex(b[0]), "link", "l1"),
@@ -142,15 +150,20 @@ def draw_construction(one: FourBarRatios, given_phi: Any, given_psi: Any, size: 
         for k in range(1, len(row)):
             segments.append(Segment(centre, complex(row[k]), "thin"))
             spots.append(LetteredPoint(f"{name}{k + 1}", complex(row[k]), "dot"))
-    before = complex(c[0])
+    previous = complex(c[0])
     for k in range(1, len(back)):
-        here = complex(back[k])
+        point = complex(back[k])
         arc = sorted((float(np.angle(c[k])), float(np.angle(c[k]) - phi[k] + phi[0])))
         arcs.append(Arc(a, float(abs(c[k])), arc[0], arc[1], "dashed"))
-        segments += [Segment(before, here, "thin"), Segment((before + here) / 2, complex(b[0]), "dashed")]
-        spots.append(LetteredPoint(f"C{k + 1}′", here, "dot"))
-        before = here
-    lengths = (("l1", float(abs(b[0]))), ("l2", float(abs(c[0] - b[0]))), ("l3", float(abs(c[0] - d))), ("l4", size))
+        segments += [Segment(previous, point, "thin"), Segment((previous + point) / 2, complex(b[0]), "dashed")]
+        spots.append(LetteredPoint(f"C{k + 1}′", point, "dot"))
+        previous = point
+    lengths = (
+        ("l1", float(abs(b[0]))),
+        ("l2", float(abs(c[0] - b[0]))),
+        ("l3", float(abs(c[0] - d))),
+        ("l4", frame_length),
+    )
     values = tuple((name, value, "length") for name, value in lengths)
     title = N_(
         "Positions rotated back about {A} to the first input angle: {B}1 is the centre of the circle "
@@ -205,11 +218,11 @@ FAMILY: Final = 121  # tabulated four-bars through two pairs, for each direction
 
 def solve(task: AnglePairsTask) -> SynthesisOutcome:
     """Solve the task of one file. Raises Infeasible."""
-    found, at = choose_solution(task)
-    one, mark = found.at(at), rate_four_bars(found.at(at), task)
-    any_one = find_parallelogram(task.phi, task.psi, task.phi0, task.psi0) is not None
+    solutions, at = choose_solution(task)
+    one, mark = solutions.at(at), rate_four_bars(solutions.at(at), task)
+    is_parallelogram = find_parallelogram(task.phi, task.psi, task.phi0, task.psi0) is not None
     values, demands = _found_values(task, one, mark), _demands(task, one, mark)
-    if not any_one:  # a parallelogram has change points
+    if not is_parallelogram:  # a parallelogram has change points
         demands.append(
             Demand(
                 N_("input link rotates fully (1: yes)"),
@@ -225,9 +238,11 @@ def solve(task: AnglePairsTask) -> SynthesisOutcome:
     elif not task.function:
         drawings.append(draw_reached(one, task))
     listings = [_tabulate_pairs(task, one)] if task.approximate else []
-    if found.size > 1:
-        values.append(NamedValue("", f"{at + 1} / {found.size}", "word", N_("number of the solution, of those below")))
-        listings.append(_tabulate_solutions(task, found, at))
+    if solutions.size > 1:
+        values.append(
+            NamedValue("", f"{at + 1} / {solutions.size}", "word", N_("number of the solution, of those below"))
+        )
+        listings.append(_tabulate_solutions(task, solutions, at))
     if task.free:
         values.append(NamedValue("", 1 / float(one.l1), "number", N_("l4/l1, free with two pairs of angles")))
         listings.append(_tabulate_family(task))
@@ -241,7 +256,7 @@ def solve(task: AnglePairsTask) -> SynthesisOutcome:
         "Freudenstein's equation (l4/l1) cos(psi) - (l4/l3) cos(phi) + (l1^2 + l3^2 + l4^2 - l2^2)/(2 l1 l3) = "
         "cos(phi - psi), angles from AD; Trans. ASME 76 (1954)"
     )
-    notes = _notes(task, one, mark, any_one)
+    notes = _notes(task, one, mark, is_parallelogram)
     return SynthesisOutcome(
         _given_values(task), tuple(values), source, tuple(demands), tuple(drawings), tuple(notes), tuple(listings)
     )
@@ -250,18 +265,18 @@ def solve(task: AnglePairsTask) -> SynthesisOutcome:
 def choose_solution(task: AnglePairsTask) -> tuple[FourBarRatios, int]:
     """Return all four-bars of the task and the index of the one taken. Raises Infeasible."""
     _refuse_inputs(task)
-    found = four_bars_through(task)
-    defects = rate_four_bars(found, task).defect
-    fair = [str(k + 1) for k in np.flatnonzero((defects == "") | task.keep)]
-    if not fair and task.approximate:
+    four_bars = four_bars_through(task)
+    defects = rate_four_bars(four_bars, task).defect
+    admissible = [str(k + 1) for k in np.flatnonzero((defects == "") | task.keep)]
+    if not admissible and task.approximate:
         raise Infeasible("output" if task.function else "pairs", NONE_NEAR, search=False)
-    if not fair:
+    if not admissible:
         key = ("output",) if task.function else ("pairs", len(task.psi) - 1)
-        raise Infeasible(key, NO_FOUR_BAR if not found.size else DEFECTS_OF_ALL[" and ".join(sorted(set(defects)))])
-    if task.choose.isdigit() and task.choose not in fair:
+        raise Infeasible(key, NO_FOUR_BAR if not four_bars.size else DEFECTS_OF_ALL[" and ".join(sorted(set(defects)))])
+    if task.choose.isdigit() and task.choose not in admissible:
         reason = _("there is no solution with this number, or it has a defect")
-        raise Infeasible("choose", reason, ", ".join(fair))
-    return found, choose_four_bar(task, found)
+        raise Infeasible("choose", reason, ", ".join(admissible))
+    return four_bars, choose_four_bar(task, four_bars)
 
 
 def refuse(task: AnglePairsTask) -> None:
@@ -288,13 +303,18 @@ def _frame_length(task: AnglePairsTask, one: FourBarRatios) -> Any:
 
 
 def _found_values(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality) -> list[NamedValue]:
-    size = _frame_length(task, one)
-    numbers = {"l1": one.l1 * size, "l2": one.l2 * size, "l3": one.l3 * size, "l4": size}
+    frame_length = _frame_length(task, one)
+    numbers = {
+        "l1": one.l1 * frame_length,
+        "l2": one.l2 * frame_length,
+        "l3": one.l3 * frame_length,
+        "l4": frame_length,
+    }
     first = task.psi[0] + (output_errors(one, task)[0] if task.approximate else 0.0)
     angles = {"phi0": one.phi0, "psi0": one.psi0, "phi1": one.phi0 + task.phi[0], "psi1": one.psi0 + first}
     numbers |= {key: zero_within_rounding(angle, np.pi) for key, angle in angles.items()}
     return [
-        *(NamedValue(key, float(numbers[key]), *what) for key, what in FOUND.items()),
+        *(NamedValue(key, float(numbers[key]), *description) for key, description in FOUND.items()),
         NamedValue("", mark.least, "angle", N_("smallest transmission angle over the range")),
         NamedValue("", DEFECTS[str(mark.defect)], "word", N_("defects")),
         *([NamedValue("", _mean_error(one, task), "angle", MEAN)] if task.approximate else []),
@@ -317,47 +337,51 @@ def _demands(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality) -> 
     return [*demands, Demand(name, float(mark.least), "angle", measure, asked=False, at=1.0)]
 
 
-def _mean_error(one: FourBarRatios, task: AnglePairsTask) -> float:
-    return float(np.sqrt(np.mean(output_errors(one, task) ** 2)))
+def _mean_error(four_bar: FourBarRatios, task: AnglePairsTask) -> float:
+    return float(np.sqrt(np.mean(output_errors(four_bar, task) ** 2)))
 
 
-def _measured_outputs(one: FourBarRatios, results: Any, phi: Any, near: Any) -> Any:
+def _measured_outputs(solution: FourBarRatios, results: Any, phi: Any, near: Any) -> Any:
     """Return the output angles of the mechanism from their zero at input angles, nearest to `near` by whole turns."""
-    return four_bar.output_angles(results, phi + float(one.phi0), near + float(one.psi0)) - float(one.psi0)
+    return four_bar.output_angles(results, phi + float(solution.phi0), near + float(solution.psi0)) - float(
+        solution.psi0
+    )
 
 
-def _measured_mean(one: FourBarRatios, task: AnglePairsTask, results: Any) -> float:
+def _measured_mean(solution: FourBarRatios, task: AnglePairsTask, results: Any) -> float:
     phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
-    return float(np.sqrt(np.mean((_measured_outputs(one, results, phi, psi + output_errors(one, task)) - psi) ** 2)))
+    return float(
+        np.sqrt(np.mean((_measured_outputs(solution, results, phi, psi + output_errors(solution, task)) - psi) ** 2))
+    )
 
 
 def _output_name(k: int) -> str:
     return Phrase("output angle {number}", number=k + 1)
 
 
-def _measured_output(one: FourBarRatios, phi: float, psi: float, results: Any) -> float:
-    return float(_measured_outputs(one, results, np.array([phi]), np.array([psi]))[0])
+def _measured_output(solution: FourBarRatios, phi: float, psi: float, results: Any) -> float:
+    return float(_measured_outputs(solution, results, np.array([phi]), np.array([psi]))[0])
 
 
-def _measured_largest_error(one: FourBarRatios, task: AnglePairsTask, results: Any) -> float:
+def _measured_largest_error(solution: FourBarRatios, task: AnglePairsTask, results: Any) -> float:
     """Return the largest structural error measured on the mechanism."""
     assert task.function
     function = task.function
 
     def error(phi: Any) -> Any:
-        wanted = function.required_output(phi)
-        return _measured_outputs(one, results, phi, wanted) - wanted
+        required = function.required_output(phi)
+        return _measured_outputs(solution, results, phi, required) - required
 
     return error_extremes(error, function)[1]
 
 
-def _notes(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality, any_one: bool) -> Iterable[str]:
-    if task.approximate and not any_one:
+def _notes(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality, is_parallelogram: bool) -> Iterable[str]:
+    if task.approximate and not is_parallelogram:
         yield N_(
             "there are more pairs than a four-bar can reach exactly: the sum of the squared errors of the "
             "output angle is minimised"
         )
-    if any_one and len(task.lengths) == 1:
+    if is_parallelogram and len(task.lengths) == 1:
         yield N_(
             "the angles stay equal: every parallelogram l1 = l3, l2 = l4 passes through the pairs, and its "
             "transmission angle is the angle between DC and AD; l1/l4 is free, 1/2 was taken"
@@ -378,7 +402,7 @@ def _notes(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality, any_o
         )
 
 
-def _tabulate_solutions(task: AnglePairsTask, found: FourBarRatios, at: int) -> Listing:
+def _tabulate_solutions(task: AnglePairsTask, four_bars: FourBarRatios, at: int) -> Listing:
     """Tabulate all solutions with the numbers by which they can be chosen."""
     columns = (
         ("number_of", N_("choose"), "name"),
@@ -388,18 +412,18 @@ def _tabulate_solutions(task: AnglePairsTask, found: FourBarRatios, at: int) -> 
         ("defect", N_("defects"), "word"),
     )
     rows = []
-    for k in range(found.size):
-        mark = rate_four_bars(found.at(k), task)
+    for k in range(four_bars.size):
+        mark = rate_four_bars(four_bars.at(k), task)
         taken, crank = N_("yes") if k == at else None, N_("yes") if mark.crank else N_("no")
         rows.append(
-            (str(k + 1), taken, *_solution_row(task, found.at(k), mark), crank, SHORT_DEFECTS[str(mark.defect)])
+            (str(k + 1), taken, *_solution_row(task, four_bars.at(k), mark), crank, SHORT_DEFECTS[str(mark.defect)])
         )
     return Listing(
         "solutions", N_("Solutions. To take another one, write choose: and its number"), columns, tuple(rows)
     )
 
 
-def _tabulate_pairs(task: AnglePairsTask, one: FourBarRatios) -> Listing:
+def _tabulate_pairs(task: AnglePairsTask, four_bar: FourBarRatios) -> Listing:
     """Tabulate the pairs and the errors of the output angle."""
     columns = (
         ("phi", N_("input angle"), "angle"),
@@ -407,7 +431,7 @@ def _tabulate_pairs(task: AnglePairsTask, one: FourBarRatios) -> Listing:
         ("reached", N_("reached"), "angle"),
         ("error", N_("error"), "angle"),
     )
-    error = output_errors(one, task)
+    error = output_errors(four_bar, task)
     rows = [(float(a), float(b), float(b + e), float(e)) for a, b, e in zip(task.phi, task.psi, error, strict=True)]
     return Listing(
         "pairs", N_("Pairs of angles, and errors of the output angle"), columns, tuple(rows), long=len(rows) > SHOWN
@@ -423,18 +447,26 @@ def _tabulate_family(task: AnglePairsTask) -> Listing:
     )
     ratios = np.geomspace(1 / LONGEST, LONGEST, FAMILY)
     ratios = np.concatenate([ratios, -ratios])
-    found = four_bars_of_ratios(task, ratios)
+    four_bars = four_bars_of_ratios(task, ratios)
     rows = []
-    for k in np.flatnonzero(are_real(found)):
-        mark = rate_four_bars(found.at(k), task)
-        rows.append((abs(float(ratios[k])), *_solution_row(task, found.at(k), mark), SHORT_DEFECTS[str(mark.defect)]))
+    for k in np.flatnonzero(are_real(four_bars)):
+        mark = rate_four_bars(four_bars.at(k), task)
+        rows.append(
+            (abs(float(ratios[k])), *_solution_row(task, four_bars.at(k), mark), SHORT_DEFECTS[str(mark.defect)])
+        )
     return Listing("family", N_("Four-bars through both pairs of angles"), columns, tuple(rows), long=True)
 
 
 def _solution_row(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality) -> tuple[float, ...]:
     """Return lengths (m), zero angles and smallest transmission angle of a four-bar."""
-    size = _frame_length(task, one)
-    return (*(float(x * size) for x in one[:3]), float(size), float(one.phi0), float(one.psi0), float(mark.least))
+    frame_length = _frame_length(task, one)
+    return (
+        *(float(x * frame_length) for x in one[:3]),
+        float(frame_length),
+        float(one.phi0),
+        float(one.psi0),
+        float(mark.least),
+    )
 
 
 def _given_values(task: AnglePairsTask) -> tuple[NamedValue, ...]:

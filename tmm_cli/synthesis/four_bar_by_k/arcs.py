@@ -114,10 +114,10 @@ def four_bar_at(task: FourBarByKTask, w: Any, side: Any) -> FourBarByKSolution:
     slope = -1j * (cosine + 1j * side * sine) ** 2 * h / (c * cosine)
     l4 = np.abs(local)
     sines = [np.abs(cosine_of(l2, l3, (l4 + sign * l1) ** 2)) for sign in (-1, 1)]  # where A, B and D are in line
-    way = np.where(np.asarray(task.psi2) > task.psi1, 1, -1)
+    sense = np.where(np.asarray(task.psi2) > task.psi1, 1, -1)
     middle = (np.asarray(task.psi1) + task.psi2) / 2
     frame = unit(middle)
-    a, slope = ((np.where(way > 0, z, np.conj(z)) * frame)[()] for z in (local, slope))
+    a, slope = ((np.where(sense > 0, z, np.conj(z)) * frame)[()] for z in (local, slope))
     a = zero_within_rounding(task.support + a, l4 + np.abs(task.support))
     return FourBarByKSolution(
         w,
@@ -129,7 +129,7 @@ def four_bar_at(task: FourBarByKTask, w: Any, side: Any) -> FourBarByKSolution:
         slope,
         np.arcsin(np.minimum(np.maximum(*sines), 1)),
         np.arctan2(s * (w * c - cosine), c * cosine + s * sine),
-        -side * way,
+        -side * sense,
     )
 
 
@@ -137,9 +137,9 @@ def admissible_arcs(task: FourBarByKTask) -> list[int]:
     """Return the sides whose arcs have pivots; with k = 1 both are the same straight line."""
     if task.k == 1:
         return [-1]
-    way = 1 if task.psi2 > task.psi1 else -1
+    sense = 1 if task.psi2 > task.psi1 else -1
     return [
-        side for side in SIDES if largest_beta(task, side) >= SHORTEST_ARC * SLACK and task.sense in (0, -side * way)
+        side for side in SIDES if largest_beta(task, side) >= SHORTEST_ARC * SLACK and task.sense in (0, -side * sense)
     ]
 
 
@@ -147,12 +147,12 @@ def sample_arc(task: FourBarByKTask, side: int, count: int = 400) -> Any:
     """Return coordinates w along an arc from end to end, denser where the mechanism changes fast."""
     theta, most = float(task.theta), float(largest_w(task, side))
     first = END_MARGIN * min(1.0, most - 1)
-    found = 1 + np.geomspace(first, most - 1, count)
+    samples = 1 + np.geomspace(first, most - 1, count)
     if theta > STRAIGHT:
         beta = float(largest_beta(task, side)) * np.linspace(END_MARGIN, 1 - END_MARGIN, count)
         by_angle = np.sin(beta + theta / 2) / np.sin(theta / 2)
-        found = np.unique(np.clip(np.concatenate((found, by_angle)), 1 + first, most - END_MARGIN * (most - 1)))
-    return found
+        samples = np.unique(np.clip(np.concatenate((samples, by_angle)), 1 + first, most - END_MARGIN * (most - 1)))
+    return samples
 
 
 def sample_whole_arc(task: FourBarByKTask, side: int, count: int = 121) -> Any:
@@ -179,20 +179,20 @@ def pivots_on_line(task: FourBarByKTask) -> list[Any]:
     """
     l3, middle, half = task.l3, (task.psi1 + task.psi2) / 2, (task.psi2 - task.psi1) / 2
     sine, cosine = np.sin(task.theta), np.cos(task.theta)
-    way, height = unit(middle) * (1j if task.choose == "xA" else 1), line_offset(task)
-    both, apart = 2 * l3 * np.cos(half) * way, 2j * l3 * np.sin(half) * way  # C1 + C2, C2 - C1
+    direction, height = unit(middle) * (1j if task.choose == "xA" else 1), line_offset(task)
+    both, apart = 2 * l3 * np.cos(half) * direction, 2j * l3 * np.sin(half) * direction  # C1 + C2, C2 - C1
     real = l3 * l3 * np.cos(2 * half) + height * (height - both.imag)  # real and imaginary part of z at t = 0
     imag = l3 * l3 * np.sin(2 * half) + height * apart.real
-    found = []
+    roots = []
     for sign in (-1, 1):
         a, b, c = sine, sign * cosine * apart.imag - sine * both.real, sine * real - sign * cosine * imag
         inner = b * b - 4 * a * c
         if inner >= 0:
             larger = -(b + np.copysign(np.sqrt(inner), b)) / 2
-            found += [larger / a] if a > 0 else []
-            found += [c / larger] if larger != 0 else []
+            roots += [larger / a] if a > 0 else []
+            roots += [c / larger] if larger != 0 else []
     ends = ((both + sign * apart) / 2 - 1j * height for sign in (-1, 1))
-    return list(sum(np.abs(end - np.array(found)) for end in ends) / (2 * l3 * np.abs(np.sin(half))))
+    return list(sum(np.abs(end - np.array(roots)) for end in ends) / (2 * l3 * np.abs(np.sin(half))))
 
 
 def line_offset(task: FourBarByKTask) -> Any:

@@ -32,13 +32,13 @@ CUT: Final = 4.0  # times the longer of rod and rocker: longest rod shown otherw
 
 
 def draw_construction(
-    task: FourBarByKTask, found: FourBarByKSolution, family: Sequence[FourBarByKSolution]
+    task: FourBarByKTask, solution: FourBarByKSolution, family: Sequence[FourBarByKSolution]
 ) -> GeometricConstruction:
     """Draw both extreme positions, the circles from which C1C2 is seen at theta, and the admissible arcs of A."""
-    d, a = complex(task.support), complex(found.a)
+    d, a = complex(task.support), complex(solution.a)
     c1, c2 = (complex(d + task.l3 * np.exp(1j * psi)) for psi in (task.psi1, task.psi2))
     way1, way2 = (c1 - a) / abs(c1 - a), (c2 - a) / abs(c2 - a)
-    pin1, pin2 = a - found.l1 * way1, a + found.l1 * way2
+    pin1, pin2 = a - solution.l1 * way1, a + solution.l1 * way2
     segments = [
         Segment(d, c1, "link", "l3"),
         Segment(pin1, a, "link", "l1"),
@@ -58,22 +58,22 @@ def draw_construction(
         LetteredPoint("C2", c2, "hinge"),
     ]
     middle, theta, half = (c1 + c2) / 2, float(task.theta), abs(c2 - c1) / 2
-    arcs = [full_circle(a, float(found.l1))]
+    arcs = [full_circle(a, float(solution.l1))]
     angles = [Angle(d, c1, c2, "ψ")]
-    centres, wishes = [], [circle_extent(a, float(found.l1))]
+    centres, wishes = [], [circle_extent(a, float(solution.l1))]
     if theta > 0:
         out, radius = (middle - d) / abs(middle - d), half / float(np.sin(theta))
         angles.append(Angle(a, c1, c2, "θ"))
-        for f in sorted(family, key=lambda one: int(one.side) != int(found.side)):
+        for f in sorted(family, key=lambda member: int(member.side) != int(solution.side)):
             centre = middle + int(f.side) * out * half / float(np.tan(theta))
             arcs.append(full_circle(centre, radius))
-            if int(f.side) == int(found.side):
+            if int(f.side) == int(solution.side):
                 centres.append(CircleCentre(centre, radius, (c1, c2)))
                 name = "90° − θ" if theta < np.pi / 2 else "θ − 90°"
                 angles += [Angle(c1, c2, centre, name), Angle(c2, c1, centre, name)]
                 wishes.append((centre,))
             wishes.append(circle_extent(centre, radius))
-    values = [(name, float(getattr(task if name == "l3" else found, name)), "length") for name in LINKS]
+    values = [(name, float(getattr(task if name == "l3" else solution, name)), "length") for name in LINKS]
     values += [("ψ", float(task.swing), "angle"), ("θ", theta, "angle")]
     curves = [ConstructionCurve(tuple(complex(z) for z in f.a), "bold") for f in family]
     notes = [N_("red: points {A} for which the crank rotates fully")]
@@ -95,10 +95,10 @@ def draw_construction(
 
 
 def draw_diagrams(
-    task: FourBarByKTask, found: FourBarByKSolution, family: Sequence[FourBarByKSolution]
+    task: FourBarByKTask, solution: FourBarByKSolution, family: Sequence[FourBarByKSolution]
 ) -> tuple[Diagram, Diagram]:
     """Draw the largest pressure angle, and the lengths of crank and frame, over the coupler length along the arcs."""
-    size, most = max(float(found.l2), float(task.l3)), max(float(np.max(f.l2)) for f in family)
+    size, most = max(float(solution.l2), float(task.l3)), max(float(np.max(f.l2)) for f in family)
     if most > LONGEST * size:
         most = CUT * size
     pressures, lengths = [], []
@@ -113,12 +113,12 @@ def draw_diagrams(
         kept = x <= most
         pressures.append(DiagramLine(angle, x[kept], np.asarray(f.pressure)[kept]))
         lengths.append(DiagramLine(frame, x[kept], np.asarray(f.l4)[kept]))
-    longest = max(family, key=lambda one: float(np.max(one.l2)))
+    longest = max(family, key=lambda member: float(np.max(member.l2)))
     kept = np.asarray(longest.l2) <= most
     lengths.append(DiagramLine(N_("crank l1"), longest.l2[kept], longest.l1[kept]))
-    dot = np.array([found.l2], dtype=float)
-    both = np.array([found.l1, found.l4], dtype=float)
-    pressures.append(DiagramLine(N_("chosen"), dot, np.array([found.pressure], dtype=float), dots=True))
+    dot = np.array([solution.l2], dtype=float)
+    both = np.array([solution.l1, solution.l4], dtype=float)
+    pressures.append(DiagramLine(N_("chosen"), dot, np.array([solution.pressure], dtype=float), dots=True))
     lengths.append(DiagramLine(N_("chosen"), np.repeat(dot, 2), both, dots=True))
     across, title = (N_("coupler l2"), "length"), N_("Largest pressure angle along the admissible arcs")
     drawn = Diagram("family-pressure", title, across, (N_("largest pressure angle"), "angle"), tuple(pressures))
@@ -149,6 +149,6 @@ def tabulate_family(family: Sequence[FourBarByKSolution]) -> Listing:
     )
 
 
-def side_name(found: FourBarByKSolution) -> str:
+def side_name(solution: FourBarByKSolution) -> str:
     """Return the name of the arc on which the pivot lies."""
-    return N_("on the other side of C1C2 than D") if int(found.side) > 0 else N_("on the same side of C1C2 as D")
+    return N_("on the other side of C1C2 than D") if int(solution.side) > 0 else N_("on the same side of C1C2 as D")

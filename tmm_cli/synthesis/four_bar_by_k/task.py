@@ -55,16 +55,16 @@ ON_LINE: Final = ("level", "xA", "yA")
 SAME: Final = 1e-6  # relative: tells a pivot of this arc from one of the other arc
 
 
-def _pressure_of(found: FourBarByKSolution, __: FourBarByKTask) -> Any:
-    return found.pressure
+def _pressure_of(four_bar: FourBarByKSolution, __: FourBarByKTask) -> Any:
+    return four_bar.pressure
 
 
-def _extent(found: FourBarByKSolution, __: FourBarByKTask) -> Any:
-    return found.l2 + found.l4
+def _extent(four_bar: FourBarByKSolution, __: FourBarByKTask) -> Any:
+    return four_bar.l2 + four_bar.l4
 
 
-def _distance_to_near(found: FourBarByKSolution, task: FourBarByKTask) -> Any:
-    return np.abs(found.a - task.near)
+def _distance_to_near(four_bar: FourBarByKSolution, task: FourBarByKTask) -> Any:
+    return np.abs(four_bar.a - task.near)
 
 
 def _pressure_slope(f: FourBarByKSolution, task: FourBarByKTask) -> Any:
@@ -73,13 +73,13 @@ def _pressure_slope(f: FourBarByKSolution, task: FourBarByKTask) -> Any:
     h, s, c = l3 * np.sin(half), np.sin(theta / 2), np.cos(theta / 2)
     l1_rise = -f.w * (h * s / c) ** 2 / f.l1
     l4_rise = np.real(np.conj(f.a - task.support) * f.slope) / f.l4
-    found = []
+    branches = []
     for sign in (-1, 1):
         reach = f.l4 + sign * f.l1
         over = f.l2 * f.l2 + l3 * l3 - reach * reach
         rise = 2 * (f.l2 * h - reach * (l4_rise + sign * l1_rise)) - over * h / f.l2
-        found.append((np.abs(over), np.sign(over) * rise))
-    (near, near_rise), (far, far_rise) = found
+        branches.append((np.abs(over), np.sign(over) * rise))
+    (near, near_rise), (far, far_rise) = branches
     return np.where(near > far, near_rise, far_rise)[()]
 
 
@@ -107,19 +107,19 @@ def _find_crossings(task: FourBarByKTask, side: int, function: Any) -> list[Any]
         return [w for w in fair if abs(function(f := four_bar_at(task, w, side), task)) < SAME * (f.l2 + task.l3)]
     w = sample_arc(task, side)
     values = function(four_bar_at(task, w, side), task)
-    here = np.flatnonzero(np.signbit(values[1:]) != np.signbit(values[:-1]))
-    if not here.size:
+    crossings = np.flatnonzero(np.signbit(values[1:]) != np.signbit(values[:-1]))
+    if not crossings.size:
         return []
-    return list(find_roots(lambda x: function(four_bar_at(task, x, side), task), w[here], w[here + 1]))
+    return list(find_roots(lambda x: function(four_bar_at(task, x, side), task), w[crossings], w[crossings + 1]))
 
 
 def _find_minimum(task: FourBarByKTask, side: int, choice: str) -> Any:
     """Return the coordinate w of the smallest value of an objective: a zero of its slope, or an end of the arc."""
     w = sample_arc(task, side)
-    here = int(np.argmin(OBJECTIVES[choice](four_bar_at(task, w, side), task)))
-    if here in (0, len(w) - 1):
-        return w[here]
-    around = w[[here - 1]], w[[here + 1]]
+    best = int(np.argmin(OBJECTIVES[choice](four_bar_at(task, w, side), task)))
+    if best in (0, len(w) - 1):
+        return w[best]
+    around = w[[best - 1]], w[[best + 1]]
     return find_roots(lambda x: EQUATIONS[choice](four_bar_at(task, x, side), task), *around)[0]
 
 
@@ -136,21 +136,21 @@ def choose_pivot(task: FourBarByKTask) -> FourBarByKSolution:
     }
     centred = replace(task, support=0 * task.support, **beside)
     if task.choose in OBJECTIVES:
-        found = [(_find_minimum(centred, side, task.choose), side) for side in admissible_arcs(centred)]
+        pivots = [(_find_minimum(centred, side, task.choose), side) for side in admissible_arcs(centred)]
     else:
-        found = [
+        pivots = [
             (w, side)
             for side in admissible_arcs(centred)
             for w in _find_crossings(centred, side, EQUATIONS[task.choose])
         ]
-    if not found and task.choose == "pressure":
+    if not pivots and task.choose == "pressure":
         raise _pressure_refusal(centred)
-    if not found:
+    if not pivots:
         level = task.choose == "level"
         reason = _("no pivot A on the admissible arcs meets this condition")
         raise Infeasible("choose" if level else task.choose, reason, "best transmission" if level else None)
     goal = _extent if task.choose == "pressure" else OBJECTIVES.get(task.choose, _pressure_of)
-    w, side = min(found, key=lambda one: float(goal(four_bar_at(centred, *one), centred)))
+    w, side = min(pivots, key=lambda pivot: float(goal(four_bar_at(centred, *pivot), centred)))
     if task.choose == "near" and w in sample_arc(centred, side)[[0, -1]]:
         reason = _("the nearest point of the admissible arcs is their end, where the rocker reaches a dead position")
         raise Infeasible("near", reason)
@@ -181,8 +181,8 @@ def _refuse_numbers(task: FourBarByKTask) -> None:
                 "return stroke"
             ),
         )
-    theta, half, way = float(task.theta), float(task.swing) / 2, -1 if task.psi2 < task.psi1 else 1
-    against = task.sense == -way  # crank and rocker rotate in opposite senses in the slow stroke: only beyond C1C2
+    theta, half, sense = float(task.theta), float(task.swing) / 2, -1 if task.psi2 < task.psi1 else 1
+    against = task.sense == -sense  # crank and rocker rotate in opposite senses in the slow stroke: only beyond C1C2
     if not SMALLEST <= task.swing <= np.pi - 2 * SHORTEST_ARC:
         raise Infeasible("psi2", _("the swing angle of the rocker must be greater than 0 and less than 180 deg"))
     if theta > np.pi / 2 + half - SHORTEST_ARC:  # the largest theta of the arc on D's side
@@ -271,7 +271,7 @@ def _given_values(task: FourBarByKTask) -> tuple[NamedValue, ...]:
 def _found_values(task: FourBarByKTask, f: FourBarByKSolution) -> tuple[NamedValue, ...]:
     """Return the values of the solution: four-bar, pivot, its arc, sense of the crank, ends of the admissible arcs."""
     at_c2 = task.support + task.l3 * unit(task.psi2) - f.a
-    found = [
+    rows = [
         NamedValue("l1", f.l1, *QUANTITIES["l1"]),
         NamedValue("l2", f.l2, *QUANTITIES["l2"]),
         NamedValue("l4", f.l4, *QUANTITIES["l4"]),
@@ -284,11 +284,11 @@ def _found_values(task: FourBarByKTask, f: FourBarByKSolution) -> tuple[NamedVal
         NamedValue("", f.pressure, "angle", N_("largest pressure angle")),
     ]
     if task.choose == "near":
-        found.append(NamedValue("", np.abs(f.a - task.near), "length", N_("distance of A from the required point")))
+        rows.append(NamedValue("", np.abs(f.a - task.near), "length", N_("distance of A from the required point")))
     if task.k == 1:
-        return tuple(found)
+        return tuple(rows)
     turns = N_("counterclockwise") if f.sense > 0 else N_("clockwise")
-    found += [
+    rows += [
         NamedValue("", f.beta, "angle", N_("position on the arc, angle AC2C1")),
         NamedValue("", side_name(f), "word", N_("arc")),
         NamedValue("", turns, "word", N_("sense of rotation of the crank for a slow stroke from psi1 to psi2")),
@@ -299,11 +299,11 @@ def _found_values(task: FourBarByKTask, f: FourBarByKSolution) -> tuple[NamedVal
             N_("admissible arc on the same side of C1C2 as D: angle AC2C1 from 0 to"),
         )
         last = four_bar_at(task, sample_arc(task, side)[-1], side)
-        found += [
+        rows += [
             NamedValue("", largest_beta(task, side), "angle", beyond if side > 0 else inside),
             NamedValue("", last.l4, "length", N_("l4 at that end of the arc (l3 at the other end)")),
         ]
-    return tuple(found)
+    return tuple(rows)
 
 
 CHOICES = {"best transmission": "best", "supports level": "level"}
@@ -346,18 +346,18 @@ BLOCK = FourBarByKBlock
 
 def read(shape: FourBarByKBlock, values: ValueReader) -> FourBarByKTask:
     """Read the task into SI. Raises ProblemError."""
-    ways = [name for name in CHOICE_KEYS if getattr(shape, name) is not None]
-    if len(ways) > 1:
+    conditions = [name for name in CHOICE_KEYS if getattr(shape, name) is not None]
+    if len(conditions) > 1:
         raise ProblemError(
             _("give only one condition for the pivot A"),
-            found=_(" and ").join(ways),
+            found=_(" and ").join(conditions),
             allowed=_("one of {ways}").format(ways=", ".join(CHOICE_KEYS)),
             key=True,
         )
-    found = read_numbers(shape, values, QUANTITIES)
+    fields = read_numbers(shape, values, QUANTITIES)
     for key in ("support", "near"):
         if getattr(shape, key) is not None:
-            found[key] = values.vector(getattr(shape, key), LENGTH, (key,))
-    way = ways[0] if ways else "choose"
-    choice = CHOICES[shape.choose or "best transmission"] if way == "choose" else way
-    return FourBarByKTask(**found, choose=choice, sense={"ccw": 1, "cw": -1, None: 0}[shape.turns])
+            fields[key] = values.vector(getattr(shape, key), LENGTH, (key,))
+    condition = conditions[0] if conditions else "choose"
+    choice = CHOICES[shape.choose or "best transmission"] if condition == "choose" else condition
+    return FourBarByKTask(**fields, choose=choice, sense={"ccw": 1, "cw": -1, None: 0}[shape.turns])

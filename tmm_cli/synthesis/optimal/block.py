@@ -91,8 +91,8 @@ class ConstraintKeys(QuantityKeys):
     equal: Value | None = None
 
 
-def _expand_short(found: Any) -> Any:
-    return {"of": found} if isinstance(found, str) else found
+def _expand_short(quantity: Any) -> Any:
+    return {"of": quantity} if isinstance(quantity, str) else quantity
 
 
 class OptimalBlock(TaskBlock):
@@ -151,11 +151,11 @@ def read(shape: OptimalBlock, sense: ValueReader, file_with: FileWith) -> Optima
         for end in (parameter.low, parameter.high):
             files.variant([*middles[:k], end, *middles[k + 1 :]])
     constraints = tuple(
-        _read_constraint(given, middle, sense, n, files.asked(given, ("constraints", n), middles, middle))
-        for n, given in enumerate(shape.constraints)
+        _read_constraint(keys, middle, sense, n, files.asked(keys, ("constraints", n), middles, middle))
+        for n, keys in enumerate(shape.constraints)
     )
-    asked = files.asked(shape.objective, ("objective",), middles, middle)
-    objective, target = _read_quantity(shape.objective, middle, sense, ("objective",), asked), shape.objective.target
+    targets = files.asked(shape.objective, ("objective",), middles, middle)
+    objective, target = _read_quantity(shape.objective, middle, sense, ("objective",), targets), shape.objective.target
     if target is not None:
         target = sense.number(target, DIMENSIONS[_kind_of(objective, middle)].dimension, ("objective", "target"))
     return OptimalTask(
@@ -184,32 +184,32 @@ class _FileVariants:
         self.own = sense.parameters
         self.over: Any = None
         self.goals: list[tuple[Path, QuantityKeys]] = [(("objective",), shape.objective)]
-        self.goals += [(("constraints", n), given) for n, given in enumerate(shape.constraints)]
+        self.goals += [(("constraints", n), keys) for n, keys in enumerate(shape.constraints)]
 
     def plain(self, numbers: Sequence[Any]) -> Problem:
         """Build the problem with these values. Raises TriedFileError."""
         return self.file_with(*self._given(numbers))
 
     def _given(self, numbers: Sequence[Any]) -> tuple[dict[str, PhysicalValue], UnitSystem]:
-        found = {
+        parameters = {
             self.names.get(p.name, p.name): PhysicalValue(x, DIMENSIONS[p.kind].dimension)
             for p, x in zip(self.parameters, numbers, strict=True)
         }
-        return found, self.varied if any(isinstance(x, TracedNumber) for x in numbers) else self.units
+        return parameters, self.varied if any(isinstance(x, TracedNumber) for x in numbers) else self.units
 
-    def asked(self, given: QuantityKeys, path: Path, numbers: Sequence[Any], variant: Variant) -> DriverTargets:
+    def asked(self, keys: QuantityKeys, path: Path, numbers: Sequence[Any], variant: Variant) -> DriverTargets:
         """Return the driver coordinates of a quantity and the values required of a link there; both may depend on the
         parameters.
 
         Raises ProblemError.
         """
-        found, units = self._given(numbers)
-        sense, linkage = ValueReader({**self.own, **found}, units), variant.linkage
-        places = tuple(read_position(v, variant, sense, (*path, "at", n)) for n, v in enumerate(given.at))
-        if not given.values or given.link not in linkage.moving:
-            return places, (0.0,) * len(places)
-        dimension = ANGLE if linkage.output_swings(given.link) else LENGTH
-        return places, tuple(sense.number(v, dimension, (*path, "values", n)) for n, v in enumerate(given.values))
+        parameters, units = self._given(numbers)
+        sense, linkage = ValueReader({**self.own, **parameters}, units), variant.linkage
+        coordinates = tuple(read_position(v, variant, sense, (*path, "at", n)) for n, v in enumerate(keys.at))
+        if not keys.values or keys.link not in linkage.moving:
+            return coordinates, (0.0,) * len(coordinates)
+        dimension = ANGLE if linkage.output_swings(keys.link) else LENGTH
+        return coordinates, tuple(sense.number(v, dimension, (*path, "values", n)) for n, v in enumerate(keys.values))
 
     def variant(self, numbers: Sequence[Any]) -> Variant:
         """Build the variant with these values.
@@ -220,17 +220,17 @@ class _FileVariants:
         """
         try:
             variant = with_driver_range(self.plain(numbers), self.over)
-            asked = [self.asked(given, path, numbers, variant) for path, given in self.goals]
-            places, wanted = (tuple(chain.from_iterable(part)) for part in zip(*asked, strict=True))
-            return replace(variant, asked=places, wanted=wanted)
+            targets = [self.asked(keys, path, numbers, variant) for path, keys in self.goals]
+            coordinates, required = (tuple(chain.from_iterable(part)) for part in zip(*targets, strict=True))
+            return replace(variant, asked=coordinates, wanted=required)
         except TriedFileError as error:
-            refused, told = copy(error.error), []
+            refused, texts = copy(error.error), []
             for p, number in zip(self.parameters, numbers, strict=True):
                 value, dimension = getattr(number, "value", number), DIMENSIONS[p.kind].dimension
-                shown = f"{self.units.from_si(float(value), dimension):.6g} {self.units.symbol(dimension)}"
-                told.append(f"{p.name} = {shown.rstrip()}")
+                text = f"{self.units.from_si(float(value), dimension):.6g} {self.units.symbol(dimension)}"
+                texts.append(f"{p.name} = {text.rstrip()}")
             refused.message = _("with {numbers} the problem file is invalid: {reason}").format(
-                numbers=", ".join(told), reason=refused.message
+                numbers=", ".join(texts), reason=refused.message
             )
             raise TriedFileError(refused) from None
 
@@ -260,15 +260,15 @@ def _check_mobility(variant: Variant) -> None:
 
 
 def _read_constraint(
-    given: ConstraintKeys, variant: Variant, sense: ValueReader, n: int, asked: DriverTargets
+    keys: ConstraintKeys, variant: Variant, sense: ValueReader, n: int, targets: DriverTargets
 ) -> task.QuantityConstraint:
     path: Path = ("constraints", n)
-    quantity = _read_quantity(given, variant, sense, path, asked)
+    quantity = _read_quantity(keys, variant, sense, path, targets)
     dimension = DIMENSIONS[_kind_of(quantity, variant)].dimension
     sides = {
         key: sense.number(value, dimension, (*path, key))
         for key in ("least", "most", "equal")
-        if (value := getattr(given, key)) is not None
+        if (value := getattr(keys, key)) is not None
     }
     if not sides or ("equal" in sides and len(sides) > 1):
         raise ProblemError(
@@ -277,7 +277,7 @@ def _read_constraint(
     least, most = (sides.get(key, sides.get("equal")) for key in ("least", "most"))
     if least is not None and most is not None and least > most:
         raise ProblemError(
-            _("the lower bound exceeds the upper bound"), path=path, found=bounds_text(given.least, given.most)
+            _("the lower bound exceeds the upper bound"), path=path, found=bounds_text(keys.least, keys.most)
         )
     return task.QuantityConstraint(quantity, least, most, (*path, list(sides)[-1]))
 
@@ -287,41 +287,41 @@ def _kind_of(quantity: MechanismQuantity, variant: Variant) -> str:
 
 
 def _read_quantity(
-    given: QuantityKeys, variant: Variant, sense: ValueReader, path: Path, asked: DriverTargets
+    keys: QuantityKeys, variant: Variant, sense: ValueReader, path: Path, targets: DriverTargets
 ) -> MechanismQuantity:
-    linkage, kind, name = variant.linkage, QUANTITIES[given.of], ""
-    places, values = asked
+    linkage, kind, name = variant.linkage, QUANTITIES[keys.of], ""
+    coordinates, values = targets
     others = {key for other in QUANTITIES.values() for key in other.keys} - {*kind.keys}
-    for key in given.model_fields_set & others:
+    for key in keys.model_fields_set & others:
         raise ProblemError(
-            _("the quantity {quantity} has no key {key}").format(quantity=given.of, key=key),
+            _("the quantity {quantity} has no key {key}").format(quantity=keys.of, key=key),
             path=(*path, key),
             allowed=", ".join(sorted(kind.keys)) or "of",
             key=True,
         )
     for needed in (kind.named, kind.given):
-        if needed and not getattr(given, needed):
+        if needed and not getattr(keys, needed):
             raise ProblemError(_("the key `{key}` is missing").format(key=needed), path=(*path, needed))
     if kind.named:
-        name = getattr(given, kind.named)
-        known: dict[str, list[str]] = {
+        name = getattr(keys, kind.named)
+        names: dict[str, list[str]] = {
             "pair": [pair.name for pair in analyse_mobile_structure(linkage).pairs],
             "link": list(linkage.moving),
             "point": [point for link in linkage.moving for point in linkage.links[link].points],
         }
-        sense.known_name(name, dict.fromkeys(known[kind.named]), (*path, kind.named), kind.named)
-    for n, link in enumerate(given.links):
+        sense.known_name(name, dict.fromkeys(names[kind.named]), (*path, kind.named), kind.named)
+    for n, link in enumerate(keys.links):
         sense.known_name(link, linkage.links, (*path, "links", n), "link")
-    wanted: list[Any] = [sense.vector(v, LENGTH, (*path, "through", n)) for n, v in enumerate(given.through)]
-    wanted = list(values) if given.values else wanted
-    if len(places) != len(wanted) and (places or given.values):
+    required: list[Any] = [sense.vector(v, LENGTH, (*path, "through", n)) for n, v in enumerate(keys.through)]
+    required = list(values) if keys.values else required
+    if len(coordinates) != len(required) and (coordinates or keys.values):
         raise ProblemError(
             _("the keys at and {key} must have the same number of values").format(key=kind.given),
             path=(*path, "at"),
-            found=quote(len(places)),
-            allowed=str(len(wanted)),
+            found=quote(len(coordinates)),
+            allowed=str(len(required)),
         )
-    return kind(name, tuple(given.links), places, tuple(wanted), given.norm, given.relative)
+    return kind(name, tuple(keys.links), coordinates, tuple(required), keys.norm, keys.relative)
 
 
 def _progress_bar() -> Callable[[int, int], None]:

@@ -105,8 +105,8 @@ class Candidates:
             )
             for quantity in self.quantities
         )
-        own = self.own_places(self.count + self.jumps)
-        self.exact = [places or self.shares_of(n, self.count) for n, places in enumerate(own)]
+        own_slices = self.own_places(self.count + self.jumps)
+        self.exact = [own_slice or self.shares_of(n, self.count) for n, own_slice in enumerate(own_slices)]
         self.places = DriverSamples(self.shares_over(self.count), self.with_sketch(np.zeros(0)), asked=True)
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> dict[str, Any]:
@@ -133,8 +133,8 @@ class Candidates:
 
     def shares(self, numbers: Real) -> Real:
         """Convert parameter values (SI) to fractions of the ranges."""
-        found: Real = (numbers - self.low) / (self.high - self.low)
-        return found
+        fractions: Real = (numbers - self.low) / (self.high - self.low)
+        return fractions
 
     def shares_over(self, count: int) -> Real:
         """Return `count` fractions of the driver range.
@@ -173,7 +173,7 @@ class Candidates:
     def evaluate(self, x: Real) -> tuple[Real, Real]:
         """Return objective and constraint violation of candidates, computed in blocks that fit the cache."""
         block = FOLLOWED if isinstance(self.program, TracedVariants) and self.program.marches else BLOCK
-        blocks = [self._evaluate(part) for part in np.array_split(x, -(-len(x) * self.turns // block))]
+        blocks = [self._evaluate(chunk) for chunk in np.array_split(x, -(-len(x) * self.turns // block))]
         return np.concatenate([f for f, __ in blocks]), np.concatenate([v for __, v in blocks])
 
     def _evaluate(self, x: Real) -> tuple[Real, Real]:
@@ -184,8 +184,8 @@ class Candidates:
             lost = self.constraints[0].missed(values[1])
             violation = np.where(lost > 0, LOST + 10 * lost, violation)
             violation = np.where(np.isfinite(violation), violation, NONE)
-            wanted = self.objective_value(values[0])
-            return np.where(np.isnan(wanted), np.inf, wanted), violation
+            objective = self.objective_value(values[0])
+            return np.where(np.isnan(objective), np.inf, objective), violation
 
     def evaluate_coarsely(
         self, x: Real
@@ -193,22 +193,24 @@ class Candidates:
         """Return the outputs at the positions of the search, and each quantity with the function that reads its own
         outputs.
         """
-        found = self.coarse(self.numbers(x), self.places)
-        own = enumerate(zip(self.quantities, self.exact, self.overs, strict=True))
-        return found, [(quantity, quantity_reader(found, n, where), over) for n, (quantity, where, over) in own]
+        outputs = self.coarse(self.numbers(x), self.places)
+        numbered = enumerate(zip(self.quantities, self.exact, self.overs, strict=True))
+        return outputs, [
+            (quantity, quantity_reader(outputs, n, where), over) for n, (quantity, where, over) in numbered
+        ]
 
     def values(self, x: Real) -> list[Real]:
         """Return coarse values of the objective and of the constrained quantities."""
-        found, parts = self.evaluate_coarsely(x)
+        outputs, parts = self.evaluate_coarsely(x)
         values = [quantity.coarse(read, over) for quantity, read, over in parts]
-        values[1] = np.where(self.passes_dead_position(found, self.count), -1.0, values[1])
+        values[1] = np.where(self.passes_dead_position(outputs, self.count), -1.0, values[1])
         return values
 
-    def passes_dead_position(self, found: Mapping[str, Real], count: int) -> Real:
+    def passes_dead_position(self, outputs: Mapping[str, Real], count: int) -> Real:
         """Return True for variants (variants,) that pass a dead position without stopping there, in `count` samples."""
         over: Any = False
         for name in self.single:
-            det = np.hstack([found[name][:, :count], found[name][:, -1:]])
+            det = np.hstack([outputs[name][:, :count], outputs[name][:, -1:]])
             over = over | (np.min(det, axis=1) * np.max(det, axis=1) <= 0)
         return np.asarray(over)
 
@@ -223,15 +225,15 @@ class Candidates:
         None.
         """
         numbers = self.numbers(x)
-        own = self.program.sketch(numbers)
+        candidate_sketch = self.program.sketch(numbers)
         try:
             linkage = self.task.make(numbers.tolist()).linkage
-            shown = compute_sketch(linkage, assemble(linkage, analyse_mobile_structure(linkage)))
+            file_sketch = compute_sketch(linkage, assemble(linkage, analyse_mobile_structure(linkage)))
         except LinkageError:
-            return own
-        return None if same_assembly(own, shown) else own
+            return candidate_sketch
+        return None if same_assembly(candidate_sketch, file_sketch) else candidate_sketch
 
 
-def quantity_reader(found: Mapping[str, Real], n: int, where: slice) -> Callable[[str], Real]:
+def quantity_reader(outputs: Mapping[str, Real], n: int, where: slice) -> Callable[[str], Real]:
     """Return a function that reads outputs of quantity `n` by name, at some of the positions."""
-    return lambda name: found[name if name == WANTED else f"{n}.{name}"][:, where]
+    return lambda name: outputs[name if name == WANTED else f"{n}.{name}"][:, where]

@@ -74,15 +74,15 @@ class _Generations:
         self.progress(len(self.history), self.generations)
         x = columns.T
         f, v = self.evaluate(x)
-        found = self.judged(f, v)
-        first = np.argsort(found)[:1]
-        if found[first[0]] < self.leading or not self.history:
-            self.leading = float(found[first[0]])
+        merits = self.judged(f, v)
+        first = np.argsort(merits)[:1]
+        if merits[first[0]] < self.leading or not self.history:
+            self.leading = float(merits[first[0]])
             self.history.append((float(f[first[0]]), float(v[first[0]])))
         else:
             self.history.append(self.history[-1])
         self.kept.append((x[first], f[first], v[first]) if self.kept else (x.copy(), f, v))
-        return found
+        return merits
 
 
 def evolve(
@@ -117,7 +117,7 @@ def evolve(
                 watched.tolerance, watched.leading = share * start, np.inf
                 last = share == TOLERANCES[-1] or not equalities
                 count = watched.left if last else min(watched.left, max(1, generations // len(TOLERANCES) // 2))
-                found = differential_evolution(
+                evolved = differential_evolution(
                     watched,
                     [(0.0, 1.0)] * size,
                     init=x,
@@ -132,7 +132,7 @@ def evolve(
                     vectorized=True,
                     rng=chance,
                 )
-                x = found.population
+                x = evolved.population
                 if equalities and not start:
                     start = float(np.quantile(np.minimum(watched.kept[0][2], 10.0), 0.2))
     except KeyboardInterrupt:
@@ -176,38 +176,41 @@ class DiscreteChoices:
     def __call__(self, x: Real) -> tuple[Real, Real]:
         f, v = self.candidates.evaluate(x)
         keys = self.candidates.numbers(x)[:, self.chosen]
-        for key, own, violation, objective in zip(keys.tolist(), x, v.tolist(), f.tolist(), strict=True):
+        for key, point, violation, objective in zip(keys.tolist(), x, v.tolist(), f.tolist(), strict=True):
             before = self.best.get(tuple(key))
             if before is None or (violation, objective) < before[:2]:
-                self.best[tuple(key)] = violation, objective, own.copy()
+                self.best[tuple(key)] = violation, objective, point.copy()
         return f, v
 
     def every(self) -> EvolutionResult:
         """Evaluate all candidates, best first."""
         task = self.candidates.task
         x = self.candidates.shares(np.array(list(product(*(p.values for p in task.parameters)))))
-        found, stopped = np.zeros((2, 0)), False
+        evaluated, stopped = np.zeros((2, 0)), False
         try:
             for first in range(0, self.count, BLOCK):
                 task.progress(first, self.count)
-                found = np.hstack([found, self(x[first : first + BLOCK])])
+                evaluated = np.hstack([evaluated, self(x[first : first + BLOCK])])
         except KeyboardInterrupt:
             if not self.best:
                 raise
             stopped = True
         finally:
             task.progress(self.count, self.count)
-        order = np.lexsort(found)
-        f, v = found[:, order]
-        return EvolutionResult(x[order], f, v, found.T, stopped, every=True)
+        order = np.lexsort(evaluated)
+        f, v = evaluated[:, order]
+        return EvolutionResult(x[order], f, v, evaluated.T, stopped, every=True)
 
     def starts(self) -> list[Real]:
         """Return starting points: the combinations nearest to feasible, and of the others those with the smallest
         objective.
         """
         half = (POLISHED if self.candidates.traced else FEW) // 2
-        found = sorted(self.best.values(), key=lambda one: one[:2])
+        ranked = sorted(self.best.values(), key=lambda combination: combination[:2])
         near = NEAR if self.free else ERROR
-        least = sorted((one for one in found[half:] if one[0] < near), key=lambda one: one[1])
-        some = [*found[:half], *least[:half]]
+        least = sorted(
+            (combination for combination in ranked[half:] if combination[0] < near),
+            key=lambda combination: combination[1],
+        )
+        some = [*ranked[:half], *least[:half]]
         return [self.candidates.shares(self.candidates.numbers(x)) for _, f, x in some if np.isfinite(f)]

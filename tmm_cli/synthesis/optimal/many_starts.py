@@ -69,13 +69,13 @@ def _step_ends(evaluate: Evaluate, rows: ResidualRows, slopes: ResidualRows, x: 
     """Return the ends of steps (s, 2 d, n): for each damping (s, d) one step without and one with second-order
     correction.
     """
-    rows, slopes = (ResidualRows(one.off[:, None], one.least[:, None]) for one in (rows, slopes))
+    rows, slopes = (ResidualRows(residuals.off[:, None], residuals.least[:, None]) for residuals in (rows, slopes))
     x = x[:, None]
     step = damped_step(rows, slopes, x, dampings)
     ahead = evaluate((x + AHEAD * step).reshape(-1, x.shape[-1]), 1).off.reshape(*dampings.shape, -1)
     bend = ((ahead - rows.off) / AHEAD - (slopes.off @ step[..., None])[..., 0]) / AHEAD
-    known = np.all(np.isfinite(bend), axis=-1, keepdims=True)
-    bent = damped_step(ResidualRows(rows.off + np.where(known, bend, 0.0), rows.least), slopes, x, dampings)
+    is_finite = np.all(np.isfinite(bend), axis=-1, keepdims=True)
+    bent = damped_step(ResidualRows(rows.off + np.where(is_finite, bend, 0.0), rows.least), slopes, x, dampings)
     ends: Real = np.clip(x + np.concatenate([step, bent], axis=1), 0, 1)
     return ends
 
@@ -86,9 +86,9 @@ def _difference_slopes(evaluate: Evaluate, x: Real) -> tuple[ResidualRows, Resid
     run = np.where(x > 0.5, -STEP, STEP)
     ends = np.repeat(x[:, None], n + 1, axis=1)
     ends[:, 1:] += run[:, None] * np.eye(n)
-    found = evaluate(ends.reshape(-1, n), n + 1)
+    residuals = evaluate(ends.reshape(-1, n), n + 1)
     values, slopes = [], []
-    for y in (found.off, found.least):
+    for y in (residuals.off, residuals.least):
         y = y.reshape(s, n + 1, -1)
         slope = (y[:, 1:] - y[:, :1]) / run[:, :, None]
         values.append(y[:, 0])
@@ -156,27 +156,27 @@ class LinearParameters:
         ends[np.arange(1, len(ends)), :, self.linear] = 1
         curves = self._curve(ends.reshape(-1, x.shape[1])).reshape(len(ends), len(x), -1)
         first, slopes = curves[0], np.moveaxis(curves[1:] - curves[0], 0, -1)
-        wanted, found = np.array(self.objective.wanted), x[:, self.linear]
+        required, parameters = np.array(self.objective.wanted), x[:, self.linear]
         for __ in range(1 if self.objective.places else TURNS):
-            off, own = first + np.einsum("vpk,vk->vp", slopes, found), slopes
+            off, own_slopes = first + np.einsum("vpk,vk->vp", slopes, parameters), slopes
             if not self.objective.places:
-                near = nearest_corners(off.real.copy(), off.imag.copy(), wanted).T
+                near = nearest_corners(off.real.copy(), off.imag.copy(), required).T
                 off = np.take_along_axis(off, near, axis=1)
-                own = np.take_along_axis(slopes, near[..., None], axis=1)
-            rows = ResidualRows(_as_real(off - wanted), np.zeros((len(x), 0)))
+                own_slopes = np.take_along_axis(slopes, near[..., None], axis=1)
+            rows = ResidualRows(_as_real(off - required), np.zeros((len(x), 0)))
             step = damped_step(
-                rows, ResidualRows(_as_real(own), np.zeros((len(x), 0, len(self.linear)))), found, DAMPING
+                rows, ResidualRows(_as_real(own_slopes), np.zeros((len(x), 0, len(self.linear)))), parameters, DAMPING
             )
-            found = np.clip(found + step, 0, 1)
+            parameters = np.clip(parameters + step, 0, 1)
         settled = x.copy()
-        settled[:, self.linear] = found
+        settled[:, self.linear] = parameters
         return settled
 
     def _curve(self, x: Real) -> Any:
         """Return the path or motion of candidates that is compared with the required one, (variants, positions)."""
-        one = self.candidates
-        found = one.coarse(one.numbers(x), one.places)
-        return self.objective.curve(quantity_reader(found, 0, one.exact[0]))
+        candidates = self.candidates
+        outputs = candidates.coarse(candidates.numbers(x), candidates.places)
+        return self.objective.curve(quantity_reader(outputs, 0, candidates.exact[0]))
 
     def _linear(self) -> list[int]:
         """Return the parameters whose changes superpose, with themselves and with one another."""
@@ -192,12 +192,12 @@ class LinearParameters:
             off = np.max(np.abs(curves[3] - curves[2] - curves[1] + curves[0]))
             return bool(off <= LINEAR * np.max(np.abs(curves)))
 
-        found: list[int] = []
+        linear: list[int] = []
         with np.errstate(all="ignore"):
             for k in range(x.shape[1]):
-                if len(x) and all(adds(k, m) for m in (*found, k)):
-                    found.append(k)
-        return found
+                if len(x) and all(adds(k, m) for m in (*linear, k)):
+                    linear.append(k)
+        return linear
 
 
 def _as_real(rows: Any) -> Real:
@@ -292,8 +292,8 @@ def search_from_many(candidates: Candidates, evolved: Sequence[Real]) -> ManySta
         progress(ROUNDS, ROUNDS)
     if not won:
         return ManyStartsResult([], None, stopped)
-    won.sort(key=lambda one: one[0])
-    best = sorted([*won[:WINNERS], *near], key=lambda one: one[0])[:WINNERS]
+    won.sort(key=lambda ranked: ranked[0])
+    best = sorted([*won[:WINNERS], *near], key=lambda ranked: ranked[0])[:WINNERS]
     closer = residual_function(Candidates(replace(candidates.task, positions=max(CLOSER, candidates.task.positions))))
     last = _best_first(*minimize_squares(closer, np.array([x for __, x in best]), LAST))
     return ManyStartsResult([x for __, x in last], IndependentEnds.of([*last, *won[WINNERS:]]), stopped)
@@ -323,7 +323,7 @@ def _run_tournament(
     x = x[np.lexsort((f, violation))]
     for count, steps in TOURNAMENT:
         last = _best_first(*minimize_squares(evaluate, settled(x[:count]), steps))
-        x = np.array([own for __, own in last])
+        x = np.array([point for __, point in last])
     return last
 
 
@@ -332,22 +332,22 @@ def _shake_best(
 ) -> list[tuple[float, Real]]:
     """Perturb the best end points by small and large amounts, and descend again, as long as this brings a gain."""
     (count, __), last = SHAKEN[0], SHAKEN[-1][0]
-    found = sorted(won, key=lambda one: one[0])[:last]
+    best = sorted(won, key=lambda ranked: ranked[0])[:last]
     for __ in range(SHAKES):
-        x = np.repeat([x for __, x in found], count // last, axis=0)
+        x = np.repeat([x for __, x in best], count // last, axis=0)
         x = np.clip(x + 10 ** chance.uniform(*DECADES, (len(x), 1)) * chance.standard_normal(x.shape), 0, 1)
         for some, steps in SHAKEN:
             new = _best_first(*minimize_squares(evaluate, x[:some], steps))
-            x = np.array([own for __, own in new])
-        before, found = found[0][0], sorted([*found, *new], key=lambda one: one[0])[:last]
-        if found[0][0] > before * (1 - SHAKE_GAIN):
+            x = np.array([point for __, point in new])
+        before, best = best[0][0], sorted([*best, *new], key=lambda ranked: ranked[0])[:last]
+        if best[0][0] > before * (1 - SHAKE_GAIN):
             break
-    return found
+    return best
 
 
 def _best_first(x: Real, cost: Real) -> list[tuple[float, Real]]:
     """Pair costs and points, best first."""
-    return sorted(zip(cost.tolist(), x, strict=True), key=lambda one: one[0])
+    return sorted(zip(cost.tolist(), x, strict=True), key=lambda ranked: ranked[0])
 
 
 def residual_function(candidates: Candidates) -> Evaluate:

@@ -30,7 +30,7 @@ Read = Callable[[DriverSamples, str], Real]
 
 
 def draw_history(
-    evolved: EvolutionResult, shown: Callable[[Real], Real], polished: float, quantity: str, kind: str
+    evolved: EvolutionResult, to_shown: Callable[[Real], Real], polished: float, quantity: str, kind: str
 ) -> Diagram:
     """Draw the search by generation.
 
@@ -45,18 +45,21 @@ def draw_history(
     """
     objective, violation = evolved.history.T
     if evolved.every:
-        leading, found = N_("candidate at the positions of the search"), N_("the best of them, after exact evaluation")
+        leading, found_label = (
+            N_("candidate at the positions of the search"),
+            N_("the best of them, after exact evaluation"),
+        )
         across, title = N_("candidate"), N_("All candidates in order")
     else:
-        leading, found = N_("leading candidate (a rise: new population)"), N_("after local refinement")
+        leading, found_label = N_("leading candidate (a rise: new population)"), N_("after local refinement")
         across, title = N_("generation"), N_("Best candidate by generation")
     number = np.arange(len(objective))
-    there = np.where(np.isfinite(objective) & ((violation == 0) | (not evolved.every)), objective, np.nan)
-    kept = np.fmin.accumulate(np.where(violation == 0, there, np.nan))
-    lines = [DiagramLine(leading, number, shown(there), faint=True)]
+    feasible = np.where(np.isfinite(objective) & ((violation == 0) | (not evolved.every)), objective, np.nan)
+    kept = np.fmin.accumulate(np.where(violation == 0, feasible, np.nan))
+    lines = [DiagramLine(leading, number, to_shown(feasible), faint=True)]
     if np.any(np.isfinite(kept)):
-        lines.append(DiagramLine(N_("best so far that satisfies the constraints"), number, shown(kept)))
-    lines.append(DiagramLine(found, np.array([len(number)]), np.array([polished]), dots=True))
+        lines.append(DiagramLine(N_("best so far that satisfies the constraints"), number, to_shown(kept)))
+    lines.append(DiagramLine(found_label, np.array([len(number)]), np.array([polished]), dots=True))
     missed = np.isfinite(violation) & (violation > NO_VIOLATION)
     violated = DiagramLine(N_("constraint violation, relative"), number, np.where(missed, violation, np.nan))
     return Diagram(
@@ -75,8 +78,8 @@ def compare_reached(candidates: Candidates, x: Real, n: int) -> tuple[Listing, D
     two = x[None]
 
     def read(places: DriverSamples, key: str) -> Real:
-        found: Real = candidates.run(two, places)[f"{n}.{key}"][0]
-        return found
+        outputs: Real = candidates.run(two, places)[f"{n}.{key}"][0]
+        return outputs
 
     quantity = candidates.quantity(n, candidates.numbers(x))
     return (_compare_law if quantity.of == "law" else _compare_path)(candidates, n, quantity, read)
@@ -88,20 +91,20 @@ def _table_name(candidates: Candidates, n: int) -> str:
 
 def _compare_law(candidates: Candidates, n: int, quantity: MechanismQuantity, read: Read) -> tuple[Listing, Diagram]:
     swings = candidates.overs[n].swings
-    at, wanted = np.array(quantity.places), np.array(quantity.wanted)
+    at, required = np.array(quantity.places), np.array(quantity.wanted)
     low, high = float(np.min(at)), float(np.max(at))
     if candidates.closed:
         high = max(high, low + candidates.cycle)
     else:
         low, high = min(candidates.ends[0], low), max(candidates.ends[1], high)
     q = np.linspace(low, high, CURVE)
-    run, there = read(DriverSamples(NONE, q), "run"), read(DriverSamples(NONE, at), "run")
+    run, reached = read(DriverSamples(NONE, q), "run"), read(DriverSamples(NONE, at), "run")
     if quantity.relative:
-        run, there = run - there[0], there - there[0]
+        run, reached = run - reached[0], reached - reached[0]
     if swings:
-        there = wanted + np.angle(np.exp(1j * (there - wanted)))
+        reached = required + np.angle(np.exp(1j * (reached - required)))
         run = np.unwrap(run)
-        run = run + 2 * np.pi * np.round((there[0] - np.interp(at[0], q, run)) / (2 * np.pi))
+        run = run + 2 * np.pi * np.round((reached[0] - np.interp(at[0], q, run)) / (2 * np.pi))
     kind = "angle" if swings else "length"
     place = "angle" if candidates.linkage.driver.kind == "turn" else "length"
     columns = (
@@ -110,11 +113,11 @@ def _compare_law(candidates: Candidates, n: int, quantity: MechanismQuantity, re
         ("reached", N_("reached"), kind),
         ("off", N_("deviation"), kind),
     )
-    rows = tuple(zip(quantity.places, wanted.tolist(), there.tolist(), (there - wanted).tolist(), strict=True))
+    rows = tuple(zip(quantity.places, required.tolist(), reached.tolist(), (reached - required).tolist(), strict=True))
     lines = (
         DiagramLine(N_("mechanism found"), q, run),
-        DiagramLine(N_("required"), at, wanted, dots=True),
-        DiagramLine(N_("reached"), at, there, dots=True),
+        DiagramLine(N_("required"), at, required, dots=True),
+        DiagramLine(N_("reached"), at, reached, dots=True),
     )
     up = (N_("angle of the link") if swings else N_("displacement of the link"), kind)
     title = N_("Law of motion over the whole range of the driver")
@@ -123,22 +126,22 @@ def _compare_law(candidates: Candidates, n: int, quantity: MechanismQuantity, re
 
 
 def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, read: Read) -> tuple[Listing, Diagram]:
-    wanted = np.array(quantity.wanted)
+    required = np.array(quantity.wanted)
 
     def spots(places: DriverSamples) -> Vector:
         return read(places, "px") + 1j * read(places, "py")
 
     path = spots(DriverSamples(np.linspace(0, 1, CURVE), NONE))
     if quantity.places:
-        there = spots(DriverSamples(NONE, np.array(quantity.places)))
+        reached = spots(DriverSamples(NONE, np.array(quantity.places)))
     else:
-        there = spots(
+        reached = spots(
             DriverSamples(
-                _closest_shares(lambda shares: spots(DriverSamples(shares, NONE)), wanted, candidates.closed), NONE
+                _closest_shares(lambda shares: spots(DriverSamples(shares, NONE)), required, candidates.closed), NONE
             )
         )
     rows: tuple[tuple[float, ...], ...] = tuple(
-        (w.real, w.imag, p.real, p.imag, abs(p - w)) for w, p in zip(wanted.tolist(), there.tolist(), strict=True)
+        (w.real, w.imag, p.real, p.imag, abs(p - w)) for w, p in zip(required.tolist(), reached.tolist(), strict=True)
     )
     columns: tuple[tuple[str, str, str], ...] = (
         ("x", N_("x"), "length"),
@@ -155,8 +158,8 @@ def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, r
         )
     lines = (
         DiagramLine(N_("path"), path.real, path.imag),
-        DiagramLine(N_("required"), wanted.real, wanted.imag, dots=True),
-        DiagramLine(N_("reached"), there.real, there.imag, dots=True),
+        DiagramLine(N_("required"), required.real, required.imag, dots=True),
+        DiagramLine(N_("reached"), reached.real, reached.imag, dots=True),
     )
     drawn = Diagram(
         _table_name(candidates, n),
@@ -174,14 +177,14 @@ def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, r
     return Listing(_table_name(candidates, n), title, columns, rows), drawn
 
 
-def _closest_shares(path: Callable[[Real], Vector], wanted: Vector, closed: bool) -> Real:
+def _closest_shares(path: Callable[[Real], Vector], points: Vector, closed: bool) -> Real:
     """Return the fractions of the driver range at which a path is nearest to points."""
     shares, step = np.linspace(0, 1, CURVE), 1 / (CURVE - 1)
-    near = shares[np.argmin(np.abs(path(shares) - wanted[:, None]), axis=1)]
+    near = shares[np.argmin(np.abs(path(shares) - points[:, None]), axis=1)]
     low, high = near - step, near + step
     ends = (low, high) if closed else (np.maximum(low, 0.0), np.minimum(high, 1.0))
-    found: Real = find_minima(lambda some: np.abs(path(some) - np.resize(wanted, len(some))), *ends)[0]
-    return found
+    fractions: Real = find_minima(lambda some: np.abs(path(some) - np.resize(points, len(some))), *ends)[0]
+    return fractions
 
 
 # The outcome: best candidate, constraints, search, path or law reached.
@@ -190,20 +193,20 @@ def _closest_shares(path: Callable[[Real], Vector], wanted: Vector, closed: bool
 ACTIVE = 1e-6  # relative: a constraint closer to its bound is active
 
 
-def outcome_of(candidates: Candidates, found: BestCandidate) -> SynthesisOutcome:
+def outcome_of(candidates: Candidates, best: BestCandidate) -> SynthesisOutcome:
     """Return the outcome of a search that satisfies the constraints."""
-    task, evolved, linkage = candidates.task, found.evolved, candidates.linkage
+    task, evolved, linkage = candidates.task, best.evolved, candidates.linkage
     kinds = [quantity.kind(linkage, candidates.groups) for quantity in candidates.quantities]
-    ends = task.make(found.numbers.tolist()).ends
+    ends = task.make(best.numbers.tolist()).ends
     ends = None if ends is None else (float(ends[0]), float(ends[1]))
     demands = [Demand(AssemblyReserve.text, 1.0, "number", partial(driver_completes_range, ends=ends), asked=False)]
     for n in range(len(candidates.quantities)):
         if n == 1:  # the assembly constraint
             continue
-        quantity = candidates.quantity(n, found.numbers)
+        quantity = candidates.quantity(n, best.numbers)
         constraint = candidates.constraints[n - 1] if n else None
-        asked = constraint is not None and constraint.equal
-        value = constraint.least if constraint is not None and asked else found.values[n]
+        is_required = constraint is not None and constraint.equal
+        value = constraint.least if constraint is not None and is_required else best.values[n]
         deviates = kinds[n] in ("length", "angle") and quantity.moves
         demands.append(
             Demand(
@@ -211,34 +214,34 @@ def outcome_of(candidates: Candidates, found: BestCandidate) -> SynthesisOutcome
                 value or 0.0,
                 kinds[n],
                 partial(quantity.measure, ends=ends),
-                asked=asked,
+                asked=is_required,
                 at=1e-6 if deviates else 0.0,
                 open=quantity.open,
                 of=quantity.of,
             )
         )
-    listings = [_tabulate_constraints(candidates, found, kinds)]
+    listings = [_tabulate_constraints(candidates, best, kinds)]
     title = candidates.quantities[0].title(linkage)
-    drawings = [draw_history(evolved, partial(_in_objective_unit, candidates), found.values[0], title, kinds[0])]
+    drawings = [draw_history(evolved, partial(_in_objective_unit, candidates), best.values[0], title, kinds[0])]
     for n, quantity in enumerate(candidates.quantities):
         if quantity.wanted:
-            listing, drawn = compare_reached(candidates, found.x, n)
+            listing, drawn = compare_reached(candidates, best.x, n)
             listings.append(listing)
             drawings.insert(0, drawn)
-    sketch = candidates.sketch(found.x)
+    sketch = candidates.sketch(best.x)
     notes = []
     if evolved.stopped:
         notes.append(N_("stopped by the user: the best candidate so far, after local refinement"))
-    elif found.ends is not None and not found.ends.agree:
+    elif best.ends is not None and not best.ends.agree:
         notes.append(
             Phrase(
                 (
                     "the minimum is not certain: independent starts: {count}, of these at this value: {same}, within "
                     "{share} % of it: {near}. Try another seed, e.g. seed: {seed}"
                 ),
-                count=found.ends.count,
-                same=found.ends.same,
-                near=found.ends.near,
+                count=best.ends.count,
+                same=best.ends.same,
+                near=best.ends.near,
                 share=f"{100 * many_starts.NEAR:g}",
                 seed=task.seed + 1,
             )
@@ -257,8 +260,8 @@ def outcome_of(candidates: Candidates, found: BestCandidate) -> SynthesisOutcome
         )
     return SynthesisOutcome(
         _given_values(candidates, ends),
-        _found_values(candidates, found),
-        _source(candidates, found),
+        _found_values(candidates, best),
+        _source(candidates, best),
         tuple(demands),
         tuple(drawings),
         tuple(notes),
@@ -269,26 +272,26 @@ def outcome_of(candidates: Candidates, found: BestCandidate) -> SynthesisOutcome
 
 def _given_values(candidates: Candidates, ends: tuple[float, float] | None) -> tuple[NamedValue, ...]:
     """Return the bounds of the parameters and of the driver."""
-    given = []
+    bounds = []
     for p in candidates.task.parameters:
-        given.append(NamedValue(p.name, p.low, p.kind, N_("lower bound")))
-        given.append(NamedValue(p.name, p.high, p.kind, N_("upper bound")))
-    given += [
+        bounds.append(NamedValue(p.name, p.low, p.kind, N_("lower bound")))
+        bounds.append(NamedValue(p.name, p.high, p.kind, N_("upper bound")))
+    bounds += [
         NamedValue(p.name, len(p.values), "number", N_("number of admissible values"))
         for p in candidates.task.parameters
         if p.values
     ]
     if ends is not None:
         kind = "length" if candidates.linkage.driver.kind == "slide" else "angle"
-        given.append(NamedValue("from", ends[0], kind, N_("start of the driver's range")))
-        given.append(NamedValue("to", ends[1], kind, N_("end of the driver's range")))
-    return tuple(given)
+        bounds.append(NamedValue("from", ends[0], kind, N_("start of the driver's range")))
+        bounds.append(NamedValue("to", ends[1], kind, N_("end of the driver's range")))
+    return tuple(bounds)
 
 
-def _found_values(candidates: Candidates, found: BestCandidate) -> tuple[NamedValue, ...]:
+def _found_values(candidates: Candidates, best: BestCandidate) -> tuple[NamedValue, ...]:
     """Return the parameters, with a remark if they lie at a bound."""
     numbers = []
-    for p, number, share in zip(candidates.task.parameters, found.numbers.tolist(), found.x.tolist(), strict=True):
+    for p, number, share in zip(candidates.task.parameters, best.numbers.tolist(), best.x.tolist(), strict=True):
         if share < ACTIVE:
             text = N_("solution, at its lower bound")
         elif share > 1 - ACTIVE:
@@ -299,23 +302,23 @@ def _found_values(candidates: Candidates, found: BestCandidate) -> tuple[NamedVa
     return tuple(numbers)
 
 
-def _source(candidates: Candidates, found: BestCandidate) -> str:
+def _source(candidates: Candidates, best: BestCandidate) -> str:
     if many_starts.is_applicable(candidates):
         return N_(
             "differential evolution (R. Storn, K. Price 1997) and random starting points, then nonlinear least "
             "squares (K. Levenberg 1944, D. Marquardt 1963)"
         )
-    if not found.evolved.every:
+    if not best.evolved.every:
         return N_(
             "differential evolution (R. Storn, K. Price 1997; constraints by K. Deb 2000), then sequential "
             "quadratic programming with exact peak values"
         )
-    if found.evolved.stopped:
+    if best.evolved.stopped:
         return N_("evaluation of all candidates in order, stopped before the end")
     return N_("evaluation of all candidates")
 
 
-def _tabulate_constraints(candidates: Candidates, found: BestCandidate, kinds: list[str]) -> Listing:
+def _tabulate_constraints(candidates: Candidates, best: BestCandidate, kinds: list[str]) -> Listing:
     """Tabulate the objective and every constraint: bound, value, margin, state."""
     linkage, objective, target = candidates.linkage, candidates.task.objective, candidates.task.target
     side = N_("near") if target is not None else N_("largest") if objective.lowest else N_("least")
@@ -324,14 +327,14 @@ def _tabulate_constraints(candidates: Candidates, found: BestCandidate, kinds: l
         _subject(objective),
         side,
         target,
-        found.values[0],
+        best.values[0],
         None,
         kinds[0],
         N_("objective"),
     )
     rows: list[tuple[Any, ...]] = [first]
     for n, constraint in enumerate(candidates.constraints[1:], 2):
-        value, quantity = found.values[n], constraint.quantity
+        value, quantity = best.values[n], constraint.quantity
         both = (N_("at least"), constraint.least, 1), (N_("at most"), constraint.most, -1)
         for words, bound, sign in both[: 1 if constraint.equal else 2]:
             if bound is None:

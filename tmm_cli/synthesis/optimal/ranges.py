@@ -33,33 +33,33 @@ def read_ranges(
     vary: Mapping[str, Range], sense: ValueReader, names: Mapping[str, str], file_with: FileWith
 ) -> tuple[Parameter, ...]:
     """Read the ranges of the varied parameters. names: their names in the file. Raises ProblemError."""
-    kinds = _find_kinds({name: _range_values(own) for name, own in vary.items()}, sense, names, file_with)
-    return tuple(_read_parameter(name, own, kinds[name], sense) for name, own in vary.items())
+    kinds = _find_kinds({name: _range_values(bounds) for name, bounds in vary.items()}, sense, names, file_with)
+    return tuple(_read_parameter(name, bounds, kinds[name], sense) for name, bounds in vary.items())
 
 
-def _range_values(own: Range) -> list[Any]:
+def _range_values(bounds: Range) -> list[Any]:
     """Return every value of a range as written in the file."""
-    return (own.among or [own.from_, own.to, own.step]) if isinstance(own, Chosen) else own
+    return (bounds.among or [bounds.from_, bounds.to, bounds.step]) if isinstance(bounds, Chosen) else bounds
 
 
-def _read_parameter(name: str, own: Range, kind: str, sense: ValueReader) -> Parameter:
+def _read_parameter(name: str, bounds: Range, kind: str, sense: ValueReader) -> Parameter:
     at: Path = ("vary", name)
     dimension = DIMENSIONS[kind].dimension
 
     def si(value: Any, *inside: str | int) -> float:
         return float(sense.number(value, dimension, (*at, *inside)))
 
-    if isinstance(own, Chosen) and own.among:
-        values = sorted({si(value, "among", n) for n, value in enumerate(own.among)})
+    if isinstance(bounds, Chosen) and bounds.among:
+        values = sorted({si(value, "among", n) for n, value in enumerate(bounds.among)})
         if len(values) < 2:
             raise ProblemError(
                 _("with a single value the parameter does not vary"),
                 path=(*at, "among"),
-                found=quote(own.among[0]),
+                found=quote(bounds.among[0]),
                 allowed=_("two or more values"),
             )
         return Parameter(name, values[0], values[-1], kind, tuple(values))
-    ends = {"from": own.from_, "to": own.to} if isinstance(own, Chosen) else dict(enumerate(own))
+    ends = {"from": bounds.from_, "to": bounds.to} if isinstance(bounds, Chosen) else dict(enumerate(bounds))
     low, high = (si(value, key) for key, value in ends.items())
     if not low < high:
         raise ProblemError(
@@ -68,15 +68,15 @@ def _read_parameter(name: str, own: Range, kind: str, sense: ValueReader) -> Par
             found=bounds_text(*ends.values()),
             allowed=_("[low, high]"),
         )
-    if not isinstance(own, Chosen):
+    if not isinstance(bounds, Chosen):
         return Parameter(name, low, high, kind)
-    step = float(sense.positive(own.step, dimension, (*at, "step")))
+    step = float(sense.positive(bounds.step, dimension, (*at, "step")))
     count = (high - low) / step + STEP_TOLERANCE
     if not 1 <= count < MOST_VALUES:
         raise ProblemError(
             _("the number of steps between the bounds must be 1 to {most}").format(most=MOST_VALUES - 1),
             path=(*at, "step"),
-            found=quote(own.step),
+            found=quote(bounds.step),
             allowed=_("another step; or bounds without a step: [low, high]"),
         )
     values = [float(f"{low + step * k:.15g}") for k in range(int(count) + 1)]  # without rounding errors of the sum
@@ -84,7 +84,7 @@ def _read_parameter(name: str, own: Range, kind: str, sense: ValueReader) -> Par
 
 
 def _find_kinds(
-    given: Mapping[str, list[Any]], sense: ValueReader, names: Mapping[str, str], file_with: FileWith
+    raw_values: Mapping[str, list[Any]], sense: ValueReader, names: Mapping[str, str], file_with: FileWith
 ) -> dict[str, str]:
     """Return the dimension of each parameter: that of its values, or else the first that the file accepts, length
     first.
@@ -92,13 +92,15 @@ def _find_kinds(
     A bare number that the file accepts both as a length and as a number is a number (a fraction of a distance). If the
     file is invalid in any case, the first kind whose dimension is not the reason is taken.
     """
-    found = {name: next((k for v in own if (k := _dimension_name(v, sense))), "") for name, own in given.items()}
+    dimensions = {
+        name: next((k for v in raw if (k := _dimension_name(v, sense))), "") for name, raw in raw_values.items()
+    }
 
     def value(name: str, kind: str) -> PhysicalValue:
         if not kind:  # as a bare number
-            return evaluate_quantity(given[name][0], sense.parameters, sense.units)
+            return evaluate_quantity(raw_values[name][0], sense.parameters, sense.units)
         dimension = DIMENSIONS[kind].dimension
-        return PhysicalValue(float(sense.number(given[name][0], dimension, ())), dimension)
+        return PhysicalValue(float(sense.number(raw_values[name][0], dimension, ())), dimension)
 
     def minded(kinds: Mapping[str, str]) -> int:
         """Return 2 if the file refuses the dimensions of the first values, 1 if it refuses the values otherwise, 0 if
@@ -118,23 +120,23 @@ def _find_kinds(
         """
         return not minded({**kinds, name: "number"}) and bool(minded({**kinds, name: "angle"}))
 
-    lengths = {name: kind or "length" for name, kind in found.items()}
-    if lengths == found:
+    lengths = {name: kind or "length" for name, kind in dimensions.items()}
+    if lengths == dimensions:
         return lengths
     if not minded(lengths):
-        return lengths | {name: "number" for name, kind in found.items() if not kind and is_share(name, lengths)}
-    plain = dict(found)
+        return lengths | {name: "number" for name, kind in dimensions.items() if not kind and is_share(name, lengths)}
+    plain = dict(dimensions)
     for name in (name for name, kind in plain.items() if not kind):
-        found[name] = min(("length", *DIMENSIONS), key=lambda kind: minded(plain | {name: kind}))
-    return found
+        dimensions[name] = min(("length", *DIMENSIONS), key=lambda kind: minded(plain | {name: kind}))
+    return dimensions
 
 
 def _dimension_name(source: Any, sense: ValueReader) -> str | None:
     try:
-        found = evaluate_quantity(source, sense.parameters, sense.units).dimension
+        dimension = evaluate_quantity(source, sense.parameters, sense.units).dimension
     except ProblemError:
         return None  # reported when it is evaluated
-    return None if found is None else found.name
+    return None if dimension is None else dimension.name
 
 
 # Range of the driver in an optimal synthesis: a cycle, its stroke, the positions of the file, or from one coordinate
@@ -148,8 +150,8 @@ RangeChoice = str | tuple[float, float]
 def read_over(over: Any, driver: Driver, sense: ValueReader) -> RangeChoice:
     """Read the key `over`, with driver coordinates in SI; the default if it is omitted. Raises ProblemError."""
     turns, stroked = driver.kind == "turn", driver.stroke is not None
-    ways = {"cycle": turns and not stroked, "stroke": stroked, "positions": True}
-    possible = [way for way, has in ways.items() if has]
+    available = {"cycle": turns and not stroked, "stroke": stroked, "positions": True}
+    possible = [choice for choice, has in available.items() if has]
     if over is None:
         return possible[0]
     if isinstance(over, str):
@@ -181,13 +183,13 @@ def with_driver_range(problem: Problem, over: RangeChoice) -> Variant:
 
 
 def _driver_ends(problem: Problem, over: RangeChoice) -> Ends:
-    driver, places = problem.linkage.driver, problem.request.places
+    driver, coordinates = problem.linkage.driver, problem.request.places
     if over == "cycle":
         return None
-    if over == "stroke" or (over == "positions" and driver.stroke is not None and not places):
+    if over == "stroke" or (over == "positions" and driver.stroke is not None and not coordinates):
         return driver.stroke
     if over == "positions":
-        over = (reduce(np.minimum, places), reduce(np.maximum, places)) if places else (0.0, 0.0)
+        over = (reduce(np.minimum, coordinates), reduce(np.maximum, coordinates)) if coordinates else (0.0, 0.0)
         if not over[0] < over[1]:
             raise ProblemError(
                 _("the range of the driver is missing"),
@@ -195,7 +197,7 @@ def _driver_ends(problem: Problem, over: RangeChoice) -> Ends:
                 allowed=_("over: [from, to]; or positions: {at: [...]}, or driver: {stroke: [from, to]}"),
             )
     assert not isinstance(over, str)
-    if driver.kind != "turn" or driver.stroke is not None or (driver.acceleration and places):
+    if driver.kind != "turn" or driver.stroke is not None or (driver.acceleration and coordinates):
         return over  # an accelerated crank has another speed one revolution later
     turns = round(float(problem.linkage.sketch.at - (over[0] + over[1]) / 2) / (2 * np.pi))
     return over[0] + 2 * np.pi * turns, over[1] + 2 * np.pi * turns  # around the sketch, whose assembly it has
@@ -220,13 +222,15 @@ def _driver_dimension(driver: Driver) -> Dimension:
     return ANGLE if driver.kind == "turn" else LENGTH
 
 
-def _out_of_range(path: Path, found: Any, driver: Driver, ends: tuple[Any, Any], units: UnitSystem) -> ProblemError:
+def _out_of_range(
+    path: Path, given_value: Any, driver: Driver, ends: tuple[Any, Any], units: UnitSystem
+) -> ProblemError:
     dimension = _driver_dimension(driver)
     low, high = (f"{units.from_si(float(end), dimension):.6g}" for end in ends)
     return ProblemError(
         _("the driver does not reach this position"),
         path=path,
-        found=quote(found) if isinstance(found, str) else None,
+        found=quote(given_value) if isinstance(given_value, str) else None,
         allowed=_("positions in its range, {low} to {high} {unit}").format(
             low=low, high=high, unit=units.symbol(dimension)
         ),

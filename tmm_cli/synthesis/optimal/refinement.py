@@ -58,13 +58,13 @@ class _Differences:
             local = self.evaluate(ends)
             run = np.diag(ends[1 : n + 1] - ends[n + 1 :])[:, None]
             parts = (local.pieces, local.least, local.equal)
-            found = tuple((y[0], ((y[1 : n + 1] - y[n + 1 :]) / run).T) for y in parts)
-            if not all(np.all(np.isfinite(part)) for both in found for part in both):
+            parts_found = tuple((y[0], ((y[1 : n + 1] - y[n + 1 :]) / run).T) for y in parts)
+            if not all(np.all(np.isfinite(part)) for both in parts_found for part in both):
                 if not self.found:
                     raise _End
                 (pieces, slopes), *others = self.found
                 return (np.full_like(pieces, TOO_FAR), slopes), *others
-            self.at, self.found = x.copy(), found
+            self.at, self.found = x.copy(), parts_found
         return self.found
 
 
@@ -115,8 +115,8 @@ def minimize_locally(evaluate: Callable[[Real], LocalValues], x: Real) -> Real:
         constraints = [{"type": "ineq", "fun": above, "jac": above_slope}]
         if len(e):
             constraints.append({"type": "eq", "fun": lambda z: near(z)[2][0], "jac": even_slope})
-        bounds = [(-own / scale, (1 - own) / scale) for own in x]
-        found = minimize(
+        bounds = [(-share / scale, (1 - share) / scale) for share in x]
+        minimum = minimize(
             lambda z: z[n],
             np.append(start, np.max(f)),
             jac=lambda z: np.eye(n + 1)[n],
@@ -126,7 +126,7 @@ def minimize_locally(evaluate: Callable[[Real], LocalValues], x: Real) -> Real:
             callback=take,
             options={"ftol": OBJECTIVE_TOLERANCE, "maxiter": MOST},
         )
-        take(found.x)
+        take(minimum.x)
     except _End:
         pass
     return min(steps, key=lambda step: step[0])[1] if steps else x
@@ -170,8 +170,8 @@ def evaluate_exactly(candidates: Candidates, x: Real) -> list[float]:
     undefined.
     """
     with np.errstate(all="ignore"):
-        found, coarse = _exact_pieces(candidates, x)(x), candidates.values(x[None])
-        values = [float(_value(candidates, n, pieces)[0]) for n, pieces in enumerate(found)]
+        peaks, coarse = _exact_pieces(candidates, x)(x), candidates.values(x[None])
+        values = [float(_value(candidates, n, pieces)[0]) for n, pieces in enumerate(peaks)]
         scan, two = candidates.shares_over(candidates.scan), candidates.numbers(x[None])
         for n, (quantity, over) in enumerate(zip(candidates.quantities, candidates.overs, strict=True)):
 
@@ -185,8 +185,8 @@ def evaluate_exactly(candidates: Candidates, x: Real) -> list[float]:
                     values[n], curve, scan[candidates.shares_of(n, candidates.scan)], over
                 )
         if candidates.single:
-            there = candidates.run(x[None], DriverSamples(scan, candidates.with_sketch(np.zeros(0))))
-            values[1] = -1.0 if candidates.passes_dead_position(there, candidates.scan)[0] else values[1]
+            scanned = candidates.run(x[None], DriverSamples(scan, candidates.with_sketch(np.zeros(0))))
+            values[1] = -1.0 if candidates.passes_dead_position(scanned, candidates.scan)[0] else values[1]
     return values
 
 
@@ -196,9 +196,9 @@ def refine_candidate(candidates: Candidates, x: Real) -> Real:
 
     def all_of(some: Real) -> Real:
         """Return candidates with all their parameters, from the continuous ones."""
-        found = np.repeat(whole[None], len(some), axis=0)
-        found[:, free] = some
-        return found
+        points = np.repeat(whole[None], len(some), axis=0)
+        points[:, free] = some
+        return points
 
     for narrow in NARROWER if candidates.traced else FEWER:
         before, pieces = x, _exact_pieces(candidates, x, narrow)
@@ -217,29 +217,29 @@ def _exact_pieces(candidates: Candidates, x: Real, narrow: float = 0.0) -> Calla
     narrow: width of the windows relative to those of the first steps; never less than the scan requires.
     """
     scan = candidates.shares_over(candidates.scan)
-    found = candidates.run(x[None], DriverSamples(scan, np.zeros(0)))
+    outputs = candidates.run(x[None], DriverSamples(scan, np.zeros(0)))
     half = max(narrow / candidates.count, ABOUT / candidates.scan)
     step = 2 * half / (WINDOW - 1)
     blocks, parts = [], []
     at = 0
     for n, (quantity, over) in enumerate(zip(candidates.quantities, candidates.overs, strict=True)):
-        own = []
-        for what, k in quantity.windows(quantity_reader(found, n, candidates.shares_of(n, candidates.scan)), over):
+        windows = []
+        for subject, k in quantity.windows(quantity_reader(outputs, n, candidates.shares_of(n, candidates.scan)), over):
             first = scan[k] - half
             if not over.closed:
                 first = min(max(first, 0.0), 1 - 2 * half)
             blocks.append(first + step * np.arange(WINDOW))
-            own.append((what, float(first), slice(at, at + WINDOW)))
+            windows.append((subject, float(first), slice(at, at + WINDOW)))
             at += WINDOW
-        parts.append(own)
+        parts.append(windows)
     places = replace(candidates.places, shares=np.concatenate([*blocks, np.zeros(1)]))
-    exact = [own or slice(at, at + 1) for own in candidates.own_places(at + 1)]
+    exact = [windows or slice(at, at + 1) for windows in candidates.own_places(at + 1)]
 
     def pieces(some: Real) -> list[Real]:
         out = candidates.program(candidates.numbers(np.atleast_2d(some)), places)
         return [
             quantity.fine(
-                [(what, first, quantity_reader(out, n, where)) for what, first, where in parts[n]],
+                [(subject, first, quantity_reader(out, n, where)) for subject, first, where in parts[n]],
                 quantity_reader(out, n, exact[n]),
                 candidates.overs[n],
                 step,
@@ -252,8 +252,8 @@ def _exact_pieces(candidates: Candidates, x: Real, narrow: float = 0.0) -> Calla
 
 def _value(candidates: Candidates, n: int, pieces: Real) -> Real:
     """Return a quantity from its peaks, (variants,)."""
-    found: Real = (np.min if candidates.quantities[n].lowest else np.max)(pieces, axis=1)
-    return found
+    extreme: Real = (np.min if candidates.quantities[n].lowest else np.max)(pieces, axis=1)
+    return extreme
 
 
 def _objective_pieces(candidates: Candidates, pieces: Real) -> Real:
@@ -265,10 +265,10 @@ def _objective_pieces(candidates: Candidates, pieces: Real) -> Real:
     return -pieces if objective.lowest else objective.smooth(pieces)
 
 
-def _local_values(candidates: Candidates, found: list[Real], top: float) -> LocalValues:
+def _local_values(candidates: Candidates, peaks: list[Real], top: float) -> LocalValues:
     """Return the objective and the constraints in the form that the local minimisation needs."""
     least, equal = [], []
-    for n, (constraint, pieces) in enumerate(zip(candidates.constraints, found[1:], strict=True), 1):
+    for n, (constraint, pieces) in enumerate(zip(candidates.constraints, peaks[1:], strict=True), 1):
         low = high = _value(candidates, n, pieces)[:, None]
         if (
             isinstance(constraint.quantity, PeakQuantity) and not constraint.equal
@@ -277,7 +277,7 @@ def _local_values(candidates: Candidates, found: list[Real], top: float) -> Loca
         above, even = constraint.rows(low, high)
         least += above
         equal += even
-    none = np.zeros((len(found[0]), 0))
+    none = np.zeros((len(peaks[0]), 0))
     return LocalValues(
-        _objective_pieces(candidates, found[0]) / top, np.hstack([none, *least]), np.hstack([none, *equal])
+        _objective_pieces(candidates, peaks[0]) / top, np.hstack([none, *least]), np.hstack([none, *equal])
     )

@@ -34,10 +34,10 @@ NEVER: Final = N_(
 def solve(task: OptimalTask) -> SynthesisOutcome:
     """Solve the task of one file. Raises Infeasible."""
     candidates = Candidates(task)
-    found = find_best(candidates)
-    if found.missed:
-        raise _missed_constraint(candidates, found)
-    return outcome_of(candidates, found)
+    best = find_best(candidates)
+    if best.missed:
+        raise _missed_constraint(candidates, best)
+    return outcome_of(candidates, best)
 
 
 def find_best(candidates: Candidates) -> BestCandidate:
@@ -59,9 +59,11 @@ def find_best(candidates: Candidates) -> BestCandidate:
     )
     starts = _distinct_starts(candidates, evolved)
     if many and not evolved.stopped:
-        found = many_starts.search_from_many(candidates, starts)
-        led = _refine_starts(candidates, [*found.starts[:1], *starts[:1]], replace(evolved, stopped=found.stopped))
-        return replace(led, ends=found.ends)
+        many_result = many_starts.search_from_many(candidates, starts)
+        led = _refine_starts(
+            candidates, [*many_result.starts[:1], *starts[:1]], replace(evolved, stopped=many_result.stopped)
+        )
+        return replace(led, ends=many_result.ends)
     return _refine_starts(candidates, starts if choices is None else [*starts, *choices.starts()], evolved)
 
 
@@ -81,7 +83,7 @@ def _distinct_starts(candidates: Candidates, evolved: EvolutionResult) -> list[R
 
 def _refine_starts(candidates: Candidates, starts: Iterable[Real], evolved: EvolutionResult) -> BestCandidate:
     """Return the best candidate among the starting points and the points that refinement reaches from them."""
-    found: list[tuple[float, float, Real, list[float]]] = []
+    refined: list[tuple[float, float, Real, list[float]]] = []
 
     def take(x: Real) -> None:
         try:
@@ -91,7 +93,7 @@ def _refine_starts(candidates: Candidates, starts: Iterable[Real], evolved: Evol
         both = zip(candidates.constraints, values[1:], strict=True)
         missed = float(sum(constraint.missed(value) for constraint, value in both))
         missed += LOST * (candidates.constraints[0].missed(values[1]) > MISS_TOLERANCE)
-        found.append(
+        refined.append(
             (
                 missed if missed > MISS_TOLERANCE else 0.0,
                 float(candidates.objective_value(np.array(values[0]))),
@@ -106,16 +108,16 @@ def _refine_starts(candidates: Candidates, starts: Iterable[Real], evolved: Evol
             if candidates.task.free:
                 take(refine_candidate(candidates, start))
     except KeyboardInterrupt:
-        if not found:
+        if not refined:
             raise
         evolved = replace(evolved, stopped=True)
-    goes = any(candidates.constraints[0].missed(values[1]) <= MISS_TOLERANCE for *__, values in found)
-    found = [one for one in found if not np.isnan(one[0] + one[1])]
-    if not found:
+    goes = any(candidates.constraints[0].missed(values[1]) <= MISS_TOLERANCE for *__, values in refined)
+    refined = [entry for entry in refined if not np.isnan(entry[0] + entry[1])]
+    if not refined:
         if goes or evolved.violation[0] == 0.0:
             raise Infeasible("objective", _no_quantity_reason(candidates, candidates.task.objective))
         raise Infeasible("vary", NEVER)
-    missed, __, x, values = min(found, key=lambda one: one[:2])
+    missed, __, x, values = min(refined, key=lambda entry: entry[:2])
     return BestCandidate(x, candidates.numbers(x), values, missed, evolved)
 
 
@@ -129,11 +131,11 @@ def _no_quantity_reason(candidates: Candidates, quantity: MechanismQuantity) -> 
     return N_("no mechanism was found within the bounds for which this quantity is defined")
 
 
-def _missed_constraint(candidates: Candidates, found: BestCandidate) -> Infeasible:
+def _missed_constraint(candidates: Candidates, best: BestCandidate) -> Infeasible:
     """Return the refusal for the most violated constraint, with its nearest value under the other constraints."""
-    misses = [float(c.missed(value)) for c, value in zip(candidates.constraints, found.values[1:], strict=True)]
+    misses = [float(c.missed(value)) for c, value in zip(candidates.constraints, best.values[1:], strict=True)]
     n = int(np.argmax(misses))
-    constraint, value = candidates.constraints[n], found.values[n + 1]
+    constraint, value = candidates.constraints[n], best.values[n + 1]
     if misses[0] > MISS_TOLERANCE:
         return Infeasible("vary", NEVER)
     if np.isnan(value):
@@ -141,7 +143,7 @@ def _missed_constraint(candidates: Candidates, found: BestCandidate) -> Infeasib
     bound, at = constraint.broken(value)
     others = tuple(other for other in candidates.task.constraints if other is not constraint)
     task = replace(candidates.task, objective=constraint.quantity, constraints=others, target=bound)
-    near = _refine_starts(Candidates(task), [found.x], found.evolved)
+    near = _refine_starts(Candidates(task), [best.x], best.evolved)
     reason = _("no mechanism was found within the bounds that satisfies this constraint together with the others")
     if near.missed:
         return Infeasible(at, reason)

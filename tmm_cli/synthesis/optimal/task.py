@@ -112,17 +112,17 @@ class OptimalTask:
     def with_one(self, first: Sequence[float], k: int, numbers: Sequence[float]) -> list[list[float]]:
         """Return parameter lists with other values of parameter k, without those that the file refuses."""
         tried = ([*first[:k], float(number), *first[k + 1 :]] for number in numbers)
-        return [one for one in tried if self.accepts(one)]
+        return [numbers_tried for numbers_tried in tried if self.accepts(numbers_tried)]
 
 
 def nearest_allowed(numbers: Any, parameters: Sequence[Parameter]) -> Real:
     """Return the nearest values (..., n) that the parameters may have."""
-    found = np.array(numbers, dtype=float)
+    nearest = np.array(numbers, dtype=float)
     for k, parameter in enumerate(parameters):
         if parameter.values:
-            own = np.array(parameter.values)
-            found[..., k] = own[np.searchsorted((own[1:] + own[:-1]) / 2, found[..., k])]
-    return found
+            allowed = np.array(parameter.values)
+            nearest[..., k] = allowed[np.searchsorted((allowed[1:] + allowed[:-1]) / 2, nearest[..., k])]
+    return nearest
 
 
 # Checks of a task before its search.
@@ -185,9 +185,9 @@ def _check_cycle(task: OptimalTask, first: Sequence[float], linkage: Linkage) ->
         return
     kernels = assemble(linkage, analyse_mobile_structure(linkage))
     for k, p in enumerate(task.parameters):
-        own = p.values or [p.low + share * (p.high - p.low) for share in SHARES]
+        checked_values = p.values or [p.low + share * (p.high - p.low) for share in SHARES]
         turns: set[Any] = set()  # or the ratios, if there is no common cycle
-        for numbers in task.with_one(first, k, own[:: -(-len(own) // MOST_LOOKED)]):
+        for numbers in task.with_one(first, k, checked_values[:: -(-len(checked_values) // MOST_LOOKED)]):
             other = task.make(numbers).linkage
             turns.add(cycle_turns(other, kernels) or _speed_ratios(other))
         if len(turns) > 1:

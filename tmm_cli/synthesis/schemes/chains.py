@@ -47,13 +47,13 @@ def _forms(
         renamed = ((*sorted((refined[i], refined[j])), kind) for (i, j), kind in edges.items())
         return [(ordered, tuple(sorted((i, j, kind) for i, j, kind in renamed)))]
     cell = cells[min(shared)[1]]
-    found = []
+    forms = []
     for vertex in cell:
         # half a step below the others of its cell
         apart = [2 * colour + 1 for colour in refined]
         apart[vertex] -= 1
-        found += _forms(apart, colours, beside, edges)
-    return [min(found)]
+        forms += _forms(apart, colours, beside, edges)
+    return [min(forms)]
 
 
 def _refine_colours(colours: list[int], beside: list[list[tuple[int, int]]]) -> list[int]:
@@ -137,12 +137,12 @@ def enumerate_chains(links: int, mobility: int = 1) -> tuple[KinematicChain, ...
         return ()
     if loops == 1:
         return (KinematicChain(links, tuple(sorted(tuple(sorted((k, (k + 1) % links))) for k in range(links)))),)  # type: ignore[misc]
-    found = [
+    chains = [
         _insert_binary_links(bundles, binaries, links)
         for vertices, bundles in _multigraphs(loops)
         for binaries in _distribute_binary_links(vertices, bundles, links - vertices)
     ]
-    return tuple(sorted(found, key=lambda chain: (tuple(-k for k in chain.assortment), chain.pairs)))
+    return tuple(sorted(chains, key=lambda chain: (tuple(-k for k in chain.assortment), chain.pairs)))
 
 
 def _multigraphs(loops: int) -> Iterator[tuple[int, tuple[Bundle, ...]]]:
@@ -196,15 +196,15 @@ def _distribute_binary_links(
     smallest mobility (an edge with m of them removes 2 - m freedoms).
     """
     inside = [
-        (3 * (size - 1), [k for k, (i, j, _) in enumerate(bundles) if i in part and j in part])
+        (3 * (size - 1), [k for k, (i, j, _) in enumerate(bundles) if i in vertex_set and j in vertex_set])
         for size in range(2, vertices + 1)
-        for part in combinations(range(vertices), size)
+        for vertex_set in combinations(range(vertices), size)
     ]
     same = _automorphisms(vertices, bundles)
     seen = set()
     for binaries in _spread_binary_links(bundles, binary):
         taken = [sum(max(0, 2 - m) for m in numbers) for numbers in binaries]
-        if any(free - sum(taken[k] for k in part) < 1 for free, part in inside):
+        if any(free - sum(taken[k] for k in vertex_set) < 1 for free, vertex_set in inside):
             continue
         form = min(tuple(binaries[k] for k in order) for order in same)
         if form not in seen:
@@ -247,12 +247,12 @@ def _automorphisms(vertices: int, bundles: Sequence[Bundle]) -> list[list[int]]:
     """Return all automorphisms of the multigraph, each as the indices of the images of its bundles."""
     counts = {(i, j): count for i, j, count in bundles}
     number = {(i, j): k for k, (i, j, _) in enumerate(bundles)}
-    found = []
+    mappings = []
     for order in permutations(range(vertices)):
         moved = [(min(order[i], order[j]), max(order[i], order[j])) for i, j, _ in bundles]
         if all(counts.get(pair) == count for pair, (_, _, count) in zip(moved, bundles, strict=True)):
-            found.append([number[pair] for pair in moved])
-    return found
+            mappings.append([number[pair] for pair in moved])
+    return mappings
 
 
 def _insert_binary_links(bundles: Sequence[Bundle], binaries: Sequence[Sequence[int]], links: int) -> KinematicChain:

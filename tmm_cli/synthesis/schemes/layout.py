@@ -150,9 +150,9 @@ class LayoutDraft:
             raise UnfitLayout
         self.penalties.append((1 - min(1.0, abs(transmission))) ** 2)
 
-    def add_reserve_penalty(self, way: float) -> None:
+    def add_reserve_penalty(self, reserve: float) -> None:
         """Add the penalty of a group for the distance (mm) by which it can still move; a crank diameter is enough."""
-        self.penalties.append((1 - max(0.0, min(1.0, way / (2 * CRANK)))) ** 2)
+        self.penalties.append((1 - max(0.0, min(1.0, reserve / (2 * CRANK)))) ** 2)
 
     def name_hinge(self, link: int, place: complex) -> str:
         """Add a named hinge to an existing link, and return its name."""
@@ -164,8 +164,8 @@ class LayoutDraft:
 
     def to_layout(self) -> SchemeLayout:
         """Return the layout in whole numbers. Raises UnfitLayout if links are too long or points too close together."""
-        places = {name: place for points in self.points.values() for name, place in points.items()}
-        if any(abs(p - q) < NEAREST for p, q in combinations(places.values(), 2)):
+        all_points = {name: place for points in self.points.values() for name, place in points.items()}
+        if any(abs(p - q) < NEAREST for p, q in combinations(all_points.values(), 2)):
             raise UnfitLayout
         spans = [
             max((abs(p - q) for p, q in combinations(points.values(), 2)), default=0.0)
@@ -175,8 +175,8 @@ class LayoutDraft:
         if max(spans) > LONGEST:
             raise UnfitLayout
         points = {
-            link: {name: self.to_link_axes(link, place) for name, place in known.items()}
-            for link, known in self.points.items()
+            link: {name: self.to_link_axes(link, place) for name, place in link_points.items()}
+            for link, link_points in self.points.items()
         }
         slides = tuple(
             PrismaticLayout(
@@ -188,7 +188,7 @@ class LayoutDraft:
             )
             for carrier, runner, through, turn, point in self.slides
         )
-        moving = {name: round_to_mm(place) for name, place in places.items() if name not in self.points[0]}
+        moving = {name: round_to_mm(place) for name, place in all_points.items() if name not in self.points[0]}
         angles = {link: round(math.degrees(self.axis_angle[link])) for link in self.slotted_links}
         cranks = tuple(CRANK_AT[crank - 1] for crank in self.cranks)
         return SchemeLayout(points, slides, moving, angles, cranks, sum(spans) / 1000 + WEIGHT * sum(self.penalties))
@@ -221,8 +221,8 @@ TRIALS = 250
 def find_layouts(scheme: Scheme, seed: int = 1) -> tuple[SchemeLayout, ...]:
     """Return layouts of a scheme, best first."""
     random = Random(seed)
-    found = (_GroupPlacer(scheme, random).place_groups() for _ in range(TRIALS))
-    return tuple(sorted((x for x in found if x is not None), key=lambda layout: layout.cost))
+    layouts = (_GroupPlacer(scheme, random).place_groups() for _ in range(TRIALS))
+    return tuple(sorted((x for x in layouts if x is not None), key=lambda layout: layout.cost))
 
 
 class _GroupPlacer(LayoutDraft):
@@ -303,16 +303,16 @@ class _GroupPlacer(LayoutDraft):
         (a, b), (X, Y) = group.links, _supporting_links(group)
         middles = [x for x in (self.centre_of(X), self.centre_of(Y)) if x is not None]
         C = sum(middles) / len(middles) + self.random_vector(60, 220)
-        one, other = (X, Y) if X in self.cranks or (Y not in self.cranks and X > Y) else (Y, X)
-        slotted = one in self.cranks
+        leading, other = (X, Y) if X in self.cranks or (Y not in self.cranks and X > Y) else (Y, X)
+        slotted = leading in self.cranks
         if slotted:  # the slot of a slotted crank passes through its pivot
-            C = self.pivot(one) + cmath.rect(self.random.uniform(120, 260), self.axis_angle[one])
-        turns = {one: self.axis_angle[one] if slotted else self.guide_direction(one, 0, 180)}
-        turns[other] = self.guide_direction(other, turns[one] + math.pi / 2, 35)
+            C = self.pivot(leading) + cmath.rect(self.random.uniform(120, 260), self.axis_angle[leading])
+        turns = {leading: self.axis_angle[leading] if slotted else self.guide_direction(leading, 0, 180)}
+        turns[other] = self.guide_direction(other, turns[leading] + math.pi / 2, 35)
         name = next(self.names)
-        for link, known in ((a, X), (b, Y)):
-            self.place_link(link, self.axis_angle[known], **{name: C})
-            self.add_slide(known, link, C, turns[known], name)
+        for link, support in ((a, X), (b, Y)):
+            self.place_link(link, self.axis_angle[support], **{name: C})
+            self.add_slide(support, link, C, turns[support], name)
         self.add_transmission_penalty(math.sin(turns[X] - turns[Y]))
 
     def rpp(self, group: PlacedGroup) -> None:
@@ -338,8 +338,8 @@ class _GroupPlacer(LayoutDraft):
             end = self.new_hinge(link)
             ends.append(end)
             names.append("" if end is None else self.name_hinge(link, end))
-        known = [end for end in ends if end is not None]
-        middle = sum(known) / len(known) + self.random_vector(120, 260)
+        placed_ends = [end for end in ends if end is not None]
+        middle = sum(placed_ends) / len(placed_ends) + self.random_vector(120, 260)
         start = self.random.uniform(0, 360)
         corners = [middle + self.random_vector(60, 90, start + 120 * k, start + 120 * k) for k in range(3)]
         outer = [
@@ -378,7 +378,7 @@ class _GroupPlacer(LayoutDraft):
 
 def _supporting_links(group: PlacedGroup) -> list[int]:
     """Return the links to which a group is attached, in the order of its external pairs."""
-    return [known for known, _, _ in group.outer]
+    return [support for support, _, _ in group.outer]
 
 
 def _determinant(rows: list[tuple[float, float, float]]) -> float:

@@ -38,12 +38,12 @@ def _links(layout: SchemeLayout) -> Iterable[str]:
 
 def _points(link: int, points: dict[str, complex], layout: SchemeLayout) -> Iterable[str]:
     """Yield names and a length if these suffice; else coordinates in the link's axes."""
-    places = list(points.values())
+    coordinates = list(points.values())
     if len(points) == 1:
         yield f"points: [{next(iter(points))}]"
-    elif len(points) == 2 and places[1].imag == 0 and places[1].real > 0:
+    elif len(points) == 2 and coordinates[1].imag == 0 and coordinates[1].real > 0:
         yield f"points: [{', '.join(points)}]"
-        yield f"length: {_number(places[1].real)}"
+        yield f"length: {_number(coordinates[1].real)}"
     else:
         yield f"points: {{{', '.join(f'{name}: {_vector(place)}' for name, place in points.items())}}}"
 
@@ -93,7 +93,7 @@ def _load(scheme: Scheme, layout: SchemeLayout) -> tuple[int, str]:
     """Return the output, the last link joined to the frame (sliders first), or 0; and the load on it."""
     guided = {slide.runner: slide.angle for slide in layout.slides if slide.carrier == 0}
     for group in reversed(scheme.groups):
-        held = [own for known, own, __ in group.outer if known == 0]
+        held = [own for support, own, __ in group.outer if support == 0]
         for link in held:
             if link in guided:
                 return link, f"F: {{on: {link}, force: {{size: 100 N, angle: {guided[link]}}}}}"

@@ -171,20 +171,20 @@ def enumerate_schemes(links: int, mobility: int = 1, types: Sequence[str] = tupl
                     level.setdefault(grown.form, grown)
                     if len(level) > MOST_SCHEMES:
                         raise TooManySchemes
-    found = [s for s in levels.get(links, {}).values() if s.groups and _is_connected_without_frame(s)]
-    return tuple(sorted(found, key=lambda s: [order[group.type.name] for group in s.groups]))
+    schemes = [s for s in levels.get(links, {}).values() if s.groups and _is_connected_without_frame(s)]
+    return tuple(sorted(schemes, key=lambda s: [order[group.type.name] for group in s.groups]))
 
 
 def attach_group(scheme: Scheme, kind: GroupType) -> Iterator[Scheme]:
     """Yield every way to attach one more group of this type; some of the schemes may be equal."""
     first = scheme.links + 1
-    own = tuple(range(first, first + kind.links))
-    inner = tuple((own[a], own[b], pair) for a, b, pair in kind.inner)
+    new_links = tuple(range(first, first + kind.links))
+    inner = tuple((new_links[a], new_links[b], pair) for a, b, pair in kind.inner)
     for held in product(range(first - 1, -1, -1), repeat=len(kind.outer)):
         if len(set(held)) == 1:
             continue
-        outer = tuple((known, own[end], pair) for known, (end, pair) in zip(held, kind.outer, strict=True))
-        grown = Scheme(scheme.cranks, (*scheme.groups, PlacedGroup(kind, own, inner, outer)))
+        outer = tuple((support, new_links[end], pair) for support, (end, pair) in zip(held, kind.outer, strict=True))
+        grown = Scheme(scheme.cranks, (*scheme.groups, PlacedGroup(kind, new_links, inner, outer)))
         if all(grown.directions[i] != grown.directions[j] for i, j, pair in (*outer, *inner) if pair == "R"):
             yield grown
 

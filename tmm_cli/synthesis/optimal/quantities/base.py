@@ -186,8 +186,8 @@ class PeakQuantity(MechanismQuantity):
         return y
 
     def coarse(self, read: Read, over: QuantityRange) -> Real:
-        found: Real = self.from_curve(sum(np.max(read(name), axis=1) for name in self.curves))
-        return -found if self.lowest else found
+        peak_value: Real = self.from_curve(sum(np.max(read(name), axis=1) for name in self.curves))
+        return -peak_value if self.lowest else peak_value
 
     def windows(self, read: Read, over: QuantityRange) -> list[tuple[Any, int]]:
         return [("y", k) for k in highest_peaks(read("y")[0], MOST_PEAKS, over.closed)]
@@ -195,8 +195,8 @@ class PeakQuantity(MechanismQuantity):
     def fine(self, parts: Windows, exact: Read, over: QuantityRange, step: float) -> Real:
         ys = [self.from_curve(read(name)) for name, _, read in parts]
         rough = over.rough and self.forces
-        found: Real = np.stack([np.max(y, axis=1) if rough else window_peak(y) for y in ys], axis=1)
-        return -found if self.lowest else found
+        peaks: Real = np.stack([np.max(y, axis=1) if rough else window_peak(y) for y in ys], axis=1)
+        return -peaks if self.lowest else peaks
 
     def refine_value(self, value: float, curve: Curve, scan: Real, over: QuantityRange) -> float:
         if over.rough and self.forces:

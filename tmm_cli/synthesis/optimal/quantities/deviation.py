@@ -60,15 +60,15 @@ class Deviation(MechanismQuantity):
     @property
     def spread(self) -> float:
         """Standard deviation of the required values, the unit of the residuals."""
-        wanted = np.array(self.wanted)
-        return float(np.sqrt(np.mean(np.abs(wanted - np.mean(wanted)) ** 2))) or 1.0
+        required = np.array(self.wanted)
+        return float(np.sqrt(np.mean(np.abs(required - np.mean(required)) ** 2))) or 1.0
 
     def aggregate(self, off: Real) -> Real:
         """Return the root mean square or the largest deviation, (variants,)."""
         if self.norm == "largest":
             off = np.max(np.abs(off), axis=1, keepdims=True)
-        found: Real = np.sqrt(np.mean(off * off, axis=1))
-        return found
+        aggregated: Real = np.sqrt(np.mean(off * off, axis=1))
+        return aggregated
 
     def coarse(self, read: Read, over: QuantityRange) -> Real:
         return self.aggregate(self.deviations(read, over))
@@ -114,8 +114,8 @@ class LawDeviation(Deviation):
     def deviations_on(self, results: Results, ends: DriverEnds) -> Real:
         run = output_coordinate(motion_at(results, np.array(self.places)), self.name)
         over = QuantityRange(results.linkage, results.linkage.output_swings(self.name))
-        found: Real = self.deviations({"run": run[None, :], WANTED: np.array([self.wanted])}.__getitem__, over)[0]
-        return found
+        deviations: Real = self.deviations({"run": run[None, :], WANTED: np.array([self.wanted])}.__getitem__, over)[0]
+        return deviations
 
 
 class PathDeviation(Deviation):
@@ -162,15 +162,15 @@ class PathDeviation(Deviation):
             apart: Real = np.abs(motion_at(results, np.array(self.places)).spot(self.name) - np.array(self.wanted))
             return apart
 
-        def near(wanted: complex) -> float:
+        def near(point: complex) -> float:
             return highest_over_range(
-                lambda q: -(np.abs(motion_at(results, q).spot(self.name) - wanted) ** 2), results, ends
+                lambda q: -(np.abs(motion_at(results, q).spot(self.name) - point) ** 2), results, ends
             )
 
-        return np.sqrt(np.maximum([-near(wanted) for wanted in self.wanted], 0.0))
+        return np.sqrt(np.maximum([-near(point) for point in self.wanted], 0.0))
 
 
-def _distances_across(place: Any, wanted: Real, closed: bool) -> Real:
+def _distances_across(place: Any, points: Real, closed: bool) -> Real:
     """Return distances across the path where the first variant of each set is nearest to the points.
 
     Shapes: place (sets, variants, corners), result (..., points). The distances change sign where the path passes
@@ -178,10 +178,10 @@ def _distances_across(place: Any, wanted: Real, closed: bool) -> Real:
     """
     sets, __, count = place.shape
     lead = np.where(np.isnan(place[:, 0]), AWAY, place[:, 0])
-    near = nearest_corners(lead.real.copy(), lead.imag.copy(), wanted)
+    near = nearest_corners(lead.real.copy(), lead.imag.copy(), points)
     middle = near if closed else np.clip(near, WINDOW_SIDE, count - 1 - WINDOW_SIDE)
     about = (np.arange(-WINDOW_SIDE, WINDOW_SIDE + 1)[:, None, None] + middle) % count  # (corners, points, sets)
-    off = place[np.arange(sets), :, about] - wanted[:, None, None]  # (corners, points, sets, variants)
+    off = place[np.arange(sets), :, about] - points[:, None, None]  # (corners, points, sets, variants)
     fit = np.moveaxis(np.tensordot(WINDOW_FIT.T, off[..., 0], 1), 0, -1)
     u = (near - middle).astype(float)
     low, high = u - 1, u + 1
@@ -197,18 +197,18 @@ def _distances_across(place: Any, wanted: Real, closed: bool) -> Real:
     share = np.tensordot(
         WINDOW_FIT, np.cumprod([np.ones_like(u), *[u] * (2 * WINDOW_SIDE)], axis=0), 1
     )  # weight of each corner
-    found: Real = dot(normal[..., None], np.sum(share[..., None] * off, axis=0))
-    return found.transpose(1, 2, 0)
+    distances: Real = dot(normal[..., None], np.sum(share[..., None] * off, axis=0))
+    return distances.transpose(1, 2, 0)
 
 
-def distances_to_points(x: Real, y: Real, wanted: Real, *, closed: bool = True) -> Real:
+def distances_to_points(x: Real, y: Real, points: Real, *, closed: bool = True) -> Real:
     """Return the distances of polygons (variants, corners) from points, (variants, points).
 
     The distance is that of the nearest corner or of the two sides that meet there.
     """
     x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
-    near, rows, count = nearest_corners(x, y, wanted), np.arange(len(x)), x.shape[1]
-    wx, wy = np.real(wanted)[:, None], np.imag(wanted)[:, None]
+    near, rows, count = nearest_corners(x, y, points), np.arange(len(x)), x.shape[1]
+    wx, wy = np.real(points)[:, None], np.imag(points)[:, None]
     px, py = x[rows, near] - wx, y[rows, near] - wy
     best = px * px + py * py
     after = np.where(near + 1 == count, 0 if closed else near, near + 1)
@@ -217,15 +217,15 @@ def distances_to_points(x: Real, y: Real, wanted: Real, *, closed: bool = True) 
         with np.errstate(all="ignore"):
             share = np.minimum(np.maximum(-(px * sx + py * sy) / (sx * sx + sy * sy), 0), 1)
         best = np.fmin(best, (px + share * sx) ** 2 + (py + share * sy) ** 2)
-    found: Real = np.sqrt(best).T
-    return found
+    distances: Real = np.sqrt(best).T
+    return distances
 
 
-def nearest_corners(x: Real, y: Real, wanted: Real) -> Any:
+def nearest_corners(x: Real, y: Real, points: Real) -> Any:
     """Return the corners of polygons (variants, corners) that are nearest to points, (points, variants)."""
-    square, near = (x * x + y * y) / 2, np.empty((len(wanted), len(x)), dtype=int)
+    square, near = (x * x + y * y) / 2, np.empty((len(points), len(x)), dtype=int)
     work, other = np.empty_like(x), np.empty_like(x)
-    for k, w in zip(near, wanted, strict=True):  # minimises half the squared distance, without the constant w^2
+    for k, w in zip(near, points, strict=True):  # minimises half the squared distance, without the constant w^2
         np.multiply(x, w.real, out=work)
         np.subtract(square, work, out=work)
         np.multiply(y, w.imag, out=other)

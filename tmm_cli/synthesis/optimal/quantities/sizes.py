@@ -39,11 +39,11 @@ class LinkLengthSum(ConstantQuantity):
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
         linkage = motion.linkage
         hinged = {hinge.point for hinge in linkage.hinges if FRAME in hinge.links}
-        found: Any = 0.0
+        total: Any = 0.0
         for link in self.links or tuple(linkage.links):
-            places = [at for name, at in linkage.links[link].points.items() if link != FRAME or name in hinged]
-            found = found + reduce(np.maximum, [np.abs(a - b) for a, b in combinations(places, 2)], 0.0)
-        return {"value": found}
+            points = [at for name, at in linkage.links[link].points.items() if link != FRAME or name in hinged]
+            total = total + reduce(np.maximum, [np.abs(a - b) for a, b in combinations(points, 2)], 0.0)
+        return {"value": total}
 
 
 class MovingMass(ConstantQuantity):
@@ -76,12 +76,12 @@ class MotionBox(PeakQuantity):
         }
 
     def windows(self, read: Read, over: QuantityRange) -> list[tuple[Any, int]]:
-        found: list[tuple[Any, int]] = []
+        windows: list[tuple[Any, int]] = []
         for side, (axis, sign) in enumerate(SIDES):
             ys = {k: sign * read(f"{CLOSELY}{axis}{k}")[0] for k in range(len(_moving_points(over.linkage)))}
             tops = [(y[at], k, at) for k, y in ys.items() for at in highest_peaks(y, MOST_PEAKS, over.closed)]
-            found += [((side, k), at) for __, k, at in sorted(tops, reverse=True)[:OF_A_SIDE]]
-        return found
+            windows += [((side, k), at) for __, k, at in sorted(tops, reverse=True)[:OF_A_SIDE]]
+        return windows
 
     def fine(self, parts: Windows, exact: Read, over: QuantityRange, step: float) -> Real:
         """Return the sums of one peak of each side, in all combinations: the largest is the sum of the largest ones."""

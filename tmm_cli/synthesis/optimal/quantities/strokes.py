@@ -135,22 +135,22 @@ class MeanOutputSpeed(StrokeQuantity):
         return super().unfit(linkage, groups, closed=closed)
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
-        found, driver = super().outputs(motion, reactions), motion.linkage.driver
-        nothing = 0.0 * found["slope"]
-        return {**found, "rate": driver.rate + nothing, "gain": driver.acceleration + nothing}
+        outputs, driver = super().outputs(motion, reactions), motion.linkage.driver
+        nothing = 0.0 * outputs["slope"]
+        return {**outputs, "rate": driver.rate + nothing, "gain": driver.acceleration + nothing}
 
     def coarse(self, read: Read, over: QuantityRange) -> Real:
         run = read("run")
-        found: Real = np.sum(np.abs(run - np.roll(run, 1, axis=1)), axis=1) * mean_crank_speed(read, over) / over.cycle
-        return found
+        speed: Real = np.sum(np.abs(run - np.roll(run, 1, axis=1)), axis=1) * mean_crank_speed(read, over) / over.cycle
+        return speed
 
     def between(self, parts: Windows, over: QuantityRange, step: float) -> Real:
-        found: Real = (
+        speed: Real = (
             np.sum(stroke_lengths(followed_runs(parts, over)), axis=0)
             * mean_crank_speed(parts[0][2], over)
             / over.cycle
         )
-        return found[:, None]
+        return speed[:, None]
 
     def measured(self, results: Results, ends: DriverEnds) -> float:
         return measures.mean_output_speed(results)
@@ -176,8 +176,8 @@ def longest_stroke(run: Real, travel: Real, *, turns: bool) -> Real:
     step = (step + np.pi) % (2 * np.pi) - np.pi if turns else step
     stroke, best = np.zeros(len(run)), np.zeros(len(run))
     for k in range(2 * run.shape[1]):  # two cycles, for the stroke that continues past the end
-        one = step[:, k % run.shape[1]]
-        stroke = np.where(stroke * one >= 0, stroke + one, one)
+        increment = step[:, k % run.shape[1]]
+        stroke = np.where(stroke * increment >= 0, stroke + increment, increment)
         best = np.maximum(best, np.abs(stroke))
     return np.minimum(best, travel)
 
@@ -185,8 +185,8 @@ def longest_stroke(run: Real, travel: Real, *, turns: bool) -> Real:
 def count_reversals(slope: Real) -> Real:
     """Return how often a curve reverses in a cycle, (variants,); a standstill may count twice."""
     sign = np.sign(slope)
-    found: Real = np.sum(sign != np.roll(sign, 1, axis=1), axis=1)
-    return found
+    reversals: Real = np.sum(sign != np.roll(sign, 1, axis=1), axis=1)
+    return reversals
 
 
 def followed_runs(parts: Windows, over: QuantityRange) -> list[Real]:
@@ -215,15 +215,15 @@ def forward_share(slope: Real) -> Real:
     up, down = np.maximum(slope, 0) + np.maximum(after, 0), np.maximum(-slope, 0) + np.maximum(-after, 0)
     with np.errstate(all="ignore"):
         rests = up + down == 0
-        found: Real = np.sum(np.where(rests, 0.0, up / (up + down)), axis=1) / np.sum(~rests, axis=1)
-    return found
+        fraction: Real = np.sum(np.where(rests, 0.0, up / (up + down)), axis=1) / np.sum(~rests, axis=1)
+    return fraction
 
 
 def time_ratio_of_share(share: Real) -> Real:
     """Return k from the fraction of time of one of two strokes."""
     with np.errstate(all="ignore"):
-        found: Real = np.maximum(share, 1 - share) / np.minimum(share, 1 - share)
-    return found
+        ratio: Real = np.maximum(share, 1 - share) / np.minimum(share, 1 - share)
+    return ratio
 
 
 def mean_crank_speed(read: Read, over: QuantityRange) -> Real:
