@@ -1,4 +1,9 @@
-"""Arithmetic on quantities with units and parameters: precedence climbing over the text, bounded in depth."""
+"""Evaluate arithmetic on quantities with units and parameters; expressions are parsed, never run as Python.
+
+The parser climbs precedence over the text and is bounded in depth. A bare number (a number without a unit) is flexible:
+beside a quantity with a dimension it is taken in the file's unit of that dimension, and so is a bare result where a
+dimension is required.
+"""
 
 from __future__ import annotations
 
@@ -48,14 +53,14 @@ FUNCTIONS: Final = (*_OF_ANGLE, *_TO_ANGLE, *_MANY_ARGUMENTS, "sqrt", "abs")
 
 
 def to_si(found: PhysicalValue, want: Dimension, units: UnitSystem) -> float | None:
-    """The value in SI, a bare number taken in the file's unit of `want`; None when the dimension does not fit."""
+    """Return a value in SI, a bare number taken in the file's unit of `want`; None if the dimension does not fit."""
     if found.dimension is None:
         return units.si(found.value, want)
     return found.value if found.dimension.fits(want) else None
 
 
 class Parser:
-    """Precedence climbing over the text: sums, products, powers, signs, calls."""
+    """Recursive-descent parser of one expression: sums, products, powers, signs, function calls."""
 
     def __init__(
         self, text: str, parameters: Mapping[str, PhysicalValue], units: UnitSystem, pi: Dimension | None = ANGLE
@@ -65,7 +70,9 @@ class Parser:
         self.depth = 0
 
     def names(self) -> list[str]:
-        """The parameters the text uses. A unit is none, whatever parameters are called: `L: 5 m, m: 2*L`."""
+        """Return the parameters that the text uses. A unit does not count, even if a parameter has its name: `L: 5 m,
+        m: 2*L`.
+        """
         found = []
         while self.at < len(self.text):
             if number := _NUMBER.match(self.text, self.at):
@@ -176,7 +183,7 @@ class Parser:
         raise self.fault(_("expected a number here") if self.text[self.at :].strip() else _("a number is missing"))
 
     def with_unit(self, number: float) -> PhysicalValue:
-        """The number with the longest unit that follows it (in `10 mm * k` that is mm: k is a parameter)."""
+        """Return the number with the longest unit that follows it (in `10 mm * k` this is mm, as k is a parameter)."""
         found = _UNIT.match(self.text, self.at)
         if dotted := _DOTTED.match(self.text, self.at):
             raise dotted_unit_error(dotted[1])
@@ -257,7 +264,7 @@ class Parser:
         return PhysicalValue(value, root if name == "sqrt" else ANGLE)
 
     def of_many(self, name: str, given: list[PhysicalValue]) -> PhysicalValue:
-        """atan2, hypot, min or max of values that all have one dimension, or none."""
+        """Compute atan2, hypot, min or max of values of one dimension, or of bare numbers."""
         compute = self.units.functions[name]
         dimension = next((one.dimension for one in given if one.dimension is not None), None)
         values = [self.alike(PhysicalValue(0.0, dimension), one)[1] for one in given]
@@ -265,7 +272,7 @@ class Parser:
         return self.finite(value, ANGLE if name == "atan2" else dimension)
 
     def alike(self, left: PhysicalValue, right: PhysicalValue) -> tuple[float, float, Dimension | None]:
-        """Both values in one dimension, a bare one taken in the file's unit of the other's."""
+        """Return both values in one dimension; a bare one is taken in the file's unit of the other's dimension."""
         a, b = left.dimension, right.dimension
         if a is None and b is not None:
             return self.finite(self.units.si(left.value, b), b).value, right.value, b
@@ -276,17 +283,19 @@ class Parser:
         return left.value, right.value, a
 
     def finite(self, value: float, dimension: Dimension | None) -> PhysicalValue:
-        """What a step of the arithmetic gives, so that the next one never meets what is no number."""
+        """Return a result of one step of the arithmetic. Raises ProblemError if it is not finite, so no later step
+        meets nan.
+        """
         if not math.isfinite(value):
             raise ProblemError(_("this number is too large"), found=quote(self.text))
         return PhysicalValue(value, dimension)
 
     @staticmethod
     def joined(left: PhysicalValue, right: PhysicalValue, power: int) -> Dimension | None:
-        """Dimension of a product or quotient.
+        """Return the dimension of a product or quotient.
 
-        A bare number is a pure factor, and stays bare beside a number; a ratio of lengths is a number, not bare, so
-        that it cannot pass for degrees or millimetres.
+        A bare number is a pure factor, and stays bare beside a number; a ratio of lengths is a number, not bare, so that it
+        cannot be taken for degrees or millimetres.
         """
         joined = (left.dimension or NUMBER).times(right.dimension or NUMBER, power)
         return None if joined == NUMBER and None in (left.dimension, right.dimension) else joined
@@ -308,17 +317,21 @@ def _square_root_dimension(dimension: Dimension) -> Dimension | None:
     return Dimension(*(p // 2 for p in powers))
 
 
-# Values of a problem file that may be arithmetic on parameters: parsed (arithmetic), never run as Python.
-#
-# A bare number is flexible: beside a quantity with a dimension it is taken in the file's unit of that dimension, and so
-# is a bare result where a dimension is wanted.
-
-
 MAX_LENGTH: Final = 200
 
 
 def evaluate(source: object, parameters: Mapping[str, PhysicalValue], units: UnitSystem, want: Dimension) -> float:
-    """A value in SI and radians. Raises ProblemError (without a path) for what is not arithmetic or does not fit."""
+    """Evaluate a value of the file in SI and radians.
+
+    Args:
+        source: number or text of the file.
+        parameters: values of the parameters by name.
+        units: units of bare numbers.
+        want: required dimension.
+
+    Raises:
+        ProblemError: the text is not valid arithmetic, or its dimension does not fit; without a path.
+    """
     try:
         return _checked_si(source, evaluate_quantity(source, parameters, units), units, want)
     except ProblemError as error:
@@ -343,9 +356,10 @@ def _missing_unit_error(
     units: UnitSystem,
     fits: Callable[[Mapping[str, PhysicalValue]], bool],
 ) -> ProblemError | None:
-    """The refusal of a value whose dimensions do not fit because a parameter in it has no unit, unlike others.
+    """Return the error for a value whose dimensions do not fit because one of its parameters lacks a unit, unlike the
+    others.
 
-    Each kind of unit is tried on each parameter without one. None if no unit mends the value.
+    Each kind of unit is tried on each parameter without one. Returns None if no unit makes the value fit.
     """
     used = dict.fromkeys(Parser(plain_text(source[:MAX_LENGTH]), parameters, units).names())
     bare = [name for name in used if parameters[name].dimension is None]
@@ -384,9 +398,10 @@ def _checked_si(source: object, found: PhysicalValue, units: UnitSystem, want: D
 def evaluate_quantity(
     source: object, parameters: Mapping[str, PhysicalValue], units: UnitSystem, pi: Dimension | None = ANGLE
 ) -> PhysicalValue:
-    """The value with its dimension; None for a bare number.
+    """Evaluate a value with its dimension; the dimension of a bare number is None.
 
-    pi is one of radians, so that pi/2 is a right angle whatever the file's unit of angles, unless told otherwise.
+    pi: dimension of the constant pi. By default it is an angle in radians, so that pi/2 is a right angle whatever the
+    file's unit of angles; None makes it a bare number. Raises ProblemError without a path.
     """
     if isinstance(source, bool) or not isinstance(source, int | float | str):
         raise ProblemError(
@@ -408,7 +423,7 @@ def evaluate_quantity(
 
 
 def check_parameter(name: str, path: Path, *, key: bool = True) -> None:
-    """Refuse what cannot be the name of a parameter."""
+    """Raise ProblemError if this cannot be the name of a parameter."""
     if not re.fullmatch(r"[^\W\d]\w{0,39}", name):
         raise ProblemError(
             _("invalid name of a parameter"),
@@ -429,7 +444,10 @@ def check_parameter(name: str, path: Path, *, key: bool = True) -> None:
 def resolve_parameters(
     raw: Mapping[str, object], units: UnitSystem, given: Mapping[str, PhysicalValue] | None = None
 ) -> dict[str, PhysicalValue]:
-    """Parameters, each of which may be arithmetic on others, in any order, and on those that are given already."""
+    """Evaluate parameters, in any order; each may depend on the others and on the already known ones in `given`.
+
+    Raises ProblemError with the name of the parameter as its path.
+    """
     found: dict[str, PhysicalValue] = dict(given or {})
     for name in raw:
         check_parameter(name, (name,))
@@ -452,7 +470,7 @@ def resolve_parameters(
 
 
 def _evaluate_parameter(source: object, parameters: Mapping[str, PhysicalValue], units: UnitSystem) -> PhysicalValue:
-    """The value of a parameter, whatever it measures."""
+    """Evaluate a parameter of any dimension."""
     try:
         return evaluate_quantity(source, parameters, units)
     except ProblemError as error:

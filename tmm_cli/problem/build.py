@@ -41,16 +41,16 @@ Model = TypeVar("Model", bound=BaseModel)
 
 
 def is_chain(tree: Tree) -> bool:
-    """Whether the file gives a chain by pairs alone (structure.spatial) and no planar linkage."""
+    """Return True if the file gives a spatial chain by its pairs alone (structure.spatial) and no planar linkage."""
     part = tree.data.get("structure")
     named = isinstance(part, dict) and "spatial" in part
     return named or ("structure" in tree.data and "links" not in tree.data)
 
 
 def build_problem(tree: Tree, *, extended: bool = False) -> Problem:
-    """A problem from a file that has been read and has no task of synthesis (see synthesis.reading).
+    """Build a problem from a file that has been read and has no synthesis task (for these see synthesis.reading).
 
-    extended: with its numbers as double-doubles. Raises ProblemError.
+    extended: use double-double numbers. Raises ProblemError.
     """
     shape = validate_planar(tree)
     with locate_errors_in(tree):
@@ -60,7 +60,7 @@ def build_problem(tree: Tree, *, extended: bool = False) -> Problem:
 
 
 def validate_planar(tree: Tree) -> schema.File:
-    """The file in the shape of a linkage. Raises ProblemError."""
+    """Validate the keys of a planar problem file. Raises ProblemError."""
     if is_chain(tree):
         raise ProblemError(
             _("this file gives only links and pairs, without dimensions: only the structure can be analysed"),
@@ -72,7 +72,7 @@ def validate_planar(tree: Tree) -> schema.File:
 
 
 def validate_shape(model: type[Model], tree: Tree) -> Model:
-    """The file in the shape of a model. Raises ProblemError."""
+    """Validate the keys of a file against a model. Raises ProblemError, located in the file."""
     try:
         return model.model_validate(tree.data)
     except ValidationError as error:
@@ -80,7 +80,7 @@ def validate_shape(model: type[Model], tree: Tree) -> Model:
 
 
 def build_unit_system(names: Mapping[str, str], *, extended: bool = False) -> UnitSystem:
-    """What bare numbers of a file mean; extended: with numbers as double-doubles. Raises ProblemError."""
+    """Return the units of bare numbers of a file; extended: with double-double numbers. Raises ProblemError."""
     with prefix_errors("units"):
         return ExtendedUnits(names) if extended else UnitSystem(names)
 
@@ -88,13 +88,13 @@ def build_unit_system(names: Mapping[str, str], *, extended: bool = False) -> Un
 def build_parameters(
     raw: Mapping[str, object], units: UnitSystem, given: Mapping[str, PhysicalValue] | None = None
 ) -> dict[str, PhysicalValue]:
-    """The parameters of a file, which may rest on others that are given. Raises ProblemError."""
+    """Evaluate the parameters of a file; they may depend on the already known ones in `given`. Raises ProblemError."""
     with prefix_errors("parameters"):
         return resolve_parameters(raw, units, given)
 
 
 def _refuse_frame_of_a_link(shape: schema.File, links: Mapping[str, Link]) -> None:
-    """Refuse a printed number of the frame that a link or a roller has."""
+    """Refuse a printed number of the frame that belongs to a link or roller."""
     taken = {*links, *(cam.roller for cam in shape.cams.values() if cam.roller)}
     if shape.frame != FRAME and shape.frame in taken:
         free = next(number for number in count(1) if str(number) not in taken)
@@ -107,7 +107,9 @@ def _refuse_frame_of_a_link(shape: schema.File, links: Mapping[str, Link]) -> No
 
 
 def build_from_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
-    """The problem, its parts built in the order in which they need each other. Raises ProblemError, not yet located."""
+    """Build the problem from validated keys, block by block in order of dependence. Raises ProblemError, not yet
+    located.
+    """
     members = build_links(shape, values)
     _refuse_frame_of_a_link(shape, members.links)
     refuse_unused(shape, tree.data, members)
@@ -170,13 +172,15 @@ def build_from_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Pro
 
 
 def has_bare_speed(driver: schema.DriverKeys, values: ValueReader) -> bool:
-    """Whether the driver's speed has no unit."""
+    """Return True if the driver speed is given without a unit."""
     speeds = [row[1] for row in driver.speed.table] if isinstance(driver.speed, schema.Speeds) else [driver.speed]
     return any(values.is_bare(speed) for speed in speeds if speed != 0)  # rest is rest in any unit
 
 
 def _refuse_law_with_table(shape: schema.File) -> None:
-    """Refuse a law of motion where only a speed and an acceleration of the driver are known. Raises ProblemError."""
+    """Refuse a table of speeds together with `dynamics`, or either with variants or optimization. Raises
+    ProblemError.
+    """
     by_table = isinstance(shape.driver, schema.DriverKeys) and isinstance(shape.driver.speed, schema.Speeds)
     if by_table and shape.dynamics is not None:
         raise ProblemError(
@@ -194,7 +198,7 @@ def _refuse_law_with_table(shape: schema.File) -> None:
 
 
 def refuse_variable_speed(by_table: bool, dynamics: bool) -> None:
-    """Refuse tables of speeds and the block dynamics where they are not known. Raises ProblemError."""
+    """Refuse a table of speeds or the block `dynamics` where only a constant speed or acceleration is supported."""
     if by_table or dynamics:
         raise ProblemError(
             _(
@@ -208,7 +212,7 @@ def refuse_variable_speed(by_table: bool, dynamics: bool) -> None:
 
 
 def _build_optional_task(block: str, shape: schema.File, linkage: Linkage, values: ValueReader) -> Any:
-    """What a block asks for that few files have: its module in `blocks`, which reads it, is imported for them alone."""
+    """Build the task of an optional block; the module that builds it is imported only for files with the block."""
     if getattr(shape, block) is None:
         return None
     module = import_module("tmm_cli.problem.blocks.optional_blocks")
@@ -216,12 +220,12 @@ def _build_optional_task(block: str, shape: schema.File, linkage: Linkage, value
 
 
 def _build_wheel_tasks(shape: schema.File, tree: Tree, linkage: Linkage, values: ValueReader) -> tuple[WheelTask, ...]:
-    """What is asked of intermittent motion, which is found in doubles alone."""
+    """Build the tasks of intermittent motion, which is computed in doubles only."""
     if not shape.intermittent or isinstance(values.units, ExtendedUnits):
         return ()
 
     def other(settings: Mapping[str, object]) -> Linkage:
-        """The linkage with other values of parameters; what a task of synthesis found stays."""
+        """Return the linkage with other values of parameters; the results of a synthesis task stay."""
         given = {name: value for name, value in values.parameters.items() if name not in shape.parameters}
         own = build_parameters({**shape.parameters, **settings}, values.units, given)
         alone = shape.model_copy(update={"intermittent": {}})
@@ -248,7 +252,7 @@ def _build_outputs(shape: schema.File, links: Mapping[str, Link], values: ValueR
 
 
 def build_any_problem(tree: Tree) -> Problem | TaskProblem:
-    """The problem of a file that has been read. Raises ProblemError."""
+    """Build the problem of a file that has been read, with or without a synthesis task. Raises ProblemError."""
     if "synthesis" not in tree.data:
         return build_problem(tree)
     read: TaskProblem = import_module(TASK_READER).read(tree)  # few files have a task
@@ -256,7 +260,7 @@ def build_any_problem(tree: Tree) -> Problem | TaskProblem:
 
 
 def early_parameters(tree: Tree) -> dict[str, PhysicalValue]:
-    """The parameters of a file with a task that do not rest on what the task is to find. Raises ProblemError."""
+    """Return the parameters of a file with a synthesis task that do not depend on its results. Raises ProblemError."""
     early: dict[str, PhysicalValue] = import_module(TASK_READER).TaskFile(tree).independent
     return early
 
@@ -266,7 +270,7 @@ WITHOUT_PARAMETERS = ValueReader({}, UnitSystem())
 
 
 def build_chain(tree: Tree) -> ChainProblem:
-    """A chain from a file that has been read. Raises ProblemError, located in the file."""
+    """Build a spatial chain from a file that has been read. Raises ProblemError, located in the file."""
     shape = validate_shape(schema.SpatialFile, tree)
     name = tree.name
     spatial = shape.structure.spatial

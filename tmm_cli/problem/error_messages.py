@@ -1,4 +1,4 @@
-"""The words for each kind of refusal, registered by its class."""
+"""Messages for the errors of mechanics, with the key of the file that each concerns; one function per class of error."""
 
 from __future__ import annotations
 
@@ -46,25 +46,25 @@ from tmm_cli.problem.units import UnitSystem
 
 @singledispatch
 def problem_error(error: LinkageError, problem: Problem) -> ProblemError:
-    """A stage's refusal, with the path of the key that it is about."""
+    """Convert an error of mechanics to a ProblemError with the path of the key that it concerns, not yet located."""
     return ProblemError(str(error))
 
 
 def format_coordinate(value: complex | float, units: UnitSystem) -> str:
-    """A point (m) or an angle (rad) in the units of the file."""
+    """Format a point (m) or an angle (rad) in the units of the file."""
     if isinstance(value, complex):
         return f"[{units.from_si(value.real, LENGTH):.6g}, {units.from_si(value.imag, LENGTH):.6g}]"
     return units.format_value(value, ANGLE)
 
 
-# Refusals of linkages that do not move as their drivers want, or are not assembled as sketched.
+# Mobility and assembly.
 
 
-MAX_CHOICES = 4  # points and angles that would tell two assemblies apart are many in a large group
+MAX_CHOICES = 4  # points and angles listed that distinguish two assemblies; a large group has many
 
 
 def _driver_at(problem: Problem) -> str:
-    """Where the driver stands in the sketch."""
+    """Format the driver coordinate of the sketch."""
     return problem.units.format_value(problem.linkage.sketch.at, coordinate_dimension(problem.linkage.driver.kind))
 
 
@@ -151,7 +151,9 @@ def _immobile(error: MobilityError, problem: Problem) -> ProblemError:
 
 
 def _lone_ends(linkage: Linkage, loose: Collection[str]) -> list[tuple[str, str]]:
-    """Loose links whose origin, or with fewer than two pairs any point, makes no pair; each with that point."""
+    """Return loose links with a point that forms no pair: their origin, or any point if they have fewer than two
+    pairs.
+    """
     runners = {s.runner for s in linkage.slides}
     pairs = [h.links for h in linkage.hinges] + [(s.carrier, s.runner) for s in linkage.slides]
     hinges = {h.point for h in linkage.hinges}
@@ -166,7 +168,9 @@ def _lone_ends(linkage: Linkage, loose: Collection[str]) -> list[tuple[str, str]
 
 
 def mobility_error(structure: Structure, hints: Sequence[str] = ()) -> ProblemError:
-    """The refusal of a wrong mobility: links that are loose (with hints what holds them), or over-held ones."""
+    """Return the error for a wrong mobility: it names links that are loose, with hints, or links with redundant
+    constraints.
+    """
     n, p2, wanted = len(structure.links), structure.higher, len(structure.drivers)
     higher = f" - {p2}" if p2 else ""
     count = f"W = 3*{n} - 2*{len(structure.pairs) - p2}{higher} = {structure.mobility}"
@@ -205,7 +209,7 @@ def mobility_error(structure: Structure, hints: Sequence[str] = ()) -> ProblemEr
     )
 
 
-# Refusals of what hangs on strokes, on the turns of a cycle, or on how far the driver comes.
+# Strokes, cycles and the range of the driver.
 
 
 @problem_error.register
@@ -303,7 +307,7 @@ def _beyond_cycle(error: TableBeyondCycleError, problem: Problem) -> ProblemErro
     )
 
 
-# Refusals of laws of motion and of balancing.
+# Laws of motion and balancing.
 
 
 @problem_error.register
@@ -447,7 +451,7 @@ def _no_flywheel(error: NoFlywheelError, problem: Problem) -> ProblemError:
     return ProblemError(text, path=("dynamics", "delta"), found=f"{error.wanted:.6g}", allowed=allowed)
 
 
-# Refusals of names and numbers that nothing in the file has, and of one setting of several.
+# Unknown names and numbers, and errors of one setting of several.
 
 
 @problem_error.register
@@ -473,12 +477,9 @@ def _setting(error: SettingError, problem: Problem) -> ProblemError:
     return ProblemError(own.message, path=error.path, found=own.found, allowed=own.allowed)
 
 
-# What a stage refuses, in the words and at the place of the file: a function for a refusal.
-
-
 @contextmanager
 def translate_errors(problem: Problem) -> Iterator[None]:
-    """What a stage refuses inside is said in the terms of the file. Raises ProblemError."""
+    """Convert any error of mechanics raised inside to a ProblemError in the terms of the file."""
     try:
         yield
     except LinkageError as error:
@@ -486,6 +487,6 @@ def translate_errors(problem: Problem) -> Iterator[None]:
 
 
 def located_problem_error(error: LinkageError, problem: Problem) -> ProblemError:
-    """A stage's refusal in the words and at the place of the file."""
+    """Convert an error of mechanics to a ProblemError located in the file."""
     found = problem_error(error, problem)
     return found.located(problem.file, problem.source) if problem.file else found

@@ -1,4 +1,6 @@
-"""A file that has been read: plain data, and where each value stands."""
+"""Plain data of a file with the position of each value, and ProblemError, the only exception a problem file can
+cause.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,7 @@ Path = tuple[str | int, ...]
 
 
 class WrittenNumber(float):
-    """A number of a file, and the decimals that it was written with: a float keeps 16 of them."""
+    """A number of a file with its decimals as written: a float keeps only 16 of them."""
 
     written: str
 
@@ -35,7 +37,7 @@ class WrittenNumber(float):
 
 @dataclass(frozen=True)
 class SourcePosition:
-    """A place in a text; line and column count from 1."""
+    """A position in a text; line and column count from 1."""
 
     line: int
     column: int
@@ -43,11 +45,11 @@ class SourcePosition:
 
 @dataclass(frozen=True)
 class Tree:
-    """A file as plain data (dict with str keys, list, str, int, float, bool, None) with places.
+    """A file as plain data (dict with str keys, list, str, int, float, bool, None) with the position of each value.
 
-    marks: start of every value, () being the top. key_marks: start of every key, by the path of its value.
-    commas: flow lists that may be numbers with a decimal comma, by path, with what they would then read.
-    given: what stands on the command line in place of the file's, by path, as it is written there.
+    marks: start of every value by its path, () is the top. key_marks: start of every key, by the path of its value.
+    commas: flow lists that may be numbers with a decimal comma, by path, with the corrected text.
+    given: values set on the command line instead of the file's, by path, as written there.
     """
 
     file: str
@@ -59,11 +61,13 @@ class Tree:
 
     @property
     def name(self) -> str:
-        """That of the problem: its file's without the ending; what of it is no text is lost, and it is one line."""
+        """Name of the problem: the file name without its extension, on one line and encodable as UTF-8."""
         return re.sub(r"[^\S ]+", "_", PurePath(self.file).stem.encode(errors="replace").decode())
 
     def mark(self, path: Path, *, key: bool = False) -> SourcePosition | None:
-        """The place of a value, or of its key; of what is not in the file the key of its nearest ancestor."""
+        """Return the position of a value, or of its key; if it is not in the file, of the key of its nearest
+        ancestor.
+        """
         if path in self.marks:
             return self.key_marks.get(path, self.marks[path]) if key else self.marks[path]
         while path and path not in self.marks:
@@ -71,25 +75,22 @@ class Tree:
         return self.key_marks.get(path) or self.marks.get(path)
 
 
-# The one exception that a problem file can cause, and what makes its message readable and safe.
-
-
-CLOSE = 0.66  # a name that is nearer to another by difflib's measure was meant for it: a third of letters is wrong
+CLOSE = 0.66  # similarity (difflib) from which a name is suggested: a third of the letters may be wrong
 
 CONTROLS = re.compile(  # escape sequences, carriage returns, bidirectional overrides, zero widths, lone surrogates
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb\ud800-\udfff]"
 )
 
-# Cyrillic letters that look like Latin ones on paper and screen: the commonest invisible mistake in a key.
+# Cyrillic letters that look like Latin ones on paper and screen: the most common invisible mistake in a key.
 _LOOKALIKES = str.maketrans("АВЕКМНОРСТУХаеорсухкмІіЅѕЈј", "ABEKMHOPCTYXaeopcyxkmIiSsJj")
 
 
 class ProblemError(Exception):
-    """Bad input: one mistake, said once, with what was found and what is allowed.
+    """One mistake in the input, with what was found and what is allowed.
 
-    message: one line. path: the key path. found, allowed: words ready to print (`quote` a raw value first).
-    near: the nearest valid name. key: the key itself is at fault, not its value, so `located` marks the key.
-    All words are cut and control characters escaped here, so callers need not.
+    message: one line. path: path of keys. found, allowed: texts ready to print (apply `quote` to a raw value first).
+    near: nearest valid name. key: the key itself is wrong, not its value, so `located` marks the key.
+    All texts are shortened and control characters escaped here, so callers need not.
     """
 
     def __init__(
@@ -115,16 +116,16 @@ class ProblemError(Exception):
         super().__init__(self.message)
 
     def at(self, *path: str | int) -> Self:
-        """A copy with `path` put before the path it has; `at("links", "3")`, `at(*path)`."""
+        """Return a copy with `path` put before its path: `at("links", "3")`, `at(*path)`."""
         new = copy.copy(self)
         new.path = (*path, *self.path)
         return new
 
     def located(self, file: str, tree: Tree | None = None) -> Self:
-        """A copy that names the file and, from the tree, the line and column of the path.
+        """Return a copy with the file name and, from the tree, the line and column of its path.
 
-        A mark already set is kept. When the path is not in the file (a missing key), the key of its nearest
-        ancestor is marked. What is given on the command line is named instead.
+        A mark already set is kept. If the path is not in the file (a missing key), the key of its nearest ancestor is
+        marked. For a value set on the command line, the option is named instead of the file.
         """
         new = copy.copy(self)
         new.file = file
@@ -137,7 +138,7 @@ class ProblemError(Exception):
         return new
 
     def to_dict(self) -> dict[str, Any]:
-        """Everything as plain data for --json; what is not known is None."""
+        """Return everything as plain data for --json; unknown entries are None."""
         return {
             "message": self.message,
             "file": self.file,
@@ -174,7 +175,7 @@ class ProblemError(Exception):
 
 @contextmanager
 def prefix_errors(*path: str | int) -> Iterator[None]:
-    """What is refused inside has this path before its own."""
+    """Put this path before the path of any ProblemError raised inside."""
     try:
         yield
     except ProblemError as error:
@@ -183,7 +184,7 @@ def prefix_errors(*path: str | int) -> Iterator[None]:
 
 @contextmanager
 def locate_errors_in(tree: Tree) -> Iterator[None]:
-    """What is refused inside has the file, line and column of its path."""
+    """Add file, line and column to any ProblemError raised inside."""
     try:
         yield
     except ProblemError as error:
@@ -191,13 +192,13 @@ def locate_errors_in(tree: Tree) -> Iterator[None]:
 
 
 def format_path(path: Path) -> str:
-    """`links.3.points[0]`, safe to print."""
+    """Format a path as `links.3.points[0]`, safe to print."""
     text = "".join(f"[{part}]" if isinstance(part, int) else f".{clean(part, 40)}" for part in path)
     return text.removeprefix(".")
 
 
 def clean(text: str, limit: int = 60) -> str:
-    """The text on one line, control and invisible characters escaped, cut to `limit` characters."""
+    """Return the text on one line, control and invisible characters escaped, cut to `limit` characters."""
     if len(text) > limit:
         end = text[-1] if text[-1] in "'\")" else ""
         text = text[: limit - 1 - len(end)] + "…" + end
@@ -210,12 +211,12 @@ def _escape(char: str) -> str:
 
 
 def escape_controls(text: str) -> str:
-    """The text with characters escaped that command a terminal or hide text; lines and tabs stay."""
+    """Escape characters that control a terminal or hide text; line breaks and tabs stay."""
     return CONTROLS.sub(lambda match: match[0].encode("unicode_escape").decode("ascii"), text)
 
 
 def quote(value: object) -> str:
-    """A value of the file as shown in a message: strings in single quotes, the rest as YAML writes it."""
+    """Format a value of the file for a message: strings in single quotes, other values as YAML writes them."""
     if isinstance(value, str):
         return f"'{clean(value)}'"
     if value is None or isinstance(value, bool):
@@ -232,7 +233,7 @@ def quote(value: object) -> str:
 
 
 def nearest_name(name: str, names: Iterable[str]) -> str | None:
-    """The name that was probably meant, or None when nothing is close: case and look-alike letters do not count."""
+    """Return the name that was probably meant, or None if none is close; case and look-alike letters do not count."""
     known = list(names)
     if name in known:
         return name
@@ -257,7 +258,9 @@ def unknown_name_error(
     file: str | None = None,
     key: bool = False,
 ) -> ProblemError:
-    """Of a name that is none of those known, with the nearest of them; allowed: where they are not told one by one."""
+    """Return the error for an unknown name, with the nearest known one. allowed: text instead of the list of known
+    names.
+    """
     names = list(known)
     return ProblemError(
         message,
@@ -271,13 +274,15 @@ def unknown_name_error(
 
 
 def unknown_position_error(number: int, count: int, *path: str | int) -> ProblemError:
-    """Of the number of a position, where there are so many of them."""
+    """Return the error for a position number beyond the last of `count` positions."""
     allowed = _("0 to {last}").format(last=count - 1)
     return ProblemError(_("there is no such position"), path=path, found=str(number), allowed=allowed)
 
 
 def parse_names(text: str, known: Iterable[str], option: str, reason: str) -> list[str]:
-    """Names with commas between them, of those that an option knows. Raises ProblemError with the reason."""
+    """Split a comma-separated list of names that an option accepts. Raises ProblemError with this reason for any other
+    name.
+    """
     wanted, allowed = [part.strip().lower() for part in text.split(",") if part.strip()], list(known)
     for name in wanted or [text]:
         if name not in allowed:
@@ -286,7 +291,7 @@ def parse_names(text: str, known: Iterable[str], option: str, reason: str) -> li
 
 
 def to_latin(text: str) -> str:
-    """The text with Cyrillic letters that look like Latin ones replaced by these."""
+    """Replace Cyrillic letters that look like Latin ones by these."""
     return text.translate(_LOOKALIKES)
 
 

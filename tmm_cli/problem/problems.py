@@ -1,4 +1,6 @@
-"""A problem, ready for the stages: the linkage and what is asked of it; or a task that will give its lengths."""
+"""Problems ready for analysis: a planar linkage with its request, a linkage with a synthesis task, or a spatial
+chain.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Synthesised:
-    """What the block `synthesis` of a file gave; names: of its parameters, standard name to that in the file."""
+    """Result of the block `synthesis`. names: standard name of each parameter to its name in the file."""
 
     task: str
     outcome: SynthesisOutcome
@@ -34,12 +36,12 @@ class Synthesised:
 class Problem:
     """A problem file that has been read.
 
-    name: of the file, without its ending; lever_limit: allowed difference of the lever, a share of one; source: what
-    errors found later are located with; extended: makes the same as double-doubles from the decimals of the file.
-    pressure_limits: largest pressure angles on sliding and on turning links (rad); limits_set: whether the file gave
-    them (then to exceed them is a failed check). bare_speed: whether the first driver's speed has no unit.
-    reference: of the mechanism in a list; shows: properties by their words, whose values are read by `values`. wheels:
-    what is asked of intermittent motion. note_style: how the course writes its notes.
+    name: file name without extension; lever_limit: allowed relative difference of the Zhukovsky lever; source: file by
+    which later errors are located; extended: builds the same problem in double-doubles from the decimals of the file;
+    pressure_limits: largest pressure angles on sliding and on rotating links (rad); limits_set: whether the file gave
+    them (exceeding them is then a failed check); bare_speed: whether the first driver's speed has no unit;
+    reference: name of the mechanism in a list; shows: requested properties by their captions, evaluated by `values`;
+    wheels: tasks of intermittent motion; note_style: style of the calculation note.
     """
 
     name: str
@@ -67,16 +69,16 @@ class Problem:
 
     @property
     def whole(self) -> Problem:
-        """Itself: no task has to be solved for it, or none any more (see TaskProblem)."""
+        """The problem itself, as it has no synthesis task left to solve (see TaskProblem)."""
         return self
 
 
 @dataclass(frozen=True, eq=False)
 class TaskProblem:
-    """A problem some of whose numbers a task of synthesis is to find. They are found once, when something needs them.
+    """A problem with numbers to be found by a synthesis task. The task is solved once, on first use.
 
-    find: solves the task; draft: the same links and pairs with any numbers for what is to be found, None where the file
-    refuses these. Both raise ProblemError.
+    find: solves the task; draft: same links and pairs with placeholder numbers, None if the file refuses these.
+    Both raise ProblemError.
     """
 
     name: str
@@ -88,7 +90,7 @@ class TaskProblem:
 
     @cached_property
     def whole(self) -> Problem:
-        """The problem with what its task found."""
+        """The problem with the results of its task."""
         return self.find()
 
     @property
@@ -106,9 +108,10 @@ class TaskProblem:
 
 @dataclass(frozen=True)
 class ChainProblem:
-    """A problem file with `structure.spatial` that has been read; beside the chain what was told of it.
+    """A problem file with `structure.spatial` that has been read.
 
-    output: the link to be held; local: local freedoms Wm; wanted: mobility Wo. None: not told.
+    output: link held fixed for the manoeuvrability; local: local mobilities Wm; wanted: required mobility Wo.
+    None: not given.
     """
 
     name: str

@@ -1,4 +1,9 @@
-"""PyYAML's syntax errors in simple words: the one table of them."""
+"""Read YAML problem files to plain data with line and column of every key and value.
+
+PyYAML only splits the text into events. Composing and the values of unquoted words (scalars) are ours, because YAML 1.1
+spoils engineering input: `12:30` becomes 750, `010` becomes 8, the key `on` becomes True, and repeated keys silently
+override each other. Texts are not trusted: size, depth and number of values are bounded.
+"""
 
 from __future__ import annotations
 
@@ -16,12 +21,12 @@ from tmm_cli.language import _
 from tmm_cli.problem.errors import MAX_DEPTH, Path, ProblemError, SourcePosition, Tree, quote, unknown_name_error
 from tmm_cli.problem.scalars import HIDDEN, Scalar, decimal_comma_error, is_split_number, plain_value
 
-# In a list or mapping in brackets: a quoted text, a comment, a bracket, or a line end with the indentation after it.
+# Tokens in a list or mapping in brackets: a quoted text, a comment, a bracket, or a line end with the indentation after it.
 _IN_BRACKETS = re.compile(r"""'[^']*'|"(?:[^"\\]|\\.)*"|(?<=\s)\#.*|[][{}]|\n(?P<indent>\ *)(?=[^\s\#])""", re.VERBOSE)
 
 
 def tab_error(file: str, mark: SourcePosition) -> ProblemError:
-    """The refusal of a tab where the indentation counts."""
+    """Return the error for a tab in the indentation."""
     return ProblemError(
         _("a tab is used for indentation"),
         found=_("a tab"),
@@ -32,7 +37,7 @@ def tab_error(file: str, mark: SourcePosition) -> ProblemError:
 
 
 def syntax_error(error: yaml.MarkedYAMLError, text: str, file: str) -> ProblemError:
-    """The error of either of PyYAML's parsers on `text`, with its line and column."""
+    """Translate a syntax error of either of PyYAML's parsers into plain words, with its line and column in `text`."""
     opened, shown = error.context_mark or error.problem_mark, error.problem_mark or error.context_mark
     indent = _("keys and items of one level begin in the same column, indented by spaces")
     quoted = _("a quotation mark is not closed"), _("text between two equal quotation marks"), opened
@@ -115,7 +120,9 @@ def _is_closed(text: str, start: int) -> bool:
 
 
 def _start_of_stray_text(text: str, start: int, stop: int) -> int:
-    """Where an item in brackets that the parser gives up at `stop` goes wrong: a semicolon, a new line, or `stop`."""
+    """Return where an item in brackets goes wrong that the parser gives up at `stop`: at a semicolon, a new line, or
+    `stop`.
+    """
     item = max(text.rfind(mark, start, stop) for mark in ",[{")
     semicolon, line = text.rfind(";", item, stop), text.rfind("\n", item, stop)
     if semicolon > line:
@@ -123,12 +130,12 @@ def _start_of_stray_text(text: str, start: int, stop: int) -> int:
     return stop - len(text[line + 1 : stop].lstrip(" ")) if line > item else stop
 
 
-# PyYAML's events to plain data and marks. MAX_DEPTH bounds the recursion, MAX_NODES the work.
+# Composing PyYAML's events to plain data and marks. MAX_DEPTH bounds the recursion, MAX_NODES the work.
 
 
 MAX_NODES: Final = 50_000
 
-MAX_CALL_LENGTH: Final = 100  # so far the end of a call that was cut is looked for
+MAX_CALL_LENGTH: Final = 100  # characters in which the end of a cut call is searched for
 
 LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _ITEM_BELOW = re.compile(r"[\r\n] *- ")
@@ -137,7 +144,7 @@ _COMMA = re.compile(r"(?<![\d.])(\d+),(\d+)(?![\d.])")
 
 
 class Composer:
-    """Data, marks, key marks and commas of one text; `compose` fills them (see tree.Tree)."""
+    """Composer of the data, marks, key marks and commas of one text (see errors.Tree)."""
 
     def __init__(self, text: str, file: str) -> None:
         self.text, self.file = text, file
@@ -148,7 +155,7 @@ class Composer:
         self.commas: dict[Path, str] = {}
 
     def compose(self) -> dict[str, Any]:
-        """The top mapping. Raises ProblemError, with file, line and column, at the first mistake."""
+        """Return the top mapping. Raises ProblemError, with file, line and column, at the first mistake."""
         top = None
         for event in self.events:
             if isinstance(event, yaml.NodeEvent):
@@ -186,7 +193,7 @@ class Composer:
         return new
 
     def node(self, event: Any, path: Path) -> Any:
-        """The value that begins with this event."""
+        """Return the value that begins with this event."""
         self.check(event, path)
         self.marks[path] = _mark(event)
         if isinstance(event, yaml.ScalarEvent):
@@ -245,7 +252,7 @@ class Composer:
             )
 
     def key(self, event: Any, path: Path, mapping: dict[str, Any]) -> str:
-        """The name of a key, as it is written."""
+        """Return the name of a key as written."""
         if not isinstance(event, yaml.ScalarEvent):
             self.refuse(
                 event, path, _("a list or a set of keys cannot be used as a key"), allowed=_("a word or number")
@@ -286,7 +293,7 @@ class Composer:
             raise self.placed(error, event, path) from None
 
     def cut_by_comma(self, event: Any, path: Path) -> None:
-        """Refuse `{at: atan2(y, x)}` and `[atan2(y, x), 0]`, which YAML cuts at the comma."""
+        """Refuse `{at: atan2(y, x)}` and `[atan2(y, x), 0]`, which YAML splits at the comma."""
         if event.value.count("(") <= event.value.count(")"):
             return
         if cut := _CALL.match(self.text[event.start_mark.index : event.start_mark.index + MAX_CALL_LENGTH]):
@@ -297,7 +304,9 @@ class Composer:
             )
 
     def key_alone(self, key: Any, value: Any, before: tuple[Path, Any] | None, path: Path) -> None:
-        """Refuse `{length: 1,5}`, which YAML reads as {length: 1, 5: null}, and `{length:5}`: {"length:5": null}."""
+        """Refuse `{length: 1,5}`, which YAML reads as {length: 1, 5: null}, and `{length:5}`, read as {"length:5":
+        null}.
+        """
         if ":" in self.text[key.end_mark.index : value.start_mark.index]:
             return
         if before is not None and isinstance(before[1], yaml.ScalarEvent) and not before[1].style:
@@ -313,14 +322,6 @@ def _mark(event: Any) -> SourcePosition:
     return SourcePosition(event.start_mark.line + 1, event.start_mark.column + 1)
 
 
-# A YAML file to plain data with a line and column for every key and value.
-#
-# PyYAML only splits the text into events. Composing (composer) and resolving (scalars) are ours, because its
-# YAML 1.1 spoils engineering input: `12:30` becomes 750, `010` becomes 8, the key `on` becomes True, repeated
-# keys win silently.
-# A text is hostile until read: its size, depth and number of values are bounded.
-
-
 MAX_BYTES: Final = 1_000_000
 
 _LANG = re.compile(rb"^[{ \t]*[\"']?lang[\"']?\s*:\s*[\"']?(en|ru|sr)\b", re.MULTILINE)
@@ -328,30 +329,30 @@ _TAB = re.compile(r"^ *\t[ \t]*[^\s#]", re.MULTILINE)
 
 
 def decimal_comma_hint(tree: Tree, path: Path) -> str | None:
-    """What to add to an error when the list at `path` may be a number with a decimal comma, like `[1,5]`."""
+    """Return a hint for an error if the list at `path` may be a number with a decimal comma, like `[1,5]`; else None."""
     written = tree.commas.get(path)
     return written and f"decimal comma? write {written}"
 
 
 def read_file(path: str | os.PathLike[str]) -> Tree:
-    """Read a problem file. Raises ProblemError when it is not a readable, bounded, plain YAML mapping."""
+    """Read a problem file. Raises ProblemError if it is not a readable plain YAML mapping of limited size."""
     file = os.fspath(path)
     return read_text(read_file_text(file), file)
 
 
 def read_file_text(file: str) -> str:
-    """The text of a file of bounded size. Raises ProblemError."""
+    """Return the text of a file of limited size. Raises ProblemError."""
     return decode_text(read_bytes(file), file)
 
 
 def find_language(data: bytes) -> str | None:
-    """The language that a problem file names in a line `lang: ru`, even if it cannot be read as a whole."""
+    """Return the language in a line such as `lang: ru`, or None; works even if the file cannot be parsed."""
     named = _LANG.search(data.removeprefix(codecs.BOM_UTF8))
     return None if named is None else named[1].decode()
 
 
 def read_bytes(file: str) -> bytes:
-    """The content of a file of bounded size. Raises ProblemError."""
+    """Return the content of a file of limited size. Raises ProblemError."""
     try:
         found = os.stat(file)
         if stat.S_ISDIR(found.st_mode):
@@ -377,7 +378,7 @@ def _too_large_error(file: str, found: str) -> ProblemError:
 
 
 def decode_text(data: bytes, file: str) -> str:
-    """The content of a file as text. Raises ProblemError when it is not UTF-8."""
+    """Decode the content of a file. Raises ProblemError if it is not UTF-8."""
     body = data.removeprefix(codecs.BOM_UTF8)
     try:
         return body.decode()
@@ -396,7 +397,7 @@ def decode_text(data: bytes, file: str) -> str:
 
 
 def read_text(text: str, file: str, composed_by: type[Composer] = Composer) -> Tree:
-    """Read the text of a problem file; `file` is its name in messages. Raises as `read_file`."""
+    """Read the text of a problem file; `file` is its name in messages. Raises ProblemError like `read_file`."""
     text = text.removeprefix("\ufeff")
     if len(text) > MAX_BYTES:
         raise _too_large_error(file, f"{len(text)} characters")
@@ -420,11 +421,13 @@ def _mark_at(text: str, index: int) -> SourcePosition:
     return SourcePosition(len(lines), len(lines[-1]) + 1)
 
 
-# Parameters that are given beside the file: `--set OA=120`.
+# Parameters set on the command line: `--set OA=120`.
 
 
 def apply_settings(tree: Tree, settings: Sequence[str]) -> Tree:
-    """The file with other values of parameters that it has, each read as if it stood there. Raises ProblemError."""
+    """Return the file with other values of its parameters, from texts such as `OA=120` (option --set). Raises
+    ProblemError.
+    """
     own = tree.data.get("parameters")
     parameters = dict(own) if isinstance(own, dict) else {}
     given: dict[Path, str] = {}
@@ -450,7 +453,7 @@ def apply_settings(tree: Tree, settings: Sequence[str]) -> Tree:
 
 
 def unused_parameters(tree: Tree, names: Iterable[str]) -> list[str]:
-    """Those of these parameters that no value of the file names, nor a parameter that one names."""
+    """Return those of these parameters that no value of the file uses, directly or through other parameters."""
     own = tree.data.get("parameters", {})
     met: set[str] = set()
     left = [value for key, value in tree.data.items() if key not in ("parameters", "title", "description")]
@@ -462,7 +465,7 @@ def unused_parameters(tree: Tree, names: Iterable[str]) -> list[str]:
 
 
 def _find_names(value: Any) -> Iterator[str]:
-    """What could be names in texts, which arithmetic is too."""
+    """Yield all words of the texts in a value that may be names."""
     if isinstance(value, str):
         yield from re.findall(r"[^\W\d]\w*", value)
     elif isinstance(value, dict | list):

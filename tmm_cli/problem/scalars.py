@@ -1,4 +1,4 @@
-"""Unquoted words of the file to values, by the YAML 1.2 core schema, and the decimal comma recognised."""
+"""Values of unquoted words by the YAML 1.2 core schema, with detection of decimal commas."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Scalar = str | int | float | bool | None
 
 MAX_DIGITS: Final = 40
 
-# Control characters, and invisible ones that reorder or hide text: an editor shows not what is read.
+# Control characters and invisible ones that reorder or hide text: an editor would not show what is read.
 HIDDEN: Final = re.compile(
     "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\xad\u200b-\u200f\u2028-\u202e\u2060-\u206f\ud800-\udfff\ufeff"
     "\ufff9-\ufffb\ufffe\uffff]"
@@ -28,7 +28,7 @@ _PART = re.compile(r"[0-9]+(\s*[^\W\d]\S*|\s*[°%])?")
 
 
 def plain_value(text: str) -> Scalar:
-    """The value of an unquoted word. Raises ProblemError, without a place, on a bad number."""
+    """Return the value of an unquoted word. Raises ProblemError, without a position, for a bad number."""
     if _NULL.fullmatch(text):
         return None
     if text in _BOOL:
@@ -50,7 +50,7 @@ def plain_value(text: str) -> Scalar:
 
 
 def finite_float(text: str) -> float:
-    """The number, from decimal digits. Raises ProblemError when float64 has no place for it."""
+    """Convert decimal digits to a number. Raises ProblemError on overflow or underflow of float64."""
     number = float(text)
     if math.isinf(number) or (number == 0 and re.search("[1-9]", re.split("[eE]", text)[0])):
         raise ProblemError(
@@ -62,12 +62,12 @@ def finite_float(text: str) -> float:
 
 
 def is_split_number(whole: str, part: str) -> bool:
-    """Whether the words on both sides of a comma may be one number, like `1,5` or `1,5 mm`."""
+    """Return True if the texts on both sides of a comma may be one number, like `1,5` or `1,5 mm`."""
     return bool(_WHOLE.fullmatch(whole) and _PART.fullmatch(part))
 
 
 def decimal_comma_error(whole: str, part: str) -> ProblemError:
-    """The refusal of `whole,part`, naming what to write instead."""
+    """Return the error for a number `whole,part` with a decimal comma."""
     return ProblemError(
         _("decimal comma: write {whole}.{part}").format(whole=whole, part=part),
         found=quote(f"{whole},{part}"),

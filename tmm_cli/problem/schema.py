@@ -1,4 +1,8 @@
-"""The shapes of the blocks `sheet` and `note`: texts of the title block, and how the course writes its notes."""
+"""Keys of a problem file as pydantic models, with the descriptions that `tmm schema` prints.
+
+Only the structure is checked here. Numbers with units and names of points and guides are checked in build, which knows
+the parameters and units.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +35,7 @@ MAX_TEXT_LENGTH = 200
 
 
 def _checked_short_text(found: Any) -> str:
-    """A line of text; the number of a group may be written as a number."""
+    """Return a line of text; the number of a group may be written as a number."""
     if isinstance(found, bool) or not isinstance(found, int | str):
         raise PydanticCustomError("words", "expected a text")
     if len(str(found)) > MAX_TEXT_LENGTH:
@@ -43,7 +47,7 @@ ShortText = Annotated[str, BeforeValidator(_checked_short_text), WithJsonSchema(
 
 
 class SheetTexts(Strict):
-    """Texts of the title block. One that is too long for its cell is cut there."""
+    """Texts of the title block. A text that is too long for its cell is cut."""
 
     student: ShortText = Field(default="", description="name of the student, in the title block")
     group: ShortText = Field(default="", description="group of the student")
@@ -59,7 +63,7 @@ class SheetTexts(Strict):
 
 
 class NoteStyle(Strict):
-    """How the course writes: of the choices each is the usual one where the file leaves it out."""
+    """Style of the calculation note; the defaults are the usual ones."""
 
     inertia: Literal["U", "Φ"] | None = Field(
         default=None,
@@ -77,7 +81,7 @@ class NoteStyle(Strict):
     )
 
 
-# The shape of the block `shows`: properties of a mechanism as numbers, with what they should be.
+# Block `shows`: properties of a mechanism as numbers, with their expected values.
 
 
 Number = Annotated[int, Field(ge=0)]
@@ -85,7 +89,7 @@ Quantity = Annotated[str, Field(min_length=1, max_length=60)]
 
 
 class ShownKeys(Strict):
-    """A quantity by the name that the tables give it, as one number."""
+    """A property of the mechanism as one number, named as in the tables."""
 
     of: Quantity = Field(
         description=(
@@ -126,7 +130,7 @@ class ShownKeys(Strict):
 Shows = Annotated[dict[Annotated[str, Field(max_length=120)], ShownKeys], Field(max_length=50)]
 
 
-# The shape of a problem file that gives a chain in space by its pairs alone.
+# File of a spatial chain, given by its pairs alone.
 
 
 MAX_PAIRS = 300
@@ -161,7 +165,7 @@ class SpatialPairKeys(Strict):
 
 
 class Spatial(Strict):
-    """A chain in space, given by pairs alone."""
+    """A spatial chain, given by its pairs alone."""
 
     links: Annotated[int, Field(ge=1, le=MAX_LINKS)] | Annotated[list[Name], Field(max_length=MAX_LINKS)] | None = (
         Field(
@@ -178,13 +182,13 @@ class Spatial(Strict):
 
 
 class SpatialStructure(Strict):
-    """What is counted without dimensions."""
+    """Structural analysis without dimensions."""
 
     spatial: Spatial
 
 
 class SpatialFile(FileHead):
-    """A chain in space without dimensions: only its structure is counted."""
+    """A spatial chain without dimensions: only its structure is analysed."""
 
     reference: str = Field(default="", max_length=100, description="number or name of the mechanism in a book or list")
     shows: Shows = Field(
@@ -193,11 +197,7 @@ class SpatialFile(FileHead):
     structure: SpatialStructure
 
 
-# The shape of a problem file, for pydantic: what keys there are and what may stand in them.
-#
-# Only shape is checked here; numbers with units, names of points and guides and the rest of the sense are checked where
-# the file is built into a linkage (build), which knows the parameters and units. The field descriptions are what
-# `tmm schema` prints.
+# File of a planar linkage.
 
 
 class Guide(Strict):
@@ -218,7 +218,7 @@ class Guide(Strict):
 
 
 class SlideKeys(Strict):
-    """A sliding pair of this link."""
+    """A prismatic pair of this link."""
 
     on: Name = Field(description="name of the guide, or of the link on which this link slides")
     along: Name | None = Field(default=None, description="two points of that link, e.g. CD: the guide runs from C to D")
@@ -244,7 +244,7 @@ SlideOrGuide = Annotated[SlideKeys, BeforeValidator(_expand_guide_name, json_sch
 
 
 class LinkKeys(Strict):
-    """A moving link. Its axes: origin in its first point, x towards the second; or as coordinates say."""
+    """A moving link. Its axes: origin in its first point, x axis towards the second; or as given by coordinates."""
 
     name: str | None = Field(default=None, max_length=60, description="name of the link in reports")
     points: list[Name] | dict[Name, Vector] = Field(
@@ -260,12 +260,12 @@ class LinkKeys(Strict):
 
     @property
     def sliding(self) -> list[SlideKeys]:
-        """Its sliding pairs, of which the file may give one without a list."""
+        """Prismatic pairs of the link, as a list."""
         return self.slides if isinstance(self.slides, list) else [self.slides] if self.slides else []
 
 
 class Speeds(Strict):
-    """A crank's speed, or its acceleration, by its angle."""
+    """Speed or acceleration of a crank against its angle."""
 
     against: Literal["crank angle"] = Field(
         description="quantity in the first column. crank angle: from the x axis, counterclockwise"
@@ -281,7 +281,7 @@ class Speeds(Strict):
 
 
 class CompoundHinge(Strict):
-    """A hinge of three links or more."""
+    """A hinge of three or more links."""
 
     attached_to: Name = Field(
         alias="attached to", description="link with which each of the other links forms a pair; 0 is the frame"
@@ -293,7 +293,7 @@ def _checked_speed(found: Any) -> Any:
 
 
 class DriverKeys(Strict):
-    """An input: a crank, or a slider that is driven (cylinder), on the frame or on a moving link."""
+    """An input: a crank, or a driven slider (cylinder), on the frame or on a moving link."""
 
     link: Name
     on: Name = Field(
@@ -323,7 +323,9 @@ class DriverKeys(Strict):
 
 
 class OutputKeys(Strict):
-    """The link whose stroke or swing is the purpose of the mechanism, or a point of a moving link: its x and y."""
+    """Output: a link whose stroke or swing is the purpose of the mechanism, or a point of a moving link (its x and
+    y).
+    """
 
     link: Name = Field(
         description=(
@@ -346,7 +348,7 @@ def _make_list(found: Any) -> Any:
 
 
 class Positions(Strict):
-    """Which positions are computed. They are numbered from 0 in the driver's sense."""
+    """Positions to compute, numbered from 0 in the sense of motion of the driver."""
 
     count: int = Field(default=12, ge=1, le=MAX_POSITIONS)
     from_: Value | None = Field(
@@ -364,7 +366,7 @@ class Positions(Strict):
 
 
 class Checks(Strict):
-    """Limits above which a run says so and ends with exit code 1."""
+    """Limits; if one is exceeded, a run reports it and ends with exit code 1."""
 
     lever: Value = Field(
         default="5 %", description="largest allowed difference between the Zhukovsky lever and the force plan"
@@ -378,7 +380,7 @@ class Checks(Strict):
 
 
 class File(FileHead):
-    """A problem of planar lever mechanisms."""
+    """A problem file of a planar linkage."""
 
     reference: str = Field(
         default="", max_length=100, description="number or name of the mechanism in a book or list: M7, Fig. 7"
@@ -452,7 +454,7 @@ class File(FileHead):
     note: NoteStyle = Field(default_factory=NoteStyle, description="style of the calculation note and its drawings")
 
 
-# The JSON Schema of problem files, for editors.
+# JSON Schema of problem files.
 
 
 class _SchemaGenerator(GenerateJsonSchema):
@@ -463,8 +465,10 @@ class _SchemaGenerator(GenerateJsonSchema):
 
 
 def file_schema(tasks: Iterable[type[BaseModel]], blocks: type[BaseModel]) -> dict[str, Any]:
-    """Made by pydantic from the shapes; tasks: those of the blocks that may stand under `synthesis`; blocks: further
-    ones of a file, by their names."""
+    """Return the JSON Schema of problem files, for editors.
+
+    tasks: models of the tasks allowed under `synthesis`; blocks: model with further blocks of a file as its fields.
+    """
     definitions: dict[str, Any] = {}
 
     def schema(model: type[BaseModel]) -> dict[str, Any]:

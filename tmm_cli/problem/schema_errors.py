@@ -1,4 +1,4 @@
-"""Keys of problem files as they are called in Russian and Serbian: who writes one of these is told the key."""
+"""Messages for pydantic's validation errors, in the terms of the file; keys in Russian and Serbian are recognised."""
 
 from __future__ import annotations
 
@@ -62,11 +62,8 @@ _TRANSLATED_KEYS: Final = {
 KEYS_IN_OTHER_LANGUAGES: Final = {word: key for key, words in _TRANSLATED_KEYS.items() for word in words.split()}
 
 
-# The first mistake in the shape of a file: pydantic's errors in the file's own terms.
-
-
 KEYS_EXPECTED = N_("expected keys with values")
-MESSAGES = {  # what is wrong with a value, by pydantic's kind of error
+MESSAGES = {  # messages by pydantic's type of error
     "int": N_("expected a whole number"),
     "greater_than_equal": N_("expected a number not less than {ge}"),
     "less_than_equal": N_("expected a number not greater than {le}"),
@@ -83,7 +80,9 @@ MESSAGES = {  # what is wrong with a value, by pydantic's kind of error
 
 
 def shape_error(error: ValidationError, tree: Tree, model: type[BaseModel], part: Path = ()) -> ProblemError:
-    """The first mistake in the shape of a file, by its place; model: the shape of what stands at the path `part`."""
+    """Return the first validation error by its position in the file. model: the model of the value at the path
+    `part`.
+    """
     meant: list[tuple[str, ProblemError]] = []
     others: list[tuple[str, ProblemError]] = []
     for kind, loc, context in _flatten_errors(error, part):
@@ -94,7 +93,7 @@ def shape_error(error: ValidationError, tree: Tree, model: type[BaseModel], part
         (meant if fits else others).append((kind, refusal))
     refusals = meant or others
     misspelt = {(*r.path[:-1], r.near) for kind, r in refusals if kind == "extra_forbidden"}
-    # a key that stands there misspelt is not missing
+    # a misspelt key is not missing
     located = [r.located(tree.file, tree) for kind, r in refusals if kind != "missing" or r.path not in misspelt]
     return min(located, key=lambda r: (r.mark.line, r.mark.column) if r.mark else (0, 0))
 
@@ -109,7 +108,7 @@ def _flatten_errors(error: ValidationError, prefix: Path) -> Iterable[tuple[str,
 
 
 def _find_value(data: Any, loc: Sequence[str | int], kind: str) -> tuple[Path, Any, bool]:
-    """The path into the data, the value there, and whether it is of the kind of the unions' branches on the way."""
+    """Return the path into the data, the value there, and whether it matches the union branches on the way."""
     path: list[str | int] = []
     fits = True
     step: Any
@@ -125,7 +124,7 @@ def _find_value(data: Any, loc: Sequence[str | int], kind: str) -> tuple[Path, A
 
 
 def _find_fields(here: type[BaseModel] | None, path: Path) -> tuple[dict[str, FieldInfo], FieldInfo | None]:
-    """The keys that may stand where the path ends, and what its last key is known for; an item counts as its list."""
+    """Return the keys allowed where the path ends, and the field of its last key; an item counts as its list."""
     while path and isinstance(path[-1], int):
         path = path[:-1]
     named = False  # whether the next key is one of the user's own names
@@ -141,7 +140,7 @@ def _find_fields(here: type[BaseModel] | None, path: Path) -> tuple[dict[str, Fi
 
 
 def _find_model(parts: Iterable[Any]) -> type[BaseModel] | None:
-    """The model among the parts of an annotation."""
+    """Return the first model in an annotation, or None."""
     for part in parts:
         found = part if isinstance(part, type) and issubclass(part, BaseModel) else _find_model(get_args(part))
         if found:

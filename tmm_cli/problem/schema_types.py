@@ -1,4 +1,4 @@
-"""What the models of a problem file are made of: names, values with units, places; and that every key is known."""
+"""Types of which the models of a problem file are built: names, values with units, positions on a link."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ MAX_POSITIONS = 100_000
 
 
 def checked_value(found: Any) -> Any:
-    """A number, or text that may be one."""
+    """Return a number, or a text that may be one."""
     if isinstance(found, bool) or not isinstance(found, int | float | str):
         raise PydanticCustomError("value", "expected a number, a number with a unit, or an expression with parameters")
     return found
 
 
 def checked_name(found: Any) -> str:
-    """A name as text; numbers may be names."""
+    """Return a name as text; numbers may be names."""
     if isinstance(found, int) and not isinstance(found, bool):
         return str(found)
     if not isinstance(found, str) or not found.strip():
@@ -30,7 +30,7 @@ def checked_name(found: Any) -> str:
 
 
 def checked_vector(found: Any) -> Any:
-    """Two coordinates."""
+    """Return a list of two coordinates."""
     if not isinstance(found, list) or len(found) != 2:
         raise PydanticCustomError("vector", "expected two coordinates [x, y]")
     return [checked_value(item) for item in found]
@@ -48,7 +48,7 @@ Vector = Annotated[
 
 
 class Strict(BaseModel):
-    """Every key is known or refused."""
+    """Base of all models of a file: unknown keys are refused."""
 
     # built when it first validates: a model that is part of another needs no validator of its own
     model_config = ConfigDict(
@@ -61,7 +61,7 @@ class Strict(BaseModel):
 
 
 class FileHead(Strict):
-    """What every problem file begins with."""
+    """Keys that every problem file has."""
 
     tmm: Literal[1] = Field(description="version of the file format; write tmm: 1")
     lang: Literal["en", "ru", "sr"] = Field(default="en", description="language of drawings, tables and messages")
@@ -70,9 +70,9 @@ class FileHead(Strict):
 
 
 class OnLine(Strict):
-    """A place on the line of two points of the link.
+    """A position on the line through two points of the link.
 
-    `at` is 0 at the first, 1 at the second, or a distance from the first; `side` is off it.
+    `at` is 0 at the first point, 1 at the second, or a distance from the first; `side` is the offset from the line.
     """
 
     on: Name = Field(description="two points of the link, written together: CD (or C-D)")

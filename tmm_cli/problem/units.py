@@ -1,4 +1,6 @@
-"""Units as people write them, in Latin and Cyrillic, to SI and radians; and what bare numbers mean in a file."""
+"""Units as people write them, in Latin and Cyrillic letters, their conversion to SI and radians, and the units of a
+file.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,7 @@ from tmm_cli.problem.scalars import finite_float
 
 
 class UnitError(ProblemError):
-    """A unit that is not known, or that measures something else."""
+    """A unit is unknown or measures another quantity."""
 
 
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -42,7 +44,7 @@ _LONG: Final = {"moment": "moment of force", "inertia": "moment of inertia"}
 
 @dataclass(frozen=True)
 class Unit:
-    """One unit in SI and radians: scale * pi**pi. The scale is exact, so 110 mm is 0.11 m to the last bit."""
+    """A unit in SI and radians: scale * pi**pi. The scale is exact, so 110 mm is 0.11 m to the last bit."""
 
     dimension: Dimension
     scale: Fraction = Fraction(1)
@@ -56,24 +58,24 @@ class Unit:
         )
 
     def si(self, number: float) -> float:
-        """The number of these units in SI and radians, in the number's own precision."""
+        """Convert a number in this unit to SI and radians, in the number's own precision."""
         if self.pi:
             number = number * _pi(number) ** self.pi
         return number * self.scale.numerator / self.scale.denominator
 
     def from_si(self, value: Any) -> Any:
-        """A value, or an array of them, in SI and radians in these units."""
+        """Convert a value or an array from SI and radians to this unit."""
         return value / math.pi**self.pi * self.scale.denominator / self.scale.numerator
 
 
 def _pi(number: float) -> float:
-    """Pi as exactly as the number."""
+    """Return pi in the precision of the number."""
     return DoubleDouble.decimal(PI) if isinstance(number, DoubleDouble) else math.pi
 
 
 @dataclass(frozen=True)
 class PhysicalValue:
-    """A value in SI and radians; without a dimension a bare number, in the file's unit where it is used."""
+    """A value in SI and radians; with dimension None a bare number, in the file's unit where it is used."""
 
     value: float
     dimension: Dimension | None = None
@@ -128,37 +130,37 @@ _LETTERS = re.compile("[^\\W\\d_⁰¹²³⁴-⁹]+|°")
 _FROM_SUPERSCRIPT = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
 _TYPOGRAPHY = str.maketrans("⋅∙•×−–µº\xa0\u2007\u2009\u202f\t\r\n", "···*--μ°       ")
 _FACTOR = re.compile(r"\s*([·*/]?)\s*([^\W\d_]+|°|%|1(?=\s*/))(?:\^\s*\(?([+-]?\d+)\)?|(\d))?")
-# A power of time without its sign, as in `с-1` and `м·с-2`: of other units a minus is that of a difference.
+# A power of time without its sign, as in `с-1` and `м·с-2`: after other units a minus is a subtraction.
 PER_TIME: Final = r"(?:s|sec|ms|min|h|с|сек|мс|мин|ч|c)-[1-4](?![\w.])"
 _PER_TIME = re.compile(rf"(?<![^\W\d_]){PER_TIME}")
 
 
 def plain_text(text: str) -> str:
-    """The text with superscripts as ^n, ** as ^, and typographic signs and spaces as their keyboard ones."""
+    """Replace superscripts by ^n, ** by ^, and typographic signs and spaces by those of a keyboard."""
     text = _SUPERSCRIPT.sub(lambda found: "^" + found[0].translate(_FROM_SUPERSCRIPT), text)
     return text.translate(_TYPOGRAPHY).replace("**", "^")
 
 
 def find_unit(name: str) -> Unit | None:
-    """The unit of one symbol, also when Cyrillic letters stand for their Latin look-alikes or the reverse."""
+    """Return the unit of a symbol, or None; Cyrillic letters may stand for their Latin look-alikes and the reverse."""
     return SYMBOLS.get(name) or _LOOKALIKES.get(to_latin(name))
 
 
 def to_latin_unit(text: str) -> str:
-    """A unit that is known, with the names that are not in ASCII by their first ones: deg for ° and for град."""
+    """Replace non-ASCII names in a known unit by their first names: deg for ° and for град."""
     text = _sign_powers(text)
     return _LETTERS.sub(lambda name: name[0] if name[0].isascii() else _FIRST.get(to_latin(name[0]), name[0]), text)
 
 
 def _sign_powers(text: str) -> str:
-    """A unit with `s^-1` for `s-1`."""
+    """Write `s^-1` for `s-1` in a unit."""
     return _PER_TIME.sub(lambda found: found[0].replace("-", "^-"), text)
 
 
 def parse_unit(text: str) -> Unit:
-    """The unit written as products, quotients and powers of symbols: `kg·m²`, `об/мин`, `N*m`, `1/s`.
+    """Parse a unit written as products, quotients and powers of symbols: `kg·m²`, `об/мин`, `N*m`, `1/s`.
 
-    Raises UnitError naming the nearest known symbol.
+    Raises UnitError, with the nearest known symbol.
     """
     source, unit, position, factors = _sign_powers(plain_text(text).strip()), Unit(NUMBER), 0, 0
     names: list[str] = []
@@ -188,20 +190,20 @@ def parse_unit(text: str) -> Unit:
 
 
 def unknown_unit_error(name: str) -> UnitError:
-    """The refusal of a symbol, with the nearest known one."""
+    """Return the error for an unknown symbol, with the nearest known one."""
     near = nearest_name(name, SYMBOLS)
     return UnitError(_("unknown unit"), found=quote(name), allowed=_("e.g. mm, deg, rpm, kg, N, N*m"), near=near)
 
 
 def dotted_unit_error(text: str) -> UnitError:
-    """The refusal of a unit with dots in it, as in `об.мин`, with the unit that is meant."""
+    """Return the error for a unit with dots in it, such as `об.мин`, with the unit that is meant."""
     bare = text.replace("./", "/").rstrip(".")
     meant = next((way for way in (bare.replace(".", sign) for sign in ("", "/", "*")) if _is_known_kind(way)), None)
     return UnitError(_("a unit is written without dots"), found=quote(text), allowed=meant)
 
 
 def _is_known_kind(text: str) -> bool:
-    """Whether this is a unit of something that a file may give."""
+    """Return True if this is a unit of a quantity that a file may contain."""
     try:
         return parse_unit(text).dimension in {kind.dimension for kind in DIMENSIONS.values()}
     except UnitError:
@@ -209,12 +211,12 @@ def _is_known_kind(text: str) -> bool:
 
 
 class UnitSystem:
-    """What bare numbers mean in one file, and in which units its tables are printed."""
+    """Units of the bare numbers in one file and of its tables."""
 
     def __init__(self, names: Mapping[str, str] | None = None) -> None:
-        """names: unit by kind as in the file, `{length: mm, angular speed: rpm}`; the rest by default.
+        """Create the units of a file. names: unit by kind, `{length: mm, angular speed: rpm}`; the others by default.
 
-        Raises ProblemError, its path the key, on an unknown kind, an unknown unit or a unit of another kind.
+        Raises ProblemError, its path the key, for an unknown kind, an unknown unit, or a unit of another kind.
         """
         self._names = {kind.dimension: kind.default for kind in DIMENSIONS.values()}
         for key, name in (names or {}).items():
@@ -237,11 +239,13 @@ class UnitSystem:
     functions: Mapping[str, Any] = {**vars(math), "min": min, "max": max, "abs": abs}  # what arithmetic computes with
 
     def number(self, written: str | int | float) -> float:
-        """The value of a number as it is written."""
+        """Convert a written number to its value."""
         return finite_float(written) if isinstance(written, str) else float(written)
 
     def unit(self, dimension: Dimension) -> Unit:
-        """The file's unit; without a name of its own, the product of those of length, mass, time and angle."""
+        """Return the file's unit; if it has no name of its own, the product of the units of length, mass, time and
+        angle.
+        """
         if dimension in self._units:
             return self._units[dimension]
         unit = Unit(NUMBER)
@@ -250,35 +254,35 @@ class UnitSystem:
         return unit
 
     def si(self, number: float, dimension: Dimension) -> float:
-        """A bare number of the file in SI and radians."""
+        """Convert a bare number of the file to SI and radians."""
         return self.unit(dimension).si(number)
 
     def from_si(self, value: float, dimension: Dimension) -> float:
-        """A value in SI and radians as a bare number of the file."""
+        """Convert a value in SI and radians to a bare number of the file."""
         number: float = self.unit(dimension).from_si(value)
         return number
 
     def factor(self, dimension: Dimension) -> float:
-        """The file's unit in SI and radians."""
+        """Return the file's unit in SI and radians."""
         return self.si(1.0, dimension)
 
     def symbol(self, dimension: Dimension) -> str:
-        """The file's unit in Latin letters, whatever the letters of the file; empty for a number."""
+        """Return the symbol of the file's unit in Latin letters; empty for a pure number."""
         if dimension in self._names:
             return self._names[dimension]
         return product_text({self._names[base]: power for base, power in _base_powers(dimension)})
 
     def spelt(self, dimension: Dimension) -> str:
-        """The same for people, as their language spells it: N*m, and Н·м in Russian."""
+        """Return the symbol of the file's unit as the current language spells it: N*m, in Russian Н·м."""
         unit = self.symbol(dimension)
         return unit if language() == ENGLISH else typeset_unit(spelt(unit))
 
     def format_value(self, value: float, dimension: Dimension, digits: int = 6) -> str:
-        """A value in SI and radians as a refusal tells it, `30 deg`."""
+        """Format a value in SI and radians for a message: `30 deg`."""
         return f"{self.from_si(value, dimension):.{digits}g} {self.spelt(dimension)}"
 
     def describe(self, quantity: PhysicalValue) -> str:
-        """For messages: `a length (110 mm)`, `a bare number (5)`."""
+        """Describe a value for a message: `a length (110 mm)`, `a number without a unit (5)`."""
         if quantity.dimension is None:
             return _("a number without a unit ({number})").format(number=f"{quantity.value:.6g}")
         number, unit = self.from_si(quantity.value, quantity.dimension), self.symbol(quantity.dimension)
@@ -292,11 +296,11 @@ def _base_powers(dimension: Dimension) -> list[tuple[Dimension, int]]:
 
 @cache
 def typeset_unit(unit: str) -> str:
-    """A unit as it is written by hand: m/s² and N·m for m/s^2 and N*m."""
+    """Typeset a unit as in print: m/s² and N·m for m/s^2 and N*m."""
     return re.sub(r"\^(-?\d+)", lambda power: power[1].translate(_RAISED), unit).replace("*", "·")
 
 
-# Units of a file whose numbers are no plain floats: of 31 digits, or numbers that vary from linkage to linkage.
+# Units of files whose numbers are not plain floats: double-doubles, or arrays over varied linkages.
 
 
 FUNCTIONS = {
@@ -316,7 +320,7 @@ FUNCTIONS = {
 
 
 class ExtendedUnits(UnitSystem):
-    """Units whose numbers have 31 digits, from the decimals as they are written."""
+    """Units whose numbers have 31 digits, taken from the decimals as written."""
 
     functions = {**FUNCTIONS, "pi": DoubleDouble.decimal(PI)}  # noqa: RUF012  a table
 
@@ -327,7 +331,7 @@ class ExtendedUnits(UnitSystem):
 
 
 class VariedUnits(UnitSystem):
-    """Units whose functions of arithmetic take numbers that vary (see tmm_cli.batch.traced_arrays)."""
+    """Units whose arithmetic functions accept arrays of varied numbers (see tmm_cli.batch)."""
 
     functions = {**FUNCTIONS, "pi": float(PI)}  # noqa: RUF012  a table
 

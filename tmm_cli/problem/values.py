@@ -1,4 +1,4 @@
-"""Reading the parts of a problem file in the light of its parameters, units and names."""
+"""Evaluation of the values of a problem file with its parameters, units and names."""
 
 from __future__ import annotations
 
@@ -45,14 +45,14 @@ LINK_NAME = re.compile(r"\w[\w'′.-]{0,15}")
 
 
 class ValueReader:
-    """What values of one file mean. Every method raises ProblemError with the path it was given."""
+    """Reader of the values of one file. Every method raises ProblemError with the path that it is given."""
 
     def __init__(self, parameters: Mapping[str, PhysicalValue], units: UnitSystem) -> None:
         self.parameters = parameters
         self.units = units
 
     def number(self, value: Any, want: Dimension, path: Path) -> float:
-        """A value in SI that a mechanism can have."""
+        """Return a value in SI, of a size that a mechanism can have."""
         with prefix_errors(*path):
             number = self.read_si(value, want, path)
             limit = self.limit(want, path)
@@ -66,19 +66,19 @@ class ValueReader:
             return number
 
     def read_si(self, value: Any, want: Dimension, path: Path) -> float:
-        """A value in SI, whatever its size."""
+        """Return a value in SI, of any size."""
         return evaluate(value, self.parameters, self.units, want)
 
     def limit(self, want: Dimension, path: Path) -> float:
-        """The largest size (SI) that is accepted there."""
+        """Return the largest absolute value (SI) accepted at this path."""
         return MAX_ANGLE if want == ANGLE else LARGEST
 
     def is_bare(self, value: Any) -> bool:
-        """Whether a value has no unit of its own."""
+        """Return True if a value has no unit of its own."""
         return evaluate_quantity(value, self.parameters, self.units, pi=None).dimension is None
 
     def positive(self, value: Any, want: Dimension, path: Path, *, zero: bool = False) -> float:
-        """A value in SI that must be above zero (or not below)."""
+        """Return a value in SI that must be positive (with `zero`: not negative)."""
         number = self.number(value, want, path)
         if number < 0 or (number == 0 and not zero):
             message = _("{want} cannot be negative") if number < 0 else _("{want} cannot be zero")
@@ -93,7 +93,9 @@ class ValueReader:
         return number
 
     def fraction(self, value: Any, path: Path, *, zero: bool = False) -> float:
-        """A share of a whole, above zero (or not below), at most one. Raises ProblemError, also for a bare per cent."""
+        """Return a fraction, positive (with `zero`: not negative) and at most 1. Raises ProblemError, also for a bare
+        percentage.
+        """
         number = self.positive(value, NUMBER, path, zero=zero)
         if number > 1:
             percent = f"{value} %" if isinstance(value, int | float) and value <= 100 else _("0 to 1, or 0 to 100 %")
@@ -101,7 +103,7 @@ class ValueReader:
         return number
 
     def too_small(self, value: Any, least: float, want: Dimension, path: Path) -> ProblemError:
-        """Of a value below the least (SI) that a mechanism can have."""
+        """Return the error for a value below the least one (SI) that a mechanism can have."""
         shown = f"{self.units.from_si(least, want):.6g} {self.units.symbol(want)}".rstrip()
         return ProblemError(
             _("this value is too small for a mechanism"),
@@ -111,13 +113,15 @@ class ValueReader:
         )
 
     def vector(self, value: Any, want: Dimension, path: Path) -> complex:
-        """Two coordinates."""
+        """Return two coordinates in SI."""
         if not isinstance(value, list | tuple) or len(value) != 2:
             raise ProblemError(_("expected two coordinates [x, y]"), path=path, found=quote(value))
         return make_complex(self.number(value[0], want, (*path, 0)), self.number(value[1], want, (*path, 1)))
 
     def place(self, value: Any, points: Mapping[str, complex], path: Path, link: str) -> complex:
-        """A place on a link: the name of one of its points, coordinates, or a share of the way between two points."""
+        """Return a position on a link (m) given by a point, by coordinates, or as a fraction of the distance of two
+        points.
+        """
         if isinstance(value, str):
             return points[
                 self.known_name(value, points, path, f"point of link {link}" if link != "0" else "frame point")
@@ -131,7 +135,9 @@ class ValueReader:
         return self.vector(value, LENGTH, path)
 
     def share_of(self, length: Any, value: Any, points: tuple[str, str], path: Path) -> float:
-        """A share of the length (m) between two points, which may be written as a distance from the first (110 mm)."""
+        """Return a fraction of the length (m) between two points; it may be written as a distance from the first (110
+        mm).
+        """
         with prefix_errors(*path):
             dimension = evaluate_quantity(value, self.parameters, self.units, pi=None).dimension
         if dimension == LENGTH:
@@ -153,19 +159,21 @@ class ValueReader:
 
     @staticmethod
     def known_name(name: str, names: Iterable[str], path: Path, what: str, *, key: bool = False) -> str:
-        """The name, if there is one like it."""
+        """Return the name. Raises ProblemError if it is not one of the names; what: kind of thing that it names, for
+        the message.
+        """
         if name in names:
             return name
         raise unknown_name_error(name, names, unknown_name_message(what), path=path, key=key)
 
     @staticmethod
     def refuse_same(links: Sequence[str], path: Path) -> None:
-        """Refuse one link in two places where different ones are wanted."""
+        """Raise ProblemError if a link occurs twice."""
         if len(set(links)) < len(links):
             raise ProblemError(_("the links must be different"), path=path, found=", ".join(links))
 
     def two_points(self, text: str, points: Mapping[str, complex], path: Path) -> tuple[str, str]:
-        """Two points of a link written together, CD or C-D."""
+        """Split two points of a link written together, CD or C-D."""
         written = re.split(r"\s*[-–, ]\s*", text.strip())
         ways = [(text[:k], text[k:]) for k in range(1, len(text))]
         if len(written) == 2:
@@ -192,7 +200,7 @@ class ValueReader:
 
 @dataclass(frozen=True)
 class FileSection:
-    """A part of the file in its shape (schema): its values by key, each refused at its own place."""
+    """A section of the file as validated keys; a wrong value is refused at its own position."""
 
     keys: Any
     path: Path
@@ -205,7 +213,7 @@ class FileSection:
         return self.values.positive(getattr(self.keys, key), want, self.at(key), zero=zero)
 
     def at(self, key: str) -> Path:
-        """The path of a key as the file spells it."""
+        """Return the path of a key as the file spells it."""
         fields = getattr(type(self.keys), "model_fields", {})
         return (*self.path, fields[key].alias or key if key in fields else key)
 
@@ -215,7 +223,7 @@ class FileSection:
     def columns(
         self, key: str, argument: Dimension, want: Dimension, *, jumps: bool = True
     ) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-        """Both columns of a table (SI), of which the first one grows. jumps: two of its rows may be equal there.
+        """Return both columns of a table (SI); the first must increase. jumps: two successive arguments may be equal.
 
         Raises ProblemError.
         """
@@ -240,7 +248,7 @@ class FileSection:
         return self.values.known_name(getattr(self.keys, key), names, (*self.path, key), what)
 
     def two_links(self, links: Iterable[str]) -> tuple[str, str]:
-        """The two links it is between, which are not the same."""
+        """Return the two different links named in `between`."""
         i, j = (
             self.values.known_name(n, links, (*self.path, "between", k), "link")
             for k, n in enumerate(self.keys.between)
@@ -249,7 +257,7 @@ class FileSection:
         return i, j
 
     def one_of(self, *keys: str) -> str:
-        """The one of these keys that is given."""
+        """Return the one of these keys that is given. Raises ProblemError unless exactly one is."""
         told = [key for key in keys if getattr(self.keys, key) is not None]
         if len(told) != 1:
             found, allowed = ", ".join(told) or None, ", ".join(keys)
@@ -259,19 +267,19 @@ class FileSection:
     def refusal(
         self, key: str, message: str, found: str | None = None, allowed: str | None = None, *, at_key: bool = False
     ) -> ProblemError:
-        """Of the value of a key, or of the part itself (key ""); at_key: of the key, whatever its value."""
+        """Return the error for the value of a key, or for the section (key ""); at_key: for the key itself."""
         path = self.at(key) if key else self.path
         return ProblemError(message, path=path, found=found, allowed=allowed, key=at_key or not key)
 
 
 def unknown_name_message(what: str) -> str:
-    """That a name is of nothing of this kind, such as "link" or "point of link 3"."""
+    """Return the message for an unknown name. what: kind of thing, such as "link" or "point of link 3"."""
     kind, __, link = what.partition(" of link ")
     return translated(UNKNOWN_NAMES["point of link" if link else kind]).format(link=link)
 
 
 def check_name(name: str, path: Path, what: str, taken: Container[str] = ()) -> None:
-    """Refuse a name that is taken, or cannot go into tables, drawings and file names: letters and figures only."""
+    """Refuse a name that is taken or unfit for tables, drawings and file names; only letters and digits are allowed."""
     pattern = LINK_NAME if what == "link" else POINT_NAME
     if not pattern.fullmatch(name):
         raise ProblemError(
@@ -288,17 +296,17 @@ def check_name(name: str, path: Path, what: str, taken: Container[str] = ()) -> 
 
 
 def make_complex(x: float, y: float) -> complex:
-    """x + iy in the precision of its parts (a double-double is no float)."""
+    """Return x + iy in the precision of its parts (a double-double is not a float)."""
     return complex(x, y) if isinstance(x, float) and isinstance(y, float) else x + 1j * y
 
 
 def vector_angle(vector: complex) -> float:
-    """The angle of a vector, in its precision."""
+    """Return the angle of a vector (rad), in its precision."""
     return cmath.phase(vector) if isinstance(vector, complex) else np.angle(vector)
 
 
 def unit_vector(angle: float) -> complex:
-    """e^(i angle), exact across and along the axes."""
+    """Return e^(i angle), exact along the coordinate axes."""
     if not isinstance(angle, float):
         return make_complex(np.cos(angle), np.sin(angle))
     turned = cmath.exp(1j * angle)

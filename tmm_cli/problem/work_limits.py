@@ -21,13 +21,15 @@ MIN_JUDGED, MAX_JUDGED = 20, 720  # further positions estimated for the results 
 
 
 def work_size(linkage: Linkage) -> int:
-    """The size of a linkage: links with their pairs, points on them, loads and springs."""
+    """Return the number of elements of a linkage: links with their pairs, points, loads and springs, by measured
+    cost.
+    """
     links, points, loads = _count_elements(linkage)
     return LINK_SIZE * links + POINT_SIZE * points + LOAD_SIZE * loads
 
 
 def refuse_work(linkage: Linkage, request: Request) -> None:
-    """Refuse what no stage could do within the budget. Raises ProblemError, not yet located."""
+    """Refuse a request that no stage could complete within the budget. Raises ProblemError, not yet located."""
     size, count = work_size(linkage), len(request.places) or request.count
     most = WORK_BUDGET // size - _search_positions(linkage)
     if most < 1:
@@ -60,12 +62,19 @@ def refuse_options(
     plans: int = 0,
     centres: int = 0,
 ) -> None:
-    """Refuse what the options of a command add to the work at so many positions, before it starts.
+    """Refuse command options whose additional work exceeds the budget, before the command starts.
 
-    detail: positions that are drawn in detail; None where nothing is drawn. large: on large sheets, which are drawn
-    again and again until they are full; plans: positions whose plans of motion alone are on them. centres: positions
-    whose instantaneous centres are found and drawn.
-    Raises ProblemError, not yet located.
+    Args:
+        linkage: the linkage.
+        count: number of positions.
+        digits: correct digits are estimated.
+        detail: number of positions drawn in detail; None if nothing is drawn.
+        large: drawings are on large sheets, which are laid out again until they are full.
+        plans: number of positions drawn only with their motion plans.
+        centres: number of positions with instantaneous centres.
+
+    Raises:
+        ProblemError: the work exceeds the budget; not yet located.
     """
     size = work_size(linkage)
     left = WORK_BUDGET / size - _search_positions(linkage) - count
@@ -118,7 +127,7 @@ def refuse_options(
 
 
 def _count_sheets(detail: int, large: bool) -> float:
-    """Sheets of positions that drawings count for."""
+    """Return the number of sheets that drawings of detailed positions count for."""
     return OTHER_SHEETS + detail * (1 + large * detail / LARGE_LAYOUT_POSITIONS)
 
 
@@ -132,6 +141,6 @@ def _describe_linkage(linkage: Linkage) -> str:
 
 
 def _count_elements(linkage: Linkage) -> tuple[int, int, int]:
-    """Moving links, points on them, loads and springs."""
+    """Return the numbers of moving links, of points on them, of loads and springs."""
     points = sum(len(linkage.links[name].points) for name in linkage.moving)
     return len(linkage.moving), points, len(linkage.acting)

@@ -1,1 +1,1 @@
-"""The blocks of a problem file: what keys each has, and how it becomes part of a linkage."""
+"""Blocks of a problem file: the keys of each block, and how it becomes part of a linkage."""

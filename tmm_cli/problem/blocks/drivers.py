@@ -1,4 +1,4 @@
-"""A crank's speed by a table of a problem file."""
+"""Drivers of a problem file, their speeds, the sketch, and the requested positions."""
 
 from __future__ import annotations
 
@@ -32,7 +32,9 @@ ROUNDING_OF_REST = 1e-12  # relative to the square of the largest speed: less is
 
 
 def _build_speed_table(section: FileSection, turns: int) -> SpeedTable:
-    """Squares of speeds by the crank's angle, and accelerations if they are given; turns: of the crank in a cycle."""
+    """Build the squares of the driver speed against the crank angle, and accelerations if given. turns: crank turns in
+    a cycle.
+    """
     keys: schema.DriverKeys = section.keys
     angles, speeds = _columns(section, "speed", ANGULAR_SPEED)
     path = (*section.path, "speed", "table")
@@ -67,7 +69,7 @@ def _build_speed_table(section: FileSection, turns: int) -> SpeedTable:
 
 
 def _mean_speed(section: FileSection) -> float:
-    """Of the speeds of all rows, rad/s."""
+    """Return the mean of the speeds of all rows, in rad/s."""
     speeds = _columns(section, "speed", ANGULAR_SPEED)[1]
     whole: float = sum(speeds) / len(speeds)
     return whole
@@ -79,7 +81,7 @@ def _columns(section: FileSection, key: str, want: Dimension) -> tuple[tuple[Any
 
 
 def _is_closed(section: FileSection, key: str, angles: tuple[Any, ...], values: tuple[Any, ...], turns: int) -> bool:
-    """Whether a table goes all round the cycle; then it ends as it begins."""
+    """Return True if a table covers the whole cycle; its last value must then equal its first. Raises ProblemError."""
     table, path, units = getattr(section.keys, key).table, (*section.path, key, "table"), section.values.units
     cycle = math.tau * turns
     end = units.format_value(float(angles[0]) + cycle, ANGLE)
@@ -101,14 +103,14 @@ def _is_closed(section: FileSection, key: str, angles: tuple[Any, ...], values: 
 
 
 def _find_least(table: InterpolationTable) -> tuple[int, float]:
-    """After which row a table is least between rows, and how little it is there."""
+    """Return the row after which the interpolated table has its minimum, and the minimum."""
     rows = np.array([float(to_float(row)) for row in table.arguments])
     found = to_float(table(rows[:-1, None] + np.diff(rows)[:, None] * np.linspace(0, 1, 33)))
     row = int(np.argmin(np.min(found, axis=1)))
     return row, float(np.min(found))
 
 
-# Drivers of a problem file, where they stand in the sketch, and the positions that it asks for.
+# Drivers, sketch and requested positions.
 
 
 MAX_SPEED_RATIO = (
@@ -118,7 +120,7 @@ DEFAULT_SKETCH_ANGLE = cmath.pi / 3  # crank angle at which assemblies are compa
 
 
 def build_drivers(shape: schema.File, members: LinksAndPairs, values: ValueReader) -> tuple[Driver, ...]:
-    """All drivers in the order of the file."""
+    """Build all drivers, in the order of the file. Raises ProblemError, not yet located."""
     if isinstance(shape.driver, schema.DriverKeys):
         section = FileSection(shape.driver, ("driver",), values)
         driver = _build_driver(section, members, True)
@@ -149,7 +151,7 @@ def build_drivers(shape: schema.File, members: LinksAndPairs, values: ValueReade
 
 
 def _linkage_size(links: dict[str, Link]) -> float:
-    """The largest distance of two points of one link (m)."""
+    """Return the largest distance between two points of one link (m)."""
     spans = (abs(p - q) for link in links.values() for p in link.points.values() for q in link.points.values())
     return max(spans, default=0.0) or 1.0
 
@@ -221,7 +223,7 @@ def _build_driver(section: FileSection, members: LinksAndPairs, first: bool) -> 
 
 
 def build_cycle(shape: schema.File, driver: Driver, values: ValueReader) -> int:
-    """Turns of the crank after which its loads come again."""
+    """Return the number of crank turns after which the loads repeat. Raises ProblemError."""
     if shape.cycle is None:
         return 1
     if driver.kind != "turn":
@@ -243,7 +245,7 @@ def build_cycle(shape: schema.File, driver: Driver, values: ValueReader) -> int:
 
 
 def build_sketch(shape: schema.File, links: dict[str, Link], driver: Driver, values: ValueReader) -> Sketch:
-    """The sketch of the file, or of one that says nothing of it any place of the driver."""
+    """Build the sketch of the file; if it has none, a sketch with a default driver coordinate. Raises ProblemError."""
     keys = dict(shape.sketch)
     wanted = ANGLE if driver.kind == "turn" else LENGTH
     if not keys:
@@ -278,7 +280,7 @@ def build_sketch(shape: schema.File, links: dict[str, Link], driver: Driver, val
 
 
 def build_request(shape: schema.File, driver: Driver, values: ValueReader) -> Request:
-    """Which positions the file asks for."""
+    """Build the request for positions from the block `positions`. Raises ProblemError."""
     keys = shape.positions
     section = FileSection(keys, ("positions",), values)
     wanted = ANGLE if driver.kind == "turn" else LENGTH

@@ -1,4 +1,6 @@
-"""Links of a problem file, the turning and sliding pairs between them, and slips that leave one of them unused."""
+"""Links of a problem file with their revolute and prismatic pairs, and checks for links, guides and points left
+unused.
+"""
 
 from __future__ import annotations
 
@@ -20,22 +22,24 @@ MAX_PAIR_LENGTH = 80  # letters of the names of two points
 
 @dataclass(frozen=True)
 class LinksAndPairs:
-    """Links and their lower pairs: what drivers, higher pairs and loads of the file are put on."""
+    """Links and their lower pairs, to which drivers, higher pairs and loads are attached."""
 
     links: dict[str, Link]
     hinges: tuple[Hinge, ...]
     slides: tuple[Slide, ...]
 
     def hinge(self, link: str, base: str) -> str | None:
-        """The point in which two links are hinged."""
+        """Return the point at which two links are hinged, or None."""
         return common_hinge(self.hinges, link, base)
 
     def slide(self, link: str, base: str) -> Slide | None:
-        """The sliding pair of two links."""
+        """Return the prismatic pair of two links, or None."""
         return next((s for s in self.slides if {s.carrier, s.runner} == {link, base}), None)
 
     def unjoined(self, link: str, base: str, path: Path, kinds: str = "RP") -> ProblemError:
-        """The refusal of a link that no pair of these kinds joins to its base; it names those that are joined to it."""
+        """Return the error for a link that has no pair of these kinds with its base; it lists the links that have
+        one.
+        """
         pairs = [h.links for h in self.hinges if "R" in kinds]
         pairs += [(s.carrier, s.runner) for s in self.slides if "P" in kinds]
         joined = dict.fromkeys(n for links in pairs if base in links for n in links if n != base)
@@ -52,7 +56,7 @@ class LinksAndPairs:
 
 
 def build_links(shape: schema.File, values: ValueReader) -> LinksAndPairs:
-    """Links in the order of the file, hinges where they share points, and slides."""
+    """Build links in the order of the file, hinges where they share points, and prismatic pairs. Raises ProblemError."""
     reader = _LinkReader(shape, values)
     slides = reader.slides()
     owners: dict[str, list[str]] = {}
@@ -64,7 +68,7 @@ def build_links(shape: schema.File, values: ValueReader) -> LinksAndPairs:
 
 
 def _attach_links(hinges: tuple[Hinge, ...], shape: schema.File, values: ValueReader) -> tuple[Hinge, ...]:
-    """The hinges, compound ones with the link to which the file attaches the others."""
+    """Return the hinges; for compound ones with the link to which the file attaches the others."""
     links_at = {hinge.point: hinge.links for hinge in hinges}
     for point, hinge in shape.hinges.items():
         section = FileSection(hinge, ("hinges", point), values)
@@ -87,7 +91,9 @@ def _attach_links(hinges: tuple[Hinge, ...], shape: schema.File, values: ValueRe
 
 
 def refuse_attachments(linkage: Linkage, shape: schema.File, values: ValueReader) -> None:
-    """Refuse links of compound hinges attached so that groups merge, or that a driver has no pair to work in."""
+    """Refuse an attachment at a compound hinge that merges groups or leaves a driver without its pair. Raises
+    ProblemError.
+    """
     for hinge in linkage.hinges:
         if hinge.attached_to and not _keeps_groups(linkage, hinge, hinge.attached_to):
             allowed = [link for link in hinge.links if _keeps_groups(linkage, hinge, link)]
@@ -102,7 +108,7 @@ def refuse_attachments(linkage: Linkage, shape: schema.File, values: ValueReader
 
 
 def _keeps_groups(linkage: Linkage, hinge: Hinge, link: str) -> bool:
-    """True if the groups stay the same when the links of a hinge are attached to this one."""
+    """Return True if the groups stay the same when the links of a hinge are attached to this one."""
     usual, attached = (
         replace(linkage, hinges=tuple(replace(hinge, attached_to=to) if h == hinge else h for h in linkage.hinges))
         for to in ("", link)
@@ -113,7 +119,7 @@ def _keeps_groups(linkage: Linkage, hinge: Hinge, link: str) -> bool:
 
 
 class _LinkReader:
-    """Reads links, then slides, which need all links."""
+    """Reads the links first and then the slides, which refer to them."""
 
     def __init__(self, shape: schema.File, values: ValueReader) -> None:
         self.shape, self.values = shape, values
@@ -150,7 +156,7 @@ class _LinkReader:
         return points
 
     def listed(self, names: list[str], section: FileSection) -> dict[str, complex]:
-        """Points that stand in a list: at most two, whose distance is the length."""
+        """Return the points of a list: at most two, the second at the distance `length` from the first."""
         if len(set(names)) < len(names):
             raise section.refusal("points", _("a point is named twice"), str(names))
         if len(names) > 2:
@@ -213,7 +219,9 @@ class _LinkReader:
         return Slide(name, carrier, runner, through, angle, points[point], turned, point, ends if bounded else None)
 
     def guide(self, section: FileSection, carrier: str) -> tuple[complex, float, tuple[str, str] | None]:
-        """A point on a guide, its direction, in the axes of the link that carries it, and the points it is along."""
+        """Return a point and the direction of a guide in the axes of its carrier, and the two points named in `along`,
+        if any.
+        """
         keys: schema.Guide | schema.SlideKeys = section.keys
         points = self.links[carrier].points
         along, placed = keys.along, keys.through is not None or keys.angle is not None
@@ -235,7 +243,7 @@ class _LinkReader:
 
 
 def _refuse_lookalikes(shape: schema.File) -> None:
-    """Refuse points whose names look alike and are not: a Cyrillic letter in one of them is never meant."""
+    """Refuse names of points that look alike but differ in letters: a Cyrillic letter in one of them is a slip."""
     named: dict[str, Path] = {name: ("points", name) for name in shape.points}
     for link, keys in shape.links.items():
         path: Path = ("links", link, "points")
@@ -256,7 +264,7 @@ def _refuse_lookalikes(shape: schema.File) -> None:
 
 
 def refuse_unused(shape: schema.File, data: dict[str, Any], members: LinksAndPairs) -> None:
-    """Refuse links joined to nothing, guides that nothing uses and points named once only: they are slips."""
+    """Refuse links joined to nothing, guides that nothing uses, and points named only once: they are slips."""
     links = members.links
     joined = {name for h in members.hinges for name in h.links} | {
         n for s in members.slides for n in (s.carrier, s.runner)
@@ -305,7 +313,7 @@ def refuse_unused(shape: schema.File, data: dict[str, Any], members: LinksAndPai
 def _points_used_elsewhere(
     shape: schema.File, data: dict[str, Any], links: dict[str, Link], everything: list[str]
 ) -> set[str]:
-    """Points that are named beside the links' own lists of points, alone or two together (CD, C-D)."""
+    """Return the points named outside the links' own lists of points, alone or as two together (CD, C-D)."""
     known, found = set(everything), set[str]()
     for word in _find_texts({**data, "parameters": {}, "title": "", "description": ""}):
         found.add(word)
@@ -319,7 +327,7 @@ def _points_used_elsewhere(
 
 
 def _find_texts(section: Any) -> Iterator[str]:
-    """Every text of a file that may name a point, the links' own lists of points left out."""
+    """Yield every text of a file that may name a point, except the links' own lists of points."""
     if isinstance(section, dict):
         yield from section
         section = [value for key, value in section.items() if key != "points"]

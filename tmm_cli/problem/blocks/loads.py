@@ -1,4 +1,4 @@
-"""Masses of links and loads on them, in a problem file."""
+"""Masses of links and loads on them in a problem file: their keys and their building."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 class PointMassKeys(Strict):
-    """A mass in one point of a link."""
+    """A point mass on a link."""
 
     mass: Value
     at: Place = Field(description="position: name of a point, [x, y] in the axes of the link, or {on: CD, at: 0.5}")
@@ -65,7 +65,7 @@ WHEN = ("always", "working stroke")
 
 
 def _checked_word(found: Any, words: tuple[str, ...], pattern: str) -> str:
-    """One of these words, or a text of this pattern."""
+    """Return the text if it is one of these words or matches the pattern; raise pydantic's literal_error otherwise."""
     if isinstance(found, str) and (found in words or re.fullmatch(pattern, found)):
         return found
     *first, last = (f"'{word}'" for word in words)
@@ -87,7 +87,7 @@ Against = Annotated[
 
 
 class TabulatedKeys(Strict):
-    """A force, pressure or moment by table, or by size and angle."""
+    """A force, pressure or moment, given by a table or by its size (and angle)."""
 
     size: Value | None = None
     resists: Value | None = Field(
@@ -142,7 +142,7 @@ When = Annotated[
 
 
 class LoadKeys(Strict):
-    """A force, a moment, or both, on a link."""
+    """A force, a moment, or both, acting on a link."""
 
     on: Name = Field(description="link on which the load acts")
     from_: Name = Field(
@@ -175,14 +175,14 @@ class LoadKeys(Strict):
     )
 
 
-# Masses and loads of a problem file.
+# Building of masses and loads.
 
 
 STANDARD_GRAVITY = 9.81
 
 
 def add_masses(linkage: Linkage, shape: schema.File, values: ValueReader) -> Linkage:
-    """The linkage with masses, inertias, centres of mass and gravity."""
+    """Return the linkage with masses, moments of inertia, centres of mass and gravity. Raises ProblemError."""
     gravity = _build_gravity(shape.gravity, values)
     links = dict(linkage.links)
     for name, keys in shape.masses.items():
@@ -194,7 +194,7 @@ def add_masses(linkage: Linkage, shape: schema.File, values: ValueReader) -> Lin
 
 
 def _add_mass(link: Link, section: FileSection, gravity: complex) -> Link:
-    """The link as a body; without a mass of its own it has point masses alone."""
+    """Return the link with its mass, moment of inertia and centre; without a mass it may have only point masses."""
     keys: MassKeys = section.keys
     if keys.points and keys.mass is None and keys.weight is None:
         return replace(
@@ -216,7 +216,9 @@ def _add_mass(link: Link, section: FileSection, gravity: complex) -> Link:
 
 
 def _add_point_masses(link: Link, section: FileSection) -> Link:
-    """The same with its point masses: one mass, in one centre, with the inertia about it (Steiner)."""
+    """Return the link with its point masses included in its mass, centre and moment of inertia (parallel-axis
+    theorem).
+    """
     bodies = [(link.mass, link.centre)] if link.mass > 0 else []
     for k, keys in enumerate(section.keys.points):
         own = FileSection(keys, (*section.path, "points", k), section.values)
@@ -233,7 +235,9 @@ def _add_point_masses(link: Link, section: FileSection) -> Link:
 
 
 def _refuse_ambiguous_centre(links: Mapping[str, Link], name: str, section: FileSection) -> None:
-    """S3 is the centre of mass of link 3 in tables, plans and formulas; a point of this name is there too."""
+    """Refuse a point named S3 that is not the centre of mass of link 3: tables, plans and formulas call the centre
+    S3.
+    """
     point, own = f"S{name}", links[name]
     of = [link for link in links if point in links[link].points]
     if own.mass and of and (of != [name] or abs(own.points[point] - own.centre) > SAME_DRIVER_POSITION):
@@ -257,7 +261,7 @@ def _build_gravity(keys: Any, values: ValueReader) -> complex:
 
 
 def build_loads(linkage: Linkage, shape: schema.File, values: ValueReader) -> tuple[LoadRecord, ...]:
-    """The loads of the task, in the order of the file."""
+    """Build the loads, in the order of the file. Raises ProblemError."""
     return tuple(
         _build_load(name, FileSection(keys, ("loads", name), values), linkage) for name, keys in shape.loads.items()
     )
@@ -311,9 +315,9 @@ def _build_load(name: str, section: FileSection, linkage: Linkage) -> LoadRecord
 
 
 def _stroke_link(section: FileSection, key: str, linkage: Linkage, loaded: str) -> str:
-    """The link on whose stroke a load depends by this key; empty if it is the main output. Raises ProblemError.
+    """Return the link on whose stroke a load depends by this key; empty if it is the main output. Raises ProblemError.
 
-    The one that the file names, else the load's own link if that slides on the frame, else the main output.
+    It is the link that the file names; else the loaded link if it slides on the frame, else the main output.
     """
     named = re.fullmatch(rf"{STROKE_OF}|{WORKING_STROKE_OF}", getattr(section.keys, key))
     link = loaded if linkage.slides_on_frame(loaded) else ""
@@ -327,7 +331,7 @@ def _stroke_link(section: FileSection, key: str, linkage: Linkage, loaded: str) 
 
 
 class _LoadComponent(NamedTuple):
-    """A force (complex) or a moment in SI; of a table the direction, or one, and the table."""
+    """A force (complex) or moment in SI. With a table, `size` is the direction (of a moment: 1)."""
 
     size: Any
     table: LoadTable | None = None
@@ -349,7 +353,7 @@ def _build_component(key: str, want: Dimension, linkage: Linkage, load: FileSect
 
 
 def _build_pressure(load: FileSection, linkage: Linkage) -> _LoadComponent:
-    """The force of a pressure on an area, or on a piston of a bore."""
+    """Return the force of a pressure on an area or on a piston of given bore."""
     if load.keys.force is not None:
         raise load.refusal(
             "pressure", _("a load cannot have both `force` and `pressure`"), "both", _("two loads"), at_key=True
@@ -376,7 +380,7 @@ def _build_pressure(load: FileSection, linkage: Linkage) -> _LoadComponent:
 def _build_sized(
     section: FileSection, want: Dimension, linkage: Linkage, loaded: str, *, angled: bool
 ) -> _LoadComponent:
-    """By one size or by a table, at an angle or about the axis of the drawing."""
+    """Build a component given by one size or by a table; `angled` for forces and pressures, which need an angle."""
     keys: TabulatedKeys = section.keys
     if angled == (keys.angle is None):
         wanted = _("a force given by `size` or `table` needs `angle`; a moment has no `angle`")
@@ -397,7 +401,7 @@ def _build_sized(
 
 
 def _crank_window(section: FileSection, linkage: Linkage) -> tuple[float, float]:
-    """Between which angles of the crank the load acts."""
+    """Return the two crank angles (rad) between which the load acts."""
     if linkage.driver.kind == "slide":
         raise section.refusal("when", _("`when` with two angles needs a crank, but this driver is a slider"))
     cycle = 2 * np.pi * linkage.turns
@@ -457,13 +461,15 @@ def _build_table(section: FileSection, want: Dimension, linkage: Linkage, loaded
 
 
 def stroke_dimension(linkage: Linkage, stroke_link: str) -> Dimension:
-    """The dimension of the stroke of a link, or of the main output if it is empty: an angle if the link swings."""
+    """Return the dimension of the stroke of a link, or of the main output if it is empty: an angle if the link
+    swings.
+    """
     link = stroke_link or output_link(linkage, analyse_structure(linkage).groups)
     return ANGLE if link is None or linkage.output_swings(link) else LENGTH
 
 
 def _refuse_beyond_stroke(section: FileSection, shares: Sequence[Any]) -> None:
-    """Refuse a row of a table that is no share of a stroke. Raises ProblemError."""
+    """Refuse a row of a table whose argument is not a fraction of the stroke. Raises ProblemError."""
     for row, share in enumerate(shares):
         if not -SAME_RATIO <= share <= 1 + SAME_RATIO:
             raise ProblemError(
@@ -475,6 +481,6 @@ def _refuse_beyond_stroke(section: FileSection, shares: Sequence[Any]) -> None:
 
 
 def _is_whole_turns(way: float) -> bool:
-    """Whether a table by the crank ends where it begins."""
+    """Return True if an angle (rad) is a whole number of turns."""
     turns = float(way) / (2 * np.pi)
     return abs(turns - round(turns)) * 2 * np.pi < SAME_DRIVER_POSITION

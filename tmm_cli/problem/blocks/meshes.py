@@ -1,4 +1,4 @@
-"""Toothed wheels, racks and cams in a problem file."""
+"""Gears, racks and cams of a problem file: their keys and their building."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class GearKeys(Strict):
-    """Two toothed wheels in mesh, hinged to a common carrier."""
+    """Two gears in mesh, hinged to a common carrier."""
 
     between: list[Name] = Field(
         min_length=2, max_length=2, description="the two gears; one may be the frame (a fixed gear)"
@@ -53,7 +53,7 @@ class GearKeys(Strict):
 
 
 class RackKeys(Strict):
-    """A wheel that rolls on a rack."""
+    """A gear that meshes with a rack."""
 
     wheel: Name
     rack: Name = Field(description="link with the rack; it slides on the carrier")
@@ -70,7 +70,7 @@ class RackKeys(Strict):
 
 
 class CamPieceKeys(Strict):
-    """A part of a cam's turn."""
+    """A part of a cam's law of motion."""
 
     over: Value = Field(description="angle of rotation of the cam during this part")
     rise: Value = Field(default=0, description="rise of the follower; negative: return, zero: dwell")
@@ -78,7 +78,7 @@ class CamPieceKeys(Strict):
 
 
 class CamKeys(Strict):
-    """A cam and its follower on a common carrier, by the follower's law of motion."""
+    """A cam and its follower on a common carrier, given by the law of motion of the follower."""
 
     cam: Name = Field(description="link that is the cam, hinged to the carrier; it may be the frame (a fixed cam)")
     follower: Name = Field(
@@ -105,14 +105,16 @@ class CamKeys(Strict):
     )
 
 
-# Toothed wheels, racks and cams of a problem file.
+# Building of gears, racks and cams.
 
 
 MAX_GEAR_RATIO = 100_000
 
 
 def build_meshes(shape: schema.File, members: LinksAndPairs, sense: int, values: ValueReader) -> tuple[Mesh, ...]:
-    """All higher pairs: gears, racks, cams; sense: of the driver."""
+    """Build all higher pairs: gears, racks, cams. sense: sense of rotation of the driver, +1 or -1. Raises
+    ProblemError.
+    """
     taken = {h.point for h in members.hinges} | {s.name for s in members.slides}
     found: list[Mesh] = []
     for block, build in (("gears", _build_gear), ("racks", _build_rack), ("cams", partial(_build_cam, sense))):
@@ -127,7 +129,7 @@ def build_meshes(shape: schema.File, members: LinksAndPairs, sense: int, values:
 
 
 def _refuse_shared_rollers(meshes: Sequence[Mesh]) -> None:
-    """Refuse a number that two rollers share: the structure counts each roller as a link."""
+    """Refuse a number shared by two rollers: structural analysis counts each roller as a link."""
     rollers = [mesh.roller for mesh in meshes]
     for index, mesh in enumerate(meshes):
         if mesh.roller and mesh.roller in rollers[:index]:
@@ -140,8 +142,8 @@ def _refuse_shared_rollers(meshes: Sequence[Mesh]) -> None:
 
 
 def _refuse_locked_trains(gears: list[Mesh]) -> None:
-    """Refuse wheels on one carrier that mesh in a ring with ratios that let none of them turn, or out of phase."""
-    # by carrier and wheel: the train, in which the angle of each wheel is a slope times that of one of them and a phase
+    """Refuse gears in a closed train on one carrier whose ratios lock it, or which are out of phase."""
+    # train of each carrier and gear; the angle of each gear is a slope times that of one of them, plus a phase
     trains: dict[tuple[str, str], dict[str, tuple[float, float]]] = {}
     for gear in gears:
         one, other = (trains.setdefault((gear.carrier, n), {n: (1.0, 0.0)}) for n in (gear.i, gear.j))
@@ -162,14 +164,14 @@ def _refuse_locked_trains(gears: list[Mesh]) -> None:
 
 
 def _check_different_links(names: Sequence[str], section: FileSection, path: Path, members: LinksAndPairs) -> None:
-    """Refuse names of no links, and one link in two places."""
+    """Refuse names that are not links, and the same link twice."""
     for name in names:
         section.values.known_name(name, members.links, path, "link")
     section.values.refuse_same(names, path)
 
 
 def _axis_on_carrier(link: str, carrier: str, members: LinksAndPairs, path: Path) -> complex:
-    """Where a link is hinged to the carrier, in the carrier's axes (m)."""
+    """Return the point at which a link is hinged to the carrier, in the axes of the carrier (m)."""
     point = members.hinge(link, carrier)
     if point is None:
         raise members.unjoined(link, carrier, path, "R")
@@ -200,7 +202,7 @@ def _build_gear(name: str, section: FileSection, members: LinksAndPairs) -> Mesh
 
 
 def _radius_ratio(section: FileSection, keys: GearKeys, distance: float) -> float:
-    """First radius over second, negative for an outer mesh; all that is given must agree."""
+    """Return the first radius divided by the second, negative for an external mesh; all given values must agree."""
     values, path = section.values, section.path
     teeth, radii = None, None
     found: dict[str, float] = {}
@@ -246,7 +248,7 @@ def _radius_ratio(section: FileSection, keys: GearKeys, distance: float) -> floa
 
 
 def _count_teeth(values: ValueReader, value: object, path: Path) -> float:
-    """A number of teeth, which is whole, whatever decimals arithmetic has left behind."""
+    """Return a number of teeth, rounded from the result of arithmetic. Raises ProblemError if it is not whole."""
     teeth = values.positive(value, NUMBER, path)
     whole: float = np.floor(teeth + 0.5)
     if whole < 1 or abs(float(teeth) - float(whole)) > WHOLE_TEETH:

@@ -50,7 +50,9 @@ MAX_RUN_TURNS = 20  # from the x axis: as far as a run is integrated
 
 
 def build_dynamics(shape: schema.File, linkage: Linkage, values: ValueReader) -> SteadyTask | RunTask | None:
-    """What is asked of the law of motion."""
+    """Build the task of the law of motion: steady running, a single run, or None without the block. Raises
+    ProblemError.
+    """
     keys, driver = shape.dynamics, linkage.driver
     if keys is None:
         return None
@@ -140,12 +142,12 @@ def _build_profile(section: FileSection, place: Dimension, size: Dimension) -> D
 
 
 def _format_speed(speed: float) -> str:
-    """A bare speed is in rad/s, and is often meant in turns a minute."""
+    """Format a speed in rad/s and in rpm, as a bare speed is read in rad/s but often meant in rpm."""
     return f"{speed:.6g} rad/s = {speed * 30 / math.pi:.6g} rpm"
 
 
 def _build_motor(section: FileSection) -> MotorCharacteristic:
-    """Reduced to the driver."""
+    """Build the motor characteristic, reduced to the driver."""
     keys: optional_keys.MotorKeys = section.keys
     ratio = section.positive("ratio", NUMBER)
     wanted = MOTOR_KEYS[keys.kind]
@@ -178,7 +180,9 @@ def _build_motor(section: FileSection) -> MotorCharacteristic:
 
 
 def build_balancing(shape: schema.File, linkage: Linkage, values: ValueReader) -> BalancingTask | None:
-    """What is asked of balancing, which is found in doubles alone."""
+    """Build the balancing task, or None without the block. Balancing is computed in doubles only. Raises
+    ProblemError.
+    """
     keys = shape.balancing
     if keys is None or isinstance(values.units, ExtendedUnits):
         return None
@@ -258,7 +262,7 @@ LinkageWith = Callable[[Mapping[str, object]], Linkage]  # the linkage with othe
 def build_wheels(
     shape: schema.File, linkage: Linkage, values: ValueReader, other: LinkageWith
 ) -> tuple[WheelTask, ...]:
-    """What is asked of each wheel."""
+    """Build the tasks of all wheels with intermittent motion. Raises ProblemError."""
     return tuple(_build_wheel(name, keys, shape, linkage, values, other) for name, keys in shape.intermittent.items())
 
 

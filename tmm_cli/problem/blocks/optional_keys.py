@@ -20,7 +20,7 @@ def _checked_drive(found: Any) -> Any:
 
 
 class MotorKeys(Strict):
-    """A motor by its characteristic; speeds and moments are those of its own shaft."""
+    """A motor with its characteristic; speeds and torques refer to its own shaft."""
 
     kind: Literal["linear", "asynchronous"] = Field(
         description=(
@@ -38,7 +38,7 @@ class MotorKeys(Strict):
 
 
 class FlywheelKeys(Strict):
-    """A flywheel: where it sits and what it looks like; with `inertia` it is given, without one it is found."""
+    """A flywheel, its shaft and its form; with `inertia` it is given, without it its size is computed."""
 
     inertia: Value | None = Field(
         default=None,
@@ -52,7 +52,7 @@ class FlywheelKeys(Strict):
 
 
 class ProfileKeys(Strict):
-    """What drives, by a table; linear between its rows."""
+    """Driving moment or force as a table; linear between its rows."""
 
     against: Literal["time", "way"] = Field(
         description=(
@@ -68,7 +68,7 @@ class ProfileKeys(Strict):
 
 
 class RunKeys(Strict):
-    """A single run of the driver, integrated by time."""
+    """A single run of the driver, integrated over time."""
 
     from_: Value | None = Field(
         default=None, alias="from", description="driver coordinate at the start; default: that of position 0"
@@ -88,7 +88,7 @@ class RunKeys(Strict):
 
 
 class DynamicsKeys(Strict):
-    """Steady running, or a single run: the law of motion of the driver follows from what acts on the machine."""
+    """Law of motion of the driver under the acting forces: steady running, or a single run."""
 
     mean_speed: Value | None = Field(
         default=None,
@@ -103,11 +103,11 @@ class DynamicsKeys(Strict):
     run: RunKeys | None = Field(default=None, description="a single run instead of steady running")
 
 
-# The shape of the block `balancing`: counterweights that are sought, and a shaft with masses in planes.
+# Block `balancing`: counterweights to compute, and a shaft with masses in planes.
 
 
 class CounterweightKeys(Strict):
-    """A counterweight on a link; its size and its angle are found."""
+    """A counterweight on a link; its size and angle are computed."""
 
     about: Place | None = Field(
         default=None,
@@ -122,7 +122,7 @@ class CounterweightKeys(Strict):
 
 
 class RotorMassKeys(Strict):
-    """A mass that turns with the shaft."""
+    """A mass that rotates with the shaft."""
 
     mass: Value
     radius: Value
@@ -131,7 +131,7 @@ class RotorMassKeys(Strict):
 
 
 class RotorPlaneKeys(Strict):
-    """A plane in which a mass is sought."""
+    """A plane in which a balancing mass is computed."""
 
     at: Value = Field(description="coordinate of the plane along the shaft")
     radius: Value | None = Field(
@@ -147,7 +147,7 @@ def _expand_plane(found: Any) -> Any:
 
 
 class RotorKeys(Strict):
-    """A shaft with masses, balanced by others in one plane (statically) or in two (dynamically)."""
+    """A shaft with masses, balanced by masses in one plane (statically) or in two planes (dynamically)."""
 
     masses: list[RotorMassKeys] = Field(min_length=1, max_length=100)
     planes: list[
@@ -156,7 +156,7 @@ class RotorKeys(Strict):
 
 
 class BalancingKeys(Strict):
-    """What shakes the frame at constant speed of the driver, and what balances it."""
+    """Shaking force and moment on the frame at constant driver speed, and counterweights that balance them."""
 
     counterweights: dict[Name, CounterweightKeys] = Field(
         default_factory=dict, max_length=20, description="counterweights by the names of the links that carry them"
@@ -172,7 +172,7 @@ class BalancingKeys(Strict):
     rotor: RotorKeys | None = None
 
 
-# The shape of the block `intermittent`: wheels that a link takes along on some strokes and that stand on others.
+# Block `intermittent`: wheels that a link carries along in some strokes and that stand still in others.
 
 
 Values = Annotated[dict[Name, Value], Field(max_length=50)]
@@ -180,7 +180,7 @@ Settings = Annotated[list[Values], Field(min_length=1, max_length=12)]
 
 
 class WheelKeys(Strict):
-    """A ratchet wheel, a shaft on a one-way clutch, or a flange with slots, on the axis of the link that moves it."""
+    """A ratchet wheel, a shaft on a one-way clutch, or a slotted flange, on the axis of the link that moves it."""
 
     moves_with: Name = Field(description="link that carries the wheel along; it must be hinged to the frame")
     when: Literal["forward", "backward", "working stroke", "idle stroke"] = Field(

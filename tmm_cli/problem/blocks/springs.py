@@ -1,4 +1,4 @@
-"""Springs and friction in a problem file."""
+"""Springs and friction of a problem file: their keys and their building."""
 
 from __future__ import annotations
 
@@ -30,7 +30,9 @@ if TYPE_CHECKING:
 
 
 class SpringKeys(Strict):
-    """A spring between two links, or a cylinder that only pushes; `torsion` instead of `rate` for one that twists."""
+    """A spring between two links, or a cylinder with a constant force; `torsion` instead of `rate` for a torsion
+    spring.
+    """
 
     between: list[Name] = Field(min_length=2, max_length=2, description="two links; the frame may be one")
     at: list[Place] | None = Field(
@@ -56,24 +58,23 @@ class PairFrictionKeys(Strict):
 
 
 class FrictionKeys(Strict):
-    """Coulomb friction in pairs. Without this block nothing of it is computed."""
+    """Coulomb friction in pairs. Without this block friction is not computed."""
 
     coefficient: Value = Field(default=0, description="coefficient of friction in every pair not listed in `pairs`")
     radius: Value = Field(default=0, description="radius of the journal of every hinge not listed in `pairs`")
     pairs: dict[Name, PairFrictionKeys] = Field(default_factory=dict, max_length=300)
 
 
-# Springs and friction of a problem file.
+# Building of springs and friction.
 
 
 def add_springs(linkage: Linkage, shape: schema.File, values: ValueReader) -> Linkage:
-    """The linkage with its springs and friction."""
+    """Return the linkage with its springs and friction. Raises ProblemError."""
     springs, friction = _build_springs(linkage, shape, values), _build_friction(linkage, shape, values)
     return replace(linkage, springs=springs, friction=friction)
 
 
 def _build_springs(linkage: Linkage, shape: schema.File, values: ValueReader) -> tuple[SpringRecord, ...]:
-    """In the order of the file."""
     found = []
     for name, keys in shape.springs.items():
         check_name(name, ("springs", name), "load", shape.loads)
@@ -121,7 +122,7 @@ def _build_spring(name: str, keys: SpringKeys, linkage: Linkage, section: FileSe
 
 
 def _build_friction(linkage: Linkage, shape: schema.File, values: ValueReader) -> tuple[FrictionRecord, ...]:
-    """Pair by pair; none without its block."""
+    """Return the friction of each pair; empty without the block."""
     keys = shape.friction
     if keys is None:
         return ()

@@ -1,4 +1,4 @@
-"""Files of other programs: a format is a file here, and a line below; all are read into a Foreign, which is written."""
+"""File formats of other programs, one module each; all are read into an ImportedMechanism."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tmm_cli.problem.formats.imported_mechanism import ImportedMechanism
 
 
 class FileFormat(Protocol):
-    """A module."""
+    """Interface of the module of a format."""
 
     def recognised(self, text: str) -> bool: ...
     def read(self, text: str, file: str) -> ImportedMechanism: ...
@@ -25,7 +25,7 @@ FORMATS: Final[dict[str, FileFormat]] = {
 
 
 def read_mechanism(text: str, file: str) -> ImportedMechanism:
-    """The mechanism of a file in the format that it is of. Raises ProblemError."""
+    """Read the mechanism of a file, whichever supported format it has. Raises ProblemError."""
     for one in FORMATS.values():
         if one.recognised(text):
             return one.read(text, file)

@@ -1,4 +1,4 @@
-"""A mechanism as other programs save it: bodies in one place of the driver, with what could not be taken over."""
+"""A mechanism imported from another program, the reading of its file, and its text as a problem file."""
 
 from __future__ import annotations
 
@@ -23,7 +23,9 @@ LengthUnit = Literal["mm", "cm", "m", "in"]
 
 @dataclass(frozen=True)
 class ImportedBody:
-    """A moving link. points: names; one that is on several bodies, or on the frame, is a hinge. centre: its place."""
+    """A moving link. points: names; a point of several bodies, or of the frame, is a hinge. centre: position of the
+    centre of mass.
+    """
 
     name: str
     points: tuple[str, ...]
@@ -35,7 +37,7 @@ class ImportedBody:
 
 @dataclass(frozen=True)
 class ImportedSlide:
-    """A point of the runner on a straight guide of the carrier, which goes through a place at an angle (rad)."""
+    """A point of the runner on a straight guide of the carrier through `through`, at an angle (rad)."""
 
     runner: str
     point: str
@@ -46,10 +48,10 @@ class ImportedSlide:
 
 @dataclass(frozen=True)
 class ImportedDrive:
-    """What rotates a body on the frame, counterclockwise, or moves it along its guide on another body.
+    """Drive of a body: rotation on the frame (counterclockwise), or displacement along a guide of another body.
 
-    speed: in its unit, `length/s` for units of length of the file per second; acceleration: rad/s^2; on: the body with
-    the guide; at: displacement from the place of the guide (unit of lengths), None for a rotation.
+    speed: in `unit`, where `length/s` is the file's unit of length per second; acceleration: rad/s^2; on: body with
+    the guide; at: displacement from the point `through` of the guide (unit of length), None for a rotation.
     """
 
     body: str
@@ -62,7 +64,7 @@ class ImportedDrive:
 
 @dataclass(frozen=True)
 class ImportedLoad:
-    """A force (N) at a place of a body, or a moment (N*m) on it. turns: the force turns with the body."""
+    """A force (N) at a point of a body, or a moment (N*m) on it. turns: the force rotates with the body."""
 
     name: str
     body: str
@@ -74,10 +76,11 @@ class ImportedLoad:
 
 @dataclass(frozen=True)
 class ImportedMechanism:
-    """places: of all points, in the unit of lengths; frame: names of its points. gravity: m/s^2, None: ours.
+    """A mechanism in the configuration in which another program saved it.
 
-    one_place: the file is about the place in which it is saved, and no other. notes: what had to be interpreted;
-    left: what the problem file does not say. Both in whole sentences.
+    places: positions of all points, in the unit of length; frame: names of the points of the frame; gravity: m/s^2,
+    None for the default; one_place: the file describes only this configuration; notes: what had to be interpreted;
+    left: what was not imported. Both are whole sentences.
     """
 
     program: str
@@ -96,7 +99,7 @@ class ImportedMechanism:
     left: tuple[str, ...] = field(default=())
 
 
-# Values of a foreign file with their places in it, so that a mistake is said where it stands.
+# Values of an imported file with their positions in it, for error messages.
 
 
 MAX_ITEMS = 500  # items of a list, keys of a mapping
@@ -104,20 +107,22 @@ MAX_ITEMS = 500  # items of a list, keys of a mapping
 
 @dataclass(frozen=True)
 class FileNode:
-    """A value of a file that has been read. All methods raise ProblemError where something else is wanted."""
+    """A value of a file that has been read. Its methods raise ProblemError, located in the file, if the value is of
+    another kind.
+    """
 
     tree: Tree
     data: Any
     path: Path = ()
 
     def refused(self, message: str, allowed: str | None = None, near: str | None = None) -> ProblemError:
-        """The error, with its place."""
+        """Return the error, located in the file."""
         found = None if isinstance(self.data, dict | list) else quote(self.data)
         error = ProblemError(message, path=self.path, found=found, allowed=allowed, near=near)
         return error.located(self.tree.file, self.tree)
 
     def get(self, key: str) -> FileNode | None:
-        """The value of a key, None where there is none."""
+        """Return the value of a key, or None."""
         found = self.mapping().get(key)
         return None if found is None else FileNode(self.tree, found, (*self.path, key))
 
@@ -129,7 +134,7 @@ class FileNode:
         return found
 
     def mapping(self) -> dict[str, Any]:
-        """Its keys."""
+        """Return the value as a dict."""
         if not isinstance(self.data, dict):
             raise self.refused(_("expected keys with values"))
         self._bounded(len(self.data))
@@ -140,32 +145,32 @@ class FileNode:
             raise self.refused(_("this is too long: at most {max_length}").format(max_length=MAX_ITEMS))
 
     def pairs(self) -> Iterator[tuple[str, FileNode]]:
-        """Its keys and their values."""
+        """Yield keys and values."""
         for key, value in self.mapping().items():
             yield key, FileNode(self.tree, value, (*self.path, key))
 
     def items(self) -> list[FileNode]:
-        """Of a list."""
+        """Return the items of a list."""
         if not isinstance(self.data, list):
             raise self.refused(_("expected a list [..., ...]"))
         self._bounded(len(self.data))
         return [FileNode(self.tree, value, (*self.path, k)) for k, value in enumerate(self.data)]
 
     def text(self) -> str:
-        """A name."""
+        """Return the value as a name."""
         if isinstance(self.data, bool) or not isinstance(self.data, str | int) or len(str(self.data)) > 100:
             raise self.refused(_("expected a name"))
         return str(self.data)
 
     def one_of(self, names: Iterable[str]) -> str:
-        """One of the names that are known."""
+        """Return the value, which must be one of the names."""
         known, found = list(names), self.text()
         if found not in known:
             raise self.refused(_("this value is not allowed here"), ", ".join(known), nearest_name(found, known))
         return found
 
     def number(self) -> float:
-        """A number that a mechanism can have."""
+        """Return the value as a number of a size that a mechanism can have."""
         if isinstance(self.data, bool) or not isinstance(self.data, int | float):
             raise self.refused(_("expected a number"))
         if not -LARGEST <= self.data <= LARGEST:
@@ -173,14 +178,14 @@ class FileNode:
         return float(self.data)
 
     def vector(self) -> complex:
-        """Two coordinates; a third one, of a plane mechanism, is left out."""
+        """Return two coordinates; a third one is ignored, as the mechanism is planar."""
         items = self.items()
         if len(items) not in (2, 3):
             raise self.refused(_("expected two coordinates [x, y]"))
         return complex(items[0].number(), items[1].number())
 
 
-# A mechanism of another program as the text of a problem file.
+# The mechanism as the text of a problem file.
 
 
 PLAIN_NAME = re.compile(r"(?!at$|g\d+$)[^\W\d_]\w{0,11}|[1-9]\d?")  # `at` and g1 mean something else beside them
@@ -189,13 +194,13 @@ ROUNDING = 1e-15  # of the size: a coordinate that is less comes from rounding
 
 
 def problem_file_text(foreign: ImportedMechanism, source: str) -> str:
-    """The text; source: the name of the file that was read."""
+    """Return the text of a problem file with this mechanism. source: name of the file that was read."""
     return "\n".join(_ProblemFileWriter.of(foreign).lines(source)) + "\n"
 
 
 @dataclass(frozen=True)
 class _ProblemFileWriter:
-    """names: of points, and links: of bodies, as the problem file calls them; axes: of bodies, origin and angle."""
+    """names: of points, links: of bodies, as the problem file calls them; axes: origin and angle of each body."""
 
     foreign: ImportedMechanism
     names: dict[str, str]
@@ -348,7 +353,9 @@ class _ProblemFileWriter:
 
 
 def _axes(foreign: ImportedMechanism, body: ImportedBody) -> tuple[complex, float]:
-    """Origin in the first point, x axis towards the next one that is elsewhere."""
+    """Return the axes of a body: origin in its first point, x axis towards the next point that does not coincide with
+    it.
+    """
     places = [foreign.places[point] for point in body.points]
     origin = places[0] if places else body.centre or 0j
     away = next((z for z in places if abs(z - origin) > SAME * _mechanism_size(foreign)), None)
@@ -356,7 +363,7 @@ def _axes(foreign: ImportedMechanism, body: ImportedBody) -> tuple[complex, floa
 
 
 def _has_extent(foreign: ImportedMechanism, name: str) -> bool:
-    """Whether two points of a body are in two places."""
+    """Return True if a body has two points that do not coincide."""
     body = next(body for body in foreign.bodies if body.name == name)
     places = [foreign.places[point] for point in body.points]
     return any(abs(z - places[0]) > SAME * _mechanism_size(foreign) for z in places)
@@ -367,14 +374,16 @@ def _mechanism_size(foreign: ImportedMechanism) -> float:
 
 
 def _choose_plain_names(names: Iterable[str], others: Iterable[str], *, digits: bool = False) -> dict[str, str]:
-    """A plain name for each: its own, or else the first of the others that is free. digits: may be a name."""
+    """Return a plain name for each: its own if it is plain, else the first free one of `others`. digits: numbers are
+    plain too.
+    """
     own = list(dict.fromkeys(names))
     free = (other for other in others if other not in own)
     return {name: name if _is_plain_name(name, digits) else next(free) for name in own}
 
 
 def _is_plain_name(name: str, digits: bool) -> bool:
-    """Whether YAML reads it as a name: no null, no true, no nan."""
+    """Return True if YAML reads it as a name, not as null, true or nan."""
     if not PLAIN_NAME.fullmatch(name):
         return False
     try:
@@ -385,7 +394,7 @@ def _is_plain_name(name: str, digits: bool) -> bool:
 
 
 def _letter_names() -> Iterator[str]:
-    """A, B, ..., Z, A1, B1, ...."""
+    """Yield A, B, ..., Z, A1, B1, ...."""
     for k in count():
         yield from (letter + (str(k) if k else "") for letter in ascii_uppercase)
 

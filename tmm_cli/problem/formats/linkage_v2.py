@@ -1,4 +1,7 @@
-"""Places of points by the steps of linkage/v2: rays, intersections of circles and lines, offsets."""
+"""linkage/v2: the YAML format of the coursework client nickadminroot/tmm-cli (its skills/tmm-yaml/REFERENCE.md).
+
+Points are constructed step by step: rays, intersections of circles and lines, offsets.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,7 @@ from tmm_cli.problem.reader import read_text
 
 
 class PointConstruction:
-    """Points of the file in its one place of the driver. Raises ProblemError."""
+    """Positions of the points of the file, in its one configuration. Raises ProblemError."""
 
     def __init__(self, top: FileNode) -> None:
         self.parameters = dict(top["parameters"].pairs()) if top.get("parameters") else {}
@@ -37,11 +40,11 @@ class PointConstruction:
             self.known[name] = self.place(of.one_of(self.known))
 
     def place(self, name: str) -> complex:
-        """Of a point that is known."""
+        """Return the position of a known point."""
         return self.known[name]
 
     def number(self, node: FileNode) -> float:
-        """A number, or that of a parameter."""
+        """Return a number, or the value of the named parameter."""
         for __ in range(10):  # a parameter may stand for another
             if not isinstance(node.data, str):
                 return node.number()
@@ -49,7 +52,7 @@ class PointConstruction:
         raise node.refused(_("the parameters refer to each other in a circle"))
 
     def of(self, step: FileNode, key: str) -> complex:
-        """The place that a key names."""
+        """Return the position of the point that a key names."""
         return self.place(step[key].one_of(self.known))
 
 
@@ -72,7 +75,7 @@ def _circle_circle(points: PointConstruction, step: FileNode) -> complex:
 
 
 def _circle_line(across: complex) -> Callable[[PointConstruction, FileNode], complex]:
-    """Of a circle with a line x = ... or y = ...."""
+    """Return the construction step that intersects a circle with a line x = ... or y = ...."""
 
     def found(points: PointConstruction, step: FileNode) -> complex:
         centre, radius = points.of(step, "center"), points.number(step["radius"])
@@ -85,7 +88,7 @@ def _circle_line(across: complex) -> Callable[[PointConstruction, FileNode], com
 
 
 def _circle_ray(points: PointConstruction, step: FileNode) -> complex:
-    """Of a circle with a ray at an angle, or through a second point and turned by one."""
+    """Intersect a circle with a ray at an angle, or with a ray through a second point, rotated by an angle."""
     centre, radius, start = points.of(step, "center"), points.number(step["radius"]), points.of(step, "from")
     if step.get("through"):
         turn = cmath.rect(1, math.radians(points.number(step["rotate_deg"]))) if step.get("rotate_deg") else 1
@@ -118,7 +121,7 @@ SIDES: Final[dict[str, Callable[[complex], float]]] = {
 
 
 def _choose_branch(step: FileNode, ends: tuple[complex, complex], along: complex) -> complex:
-    """That of two places which the step names; ccw: to the left of the line of centres."""
+    """Return the one of two intersections that the step names; ccw: left of the line of centres."""
     branch = step["branch"].one_of((*SIDES, "ccw", "cw"))
     if branch in SIDES:
         return max(ends, key=SIDES[branch])
@@ -194,12 +197,12 @@ HINGE, GUIDE = "revolute", "prismatic"
 
 
 def recognised(text: str) -> bool:
-    """Whether the text is of this format."""
+    """Return True if the text is in this format."""
     return re.search(r"^[ \t]*schema:[ \t]*[\"']?linkage/v2", text, re.MULTILINE) is not None
 
 
 def read(text: str, file: str) -> ImportedMechanism:
-    """The mechanism of a file. Raises ProblemError."""
+    """Read the mechanism of a file. Raises ProblemError."""
     top = FileNode(tree := read_text(text, file), tree.data)
     return _LinkageV2Reader(top, PointConstruction(top)).foreign()
 
@@ -210,7 +213,7 @@ class _LinkageV2Reader:
     points: PointConstruction
 
     def foreign(self) -> ImportedMechanism:
-        """All of it."""
+        """Return the mechanism. Raises ProblemError."""
         hinges, slides = self._hinges(), self._slides()
         names = _name_points(hinges, [(slide.runner, slide.point) for slide in slides])
         bodies = tuple(
@@ -263,7 +266,7 @@ class _LinkageV2Reader:
         return FRAME if name == "ground" else node.one_of(self.top["bodies"].mapping())
 
     def _hinges(self) -> list[list[tuple[str, str]]]:
-        """Of each turning pair the bodies with their points."""
+        """Return for each revolute pair its bodies with their points."""
         found = []
         for joint in self.top["joints"].items():
             if joint["type"].one_of((HINGE, GUIDE)) == HINGE:
@@ -287,7 +290,7 @@ class _LinkageV2Reader:
         return found
 
     def _frame(self, body: str) -> tuple[complex, float]:
-        """Origin and direction of a body's axes; those of a slider are parallel to the frame's."""
+        """Return origin and direction of the axes of a body; those of a slider are parallel to the frame's."""
         if body == FRAME:
             return 0j, 0.0
         frame = self.top["bodies"][body]["frame"]
@@ -298,7 +301,7 @@ class _LinkageV2Reader:
         return origin, math.radians(self._value(frame, "angle_deg"))
 
     def _through(self, node: FileNode, origin: complex, turn: float) -> complex:
-        """A place of a guide: a point, or coordinates in the axes of its body."""
+        """Return a point of a guide, given by name or by coordinates in the axes of its body."""
         if isinstance(node.data, str):
             return self.points.place(node.one_of(self.points.known))
         return origin + node.vector() * cmath.rect(1, turn)
@@ -316,7 +319,7 @@ class _LinkageV2Reader:
         return self.points.place(com.one_of(self.points.known))
 
     def _with_points(self, body: ImportedBody) -> ImportedBody:
-        """With the masses that are attached to its points."""
+        """Return the body with the masses attached to its points."""
         mass, inertia, centre = body.mass, body.inertia, body.centre or 0j
         for own in self.top["attached_masses"].items() if self.top.get("attached_masses") else ():
             if self._body(own["body"]) == body.name:
@@ -369,7 +372,7 @@ class _LinkageV2Reader:
 
 
 def _name_points(hinges: list[list[tuple[str, str]]], runners: list[tuple[str, str]]) -> dict[tuple[str, str], str]:
-    """A name for each point of each body; those of a hinge have the same, and no others."""
+    """Return a name for each point of each body: the same for the points of a hinge, different otherwise."""
     joined: list[set[tuple[str, str]]] = []
     for ends in [*hinges, *([one] for one in runners)]:
         own = set(ends).union(*(other for other in joined if other & set(ends)))

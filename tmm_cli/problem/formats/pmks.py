@@ -34,10 +34,10 @@ UNIT_NAMES: Final[dict[LengthUnit, str]] = {"cm": "g, kg*cm^2, N", "m": "kg, kg*
 
 @dataclass(frozen=True)
 class PmksJoint:
-    """A joint. The attributes below `input` describe a joint that slides, except `speed`.
+    """A joint. The attributes below `input` describe a sliding joint, except `speed`.
 
-    angle: of a guide on the frame, rad; carrier, slot: the link with the slot and two of its joints on the slot;
-    welded: the links on the joint do not rotate relative to the guide (of a revolute joint: they are one link);
+    angle: of a guide on the frame, rad; carrier, slot: link with the slot and two of its joints on the slot;
+    welded: the links of the joint do not rotate relative to the guide (revolute joint: they are one link);
     mass: of the sliding block; speed: of the drive, rpm or units of length per second, 0: that of the file.
     """
 
@@ -56,7 +56,7 @@ class PmksJoint:
 
 @dataclass(frozen=True)
 class PmksLink:
-    """A link. piston: a block of an older file, with its sliding joint and its pin; parts: links welded into it."""
+    """A link. piston: a sliding block of an older file, with its sliding joint and pin; parts: links welded into it."""
 
     id: str
     joints: tuple[str, ...]
@@ -70,7 +70,7 @@ class PmksLink:
 
 @dataclass(frozen=True)
 class PmksForce:
-    """From a place to another one; outward: it points so, else the other way. size in N, or in lbf."""
+    """A force between two points; outward: it points from start to end, else the other way. size: N, or lbf."""
 
     id: str
     link: str
@@ -83,7 +83,9 @@ class PmksForce:
 
 @dataclass(frozen=True)
 class PmksFile:
-    """A file of PMKS+. rpm: positive counterclockwise; linear: speed of driven sliders, units of length per second."""
+    """Content of a PMKS+ file. rpm: positive counterclockwise; linear: speed of driven sliders, units of length per
+    second.
+    """
 
     joints: tuple[PmksJoint, ...]
     links: tuple[PmksLink, ...]
@@ -98,13 +100,13 @@ class PmksFile:
 
 
 def import_pmks(saved: PmksFile, file: str) -> ImportedMechanism:
-    """The mechanism. Raises ProblemError."""
+    """Convert the content of a PMKS+ file to a mechanism. Raises ProblemError."""
     _refuse_wrong_names(saved, file)
     return _PmksMechanism.of(_fold_blocks(saved, file), file).foreign()
 
 
 def _refuse_wrong_names(saved: PmksFile, file: str) -> None:
-    """Refuse names that are repeated or that no record has."""
+    """Refuse names that occur twice or that refer to no record."""
     for records in (saved.joints, saved.links):
         if len(records) > MAX_RECORDS:
             raise ProblemError(_("this is too long: at most {max_length}").format(max_length=MAX_RECORDS), file=file)
@@ -133,7 +135,9 @@ def _refuse_wrong_names(saved: PmksFile, file: str) -> None:
 
 
 def _fold_blocks(saved: PmksFile, file: str) -> PmksFile:
-    """The same file with each block of an older file, its sliding joint and its pin written as one joint."""
+    """Return the file with each sliding block of an older version, its sliding joint and its pin replaced by one
+    joint.
+    """
     joints = {joint.id: joint for joint in saved.joints}
     links, renamed = [link for link in saved.links if not link.piston], dict[str, str]()
     for block in (link for link in saved.links if link.piston):
@@ -170,7 +174,7 @@ def _fold_blocks(saved: PmksFile, file: str) -> PmksFile:
 
 @dataclass(frozen=True)
 class _PmksMechanism:
-    """Bodies of a file. frame: links that are pinned to the frame twice; owner: of each link, the one it is part of."""
+    """Bodies of a file. frame: links pinned to the frame at two points; owner: for each link, the link it is part of."""
 
     saved: PmksFile
     file: str
@@ -199,7 +203,7 @@ class _PmksMechanism:
                     joints[name] = joints[name] if joints[name].slides else replace(joints[name], ground=True)
 
     def foreign(self) -> ImportedMechanism:
-        """All of it."""
+        """Return the mechanism. Raises ProblemError."""
         slides = list(self._slides())
         blocks = [
             ImportedBody(name, (joint.id,), mass=joint.mass * KILOGRAMS[self.saved.length])
@@ -242,7 +246,7 @@ class _PmksMechanism:
         )
 
     def _riders(self, joint: PmksJoint) -> list[str]:
-        """Moving links on a joint; of one that slides without the link that has the slot."""
+        """Return the moving links on a joint; for a sliding joint without the link that has the slot."""
         carrier = self._carrier(joint) if joint.slides else ""
         return [
             link.id
@@ -255,7 +259,7 @@ class _PmksMechanism:
         return FRAME if owner in self.frame else owner
 
     def _block(self, joint: PmksJoint) -> str:
-        """Name of the sliding block of a joint, if its links rotate relative to the guide."""
+        """Return the name of the sliding block of a joint; empty if its links do not rotate relative to the guide."""
         return f"block_{joint.id}" if joint.slides and not joint.welded else ""
 
     def _slides(self) -> Iterator[ImportedSlide]:
@@ -279,7 +283,7 @@ class _PmksMechanism:
                 yield ImportedSlide(self._block(joint) or riders[0], joint.id, carrier, through, angle)
 
     def _slot(self, joint: PmksJoint) -> tuple[complex, float]:
-        """A point of the slot and its angle."""
+        """Return a point of the slot and its angle (rad)."""
         carrier = next(link for link in self.saved.links if link.id == self.owner[joint.carrier])
         if joint.ground:
             raise self._refused(joint, _("this slot is recorded both on the frame and on a link"), quote(joint.carrier))

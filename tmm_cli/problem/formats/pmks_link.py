@@ -44,13 +44,13 @@ IGNORED_TAGS = "JLFCHK"  # tags of locks, anchors of centres of mass, held lengt
 
 
 def recognised(text: str) -> bool:
-    """Whether the text is of this format."""
+    """Return True if the text is in this format."""
     text = text.strip()
     return len(text) < MAX_TEXT_LENGTH and (LINK_TEXT.fullmatch(text) or NEW_DOCUMENT.fullmatch(text)) is not None
 
 
 def read(text: str, file: str) -> ImportedMechanism:
-    """The mechanism of a file. Raises ProblemError."""
+    """Read the mechanism of a file. Raises ProblemError."""
     if NEW_DOCUMENT.fullmatch(text.strip()):
         raise ProblemError(
             _("documents of the new PMKS+ editor are not supported"),
@@ -64,7 +64,7 @@ def read(text: str, file: str) -> ImportedMechanism:
 
 
 def _strip_checks(content: str, file: str) -> str:
-    """The text without its check character and its digest. Raises ProblemError if they do not fit."""
+    """Return the text without its check character and checksum. Raises ProblemError if they do not match."""
     body, mark, digest = content.rpartition("*")
     if mark and digest != _digest(body):
         raise ProblemError(
@@ -85,7 +85,7 @@ def _strip_checks(content: str, file: str) -> str:
 
 
 def _digest(body: str) -> str:
-    """FNV-1a of 32 bits over the characters, six digits to the base 62."""
+    """Return the 32-bit FNV-1a hash of the characters as six base-62 digits."""
     value = 0x811C9DC5
     for char in body:
         value = (value ^ ord(char)) * 0x01000193 & 0xFFFFFFFF
@@ -98,7 +98,7 @@ def _digest(body: str) -> str:
 
 @dataclass(frozen=True)
 class _LinkRecords:
-    """Records of a link, field by field. exact: numbers that thousandths do not hold, by kind, id and index."""
+    """Records of a web link, field by field. exact: numbers finer than thousandths, by kind, id and index."""
 
     settings: tuple[str, ...]
     joints: list[list[str]]
@@ -110,7 +110,7 @@ class _LinkRecords:
 
     @classmethod
     def of(cls, content: str, file: str) -> _LinkRecords:
-        """Raises ProblemError."""
+        """Split the text into records. Raises ProblemError."""
         *settings, rest = content.split(".", 4)
         joints, rest = _split_records(rest)
         links, rest = _split_records(rest)
@@ -120,7 +120,7 @@ class _LinkRecords:
         return cls(tuple(settings), records[0], records[1], records[2], exact, left, file)
 
     def saved(self) -> PmksFile:
-        """The file. Raises ProblemError."""
+        """Return the content of the file. Raises ProblemError."""
         flags, decimals, whole, words = self.settings
         on = self._integer(flags, ("settings",), signed=False)
         if not words or words[0] not in DIGITS[: len(LENGTHS)]:
@@ -192,7 +192,7 @@ class _LinkRecords:
         )
 
     def _link(self, fields: list[str]) -> tuple[PmksLink, str]:
-        """And the character that says whether it is a link of its own and what PMKS+ computes of it."""
+        """Return the link and the character for its kind: root or welded, and what PMKS+ computes automatically."""
         kind, form, name = fields[0][:1], fields[0][1:2], fields[0][2:]
         path = ("links", name)
         if not name or len(fields) < 9 or form not in ("R", "P"):
@@ -209,7 +209,7 @@ class _LinkRecords:
         return PmksLink(name, joints, form == "P", mass, inertia, complex(x, y), fields[1], parts), kind
 
     def _whole(self, link: PmksLink) -> PmksLink:
-        """The link with the parts of its parts, and the joints of all."""
+        """Return the link with the parts of its parts, and the joints of all."""
         records = {fields[0][2:]: self._link(fields)[0] for fields in self.links}
         parts, joints = list(link.parts), list(link.joints)
         for name in parts:  # grows while it is read
@@ -235,7 +235,7 @@ class _LinkRecords:
     def _number(
         self, path: tuple[str, ...], kind: str, name: str, index: int, text: str, needed: bool = False
     ) -> float:
-        """Of a field in thousandths; an empty one is zero unless it is needed."""
+        """Return a field in thousandths as a number; an empty field is zero unless it is needed."""
         if (kind, name, index) in self.exact:
             return self.exact[kind, name, index]
         return self._integer(text, path) / 1000 if text or needed else 0.0
@@ -254,7 +254,9 @@ class _LinkRecords:
 
 
 def _split_records(rest: str) -> tuple[list[str], str]:
-    """Joints, links or forces, and what comes after: each ends with a full stop, and all of them with one more."""
+    """Return the records of joints, links or forces, and the rest; a full stop ends each record and one more ends them
+    all.
+    """
     found = []
     while rest and rest[0] != ".":
         item, __, rest = rest.partition(".")
@@ -263,7 +265,7 @@ def _split_records(rest: str) -> tuple[list[str], str]:
 
 
 def _read_entries(tail: str, file: str) -> tuple[dict[tuple[str, str, int], float], tuple[str, ...]]:
-    """Tagged entries behind the records: exact numbers, and what is not carried over. Raises ProblemError."""
+    """Return exact numbers and texts about what is not imported, from the tagged entries. Raises ProblemError."""
     exact: dict[tuple[str, str, int], float] = {}
     left: list[str] = []
     for entry in filter(None, tail.split(",")):

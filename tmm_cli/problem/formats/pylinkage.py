@@ -22,12 +22,12 @@ LINK_TYPES = ("ground", "driver", "arc_driver", "link")
 
 
 def recognised(text: str) -> bool:
-    """Whether the text is of this format."""
+    """Return True if the text is in this format."""
     return text.lstrip().startswith("{") and '"joints"' in text and '"links"' in text
 
 
 def read(text: str, file: str) -> ImportedMechanism:
-    """The mechanism of a file. Raises ProblemError."""
+    """Read the mechanism of a file. Raises ProblemError."""
     top = FileNode(tree := read_text(text, file), tree.data)
     joints: dict[str, FileNode] = {}
     for joint in top["joints"].items():
@@ -104,7 +104,7 @@ def read(text: str, file: str) -> ImportedMechanism:
 
 
 def _frame_joints(joints: dict[str, FileNode], links: list[FileNode]) -> tuple[str, ...]:
-    """Joints of the frame: those called so, of its link, and those that a driver turns about."""
+    """Return the joints of the frame: of type ground, of the ground link, and centres of rotation of drivers."""
     found = [name for name, joint in joints.items() if _joint_type(joint) == "ground"]
     for link in links:
         if link["type"].data == "ground":

@@ -1,6 +1,6 @@
-"""Starting files for `tmm new`: every *.yaml beside this file is one; its title says what it is.
+"""Templates of problem files for `tmm new`: every *.yaml beside this file is one; its title describes it.
 
-They are written in English. Titles, names of links and comments have their translations in translations/words.yaml;
+They are written in English. Titles, names of links and comments are translated in translations/words.yaml;
 everything else is the same in every language.
 """
 
@@ -25,7 +25,7 @@ Translate = Callable[[str], str]
 
 
 def list_templates(language: str = ENGLISH) -> dict[str, str]:
-    """Names of the templates and their titles."""
+    """Return the titles of the templates by name."""
     translate, found = _translator(language), {}
     for entry in sorted(files(__name__).iterdir(), key=lambda e: e.name):
         if entry.name.endswith(".yaml"):
@@ -35,7 +35,9 @@ def list_templates(language: str = ENGLISH) -> dict[str, str]:
 
 
 def template_text(name: str, language: str = ENGLISH, file: str | None = None) -> str:
-    """The file, with its comments in a language. file: its name, as its first comment gives it to `tmm run`."""
+    """Return a template with its comments in a language. file: name of the new file, for the command in its first
+    comment.
+    """
     text = files(__name__).joinpath(f"{name}.yaml").read_text(encoding="utf-8")
     first, rest = text.split("\n", 1)
     first = first.replace(f"{name}.yaml", "{file}")
@@ -48,7 +50,7 @@ def template_text(name: str, language: str = ENGLISH, file: str | None = None) -
 
 
 def load_translations() -> list[dict[str, str]]:
-    """Texts of templates by language."""
+    """Return the texts of the templates, each in every language."""
     text = files(__name__).joinpath("translations/words.yaml").read_text(encoding="utf-8")
     found: list[dict[str, str]] = yaml.safe_load(text)
     return found
@@ -62,7 +64,9 @@ def _translator(language: str) -> Translate:
 
 
 def _translate_lines(lines: list[str], translate: Translate) -> list[str]:
-    """Lines of a template: comments of several lines are paragraphs, broken anew; others stand behind their values."""
+    """Translate lines of a template: comments of several lines are paragraphs, wrapped anew; others follow their
+    values.
+    """
     found: list[str] = []
     paragraph: list[str] = []
     indent = ""
