@@ -1,4 +1,4 @@
-"""Messages for the errors of mechanics, with the key of the file that each concerns; one function per class of error."""
+"""Messages for the errors of mechanics, with the key of the file that each concerns; one function for each class."""
 
 from __future__ import annotations
 

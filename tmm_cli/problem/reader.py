@@ -21,7 +21,7 @@ from tmm_cli.language import _
 from tmm_cli.problem.errors import MAX_DEPTH, Path, ProblemError, SourcePosition, Tree, quote, unknown_name_error
 from tmm_cli.problem.scalars import HIDDEN, Scalar, decimal_comma_error, is_split_number, plain_value
 
-# Tokens in a list or mapping in brackets: a quoted text, a comment, a bracket, or a line end with the indentation after it.
+# Tokens of a list or mapping in brackets: quoted text, a comment, a bracket, or a line end with the indentation after it.
 _IN_BRACKETS = re.compile(r"""'[^']*'|"(?:[^"\\]|\\.)*"|(?<=\s)\#.*|[][{}]|\n(?P<indent>\ *)(?=[^\s\#])""", re.VERBOSE)
 
 
@@ -329,7 +329,7 @@ _TAB = re.compile(r"^ *\t[ \t]*[^\s#]", re.MULTILINE)
 
 
 def decimal_comma_hint(tree: Tree, path: Path) -> str | None:
-    """Return a hint for an error if the list at `path` may be a number with a decimal comma, like `[1,5]`; else None."""
+    """Return a hint for an error if the list at `path`, such as `[1,5]`, may be a number; else None."""
     written = tree.commas.get(path)
     return written and f"decimal comma? write {written}"
 
