@@ -294,8 +294,8 @@ class Parser:
     def joined(left: PhysicalValue, right: PhysicalValue, power: int) -> Dimension | None:
         """Return the dimension of a product or quotient.
 
-        A bare number is a pure factor, and stays bare beside a number; a ratio of lengths is a number, not bare, so that it
-        cannot be taken for degrees or millimetres.
+        A bare number is a pure factor, and stays bare beside a number; a ratio of lengths is a number, not bare, so
+        that it         cannot be taken for degrees or millimetres.
         """
         joined = (left.dimension or NUMBER).times(right.dimension or NUMBER, power)
         return None if joined == NUMBER and None in (left.dimension, right.dimension) else joined

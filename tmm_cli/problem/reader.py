@@ -21,7 +21,7 @@ from tmm_cli.language import _
 from tmm_cli.problem.errors import MAX_DEPTH, Path, ProblemError, SourcePosition, Tree, quote, unknown_name_error
 from tmm_cli.problem.scalars import HIDDEN, Scalar, decimal_comma_error, is_split_number, plain_value
 
-# Tokens of a list or mapping in brackets: quoted text, a comment, a bracket, or a line end with the indentation after it.
+# Tokens of a list or mapping in brackets: quoted text, comment, bracket, line end with the indentation after it.
 _IN_BRACKETS = re.compile(r"""'[^']*'|"(?:[^"\\]|\\.)*"|(?<=\s)\#.*|[][{}]|\n(?P<indent>\ *)(?=[^\s\#])""", re.VERBOSE)
 
 

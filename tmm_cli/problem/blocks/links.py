@@ -56,7 +56,7 @@ class LinksAndPairs:
 
 
 def build_links(shape: schema.File, values: ValueReader) -> LinksAndPairs:
-    """Build links in the order of the file, hinges where they share points, and prismatic pairs. Raises ProblemError."""
+    """Build links in the order of the file, hinges at shared points, and prismatic pairs. Raises ProblemError."""
     reader = _LinkReader(shape, values)
     slides = reader.slides()
     owners: dict[str, list[str]] = {}

@@ -174,7 +174,7 @@ def _fold_blocks(saved: PmksFile, file: str) -> PmksFile:
 
 @dataclass(frozen=True)
 class _PmksMechanism:
-    """Bodies of a file. frame: links pinned to the frame at two points; owner: for each link, the link it is part of."""
+    """Bodies of a file. frame: links pinned to the frame at two points; owner: for each link, its whole link."""
 
     saved: PmksFile
     file: str
