@@ -295,7 +295,7 @@ class Parser:
         """Return the dimension of a product or quotient.
 
         A bare number is a pure factor, and stays bare beside a number; a ratio of lengths is a number, not bare, so
-        that it         cannot be taken for degrees or millimetres.
+        that it cannot be taken for degrees or millimetres.
         """
         joined = (left.dimension or NUMBER).times(right.dimension or NUMBER, power)
         return None if joined == NUMBER and None in (left.dimension, right.dimension) else joined
