@@ -86,3 +86,14 @@ def test_every_command_of_the_readme_is_one_that_the_program_takes():
     calls = re.findall(r"\.venv/bin/(tmm [^\n`&]*)", text)
     assert len(calls) > 4
     assert all(parsed(call) for call in calls)
+
+
+def test_the_readme_of_the_package_names_only_paths_that_exist():
+    text = text_of(ROOT / "tmm_cli" / "README.md")
+    named_paths = set(re.findall(r"`((?:[\w.-]+/)+[\w.-]*|[\w.-]+\.(?:py|pyi|txt|md|toml))`", text))
+    named_paths |= set(re.findall(r"(?<= )tests/[\w/]+\.py", text))
+    missing = [
+        path for path in sorted(named_paths) if not (ROOT / "tmm_cli" / path).exists() and not (ROOT / path).exists()
+    ]
+    assert len(named_paths) > 50
+    assert missing == ["__init__.pyi"], "the stub of any subpackage"
