@@ -158,7 +158,7 @@ def six_bar(
         "F.x": F5,
         "F.v": vF,
         "F.a": aF,
-        **{f"S{i + 1}.{t}": part[i] for t, part in (("x", S), ("v", v), ("a", acc)) for i in range(4)},
+        **{f"S{i + 1}.{t}": component[i] for t, component in (("x", S), ("v", v), ("a", acc)) for i in range(4)},
         "2.omega": omega2,
         "3.omega": omega3,
         "4.omega": omega4,
@@ -238,7 +238,7 @@ def shaper(
         "E.x": E,
         "E.v": vE,
         "E.a": aE,
-        **{f"S{i + 1}.{t}": part[i] for t, part in (("x", S), ("v", v), ("a", acc)) for i in range(5)},
+        **{f"S{i + 1}.{t}": component[i] for t, component in (("x", S), ("v", v), ("a", acc)) for i in range(5)},
         "3.omega": omega3,
         "4.omega": omega4,
         "3.epsilon": epsilon3,
@@ -270,23 +270,23 @@ class HandCodedMechanism:
 
     def linkage(self) -> Linkage:
         """Reference of that name with constant loads: the code by hand has no tables and no strokes."""
-        found = reference(self.name).case.linkage
-        (load,) = found.loads
+        linkage = reference(self.name).case.linkage
+        (load,) = linkage.loads
         force = load.force * (1 if load.table is None else load.table.values[0])
-        return replace(found, loads=(replace(load, force=force, table=None, when="always"),))
+        return replace(linkage, loads=(replace(load, force=force, table=None, when="always"),))
 
     def variants(self, count: int, seed: int = 1) -> list[Linkage]:
         """Return linkages whose moving links are up to 3 % longer; the first is the reference itself."""
         first, random = self.linkage(), np.random.default_rng(seed)
-        found = [first]
+        linkages = [first]
         for _ in range(count - 1):
             links = dict(first.links)
             for name in self.longer:
                 by, link = float(1 + 0.03 * random.random()), first.links[name]
                 points = {point: place * by for point, place in link.points.items()}
                 links[name] = replace(link, points=points, centre=link.centre * by)
-            found.append(replace(first, links=links))
-        return found
+            linkages.append(replace(first, links=links))
+        return linkages
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -298,8 +298,8 @@ class HandCodedMechanism:
         """Return the product's function for the same results."""
 
         def asked(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
-            found = read_all(motion, reactions)
-            return {name: found[name] for name in self.names}
+            results = read_all(motion, reactions)
+            return {name: results[name] for name in self.names}
 
         return prepare_batch(linkages, asked)
 

@@ -79,17 +79,17 @@ def _dash_style(board: AccuracyRow) -> str:
 
 
 def _draw_family(axes: Any, rows: list[AccuracyRow], quantity: Any) -> None:
-    there = [row for row in rows if row.microseconds is not None and not np.isnan(row.errors[quantity])]
-    if not there:
+    timed_rows = [row for row in rows if row.microseconds is not None and not np.isnan(row.errors[quantity])]
+    if not timed_rows:
         return
-    style = FAMILIES[there[0].family][1]
-    x = [row.microseconds for row in there]
-    y = [float(np.clip(row.errors[quantity], LEAST_ERROR, LARGEST_ERROR)) for row in there]
+    style = FAMILIES[timed_rows[0].family][1]
+    x = [row.microseconds for row in timed_rows]
+    y = [float(np.clip(row.errors[quantity], LEAST_ERROR, LARGEST_ERROR)) for row in timed_rows]
     axes.plot(x, y, lw=0.9, clip_on=False, **style)
-    if there[0].family == "differences" and quantity != "positions":
+    if timed_rows[0].family == "differences" and quantity != "positions":
         for k in (0, -1):  # errors decrease with the step and increase again by rounding
             axes.annotate(
-                f"{there[k].setting:g}".replace("e-0", "e-"),
+                f"{timed_rows[k].setting:g}".replace("e-0", "e-"),
                 (x[k], y[k]),
                 (6, 0),
                 textcoords="offset points",
@@ -103,11 +103,11 @@ def _draw_family(axes: Any, rows: list[AccuracyRow], quantity: Any) -> None:
 
 def _draw_legend(figure: Figure, rows: list[AccuracyRow]) -> None:
     """Draw the legend in place of the sixth panel."""
-    there = {row.family for row in rows}
+    families = {row.family for row in rows}
     handles = [
         Line2D([], [], lw=0.9 if family in LINED else 0, label=label, **style)
         for family, (label, style) in FAMILIES.items()
-        if family in there
+        if family in families
     ]
     for row in rows:
         if row.family == "board":
@@ -166,7 +166,7 @@ def stability_charts(stability: Stability) -> dict[str, Figure]:
 
 
 def _draw_sheet(stability: Stability, families: tuple[str, ...], title: str) -> Figure:
-    shown = [method for method in STYLES if method in stability.methods]
+    methods = [method for method in STYLES if method in stability.methods]
     caption = (
         "Above: largest error of the results, from positions to balancing moment, relative to the largest value. "
         f"Below: of {max(row.scenes for row in stability.rows)} linkages at each distance, the shares with right "
@@ -177,9 +177,9 @@ def _draw_sheet(stability: Stability, families: tuple[str, ...], title: str) -> 
         left, bottom = 0.075 + 0.322 * (number % 3), 0.51 - 0.47 * (number // 3)
         above = figure.add_axes((left, bottom + 0.19, 0.25, 0.2))
         below = figure.add_axes((left, bottom + 0.015, 0.25, 0.168))
-        _draw_errors(above, stability, family, shown, number % 3 == 0)
-        _draw_outcomes(below, stability, family, shown)
-    _draw_key(figure, shown)
+        _draw_errors(above, stability, family, methods, number % 3 == 0)
+        _draw_outcomes(below, stability, family, methods)
+    _draw_key(figure, methods)
     return figure
 
 
@@ -192,11 +192,11 @@ def _rows_of_family(rows: list[StabilityRow], family: str) -> list[StabilityRow]
     return sorted(rows, key=lambda row: row.distance, reverse=FAMILIES_BY_NAME[family].unit in ("rad", "share"))
 
 
-def _draw_errors(axes: Any, stability: Stability, family: str, shown: list[str], labelled: bool) -> None:
+def _draw_errors(axes: Any, stability: Stability, family: str, methods: list[str], labelled: bool) -> None:
     axes.set_title(FAMILIES_BY_NAME[family].title, fontsize=8.5, loc="left", pad=3)
     set_error_axis(axes, range(-18, 4, 3))
     axes.set_ylim(STABILITY_LEAST_ERROR, STABILITY_LARGEST_ERROR)
-    for method in shown:
+    for method in methods:
         rows = _rows_of_family(stability.of(family, method), family)
         if not rows:
             continue
@@ -217,16 +217,16 @@ def _draw_errors(axes: Any, stability: Stability, family: str, shown: list[str],
         axes.set_ylabel("largest error", fontsize=7.5)
 
 
-def _draw_outcomes(axes: Any, stability: Stability, family: str, shown: list[str]) -> None:
+def _draw_outcomes(axes: Any, stability: Stability, family: str, methods: list[str]) -> None:
     """Draw a row for each method and a column for each distance, in colours mixed by the shares of right and wrong
     results.
     """
-    there = [method for method in shown if stability.of(family, method)]
-    rows = [_rows_of_family(stability.of(family, method), family) for method in there]
+    family_rows = [method for method in methods if stability.of(family, method)]
+    rows = [_rows_of_family(stability.of(family, method), family) for method in family_rows]
     picture = np.array([[_outcome_colour(row) for row in line] for line in rows])
     axes.imshow(picture, aspect="auto", interpolation="nearest")
-    axes.set_yticks(range(len(there)), there, fontsize=6)
-    axes.set_yticks(np.arange(len(there) - 1) + 0.5, minor=True)
+    axes.set_yticks(range(len(family_rows)), family_rows, fontsize=6)
+    axes.set_yticks(np.arange(len(family_rows) - 1) + 0.5, minor=True)
     axes.set_xticks(np.arange(len(rows[0]) - 1) + 0.5, minor=True)
     axes.grid(True, which="minor", color="#d0d0d0", lw=0.4)
     axes.tick_params(which="minor", length=0)
@@ -244,8 +244,8 @@ def _outcome_colour(row: StabilityRow) -> tuple[float, ...]:
     return tuple(sum(n * rgb[k] for n, rgb in zip(counts, colours, strict=True)) / row.scenes for k in range(3))
 
 
-def _draw_key(figure: Figure, shown: list[str]) -> None:
-    handles: list[Any] = [Line2D([], [], label=STYLES[method][0], **_line_style(method)) for method in shown]
+def _draw_key(figure: Figure, methods: list[str]) -> None:
+    handles: list[Any] = [Line2D([], [], label=STYLES[method][0], **_line_style(method)) for method in methods]
     handles.insert(1, Line2D([], [], color=RED, lw=1.2, ls=":", label="error bound printed by tmm"))
     for label, colour in VERDICTS.values():
         handles.append(Patch(facecolor=colour, edgecolor="#808080", lw=0.5, label=label))

@@ -80,8 +80,8 @@ class StudentGroup:
         """True where a mistake is visible in the answers of a student, shape (mistakes, students)."""
         with np.errstate(all="ignore"):
             moved = np.max(np.abs(self.with_mistake - self.right.value) / self.right.scale, axis=2)
-        found: Real = np.isfinite(moved) & (moved >= VISIBLE_FACTOR * DRAWING_ERROR)
-        return found
+        visible: Real = np.isfinite(moved) & (moved >= VISIBLE_FACTOR * DRAWING_ERROR)
+        return visible
 
     def mistakes(self, n: int, count: int) -> tuple[int, ...]:
         """Return `count` random mistakes of different kinds that are visible in the answers of student n; kinds equally
@@ -91,18 +91,18 @@ class StudentGroup:
         for c in np.flatnonzero(self.seen[:, n]).tolist():
             kinds.setdefault(type(self.cases[c]), []).append(c)
         chosen = self.random.permutation(len(kinds))[:count]
-        own = list(kinds.values())
-        return tuple(int(self.random.choice(own[k])) for k in chosen)
+        kind_members = list(kinds.values())
+        return tuple(int(self.random.choice(kind_members[k])) for k in chosen)
 
-    def sheets(self, made: Sequence[tuple[int, ...]]) -> Vector:
+    def sheets(self, mistakes: Sequence[tuple[int, ...]]) -> Vector:
         """Return the answers with these mistakes (one tuple for each student), with drawing errors."""
         value = self.right.value.copy()
-        for n, own in enumerate(made):
-            if len(own) == 1:
-                value[n] = self.with_mistake[own[0], n]
-            elif own:
+        for n, student_mistakes in enumerate(mistakes):
+            if len(student_mistakes) == 1:
+                value[n] = self.with_mistake[student_mistakes[0], n]
+            elif student_mistakes:
                 with np.errstate(all="ignore"):
-                    two = predicted(self.family.take([n]), self.right.asked, [self.cases[c] for c in own])
+                    two = predicted(self.family.take([n]), self.right.asked, [self.cases[c] for c in student_mistakes])
                 value[n] = two[0]
         return self.drawn(value)
 
@@ -113,15 +113,16 @@ class StudentGroup:
         """
         scale = self.right.scale if rows is None else self.right.scale[rows]
         vector, exact = (
-            np.array(found)
-            for found in zip(
-                *((asked.quantity.vector, asked.quantity.against == "exact") for asked in self.right.asked), strict=True
+            np.array(flags)
+            for flags in zip(
+                *((answer.quantity.vector, answer.quantity.against == "exact") for answer in self.right.asked),
+                strict=True,
             )
         )
         off = self.random.uniform(-DRAWING_ERROR, DRAWING_ERROR, value.shape)
         aside = self.random.uniform(-DRAWING_ERROR, DRAWING_ERROR, value.shape) * vector
-        size = np.maximum(scale, np.abs(value)) / np.where(vector, np.sqrt(2), 1)
-        return np.where(exact, value, value + (off + 1j * aside) * size)
+        magnitude = np.maximum(scale, np.abs(value)) / np.where(vector, np.sqrt(2), 1)
+        return np.where(exact, value, value + (off + 1j * aside) * magnitude)
 
 
 def make_students(count: int, seed: int = 1) -> StudentGroup:
@@ -138,7 +139,7 @@ def make_students(count: int, seed: int = 1) -> StudentGroup:
 def solve_family(task: Task, table: VariantTable) -> VariantFamily:
     """Solve all variants of a table together."""
     dimensions, numbers = numbers_of(task, table, list(table.rows))
-    ((rows, family),) = split_families(lambda own: task.make(table.names, dimensions, own), numbers)
+    ((rows, family),) = split_families(lambda values: task.make(table.names, dimensions, values), numbers)
     if not isinstance(family, VariantFamily) or len(rows) < len(table.rows):
         raise AssertionError("a variant of the measurement cannot be assembled")
     return family
@@ -155,19 +156,19 @@ def write_submissions(group: StudentGroup, sheets: Vector, folder: Path, first: 
     rows = [[name, *row] for name, row in zip(names, group.table.rows.values(), strict=True)]
     with (folder / "variants.csv").open("a", encoding="utf-8", newline="") as stream:
         csv.writer(stream).writerows(rows if first else [["student", *group.table.names], *rows])
-    for name, own in zip(names, sheets.tolist(), strict=True):
+    for name, answers in zip(names, sheets.tolist(), strict=True):
         with (folder / "submissions" / f"{name}.csv").open("w", encoding="utf-8", newline="") as stream:
-            csv.writer(stream).writerows(_submission_rows(group.task, own))
+            csv.writer(stream).writerows(_submission_rows(group.task, answers))
 
 
 def _submission_rows(task: Task, values: Sequence[complex]) -> Iterator[Sequence[object]]:
     yield "quantity", "position", "unit", "value", "x", "y"
-    for asked, value in zip(task.asked, values, strict=True):
-        number = value / task.units.factor(asked.quantity.dimension)
+    for answer, value in zip(task.asked, values, strict=True):
+        number = value / task.units.factor(answer.quantity.dimension)
         x, y = f"{number.real:.4g}", f"{number.imag:.4g}"
-        own = ("", x, y) if asked.quantity.vector else (x, "", "")
-        position = "" if asked.number is None else asked.number
-        yield asked.quantity.name, position, task.units.symbol(asked.quantity.dimension), *own
+        cells = ("", x, y) if answer.quantity.vector else (x, "", "")
+        position = "" if answer.number is None else answer.number
+        yield answer.quantity.name, position, task.units.symbol(answer.quantity.dimension), *cells
 
 
 # Figures of `tmm bench grading`.
@@ -211,8 +212,8 @@ class GradingFigure:
             fails = self.found < self.target / slack
         if not fails:
             return ""
-        told = "{what}, of {of}: {found}, target {target:g}"
-        return told.format(what=self.what, of=self.of, found=f"{self.found:.4g}", target=self.target)
+        text = "{what}, of {of}: {found}, target {target:g}"
+        return text.format(what=self.what, of=self.of, found=f"{self.found:.4g}", target=self.target)
 
 
 @dataclass(frozen=True)
@@ -232,12 +233,12 @@ class GradingMeasurement(Measurement):
         signs = {"most": "≤", "least": "≥"}
         rows = [
             (
-                one.what,
-                str(one.of),
-                f"{one.found:.4g}",
-                "" if one.target is None else f"{signs[one.bound]} {one.target:.4g}",
+                figure.what,
+                str(figure.of),
+                f"{figure.found:.4g}",
+                "" if figure.target is None else f"{signs[figure.bound]} {figure.target:.4g}",
             )
-            for one in self.figures
+            for figure in self.figures
         ]
         return (text_table("grading", title, ("figure", "of", "found", "target"), rows),)
 
@@ -248,10 +249,10 @@ def measure_grading(
     """Measure all figures; full: also with 100 000 students."""
     sheets = REDUCED_SHEETS if reduced else SHEETS
     figures: list[GradingFigure] = []
-    made = make_students(sheets)
+    students = make_students(sheets)
     for count in range(3):
         progress(f"diagnosis of {count} mistakes")
-        figures += measure_diagnosis(made, count)
+        figures += measure_diagnosis(students, count)
     progress("error carried forward")
     figures.append(measure_carried_errors(make_students(REDUCED_CHAINS if reduced else CHAINS, seed=2)))
     progress("variants")
@@ -263,14 +264,14 @@ def measure_grading(
 def measure_diagnosis(group: StudentGroup, count: int) -> Iterator[GradingFigure]:
     """Yield the shares of answers with `count` mistakes that are explained by these, and by mistakes not made."""
     students = range(len(group.family))
-    made = [group.mistakes(n, count) for n in students]
-    value = group.sheets(made)
+    mistakes = [group.mistakes(n, count) for n in students]
+    value = group.sheets(mistakes)
     written = Written(value, np.zeros(value.shape, dtype=bool))
     claims = diagnose_students(group.family, group.right, written)
     rightly = wrongly = beside = 0
     for n in students:
-        own = {type(group.cases[c]) for c in made[n]}
-        hits = [bool(own & {type(case) for case in claim.alternatives}) for claim in claims.get(n, ())]
+        made_kinds = {type(group.cases[c]) for c in mistakes[n]}
+        hits = [bool(made_kinds & {type(case) for case in claim.alternatives}) for claim in claims.get(n, ())]
         rightly += any(hits)
         wrongly += bool(hits) and not any(hits)
         beside += not all(hits)
@@ -281,10 +282,12 @@ def measure_diagnosis(group: StudentGroup, count: int) -> Iterator[GradingFigure
         yield GradingFigure("correct sheets with a mistake claimed, %", len(students), share * wrongly, 0.0)
         return
     least, most = ((95.0, 1.0), (80.0, 2.0))[count - 1]
-    told = ("sheets with one mistake, {how}, %", "sheets with two mistakes, {how}, %")[count - 1]
-    yield GradingFigure(told.format(how="named correctly"), len(students), share * rightly, least, "least")
-    yield GradingFigure(told.format(how="named wrongly"), len(students), share * wrongly, most)
-    yield GradingFigure(told.format(how="with another mistake also claimed"), len(students), share * (beside - wrongly))
+    title = ("sheets with one mistake, {how}, %", "sheets with two mistakes, {how}, %")[count - 1]
+    yield GradingFigure(title.format(how="named correctly"), len(students), share * rightly, least, "least")
+    yield GradingFigure(title.format(how="named wrongly"), len(students), share * wrongly, most)
+    yield GradingFigure(
+        title.format(how="with another mistake also claimed"), len(students), share * (beside - wrongly)
+    )
 
 
 def measure_carried_errors(group: StudentGroup) -> GradingFigure:
@@ -298,19 +301,21 @@ def measure_carried_errors(group: StudentGroup) -> GradingFigure:
     motion = solve(group.family).motion
     begins = [
         k
-        for k, one in enumerate(right.asked)
-        if own_answer(one.quantity, right.value[:, [k]], motion, right.value[:, [k]]) is not None
+        for k, answer in enumerate(right.asked)
+        if own_answer(answer.quantity, right.value[:, [k]], motion, right.value[:, [k]]) is not None
     ]
     for k, rows in zip(begins, np.array_split(np.arange(count), len(begins)), strict=True):
-        asked, part = right.asked[k], group.family.take(rows)
+        answer, subfamily = right.asked[k], group.family.take(rows)
         turn = np.exp(2j * np.pi * chance.random(len(rows)))
-        way = turn if asked.quantity.vector else np.sign(turn.real)
-        own = right.value[rows, k] + chance.uniform(0.2, 0.6, len(rows)) * right.scale[rows, k] * way
-        mistake = own_answer(asked.quantity, own[:, None], solve(part).motion, right.value[rows, k][:, None])
-        later = group.drawn(predicted(part, right.asked, [mistake] if mistake else []), rows)
-        same = [j for j, one in enumerate(right.asked) if one.position == asked.position]
+        direction = turn if answer.quantity.vector else np.sign(turn.real)
+        wrong_values = right.value[rows, k] + chance.uniform(0.2, 0.6, len(rows)) * right.scale[rows, k] * direction
+        mistake = own_answer(
+            answer.quantity, wrong_values[:, None], solve(subfamily).motion, right.value[rows, k][:, None]
+        )
+        later = group.drawn(predicted(subfamily, right.asked, [mistake] if mistake else []), rows)
+        same = [j for j, answer in enumerate(right.asked) if answer.position == answer.position]
         drawn[rows[:, None], same] = later[:, same]
-        drawn[rows, k], source[rows] = own, k
+        drawn[rows, k], source[rows] = wrong_values, k
     written = Written(drawn, np.zeros(drawn.shape, dtype=bool))
     follows = following(group.family, right, written, diagnose_students(group.family, right, written))
     wrong = right.error(written) > right.allowed
@@ -318,8 +323,8 @@ def measure_carried_errors(group: StudentGroup) -> GradingFigure:
         {k for k in np.flatnonzero(wrong[n]).tolist() if (n, k) not in follows} == {int(source[n])}
         for n in range(count)
     )
-    told = "students who lose the points of one answer only, %"
-    return GradingFigure(told, count, 100 * alone / count, 100.0, "least")
+    title = "students who lose the points of one answer only, %"
+    return GradingFigure(title, count, 100 * alone / count, 100.0, "least")
 
 
 def measure_variant_selection(count: int) -> GradingFigure:
@@ -330,8 +335,8 @@ def measure_variant_selection(count: int) -> GradingFigure:
     per_second = 0.0
     for first in range(0, count, CHUNK):  # the least time counts: other work of the machine only adds to it
         start = CLOCK()
-        found = variety.judged(picks[first : first + CHUNK])
-        per_second = max(per_second, len(found.why) / (CLOCK() - start))
+        judgements = variety.judged(picks[first : first + CHUNK])
+        per_second = max(per_second, len(judgements.why) / (CLOCK() - start))
     return GradingFigure(
         "candidates for variants judged per second", count, per_second, PER_SECOND, "least", absolute=True
     )
@@ -345,10 +350,15 @@ def measure_command(sizes: Sequence[int], progress: Callable[[str], None]) -> It
         solving = 0.0
         with tempfile.TemporaryDirectory() as folder:
             for number in range(-(-students // PART_STUDENTS)):
-                part = make_students(min(PART_STUDENTS, students - PART_STUDENTS * number), seed=number + 3)
-                write_submissions(part, part.sheets(_draw_mistakes(part)), Path(folder), PART_STUDENTS * number)
+                students_part = make_students(min(PART_STUDENTS, students - PART_STUDENTS * number), seed=number + 3)
+                write_submissions(
+                    students_part,
+                    students_part.sheets(_draw_mistakes(students_part)),
+                    Path(folder),
+                    PART_STUDENTS * number,
+                )
                 start = CLOCK()
-                solve(solve_family(part.task, part.table))
+                solve(solve_family(students_part.task, students_part.table))
                 solving += CLOCK() - start
             run = _run_command(Path(folder))
         times.append(run.first + run.others)
@@ -391,9 +401,9 @@ def _run_command(folder: Path) -> _CommandRun:
     call = ["-m", "tmm_cli", "grade", "task.yaml", "--variants", "variants.csv", "--submissions", "submissions"]
     environment = {**os.environ, "PYTHONPATH": str(Path(tmm_cli.__file__).parents[1])}
     run, begun, start = _CommandRun(), os.times(), time.perf_counter()
-    with (folder / "told.txt").open("wb") as told:
+    with (folder / "told.txt").open("wb") as output:
         running = subprocess.Popen(
-            [sys.executable, *call, "--jobs", "2"], cwd=folder, env=environment, stdout=told, stderr=told
+            [sys.executable, *call, "--jobs", "2"], cwd=folder, env=environment, stdout=output, stderr=output
         )
         while running.poll() is None:
             _observe_process(run, running.pid)
@@ -401,21 +411,23 @@ def _run_command(folder: Path) -> _CommandRun:
     run.seconds, ended = time.perf_counter() - start, os.times()
     if running.returncode:
         raise RuntimeError((folder / "told.txt").read_text(encoding="utf-8", errors="replace")[-2000:])
-    every = ended.children_user + ended.children_system - begun.children_user - begun.children_system
+    processor_time = ended.children_user + ended.children_system - begun.children_user - begun.children_system
     run.first = run.seconds if math.isnan(run.first) else run.first
-    run.others = max(0.0, every - run.first)
+    run.others = max(0.0, processor_time - run.first)
     return run
 
 
 def _observe_process(run: _CommandRun, process: int) -> None:
     """Update the resources of a running process, if the system reports them."""
     try:
-        own = Path(f"/proc/{process}")
-        run.first = sum(map(int, own.joinpath("stat").read_text().rpartition(")")[2].split()[11:13])) / os.sysconf(
-            "SC_CLK_TCK"
+        proc_folder = Path(f"/proc/{process}")
+        run.first = sum(
+            map(int, proc_folder.joinpath("stat").read_text().rpartition(")")[2].split()[11:13])
+        ) / os.sysconf("SC_CLK_TCK")
+        children = proc_folder.joinpath(f"task/{process}/children").read_text().split()
+        pages = sum(
+            int(Path(f"/proc/{process_id}/statm").read_text().split()[1]) for process_id in (process, *children)
         )
-        children = own.joinpath(f"task/{process}/children").read_text().split()
-        pages = sum(int(Path(f"/proc/{one}/statm").read_text().split()[1]) for one in (process, *children))
         run.memory = float(np.fmax(run.memory, pages * os.sysconf("SC_PAGE_SIZE") / 2**20))
     except (OSError, ValueError, AttributeError, IndexError):
         pass  # it has ended, or the system has no /proc

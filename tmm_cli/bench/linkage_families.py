@@ -257,10 +257,10 @@ def _tangent_scene(n: Numbers, base: Decimal) -> LinkageScene:
     pivots = (n["Ox"], n["Oy"]), (n["Ax"] + n["ux"] * base, n["Ay"] + n["uy"] * base)
     o, d = (_point(place) for place in pivots)
     a, b, c, q = float(n["a"]), float(n["b"]), float(n["c"]), float(n["q"])
-    places = [q + off for off in (-1.2, -0.8, -0.5, -0.3, 0.3, 0.5, 0.8, 1.2)]
-    shapes = {at: transmission_sine(o + a * complex(math.cos(at), math.sin(at)), b, d, c) for at in places}
+    angles = [q + off for off in (-1.2, -0.8, -0.5, -0.3, 0.3, 0.5, 0.8, 1.2)]
+    shapes = {at: transmission_sine(o + a * complex(math.cos(at), math.sin(at)), b, d, c) for at in angles}
     return LinkageScene(
-        four_bar_linkage(n["a"], n["b"], n["c"], pivots, float(n["side"]), max(places, key=shapes.__getitem__)), q
+        four_bar_linkage(n["a"], n["b"], n["c"], pivots, float(n["side"]), max(angles, key=shapes.__getitem__)), q
     )
 
 

@@ -97,14 +97,14 @@ def time_runs(runs: Mapping[Name, Callable[[], Any]], turns: int, least: float =
         if least:
             run()
         often[name] = max(1, int(least / max(CLOCK() - start, 1e-9)))
-    found: dict[Name, list[float]] = {name: [] for name in runs}
+    seconds: dict[Name, list[float]] = {name: [] for name in runs}
     for __ in range(turns):
         for name, run in runs.items():
             start = CLOCK()
             for __ in range(often[name]):
                 run()
-            found[name].append((CLOCK() - start) / often[name])
-    return found
+            seconds[name].append((CLOCK() - start) / often[name])
+    return seconds
 
 
 class TimedResult(Protocol):
@@ -129,7 +129,7 @@ def time_until_met(
     for turns in (REDUCED_TURNS if reduced else TURNS, *[TURNS] * ADDITIONAL_RUNS):
         for name, seconds in time_runs(runs, turns, LEAST_DURATION).items():
             least[name] = min(least[name], *seconds)
-        found = find(least)
-        if not found.missed(target_slack(reduced)):
+        timing = find(least)
+        if not timing.missed(target_slack(reduced)):
             break
-    return found
+    return timing

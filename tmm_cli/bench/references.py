@@ -41,8 +41,8 @@ def make_case(name: str, results: Results) -> Case:
 
 @cache
 def _read_data(name: str) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads((files("tmm_cli.bench") / "data" / f"{name}.json").read_text(encoding="utf-8"))
-    return found
+    content: dict[str, Any] = json.loads((files("tmm_cli.bench") / "data" / f"{name}.json").read_text(encoding="utf-8"))
+    return content
 
 
 def problem_tree(name: str) -> Tree:
@@ -68,8 +68,8 @@ def reference(name: str) -> Reference:
 
 def to_longdouble(written: Sequence[Any]) -> Any:
     """Convert numbers of 50 digits, or vectors of two of them, to longdouble."""
-    found = np.array(written, dtype=np.longdouble)
-    return found if found.ndim == 1 else found[:, 0] + 1j * found[:, 1]
+    numbers = np.array(written, dtype=np.longdouble)
+    return numbers if numbers.ndim == 1 else numbers[:, 0] + 1j * numbers[:, 1]
 
 
 # Scenes of `tmm bench stability` with their answers to 50 digits.
@@ -118,20 +118,22 @@ def family_members(family: str) -> tuple[FamilyMember, ...]:
     )
 
 
-def known_scenes(family: str, chosen: int | None = None, every: int = 1) -> Iterator[KnownScene]:
+def known_scenes(family: str, chosen: int | None = None, stride: int = 1) -> Iterator[KnownScene]:
     """Yield the scenes of a family.
 
     Args:
         chosen: number of members, the first ones; all if None.
         every: step through the distances; the last one is always included.
     """
-    of = FAMILIES_BY_NAME[family]
+    linkage_family = FAMILIES_BY_NAME[family]
     for number, seed in enumerate(family_members(family)[:chosen]):
         true = [{quantity: to_longdouble([scene[key]])[0] for quantity, key in KEYS.items()} for scene in seed.scenes]
         for k, scene in enumerate(seed.scenes):
-            if k % every and k != len(seed.scenes) - 1:
+            if k % stride and k != len(seed.scenes) - 1:
                 continue
-            of_all = [true[k], true[0]] if of.unit in ("rad", "share") else [true[k]]
-            largest = {quantity: max(float(abs(one[quantity])) for one in of_all) for quantity in QUANTITIES}
+            of_all = [true[k], true[0]] if linkage_family.unit in ("rad", "share") else [true[k]]
+            largest = {quantity: max(float(abs(values[quantity])) for values in of_all) for quantity in QUANTITIES}
             distance = Decimal(scene["distance"])
-            yield KnownScene(of, number, distance, of.scene(seed.numbers, distance), true[k], largest)
+            yield KnownScene(
+                linkage_family, number, distance, linkage_family.scene(seed.numbers, distance), true[k], largest
+            )

@@ -49,53 +49,53 @@ class SolutionCount:
 def count_solutions() -> Iterator[SolutionCount]:
     """Count the solutions within this context."""
     count = SolutionCount()
-    put: list[tuple[Any, str, Any]] = []
+    replaced: list[tuple[Any, str, Any]] = []
 
     def watch(kind: type[GroupSolver], name: str, of: str, size: Callable[[tuple[Any, ...], Any], int]) -> None:
-        given = getattr(kind, name)
+        original = getattr(kind, name)
 
         def watched(*arguments: Any, **named: Any) -> Any:
-            found = given(*arguments, **named)
-            setattr(count, of, getattr(count, of) + size(arguments, found))
-            return found
+            solved = original(*arguments, **named)
+            setattr(count, of, getattr(count, of) + size(arguments, solved))
+            return solved
 
-        put.append((kind, name, given))
+        replaced.append((kind, name, original))
         setattr(kind, name, watched)
 
     try:
         for dyad in DYAD_SOLVERS.values():
             watch(dyad, "closed", "places", lambda _, at: np.size(at.det))
         watch(NewtonSolver, "residuals", "places", lambda _, gaps: np.size(gaps[..., 0]))
-        every: tuple[type[GroupSolver], ...] = (*DYAD_SOLVERS.values(), NewtonSolver)
-        for kind in every:
+        solvers: tuple[type[GroupSolver], ...] = (*DYAD_SOLVERS.values(), NewtonSolver)
+        for kind in solvers:
             watch(kind, "rates", "velocities", lambda _, rates: np.size(rates[0].w))
             watch(kind, "accelerations", "accelerations", lambda _, accels: np.size(accels[0].e))
         yield count
     finally:
-        for kind, name, given in reversed(put):
-            setattr(kind, name, given)
+        for kind, name, original in reversed(replaced):
+            setattr(kind, name, original)
 
 
 @contextmanager
 def _replace_in_stages(name: str, other: Any) -> Iterator[None]:
     """Replace a name in every stage within this context."""
-    put = [(stage, getattr(stage, name)) for stage in STAGES if hasattr(stage, name)]
+    replaced = [(stage, getattr(stage, name)) for stage in STAGES if hasattr(stage, name)]
     try:
-        for stage, _ in put:
+        for stage, _ in replaced:
             setattr(stage, name, other)
         yield
     finally:
-        for stage, given in put:
-            setattr(stage, name, given)
+        for stage, original in replaced:
+            setattr(stage, name, original)
 
 
 @contextmanager
 def with_all_orders() -> Iterator[None]:
     """Make every stage compute accelerations within this context."""
-    given = sequence.link_states
+    original = sequence.link_states
 
     def whole(linkage: Any, kernels: Any, q: Any, order: int = 2, **named: Any) -> Any:
-        return given(linkage, kernels, q, 2, **named)
+        return original(linkage, kernels, q, 2, **named)
 
     with _replace_in_stages("link_states", whole):
         yield
@@ -205,11 +205,11 @@ class Savings(Measurement):
 def measure_savings(*, reduced: bool = False, progress: Callable[[str], None] = lambda __: None) -> Savings:
     """Measure every saving on the problem that `tmm new` writes."""
     problem = build_problem(read_text(template_text(MEASURED), f"{MEASURED}.yaml"))
-    found = []
+    measured = []
     for saving in iterate_savings(problem, reduced):
         progress(saving.name)
-        found.append(saving)
-    return Savings(problem.name, problem.title, tuple(found), reduced=reduced)
+        measured.append(saving)
+    return Savings(problem.name, problem.title, tuple(measured), reduced=reduced)
 
 
 def iterate_savings(problem: Problem, reduced: bool) -> Iterator[Saving]:
@@ -246,18 +246,20 @@ def iterate_savings(problem: Problem, reduced: bool) -> Iterator[Saving]:
     yield compare_work("drawings", lambda: 0, lambda: _count_pictures(results), 1, "pictures")
 
 
-def compare_work(name: str, one: Workload, other: Workload, repeats: int, counts: str = "solutions") -> Saving:
+def compare_work(
+    name: str, with_saving: Workload, without_saving: Workload, repeats: int, counts: str = "solutions"
+) -> Saving:
     """Run both alternately: least time of each, and number of solutions, or what the work returns if counts is another
     name.
     """
     numbers, best = [0, 0], [math.inf, math.inf]
     for __ in range(repeats):
-        for k, work in enumerate((one, other)):
+        for k, work in enumerate((with_saving, without_saving)):
             with count_solutions() as count:
                 start = perf_counter()
-                found = work()
+                result_count = work()
                 best[k] = min(best[k], perf_counter() - start)
-            numbers[k] = count.all if counts == "solutions" else found
+            numbers[k] = count.all if counts == "solutions" else result_count
     return Saving(name, counts, numbers[0], numbers[1], (best[0], best[1]))
 
 

@@ -221,8 +221,8 @@ class SearchRate:
     def missed(self, slack: float) -> str:
         if self.target is None or self.per_second >= self.target / slack:
             return ""
-        size = f"{self.problem}, generations of {self.generation}"
-        return f"{size}: {self.per_second:.0f} candidates per second, target {self.target:.0f}"
+        generation_text = f"{self.problem}, generations of {self.generation}"
+        return f"{generation_text}: {self.per_second:.0f} candidates per second, target {self.target:.0f}"
 
 
 @dataclass(frozen=True)
@@ -304,13 +304,13 @@ class Searches(Measurement):
         """Path problems on which more than one seed of ten ends far above the least known distance, or takes too
         long.
         """
-        own = [path for path in self.paths if path.problem == name]
-        near, longest = sum(path.near for path in own), max(path.seconds for path in own)
-        if near < len(own) - len(own) // SEEDS:
-            return f"{name}: {near} of {len(own)} seeds within {100 * NEAR_PATH:g} % of the least known"
-        above = sum(p.printed is not None and p.distance > p.printed * (1 + MET) + MET for p in own)
+        outcomes = [path for path in self.paths if path.problem == name]
+        near, longest = sum(path.near for path in outcomes), max(path.seconds for path in outcomes)
+        if near < len(outcomes) - len(outcomes) // SEEDS:
+            return f"{name}: {near} of {len(outcomes)} seeds within {100 * NEAR_PATH:g} % of the least known"
+        above = sum(p.printed is not None and p.distance > p.printed * (1 + MET) + MET for p in outcomes)
         if above:
-            return f"{name}: {above} of {len(own)} seeds above the best published linkage"
+            return f"{name}: {above} of {len(outcomes)} seeds above the best published linkage"
         if longest > SECONDS * target_slack(self.reduced):
             return f"{name}: {longest:.0f} s of processor time, target {SECONDS:g}"
         return ""
@@ -366,8 +366,8 @@ def best_known() -> dict[str, Any]:
     tests/write_synthesis_best.py).
     """
     source = (files("tmm_cli.bench") / "data" / "synthesis" / "best.json").read_text(encoding="utf-8")
-    found: dict[str, Any] = json.loads(source)
-    return found
+    best: dict[str, Any] = json.loads(source)
+    return best
 
 
 def load_candidates(name: str) -> Candidates:
@@ -438,7 +438,7 @@ def _time_generations(name: str, search: Candidates, generations: Real, reduced:
     return time_until_met({"": lambda: search.evaluate(next(turn))}, found, reduced)
 
 
-def run_search(search: Candidates, seed: int, known: float) -> SearchOutcome:
+def run_search(search: Candidates, seed: int, best_objective: float) -> SearchOutcome:
     """Search and refine from a seed, with the ordinary settings of the task."""
     times = [CLOCK()]
 
@@ -453,8 +453,8 @@ def run_search(search: Candidates, seed: int, known: float) -> SearchOutcome:
     f = np.where(one.evolved.history[:, 1] == 0, one.evolved.history[:, 0], np.nan)
     so_far = np.fmin.accumulate(f)
     steps = [k for k, v in enumerate(so_far) if not np.isnan(v) and (k in (0, len(f) - 1) or v != so_far[k - 1])]
-    history = [(size * (k + 1), float(so_far[k] / known - 1)) for k in steps]
+    history = [(size * (k + 1), float(so_far[k] / best_objective - 1)) for k in steps]
     return SearchOutcome(
-        seed, one.values[0], one.missed, one.values[0] / known - 1, size * len(f), times[1] - times[0],
+        seed, one.values[0], one.missed, one.values[0] / best_objective - 1, size * len(f), times[1] - times[0],
         times[2] - times[1], tuple(history),
     )  # fmt: skip

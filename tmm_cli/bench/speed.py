@@ -180,8 +180,8 @@ class SpeedMeasurement(Measurement):
                 for r in self.rivals
             ],
         )
-        found = (races, iterated_table(self.iterated), sweep_table(self.sweeps), growths)
-        return (*found, rivals) if self.rivals else found
+        tables = (races, iterated_table(self.iterated), sweep_table(self.sweeps), growths)
+        return (*tables, rivals) if self.rivals else tables
 
 
 def measure_speed(*, reduced: bool = False, progress: Callable[[str], None] = lambda __: None) -> SpeedMeasurement:
@@ -230,26 +230,26 @@ def _time_race(mechanism: HandCodedMechanism, variants: int, positions: int, red
     return time_until_met({"ours": lambda: ours(q), "hand": lambda: by_hand(q)}, found, reduced)
 
 
-def measure_growth(what: str, reduced: bool) -> Growth:
+def measure_growth(quantity: str, reduced: bool) -> Growth:
     """Time a chain of dyads with increasing numbers of links, or the six-bar with increasing positions or variants.
 
     Only the balancing moment is requested, for which all groups are solved forward and backward: so the work grows, and
     not the results, which would soon make memory the limit.
     """
-    numbers = GROWING[what][1][:-1] if reduced else GROWING[what][1]
+    numbers = GROWING[quantity][1][:-1] if reduced else GROWING[quantity][1]
     six_bar = next(m for m in MECHANISMS if m.name == "six-bar")
     runs: dict[str, Callable[[], Any]] = {}
     for number in numbers:
-        if what == "links":
+        if quantity == "links":
             runs[str(number)] = _make_call(prepare_batch(dyad_chain(number), _balancing), OF_LINKS)
-        elif what == "positions":
+        elif quantity == "positions":
             runs[str(number)] = _make_call(prepare_batch(six_bar.linkage(), _balancing), number)
         else:
             runs[str(number)] = _make_call(prepare_batch(six_bar.variants(number), _balancing), OF_VARIANTS)
-    size = tuple(2 * n + 1 if what == "links" else n for n in numbers)
+    size = tuple(2 * n + 1 if quantity == "links" else n for n in numbers)
 
     def found(least: dict[str, float]) -> Growth:
-        return Growth(what, size, tuple(least.values()), fit_exponent(size, tuple(least.values())))
+        return Growth(quantity, size, tuple(least.values()), fit_exponent(size, tuple(least.values())))
 
     return time_until_met(runs, found, reduced)
 
@@ -267,7 +267,7 @@ def _make_call(batch: Batch, positions: int) -> Callable[[], Any]:
 def fit_exponent(numbers: Sequence[int], seconds: Sequence[float]) -> float:
     """Return p of the best fit t0 + c n^p, t0 >= 0, by least squares of relative deviations."""
     n, t = np.asarray(numbers, float), np.asarray(seconds, float)
-    best, found = np.inf, 1.0
+    best, fits = np.inf, 1.0
     for p in np.arange(0.5, 1.5005, 0.001):
         columns = np.stack([np.ones_like(n), n**p], -1) / t[:, None]
         both = np.linalg.lstsq(columns, np.ones_like(t), rcond=None)[0]
@@ -275,16 +275,16 @@ def fit_exponent(numbers: Sequence[int], seconds: Sequence[float]) -> float:
             both = np.array([0.0, np.linalg.lstsq(columns[:, 1:], np.ones_like(t), rcond=None)[0][0]])
         off = float(np.sum((columns @ both - 1) ** 2))
         if off < best:
-            best, found = off, float(p)
-    return found
+            best, fits = off, float(p)
+    return fits
 
 
 def race_rivals(reduced: bool, progress: Callable[[str], None]) -> tuple[tuple[RivalRace, ...], tuple[str, ...]]:
     """Time the installed rivals on the mechanisms that they can compute, at 360 positions."""
-    there, missing = installed()
+    methods, missing = installed()
     absent = [f"{name}: not installed" for name in missing]
-    found = []
-    for method in there:
+    races = []
+    for method in methods:
         for mechanism in MECHANISMS:
             progress(f"{method.name}, {mechanism.name}")
             case = reference(mechanism.name).case
@@ -293,8 +293,8 @@ def race_rivals(reduced: bool, progress: Callable[[str], None]) -> tuple[tuple[R
             except MethodUnable as error:
                 absent.append(f"{method.name}: {mechanism.name}: {error}")
                 continue
-            found.append(_race_rival(method, mechanism.name, case, solver, reduced))
-    return tuple(found), tuple(absent)
+            races.append(_race_rival(method, mechanism.name, case, solver, reduced))
+    return tuple(races), tuple(absent)
 
 
 def _race_rival(
@@ -355,7 +355,7 @@ def race_iterated(name: str, reduced: bool) -> list[IteratedRace]:
         prepare_batch(_linkage_with_constant_loads(name)),
         prepare_batch(_linkage_with_constant_loads("six-bar")),
     )
-    found = []
+    races = []
     for positions in ITERATED_POSITIONS:
         q, few = (batch.linkages[0].sketch.at + 2 * np.pi * np.arange(n) / n for n in (positions, OF_SIX_BAR))
         rest = 1 - float(np.mean(batch.closed(q)))
@@ -364,18 +364,18 @@ def race_iterated(name: str, reduced: bool) -> list[IteratedRace]:
             return IteratedRace(name, n, least["ours"] * 1e9 / n, least["six"] * 1e9 / OF_SIX_BAR, rest)
 
         runs = {"ours": lambda q=q: batch(q), "six": lambda q=few: six_bar(q)}
-        found.append(time_until_met(runs, judged, reduced))
-    return found
+        races.append(time_until_met(runs, judged, reduced))
+    return races
 
 
 def _linkage_with_constant_loads(name: str) -> Linkage:
     """Return the linkage of a reference with constant loads, like those of the other races."""
-    found = reference(name).case.linkage
+    linkage = reference(name).case.linkage
     loads = tuple(
         replace(x, force=x.force * (1 if x.table is None else x.table.values[0]), table=None, when="always")
-        for x in found.loads
+        for x in linkage.loads
     )
-    return replace(found, loads=loads)
+    return replace(linkage, loads=loads)
 
 
 def iterated_table(rows: Sequence[IteratedRace]) -> Table:

@@ -80,8 +80,8 @@ class StabilityRow:
     @property
     def error(self) -> float:
         """Largest error of all quantities; nan if there are none."""
-        found = [error for error in self.errors.values() if not np.isnan(error)]
-        return max(found, default=float("nan"))
+        errors = [error for error in self.errors.values() if not np.isnan(error)]
+        return max(errors, default=float("nan"))
 
 
 @dataclass(frozen=True)
@@ -197,7 +197,7 @@ def measure_stability(
             for shot in (*mine, *(judge_method(method, solver, at) for method, solver in solvers.items())):
                 shots.setdefault((shot.method, float(at.distance)), []).append(shot)
                 widths += shot.widths
-        rows += [_make_row(family, *key, found) for key, found in shots.items()]
+        rows += [_make_row(family, *key, outcomes) for key, outcomes in shots.items()]
     return Stability(tuple(rows), tuple(widths), reduced=reduced, absent=tuple(absent))
 
 
@@ -240,10 +240,10 @@ def judge_method(method: Method, solver: Solver | Exception, at: KnownScene) -> 
         if isinstance(solver, Exception):
             raise solver
         with np.errstate(all="ignore"):
-            found = solver(np.array([at.scene.q]))
+            answers = solver(np.array([at.scene.q]))
     except (ArithmeticError, ValueError, IndexError, AssertionError, LinkageError, np.linalg.LinAlgError) as error:
         return SceneOutcome(method.name, "said", nothing, type(error).__name__)
-    values = {quantity: _watched_value(found, quantity, at) for quantity in QUANTITIES}
+    values = {quantity: _watched_value(answers, quantity, at) for quantity in QUANTITIES}
     if not all(np.isfinite(value) for value in values.values() if value is not None):
         return SceneOutcome(method.name, "said", nothing, "nan")
     errors = {
@@ -258,8 +258,8 @@ def _relative_error(value: Any, quantity: Compared, at: KnownScene) -> float:
     return float(abs(value - at.exact[quantity]) / at.largest[quantity])
 
 
-def _watched_value(found: MethodAnswers, quantity: Compared, at: KnownScene) -> Any:
-    series = found.series(quantity)
+def _watched_value(answers: MethodAnswers, quantity: Compared, at: KnownScene) -> Any:
+    series = answers.series(quantity)
     name = {"reactions": at.scene.pair, "balancing": "balancing"}.get(quantity, at.scene.point)
     return None if series is None else series[name][0]
 
@@ -283,7 +283,7 @@ def judge_product(case: Case, at: KnownScene) -> SceneOutcome:
     }
     errors: dict[Compared, float] = {}
     widths: list[float] = []
-    within, given, widest = True, True, 0.0
+    within, printed, widest = True, True, 0.0
     for quantity, key in keys.items():
         true = at.exact[quantity]
         total = 0.0
@@ -291,7 +291,7 @@ def judge_product(case: Case, at: KnownScene) -> SceneOutcome:
         for component, exact in parts:
             mine, bound = values[*key, component][0], float(digits.bound[*key, component][0])
             if not (np.isfinite(mine) and np.isfinite(bound)):
-                given, total = False, float("nan")
+                printed, total = False, float("nan")
                 continue
             off = float(abs(mine - (sense if quantity == "reactions" else 1) * exact))
             within = within and off <= bound + REFERENCE_ERROR * at.largest[quantity]
@@ -302,7 +302,7 @@ def judge_product(case: Case, at: KnownScene) -> SceneOutcome:
         errors[quantity] = float(np.sqrt(total)) / at.largest[quantity]
     if not within:
         return SceneOutcome(PRODUCT, "wrong", errors, "", widest, tuple(widths))
-    if not given:
+    if not printed:
         return SceneOutcome(PRODUCT, "said", errors, "nan", widest or float("nan"), tuple(widths))
     far = max(errors.values()) > WRONG  # reported by the bound
     return SceneOutcome(PRODUCT, "said" if far else "right", errors, "bound" if far else "", widest, tuple(widths))
@@ -311,8 +311,8 @@ def judge_product(case: Case, at: KnownScene) -> SceneOutcome:
 def _make_row(family: str, method: str, distance: float, shots: list[SceneOutcome]) -> StabilityRow:
     errors: dict[Compared, float] = {}
     for quantity in QUANTITIES:
-        given = [shot.errors[quantity] for shot in shots if not np.isnan(shot.errors[quantity])]
-        errors[quantity] = max(given, default=float("nan"))
+        errors_given = [shot.errors[quantity] for shot in shots if not np.isnan(shot.errors[quantity])]
+        errors[quantity] = max(errors_given, default=float("nan"))
     wide = [shot.bound for shot in shots if not np.isnan(shot.bound)]
     right, said, wrong = (sum(shot.verdict == verdict for shot in shots) for verdict in ("right", "said", "wrong"))
     why = tuple(sorted({shot.why for shot in shots if shot.why}))

@@ -88,22 +88,22 @@ def savings_charts(measured: Savings) -> dict[str, Figure]:
 
 def draw_savings(measured: Savings) -> Figure:
     """Draw a pair of bars for each saving, with the numbers beside them."""
-    shown = measured.found
+    savings = measured.found
     figure = make_page("Savings by computing only what is requested", measured.title[:90], SAVINGS_SHEET_SHARE)
     axes = figure.add_subplot()
-    at = np.arange(len(shown))
-    counts = [s.with_ / s.without for s in shown]
-    times = [s.seconds[0] / s.seconds[1] for s in shown]
-    counted = [f"{s.with_} / {s.without} {COUNTED_NAMES[s.counts]}" for s in shown]
-    timed = [f"{_short_time(s.seconds[0])} / {_short_time(s.seconds[1])}" for s in shown]
-    for off, colour, shares, told, label in (
+    at = np.arange(len(savings))
+    counts = [s.with_ / s.without for s in savings]
+    times = [s.seconds[0] / s.seconds[1] for s in savings]
+    counted = [f"{s.with_} / {s.without} {COUNTED_NAMES[s.counts]}" for s in savings]
+    timed = [f"{_short_time(s.seconds[0])} / {_short_time(s.seconds[1])}" for s in savings]
+    for off, colour, shares, labels, label in (
         (-0.2, BLUE, counts, counted, "counts: with / without"),
         (0.2, ORANGE, times, timed, "time: with / without"),
     ):
         axes.barh(at + off, np.minimum(shares, 1.0), height=0.36, color=colour, label=label)
-        for place, share, text in zip(at + off, shares, told, strict=True):
+        for place, share, text in zip(at + off, shares, labels, strict=True):
             axes.text(min(share, 1.0) + 0.008, place, text, va="center", fontsize=7.5, color=INK)
-    axes.set_yticks(at, [SAVING_TITLES[s.name] for s in shown], fontsize=9)
+    axes.set_yticks(at, [SAVING_TITLES[s.name] for s in savings], fontsize=9)
     axes.invert_yaxis()
     axes.set_xlim(0, 1.28)
     axes.set_xticks(np.arange(0, 1.01, 0.1), [f"{100 * x:.0f} %" for x in np.arange(0, 1.01, 0.1)], fontsize=8)

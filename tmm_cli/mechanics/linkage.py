@@ -46,9 +46,9 @@ class Hinge:
     attached_to: str = ""
 
 
-def common_hinge(hinges: Iterable[Hinge], one: str, other: str) -> str | None:
+def common_hinge(hinges: Iterable[Hinge], link: str, other_link: str) -> str | None:
     """Return the point at which two links are hinged to each other, or None."""
-    return next((hinge.point for hinge in hinges if {one, other} <= set(hinge.links)), None)
+    return next((hinge.point for hinge in hinges if {link, other_link} <= set(hinge.links)), None)
 
 
 @dataclass(frozen=True)
@@ -293,8 +293,8 @@ class Linkage:
 
     def working_direction(self, output: str) -> Literal["auto", "forward", "backward"]:
         """Return the direction of the working stroke of an output, as given in the file."""
-        every = self.outputs or ((self.output,) if self.output else ())
-        return next((other.working for other in every if other.link == output), "auto")
+        outputs = self.outputs or ((self.output,) if self.output else ())
+        return next((other.working for other in outputs if other.link == output), "auto")
 
     @property
     def by_speed(self) -> tuple[str, ...] | None:
@@ -310,9 +310,9 @@ class Linkage:
         """Return the sliding pair with this name."""
         return next(s for s in self.slides if s.name == name)
 
-    def shared(self, one: str, other: str) -> str | None:
+    def shared(self, link: str, other_link: str) -> str | None:
         """Return the point at which two links are hinged to each other, or None."""
-        return common_hinge(self.hinges, one, other)
+        return common_hinge(self.hinges, link, other_link)
 
     @property
     def moving(self) -> tuple[str, ...]:
@@ -322,8 +322,8 @@ class Linkage:
     @property
     def moving_points(self) -> tuple[str, ...]:
         """Names of the points that move, each once."""
-        every = dict.fromkeys(point for link in self.moving for point in self.links[link].points)
-        return tuple(point for point in every if point not in self.links[FRAME].points)
+        points = dict.fromkeys(point for link in self.moving for point in self.links[link].points)
+        return tuple(point for point in points if point not in self.links[FRAME].points)
 
     def local(self, link: str, point: str) -> complex:
         """Return a named point in the axes of its link, m."""

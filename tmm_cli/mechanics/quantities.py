@@ -45,13 +45,13 @@ class Dimension:
     def power(self, exponent: int) -> Dimension:
         return NUMBER.times(self, exponent)
 
-    def fits(self, wanted: Dimension) -> bool:
+    def fits(self, required: Dimension) -> bool:
         """Return True if a value of this dimension is accepted where `wanted` is required.
 
         Radians are ignored beside other dimensions (1/s for rad/s, rad/s * m for m/s), but a pure number is not
         accepted as an angle.
         """
-        return self == wanted or (self._plain() == wanted._plain() != NUMBER)
+        return self == required or (self._plain() == required._plain() != NUMBER)
 
     def _plain(self) -> Dimension:
         return Dimension(self.length, self.mass, self.time)
@@ -81,8 +81,8 @@ class Dimension:
 
 def _translate_example(examples: str) -> str:
     """Translate the `or` of an example such as "30 deg or 0.5 rad"."""
-    one, __, other = examples.partition(" or ")
-    return _("{one} or {other}").format(one=one, other=other) if other else one
+    first, __, second = examples.partition(" or ")
+    return _("{one} or {other}").format(one=first, other=second) if second else first
 
 
 class NamedDimension(NamedTuple):
@@ -218,8 +218,8 @@ class Quantity:
             parts = () if len(self.headers) == 1 else (value.real, value.imag)
             parts = parts if len(self.headers) == len(parts) else (*parts, np.abs(value))
         headers = (self.of_slider[0],) if slider and self.of_slider is not None else self.headers
-        for header, part in zip(headers, parts, strict=False):
-            yield header, part, self.measures(slider)
+        for header, values in zip(headers, parts, strict=False):
+            yield header, values, self.measures(slider)
 
 
 def quantity_columns(quantities: Iterable[Quantity], record: Any, slider: bool = False) -> list[NamedValues]:

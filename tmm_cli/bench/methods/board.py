@@ -81,8 +81,10 @@ class PolygonSolver(WrappedSolver):
 
     def reactions(self, at: Placement, poses: Poses, on: tuple[Wrench, ...]) -> GroupReactions:
         laid_off = tuple(Wrench(snap_to_grid(wrench.force, self.grid), wrench.moment) for wrench in on)
-        found = self.inner.reactions(at, poses, laid_off)
-        return replace(found, outer=tuple(map(self._read, found.outer)), inner=tuple(map(self._read, found.inner)))
+        reactions = self.inner.reactions(at, poses, laid_off)
+        return replace(
+            reactions, outer=tuple(map(self._read, reactions.outer)), inner=tuple(map(self._read, reactions.inner))
+        )
 
     def _read(self, reaction: PairReaction) -> PairReaction:
         return replace(reaction, force=snap_to_grid(reaction.force, self.grid))
@@ -103,16 +105,21 @@ class Board:
         """Return the two points of a link farthest apart, which show its direction in the drawing."""
         points = self.case.linkage.links[link].points
         fixed = self.case.linkage.links[FRAME].points
-        pairs = [(one, other) for one in points for other in points if one != other and points[one] != points[other]]
+        pairs = [
+            (point, other_point)
+            for point in points
+            for other_point in points
+            if point != other_point and points[point] != points[other_point]
+        ]
         # from a pivot on the frame where there is one
         return max(pairs, key=lambda p: (p[0] in fixed, abs(points[p[0]] - points[p[1]])), default=None)
 
-    def _partner(self, link: str, known: Mapping[str, object]) -> tuple[str, float] | None:
+    def _partner(self, link: str, drawn: Mapping[str, object]) -> tuple[str, float] | None:
         """Return the link on which this one slides, and its angle from it (rad)."""
         for slide in self.case.linkage.slides:
-            if slide.runner == link and slide.carrier in known:
+            if slide.runner == link and slide.carrier in drawn:
                 return slide.carrier, slide.turned
-            if slide.carrier == link and slide.runner in known:
+            if slide.carrier == link and slide.runner in drawn:
                 return slide.runner, -slide.turned
         return None
 
@@ -127,38 +134,40 @@ class Board:
         """Return a drawn point of a link, in its axes."""
         return next(iter(self.case.linkage.links[link].points.values()), 0j)
 
-    def draw(self, links: tuple[str, ...], found: Poses, known: Poses) -> dict[str, Pose]:
+    def draw(self, links: tuple[str, ...], exact_poses: Poses, known: Poses) -> dict[str, Pose]:
         """Return the poses as drawn."""
         drawn = dict(known)
         for link in self._order(links):
-            pose, ends = found[link], self._ends(link)
+            pose, ends = exact_poses[link], self._ends(link)
             if ends is None:
                 partner = self._partner(link, drawn)
                 z = pose.z if partner is None else drawn[partner[0]].z * unit(partner[1])
                 at = self._point(link)
                 drawn[link] = Pose(snap_to_grid(pose.at(at), self.x) - at * z, z)
                 continue
-            one, other = (self.case.linkage.local(link, point) for point in ends)
-            start = pose.at(one) if self._fixed(ends[0]) else snap_to_grid(pose.at(one), self.x)
-            along = (snap_to_grid(pose.at(other), self.x) - start) / (other - one)
+            first_point, second_point = (self.case.linkage.local(link, point) for point in ends)
+            start = pose.at(first_point) if self._fixed(ends[0]) else snap_to_grid(pose.at(first_point), self.x)
+            along = (snap_to_grid(pose.at(second_point), self.x) - start) / (second_point - first_point)
             z = along / np.abs(along)
-            drawn[link] = Pose(start - one * z, z)
+            drawn[link] = Pose(start - first_point * z, z)
         return drawn
 
-    def lay_off(self, links: tuple[str, ...], found: Rates, poses: Poses, known: Rates) -> dict[str, Rate]:
+    def lay_off(self, links: tuple[str, ...], rates: Rates, poses: Poses, known: Rates) -> dict[str, Rate]:
         """Return the rates as in the velocity plan."""
         drawn = dict(known)
         for link in self._order(links):
-            rate, pose, ends = found[link], poses[link], self._ends(link)
+            rate, pose, ends = rates[link], poses[link], self._ends(link)
             if ends is None:
                 partner = self._partner(link, drawn)
                 w = rate.w if partner is None else drawn[partner[0]].w
                 arm = self._point(link) * pose.z
                 drawn[link] = Rate.through(snap_to_grid(rate.at(arm), self.v), w, arm)
                 continue
-            one, other = (self.case.linkage.local(link, point) * pose.z for point in ends)
-            v, u = snap_to_grid(rate.at(one), self.v), snap_to_grid(rate.at(other), self.v)
-            drawn[link] = Rate.through(v, cross(other - one, u - v) / np.abs(other - one) ** 2, one)
+            first_arm, second_arm = (self.case.linkage.local(link, point) * pose.z for point in ends)
+            v, u = snap_to_grid(rate.at(first_arm), self.v), snap_to_grid(rate.at(second_arm), self.v)
+            drawn[link] = Rate.through(
+                v, cross(second_arm - first_arm, u - v) / np.abs(second_arm - first_arm) ** 2, first_arm
+            )
         return drawn
 
     def normals(self, links: tuple[str, ...], poses: Poses, rates: Rates) -> dict[str, Rate]:
@@ -167,29 +176,29 @@ class Board:
         for link in links:
             ends = self._ends(link)
             if ends is not None:
-                one, other = (self.case.linkage.local(link, point) * poses[link].z for point in ends)
-                length, rate = np.abs(other - one), rates[link]
+                first_arm, second_arm = (self.case.linkage.local(link, point) * poses[link].z for point in ends)
+                length, rate = np.abs(second_arm - first_arm), rates[link]
                 normal = self.a * np.round(rate.w**2 * length / self.a)
-                laid[link] = Rate.through(rate.at(one), np.sign(rate.w) * np.sqrt(normal / length), one)
+                laid[link] = Rate.through(rate.at(first_arm), np.sign(rate.w) * np.sqrt(normal / length), first_arm)
         return laid
 
     def accelerate(
-        self, links: tuple[str, ...], found: Accels, poses: Poses, rates: Rates, known: Accels
+        self, links: tuple[str, ...], accels: Accels, poses: Poses, rates: Rates, known: Accels
     ) -> dict[str, Accel]:
         """Return the accelerations as in the acceleration plan."""
         drawn = dict(known)
         for link in self._order(links):
-            accel, pose, w, ends = found[link], poses[link], rates[link].w, self._ends(link)
+            accel, pose, w, ends = accels[link], poses[link], rates[link].w, self._ends(link)
             if ends is None:
                 partner = self._partner(link, drawn)
                 e = accel.e if partner is None else drawn[partner[0]].e
                 arm = self._point(link) * pose.z
                 drawn[link] = Accel.through(snap_to_grid(accel.at(arm, w), self.a), e, w, arm)
                 continue
-            one, other = (self.case.linkage.local(link, point) * pose.z for point in ends)
-            b, c = snap_to_grid(accel.at(one, w), self.a), snap_to_grid(accel.at(other, w), self.a)
-            e = cross(other - one, c - b) / np.abs(other - one) ** 2
-            drawn[link] = Accel.through(b, e, w, one)
+            first_arm, second_arm = (self.case.linkage.local(link, point) * pose.z for point in ends)
+            b, c = snap_to_grid(accel.at(first_arm, w), self.a), snap_to_grid(accel.at(second_arm, w), self.a)
+            e = cross(second_arm - first_arm, c - b) / np.abs(second_arm - first_arm) ** 2
+            drawn[link] = Accel.through(b, e, w, first_arm)
         return drawn
 
     def motion(self, q: Real) -> tuple[Motion, tuple[Placement, ...]]:

@@ -107,8 +107,8 @@ class MethodAnswers:
 
     def series(self, quantity: Compared) -> Mapping[str, Vector] | None:
         """Return one quantity by name; the balancing moment under the name of its quantity."""
-        found = getattr(self, quantity)
-        return {quantity: found} if quantity == "balancing" and found is not None else found
+        values = getattr(self, quantity)
+        return {quantity: values} if quantity == "balancing" and values is not None else values
 
 
 @dataclass(frozen=True)
@@ -152,7 +152,7 @@ def answers_of_plan(case: Case, motion: Motion, plan: Reactions) -> MethodAnswer
 
 
 def relative_errors(
-    found: MethodAnswers, exact: MethodAnswers, quantities: Iterable[Compared] = QUANTITIES
+    computed: MethodAnswers, exact: MethodAnswers, quantities: Iterable[Compared] = QUANTITIES
 ) -> dict[Compared, float]:
     """Return the largest error of each quantity relative to the largest value of the same point or pair in the cycle.
 
@@ -160,7 +160,7 @@ def relative_errors(
     """
     worst: dict[Compared, float] = {}
     for quantity in quantities:
-        mine, true = found.series(quantity), exact.series(quantity)
+        mine, true = computed.series(quantity), exact.series(quantity)
         if mine is None or true is None:
             worst[quantity] = float("nan")
             continue

@@ -50,8 +50,12 @@ class PairEquations:
     @cached_property
     def constraints(self) -> tuple[PairConstraint, ...]:
         """Constraint equations of the pairs and of the driver."""
-        found = tuple(PAIR_CONSTRAINTS[pair.kind](pair, self.linkage) for pair in self.pairs)
-        return (*found, DriverConstraint.of(self.linkage.driver, self.linkage)) if self.driven else found
+        pair_constraints = tuple(PAIR_CONSTRAINTS[pair.kind](pair, self.linkage) for pair in self.pairs)
+        return (
+            (*pair_constraints, DriverConstraint.of(self.linkage.driver, self.linkage))
+            if self.driven
+            else pair_constraints
+        )
 
     @cached_property
     def scale(self) -> Real:
@@ -82,18 +86,18 @@ class PairEquations:
 
     def reactions(self, poses: Poses, multipliers: Real) -> dict[str, Vector]:
         """Return the multipliers as forces on the second link of each pair, N."""
-        found: dict[str, Vector] = {}
+        forces: dict[str, Vector] = {}
         pushes = list(np.moveaxis(multipliers * self.scale, -1, 0))
         for number, (pair, constraint) in enumerate(zip(self.pairs, self.constraints, strict=False)):
             force = constraint.reaction(poses, pushes[2 * number : 2 * number + 2]).force
-            found[pair.name] = force if pair.j == constraint.links[1] else -force
-        return found
+            forces[pair.name] = force if pair.j == constraint.links[1] else -force
+        return forces
 
 
 def columns_by_link(linkage: Linkage, parts: Mapping[str, tuple[Vector, Real]]) -> Real:
     """Stack a vector (of the origin) and a number (of the angle) of each moving link in the columns of the matrix."""
-    found = [part for at, around in map(parts.__getitem__, linkage.moving) for part in (at.real, at.imag, around)]
-    return np.stack(found, axis=-1)
+    columns = [column for at, around in map(parts.__getitem__, linkage.moving) for column in (at.real, at.imag, around)]
+    return np.stack(columns, axis=-1)
 
 
 # Newton's method on the closure of the whole linkage, from the nearest node of a trace that is made once.
@@ -124,15 +128,15 @@ def close_positions(closure: LinkageClosure, X: Real, q: Real, tolerance: float)
     active, last = np.ones(len(q), dtype=bool), np.full(len(q), np.inf)
     for _ in range(MOST_ITERATIONS):
         residuals = closure.residuals(X, q)
-        size = np.max(np.abs(residuals), axis=-1)
-        active = active & ~(size <= tolerance) & ~((size < LEAST_GAP) & (size > last / 2))
+        gaps = np.max(np.abs(residuals), axis=-1)
+        active = active & ~(gaps <= tolerance) & ~((gaps < LEAST_GAP) & (gaps > last / 2))
         if not np.any(active):
             break
         step = solve(closure.matrix(X, q), -residuals)
-        X, last = np.where(active[:, None], X + step, X), size
+        X, last = np.where(active[:, None], X + step, X), gaps
     if np.any(active):
-        size = np.max(np.abs(closure.residuals(X, q)), axis=-1)
-        X = np.where((active & ~(size <= max(tolerance, LEAST_GAP)))[:, None], np.nan, X)
+        gaps = np.max(np.abs(closure.residuals(X, q)), axis=-1)
+        X = np.where((active & ~(gaps <= max(tolerance, LEAST_GAP)))[:, None], np.nan, X)
     return X
 
 
@@ -157,29 +161,29 @@ def trace_coordinates(case: Case, closure: LinkageClosure) -> TracedCoordinates:
     crank.
     """
     at = case.linkage.sketch.at
-    here = np.array([at])
-    poses = dict(compute_motion(case.linkage, case.kernels, here, case.law).poses)
+    sketch_q = np.array([at])
+    poses = dict(compute_motion(case.linkage, case.kernels, sketch_q, case.law).poses)
     turns = case.linkage.driver.kind == "turn"
     reach = np.pi if turns else case.size
-    q, X = [at], [close_positions(closure, closure.sketched(poses, here), here, 0.0)[0]]
+    q, X = [at], [close_positions(closure, closure.sketched(poses, sketch_q), sketch_q, 0.0)[0]]
     ways = [_trace_one_way(closure, X[0], at, sense * reach / (TRACED_POSITIONS // 2)) for sense in (-1, 1)]
-    whole = turns and all(len(way) == TRACED_POSITIONS // 2 for way in ways)
+    whole = turns and all(len(trace) == TRACED_POSITIONS // 2 for trace in ways)
     q = [*(place for place, _ in reversed(ways[0])), at, *(place for place, _ in ways[1])]
-    X = [*(found for _, found in reversed(ways[0])), X[0], *(found for _, found in ways[1])]
+    X = [*(coordinates for _, coordinates in reversed(ways[0])), X[0], *(coordinates for _, coordinates in ways[1])]
     return TracedCoordinates(np.array(q), np.array(X), 2 * np.pi if whole else None)
 
 
 def _trace_one_way(closure: LinkageClosure, X: Real, at: float, step: float) -> list[tuple[float, Real]]:
     """Return driver and closure coordinates step by step, until the closure fails."""
-    found: list[tuple[float, Real]] = []
+    nodes: list[tuple[float, Real]] = []
     with np.errstate(all="ignore"):
         for k in range(1, TRACED_POSITIONS // 2 + 1):
             q = np.array([at + k * step])
             X = close_positions(closure, X[None, :], q, 0.0)[0]
             if not np.max(np.abs(closure.residuals(X[None, :], q))) < LEAST_GAP:
                 break
-            found.append((float(q[0]), X))
-    return found
+            nodes.append((float(q[0]), X))
+    return nodes
 
 
 # Newton's method on loop closure: joint coordinates along a spanning tree of pairs; each other pair closes a loop.
@@ -219,13 +223,13 @@ class LoopEquations:
         structure = self.case.structure
         driving = [structure.driving_pair(driver) for driver in structure.drivers]
         pairs = sorted(structure.pairs, key=lambda pair: pair not in driving)
-        reached, found = {FRAME}, []
+        reached, branches = {FRAME}, []
         while len(reached) <= len(self.case.linkage.moving):
             pair = next(p for p in pairs if len({p.i, p.j} & reached) == 1)
-            own = pair.j if pair.i in reached else pair.i
-            reached.add(own)
-            found.append(TreeBranch(pair, own))
-        return tuple(found)
+            link = pair.j if pair.i in reached else pair.i
+            reached.add(link)
+            branches.append(TreeBranch(pair, link))
+        return tuple(branches)
 
     @cached_property
     def cut(self) -> tuple[Pair, ...]:
@@ -252,10 +256,10 @@ class LoopEquations:
     @cached_property
     def paths(self) -> Mapping[str, frozenset[int]]:
         """Indices of the coordinates that move each link."""
-        found: dict[str, frozenset[int]] = {FRAME: frozenset()}
+        coordinates_of: dict[str, frozenset[int]] = {FRAME: frozenset()}
         for k, branch in enumerate(self.tree):
-            found[branch.own] = found[branch.before] | {k}
-        return found
+            coordinates_of[branch.own] = coordinates_of[branch.before] | {k}
+        return coordinates_of
 
     # positions
 
@@ -267,9 +271,9 @@ class LoopEquations:
 
     def poses(self, X: Real, q: Real) -> dict[str, Pose]:
         local = self.case.linkage.local
-        found = {FRAME: frame_state(q)[0]}
+        poses = {FRAME: frame_state(q)[0]}
         for branch, s in zip(self.tree, self.all(X, q), strict=True):
-            before, pair, slide = found[branch.before], branch.pair, branch.pair.slide
+            before, pair, slide = poses[branch.before], branch.pair, branch.pair.slide
             if slide is None:
                 unwrapped = before.turned + s
                 z = unit(unwrapped)
@@ -282,8 +286,8 @@ class LoopEquations:
                 unwrapped = before.turned - slide.turned
                 z = unit(unwrapped)
                 x = before.at(slide.at) - (slide.through + s * unit(slide.direction)) * z
-            found[branch.own] = Pose(x, z, unwrapped)
-        return found
+            poses[branch.own] = Pose(x, z, unwrapped)
+        return poses
 
     def sketched(self, poses: dict[str, Pose], q: Real) -> Real:
         columns = []
@@ -293,8 +297,8 @@ class LoopEquations:
             if slide is None:
                 columns.append(poses[branch.own].turned - poses[branch.before].turned)
             else:
-                here = GuideGeometry.at(slide, poses)
-                columns.append(dot(here.u, here.off))
+                guide = GuideGeometry.at(slide, poses)
+                columns.append(dot(guide.u, guide.off))
         return np.stack(columns, axis=-1)
 
     def residuals(self, X: Real, q: Real) -> Real:
@@ -360,15 +364,15 @@ class LoopEquations:
         cut = solve(np.swapaxes(J[..., self.free], -1, -2), -Q[..., self.free])
         balancing = -(Q[:, self.given] + np.einsum("nr,nr->n", J[..., self.given], cut))
         borne = {link: wrench.force for link, wrench in on.items()}
-        found = self.rows.reactions(poses, cut)
+        reactions = self.rows.reactions(poses, cut)
         for pair in self.cut:
-            borne[pair.j] = borne[pair.j] + found[pair.name]
-            borne[pair.i] = borne[pair.i] - found[pair.name]
+            borne[pair.j] = borne[pair.j] + reactions[pair.name]
+            borne[pair.i] = borne[pair.i] - reactions[pair.name]
         for branch in reversed(self.tree):
             all_of_it = borne[branch.own]
-            found[branch.pair.name] = -all_of_it if branch.own == branch.pair.j else all_of_it
+            reactions[branch.pair.name] = -all_of_it if branch.own == branch.pair.j else all_of_it
             borne[branch.before] = borne[branch.before] + all_of_it
-        return found, balancing
+        return reactions, balancing
 
 
 @lru_cache(maxsize=8)
@@ -388,9 +392,9 @@ def prepare_loops(tolerance: float, case: Case) -> Callable[[Real], MethodAnswer
         poses = loops.poses(close_positions(loops, nodes.near(q), q, tolerance), q)
         links, R = loops.rows.matrix(poses), loops.transformation(poses)
         J = links @ R
-        free, given = J[..., loops.free], J[..., loops.given]
+        free, driver_column = J[..., loops.free], J[..., loops.given]
         still = np.zeros(len(q))
-        speeds = loops.all(solve(free, -given), still + 1)
+        speeds = loops.all(solve(free, -driver_column), still + 1)
         first, bent = loops.states(poses, speeds, [still] * len(speeds))
         accels = columns_by_link(case.linkage, {name: (accel.a, accel.e) for name, accel in bent.items()})
         bends = np.einsum("nrc,nc->nr", links, accels) + loops.rows.velocity_terms(poses, first)
@@ -424,10 +428,10 @@ class MultibodyEquations:
 
     def poses(self, X: Real) -> dict[str, Pose]:
         """Return the poses of all links, including the frame."""
-        found = {FRAME: frame_state(X[:, 0])[0]}
+        poses = {FRAME: frame_state(X[:, 0])[0]}
         for name, k in self.first.items():
-            found[name] = Pose(X[:, k] + 1j * X[:, k + 1], unit(X[:, k + 2]), X[:, k + 2])
-        return found
+            poses[name] = Pose(X[:, k] + 1j * X[:, k + 1], unit(X[:, k + 2]), X[:, k + 2])
+        return poses
 
     def sketched(self, poses: dict[str, Pose], q: Real) -> Real:
         return columns_by_link(self.case.linkage, {name: (poses[name].x, poses[name].turned) for name in self.first})

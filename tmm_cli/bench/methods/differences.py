@@ -24,18 +24,20 @@ def prepare_differences(step: float, case: Case) -> Callable[[Real], MethodAnswe
 
     def answer(q: Real) -> MethodAnswers:
         back, on = q - h, q + h
-        here, less, more = (
+        middle, less, more = (
             compute_motion(case.linkage, case.kernels, at, case.law, 0, blank=False) for at in (q, back, on)
         )
         half = (on - back) / 2  # the step as rounded
         first, second = {}, {}
-        for name, pose in here.poses.items():
+        for name, pose in middle.poses.items():
             behind, ahead = less.poses[name], more.poses[name]
             # angles relative to the middle one, so that full turns have no effect
             a, b = np.angle(behind.z * np.conj(pose.z)), np.angle(ahead.z * np.conj(pose.z))
             first[name] = Rate((ahead.x - behind.x) / (2 * half), (b - a) / (2 * half))
             second[name] = Accel((ahead.x - 2 * pose.x + behind.x) / half**2, (a + b) / half**2)
-        motion = replace(case.motion(q, here.poses, first, second), kernels=case.kernels, placements=here.placements)
+        motion = replace(
+            case.motion(q, middle.poses, first, second), kernels=case.kernels, placements=middle.placements
+        )
         return answers_of_plan(case, motion, solve_reactions(motion, case.structure, case.loads(motion)))
 
     return answer

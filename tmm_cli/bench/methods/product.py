@@ -33,9 +33,9 @@ def convert_precision(value: Any, real: type) -> Any:
     if isinstance(value, (complex, np.complexfloating)):
         return np.result_type(real, np.complex64).type(value)
     if isinstance(value, Mapping):
-        return {key: convert_precision(part, real) for key, part in value.items()}
+        return {key: convert_precision(element, real) for key, element in value.items()}
     if isinstance(value, tuple):
-        return tuple(convert_precision(part, real) for part in value)
+        return tuple(convert_precision(element, real) for element in value)
     if is_dataclass(value) and not isinstance(value, type):
         names = [field.name for field in fields(value) if field.init]
         return replace(value, **{name: convert_precision(getattr(value, name), real) for name in names})
@@ -48,8 +48,8 @@ class ConvertedSolver(WrappedSolver):
 
     real: type
 
-    def passed(self, work: Callable[..., Any], *given: Any) -> Any:
-        return convert_precision(work(*(convert_precision(part, self.real) for part in given)), self.real)
+    def passed(self, work: Callable[..., Any], *arguments: Any) -> Any:
+        return convert_precision(work(*(convert_precision(argument, self.real) for argument in arguments)), self.real)
 
 
 def prepare_double(case: Case) -> Callable[[Real], MethodAnswers]:
@@ -105,14 +105,14 @@ def make_batch(case: Case, *, forces: bool = True) -> Batch:
     """Make a batch of the quantities of the common form only: QUANTITY.NAME, and "balancing"."""
 
     def asked(motion: Motion, plan: Reactions | None) -> Mapping[str, Any]:
-        found: dict[str, Any] = {}
+        values: dict[str, Any] = {}
         for name in case.linkage.moving_points:
             point = motion.named_on(case.linkage.owner(name), name)
-            found |= {f"positions.{name}": point.x, f"velocities.{name}": point.v, f"accelerations.{name}": point.a}
+            values |= {f"positions.{name}": point.x, f"velocities.{name}": point.v, f"accelerations.{name}": point.a}
         if plan is not None:
-            found |= {f"reactions.{r.pair.name}": r.onto(r.pair.j) for r in plan.all}
-            found["balancing"] = plan.balance.generalized
-        return found
+            values |= {f"reactions.{r.pair.name}": r.onto(r.pair.j) for r in plan.all}
+            values["balancing"] = plan.balance.generalized
+        return values
 
     return batch_of(case.linkage, asked, forces=forces, strokes=case.strokes)
 
@@ -126,8 +126,8 @@ def prepare_traced(case: Case) -> Callable[[Real], MethodAnswers]:
     names = {kind: [name for name in played.program.outputs if name.startswith(f"{kind}.")] for kind in kinds}
 
     def at(q: Real) -> MethodAnswers:
-        found = played(q)
-        x, v, a, forces = ({name[len(kind) + 1 :]: found[name] for name in own} for kind, own in names.items())
-        return MethodAnswers(x, v, a, forces, found["balancing"])
+        values = played(q)
+        x, v, a, forces = ({name[len(kind) + 1 :]: values[name] for name in outputs} for kind, outputs in names.items())
+        return MethodAnswers(x, v, a, forces, values["balancing"])
 
     return at

@@ -134,10 +134,10 @@ def recognise(case: Case) -> TextbookFourBar | TextbookCrankSlider:
 
 
 def _prepare(
-    case: Case, which: Callable[[TextbookFourBar | TextbookCrankSlider], Angles]
+    case: Case, choose: Callable[[TextbookFourBar | TextbookCrankSlider], Angles]
 ) -> Callable[[Real], MethodAnswers]:
     mechanism = recognise(case)
-    angles, sign = which(mechanism), _sketched_side(mechanism, case.linkage.sketch.points)
+    angles, sign = choose(mechanism), _sketched_side(mechanism, case.linkage.sketch.points)
     return lambda q: mechanism.solved(q, angles(q, sign))
 
 

@@ -89,8 +89,10 @@ class _Model:
             if signs:
                 self.system.change_signs(signs)
             self.system.solve_kinematics(q[None, :].copy())
-            found = self.positions()
-            if all(np.max(np.abs(found[p] - true.named(p).x)) < SAME * case.size for p in case.linkage.moving_points):
+            assemblies = self.positions()
+            if all(
+                np.max(np.abs(assemblies[p] - true.named(p).x)) < SAME * case.size for p in case.linkage.moving_points
+            ):
                 return
         raise MethodUnable("the program does not solve this linkage")
 
@@ -124,12 +126,12 @@ class _Model:
 
     def positions(self) -> dict[str, Vector]:
         """Return the positions of the named points."""
-        found = {}
+        positions = {}
         for point in self.case.linkage.moving_points:
             link = self.case.linkage.owner(point)
             x, y = self.solids[link].get_point(_xy(self.case.linkage.local(link, point)))
-            found[point] = x + 1j * y
-        return found
+            positions[point] = x + 1j * y
+        return positions
 
     def answers(self, chosen: slice, dt: float) -> MethodAnswers:
         """Return its results, with its own differences for velocities and accelerations."""

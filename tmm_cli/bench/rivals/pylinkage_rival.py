@@ -47,7 +47,7 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
     if driver.kind != "turn" or case.linkage.others:
         raise MethodUnable("the driver must be a single crank")
     start = compute_motion(case.linkage, case.kernels, np.array([case.start]), case.law)
-    places = {point: complex(start.named(point).x[0]) for point in case.linkage.moving_points}
+    coordinates = {point: complex(start.named(point).x[0]) for point in case.linkage.moving_points}
     parts: dict[str, Any] = {}
     for point, place in case.linkage.links[FRAME].points.items():
         parts[point] = Ground(place.real, place.imag, name=point)
@@ -59,10 +59,10 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
     crank = parts[ends[0]] = Crank(parts[driver.joint], radius, 0.0, case.start, name=ends[0])
     guides: list[Any] = []
     for group in case.structure.groups:
-        _add(group, case, parts, guides, places)
+        _add(group, case, parts, guides, coordinates)
     linkage = Linkage([*parts.values(), *guides])
     names = [component.name for component in linkage.components]
-    made: dict[tuple[float, float], tuple[Any, tuple[Any, ...]]] = {}
+    joints: dict[tuple[float, float], tuple[Any, tuple[Any, ...]]] = {}
 
     def arrays(first: float, step: float) -> tuple[Any, tuple[Any, ...]]:
         """Return the joints one step before the first position, and the other arguments of its solver."""
@@ -87,22 +87,22 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
 
     def at(q: Real) -> tuple[Any, Any, Any]:
         key = (float(q[0]), float(q[1] - q[0]) if len(q) > 1 else 0.0)
-        if key not in made:
-            made[key] = arrays(*key)
-        positions, rest = made[key]
+        if key not in joints:
+            joints[key] = arrays(*key)
+        positions, rest = joints[key]
         found: tuple[Any, Any, Any] = simulate_with_kinematics(positions.copy(), *rest, len(q), 1.0)
         return found
 
     return at, names
 
 
-def _add(group: Group, case: Case, parts: dict[str, Any], guides: list[Any], places: Mapping[str, complex]) -> None:
+def _add(group: Group, case: Case, parts: dict[str, Any], guides: list[Any], points: Mapping[str, complex]) -> None:
     """Add the internal hinge of a group."""
     local = case.linkage.local
     if group.type not in ("RRR", "RRP"):
         raise MethodUnable(f"the program does not support group {group.title} of type {group.type or 'of class III'}")
     point = group.inner[0].point
-    x, y = places[point].real, places[point].imag
+    x, y = points[point].real, points[point].imag
 
     def reach(pair: Pair) -> tuple[Any, float]:
         own = pair.i if pair.i in group.links else pair.j

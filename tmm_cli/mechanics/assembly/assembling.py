@@ -61,8 +61,8 @@ def find_change_points(
     turns = linkage.driver.kind == "turn"
     number = turns_of_cycle(linkage) or 1
     for other in upto[:-1]:
-        way = other.way if isinstance(other, ClosedFormSolver) else None
-        if way is not None and way.cycle is not None and len(way.places) % 2:
+        change_points = other.way if isinstance(other, ClosedFormSolver) else None
+        if change_points is not None and change_points.cycle is not None and len(change_points.places) % 2:
             number *= 2
     if number * len(upto) > LARGEST_SEARCH:
         raise ChangePointSearchError(kernel.group, len(upto), number, LARGEST_SEARCH)
@@ -76,23 +76,25 @@ def find_change_points(
         rise = np.abs(np.diff(residual))
         near = (inner >= residual[:-2]) & (inner > residual[2:]) & (inner + 2 * np.maximum(rise[1:], rise[:-1]) >= 0)
     earlier = _change_points_before(upto, float(q[0]), float(q[-1]))
-    found = np.sort(_refine_change_points(linkage, upto, q[np.flatnonzero(near) + 1], float(step), earlier))
+    candidates = np.sort(_refine_change_points(linkage, upto, q[np.flatnonzero(near) + 1], float(step), earlier))
     if turns:
-        found = np.sort(found - 2 * half * np.floor((found - start) / (2 * half)))
-    places = found[np.diff(found, prepend=-np.inf) > step]
-    if len(places) > 1 and turns and places[0] + 2 * half - places[-1] < step:
-        places = places[:-1]
-    return ChangePoints(places, start, linkage.sketch.at, 2 * half if turns else None) if places.size else None
+        candidates = np.sort(candidates - 2 * half * np.floor((candidates - start) / (2 * half)))
+    coordinates = candidates[np.diff(candidates, prepend=-np.inf) > step]
+    if len(coordinates) > 1 and turns and coordinates[0] + 2 * half - coordinates[-1] < step:
+        coordinates = coordinates[:-1]
+    return (
+        ChangePoints(coordinates, start, linkage.sketch.at, 2 * half if turns else None) if coordinates.size else None
+    )
 
 
 def _change_points_before(upto: tuple[GroupSolver, ...], low: float, high: float) -> Real:
     """Return the change points (points,), increasing, of the groups on which the last one depends."""
     ways = [kernel.way for kernel in upto[:-1] if isinstance(kernel, ClosedFormSolver) and kernel.way is not None]
-    return np.sort(np.concatenate([np.zeros(0), *(way.within(low, high) for way in ways)]))
+    return np.sort(np.concatenate([np.zeros(0), *(change_points.within(low, high) for change_points in ways)]))
 
 
 def _refine_change_points(
-    linkage: Linkage, upto: tuple[GroupSolver, ...], places: Real, step: float, earlier: Real
+    linkage: Linkage, upto: tuple[GroupSolver, ...], candidates: Real, step: float, earlier: Real
 ) -> Real:
     """Refine the change points near `places` (places,) to the last bit; points that the group cannot pass are dropped.
 
@@ -100,16 +102,16 @@ def _refine_change_points(
     result next to such a point is that point itself: otherwise, in a chain of parallelograms, the points would drift
     apart.
     """
-    if not places.size:
-        return places
+    if not candidates.size:
+        return candidates
     to_spare = partial(assembly_reserve, linkage, upto)
-    closer = _values_at_steps(to_spare, places, step * np.linspace(-1, 1, CLOSER))
+    closer = _values_at_steps(to_spare, candidates, step * np.linspace(-1, 1, CLOSER))
     with np.errstate(invalid="ignore"):
         falls = np.abs(np.min(closer, axis=1)) <= 2 * np.max(np.abs(np.diff(closer, axis=1)), axis=1)
-    places = places[np.all(np.isfinite(closer), axis=1) & falls]
-    if not places.size:
-        return places
-    best = refine_dead_positions(linkage, upto, find_minima(to_spare, places - step, places + step)[0], step)
+    candidates = candidates[np.all(np.isfinite(closer), axis=1) & falls]
+    if not candidates.size:
+        return candidates
+    best = refine_dead_positions(linkage, upto, find_minima(to_spare, candidates - step, candidates + step)[0], step)
     shared = np.zeros(best.size, dtype=bool)
     if earlier.size:
         nearest = earlier[np.argmin(np.abs(best[:, None] - earlier), axis=1)]
@@ -128,9 +130,9 @@ def _refine_change_points(
     return exact
 
 
-def _values_at_steps(function: Callable[[Real], Real], places: Real, steps: Real) -> Real:
+def _values_at_steps(function: Callable[[Real], Real], centres: Real, steps: Real) -> Real:
     """Return the values of a function at steps from each place, shape (places, steps)."""
-    q = places[:, None] + steps
+    q = centres[:, None] + steps
     return np.broadcast_to(function(q.ravel()), q.size).reshape(q.shape)
 
 
@@ -139,7 +141,7 @@ def assembly_reserve(linkage: Linkage, kernels: tuple[GroupSolver, ...], q: Real
     return -link_states(linkage, kernels, q, 0).placements[-1].residual
 
 
-def refine_dead_positions(linkage: Linkage, kernels: tuple[GroupSolver, ...], places: Real, step: float) -> Real:
+def refine_dead_positions(linkage: Linkage, kernels: tuple[GroupSolver, ...], positions: Real, step: float) -> Real:
     """Refine dead positions (positions,) inside the range to the last bit: there the residual of the last group is
     stationary.
 
@@ -147,20 +149,20 @@ def refine_dead_positions(linkage: Linkage, kernels: tuple[GroupSolver, ...], pl
     """
     last = kernels[-1]
     if not isinstance(last, ClosedFormSolver):
-        return places
+        return positions
 
     def residual_rate(q: Real) -> Real:
         before = link_states(linkage, kernels[:-1], q, 1)
         return last.residual_rate(last.closed(before.poses, before.drives), before.poses, before.first, before.drives)
 
-    low, high = places - step, places + step
+    low, high = positions - step, positions + step
     with np.errstate(all="ignore"):
         changes = np.sign(residual_rate(low)) * np.sign(residual_rate(high)) < 0
         if not np.any(changes):
-            return places
-        found = places.copy()
-        found[changes] = find_roots(residual_rate, low[changes], high[changes])
-    return found
+            return positions
+        refined = positions.copy()
+        refined[changes] = find_roots(residual_rate, low[changes], high[changes])
+    return refined
 
 
 # Selection of the assembly of each group from the sketch; it is kept in every position.
@@ -246,8 +248,8 @@ def _accumulate_angles(linkage: Linkage, kernels: tuple[GroupSolver, ...], links
     for link in links:
         z = motion.poses[link].z[first:last]
         angle = np.unwrap(np.angle(z))
-        here = middle - first
-        angles[link] = angle + (np.angle(z[here]) - angle[here])
+        sketch_index = middle - first
+        angles[link] = angle + (np.angle(z[sketch_index]) - angle[sketch_index])
     closed = first == 0 and last == len(q) and linkage.driver.kind == "turn"
     return AccumulatedAngles(q[first:last], angles, closed)
 
@@ -257,7 +259,7 @@ def _choose_assembly(
 ) -> tuple[ClosedFormSolver, Placement]:
     signed = [replace(kernel, sign=s) for s in (1, -1)[: kernel.assemblies]]
     with np.errstate(invalid="ignore", divide="ignore"):
-        ways = [(one, one.closed(poses, drives)) for one in signed]
+        ways = [(variant, variant.closed(poses, drives)) for variant in signed]
     first = ways[0][1]
     if not first.assembled[0] or not np.isfinite(first.a.x[0] + first.b.x[0]):
         raise AssemblyError(kernel.group, float(first.residual[0]))

@@ -60,49 +60,53 @@ class BranchFollower:
         "lost": the group cannot be followed any further.
         """
         nodes: list[BranchNode] = []
-        here, failures, largest = start, 0, 0.0
-        way = end - start.q
-        least = LEAST_STEP * abs(way)
-        step, growth = FIRST_STEP * way / np.pi, 1.0
-        smooth = [here]  # the last nodes, found in steps that were not halved
-        while here.q != end:
-            largest = max(largest, abs(here.det))
-            places = places_ahead(here.q, end, step, growth, LARGEST_STEP * abs(way) / np.pi)
-            q, found = places[0], self.corrector.step(smooth, places)
-            close = found is not None and found[1] < CORRECTION
-            dead = self.crossings.between([start, *nodes], found[0], largest) if found is not None and close else None
+        node, failures, largest = start, 0, 0.0
+        distance = end - start.q
+        least = LEAST_STEP * abs(distance)
+        step, growth = FIRST_STEP * distance / np.pi, 1.0
+        smooth = [node]  # the last nodes, found in steps that were not halved
+        while node.q != end:
+            largest = max(largest, abs(node.det))
+            targets = places_ahead(node.q, end, step, growth, LARGEST_STEP * abs(distance) / np.pi)
+            q, corrected = targets[0], self.corrector.step(smooth, targets)
+            close = corrected is not None and corrected[1] < CORRECTION
+            dead = (
+                self.crossings.between([start, *nodes], corrected[0], largest)
+                if corrected is not None and close
+                else None
+            )
             if dead is not None and abs(dead.q - end) < EDGE * self.scale:
                 return nodes, "boundary"
-            if dead is not None and (dead.q - end) * way < 0:
+            if dead is not None and (dead.q - end) * distance < 0:
                 nodes.append(dead)
-                here, step, failures = dead, FIRST_STEP * way / np.pi, 0
-                smooth = [here]
+                node, step, failures = dead, FIRST_STEP * distance / np.pi, 0
+                smooth = [node]
                 continue
-            if found is not None and close and found[0].side == here.side:
-                growth = 1.6 if found[1] < CORRECTION / 8 else 1.0
+            if corrected is not None and close and corrected[0].side == node.side:
+                growth = 1.6 if corrected[1] < CORRECTION / 8 else 1.0
                 step *= growth
-                here, failures = found[0], 0
-                nodes.append(here)
-                smooth.append(here)
-                if self.spins(here):
-                    return [*nodes, *self.beyond(here)], "lost"
+                node, failures = corrected[0], 0
+                nodes.append(node)
+                smooth.append(node)
+                if self.spins(node):
+                    return [*nodes, *self.beyond(node)], "lost"
                 continue
-            step = (q - here.q) / 2
-            smooth = [here]
+            step = (q - node.q) / 2
+            smooth = [node]
             failures += 1
             if failures % PATIENCE == 0 or abs(step) < least:
-                limit = self.limit(here, float(np.sign(way)))
+                limit = self.limit(node, float(np.sign(distance)))
                 beside = abs(step) < least
-                if limit is not None and (limit.q - end) * way <= 0 and (beside or self.leads_to(here, limit)):
+                if limit is not None and (limit.q - end) * distance <= 0 and (beside or self.leads_to(node, limit)):
                     return [*nodes, limit], "limit"
             if abs(step) < least:
-                lost = [*nodes, *self.beyond(here)]
-                return lost, "boundary" if abs(end - here.q) < EDGE * self.scale else "lost"
+                lost = [*nodes, *self.beyond(node)]
+                return lost, "boundary" if abs(end - node.q) < EDGE * self.scale else "lost"
         return nodes, "reached"
 
-    def spins(self, here: BranchNode) -> bool:
+    def spins(self, node: BranchNode) -> bool:
         """Return True if the links rotate so much faster than the driver that they cannot be followed."""
-        return self.corrector.gone(here.state)[1] > SPUN * (1 + abs(here.q - self.at) / self.scale)
+        return self.corrector.gone(node.state)[1] > SPUN * (1 + abs(node.q - self.at) / self.scale)
 
     def beyond(self, last: BranchNode) -> list[BranchNode]:
         """Return a node where a group that recedes reaches infinity; empty if it does not recede.
@@ -123,24 +127,24 @@ class BranchFollower:
             return [replace(last, q=last.q + float(wound[k] / last.first.unwrapped.ravel()[k]))]
         return []
 
-    def leads_to(self, here: BranchNode, limit: BranchNode) -> bool:
+    def leads_to(self, node: BranchNode, limit: BranchNode) -> bool:
         """Return True if the branch leads to a limit; another branch may lie beyond it, across a gap narrower than a
         step.
         """
-        near = self.corrector.apart(here.state, limit.state) / 2
+        near = self.corrector.apart(node.state, limit.state) / 2
         share = np.sqrt(LEFT)[:, None]  # near a limit states vary as the square root of the distance
         starts = GroupState(
             *(
-                there + share * (one - there)
-                for one, there in ((here.state.x, limit.state.x), (here.state.unwrapped, limit.state.unwrapped))
+                end + share * (start - end)
+                for start, end in ((node.state.x, limit.state.x), (node.state.unwrapped, limit.state.unwrapped))
             )
         )
-        found = self.corrector.nodes(limit.q + np.array(LEFT) * (here.q - limit.q), starts)
+        checked = self.corrector.nodes(limit.q + np.array(LEFT) * (node.q - limit.q), starts)
         return all(
-            one is not None
-            and one.side == here.side
-            and self.corrector.apart(one.state, starts.part(slice(k, k + 1))) <= near
-            for k, one in enumerate(found)
+            start is not None
+            and start.side == node.side
+            and self.corrector.apart(start.state, starts.part(slice(k, k + 1))) <= near
+            for k, start in enumerate(checked)
         )
 
     def limit(self, last: BranchNode, sense: float) -> BranchNode | None:
@@ -190,30 +194,30 @@ class BranchFollower:
                 return None
             low, high, best = 0.0, 1e-3, good
             while high < FARTHEST:
-                found = at(high, best[0], best[1])
-                if found is None:
+                point = at(high, best[0], best[1])
+                if point is None:
                     return None
-                if found[2] <= 0:
+                if point[2] <= 0:
                     break
-                low, best, high = high, found, 2 * high
+                low, best, high = high, point, 2 * high
             else:
                 return None
             # false position; the slope at an end that is kept twice is halved (Illinois method)
-            below, above, last_sign = best[2], found[2], 0.0
+            below, above, last_sign = best[2], point[2], 0.0
             for _ in range(HALVINGS):
                 middle = low + (high - low) * below / (below - above)
                 if not low < middle < high:
                     middle = (low + high) / 2
-                found = at(middle, best[0], best[1])
-                if found is None or middle in (low, high):
+                point = at(middle, best[0], best[1])
+                if point is None or middle in (low, high):
                     break
-                sign = float(np.sign(found[2]))
-                if found[2] > 0:
-                    low, best, below, above = middle, found, found[2], above / (2 if sign == last_sign else 1)
+                sign = float(np.sign(point[2]))
+                if point[2] > 0:
+                    low, best, below, above = middle, point, point[2], above / (2 if sign == last_sign else 1)
                 else:
-                    high, above, below = middle, found[2], below / (2 if sign == last_sign else 1)
+                    high, above, below = middle, point[2], below / (2 if sign == last_sign else 1)
                 last_sign = sign
-                if high - low < 4 * np.finfo(float).eps * high or found[2] == 0:
+                if high - low < 4 * np.finfo(float).eps * high or point[2] == 0:
                     break
         state, q, _ = best
         if (q - last.q) * sense < 0 or abs(q - last.q) > AHEAD * self.scale:
@@ -238,10 +242,10 @@ class BranchFollower:
         started.
         """
         self.corrector.home, self.at = state, at
-        found = self.corrector.node(at, state)
-        if found is None:
+        start = self.corrector.node(at, state)
+        if start is None:
             return None
-        middle = found[0]
+        middle = start[0]
         for shift in SHIFTS if turns else (0.0,):  # a cycle may start anywhere except in a dead position
             first, last = at - half + shift * self.scale, at + half + shift * self.scale
             up, above = self.trace(middle, last)
@@ -278,7 +282,7 @@ def _make_trace(nodes: list[BranchNode], ends: tuple[TraceEnd, TraceEnd] | None 
         return (ends[0] in ways, ends[1] in ways) if ends else (False, False)
 
     states, first, second = (
-        join_states(getattr(node, part) for node in nodes) for part in ("state", "first", "second")
+        join_states(getattr(node, field) for node in nodes) for field in ("state", "first", "second")
     )
     dead = np.array([n.q for n in nodes if n.dead])
     flips = np.array([n.flips for n in nodes if n.dead], dtype=bool)

@@ -59,14 +59,16 @@ def extrapolate_states(nodes: list[BranchNode], q: Real) -> GroupState:
     span, most = q[-1] - nodes[0].q, 3 * len(nodes)
     slope = np.diag(np.arange(1.0, most), 1)  # differentiates powers of t
     powers = np.vander([(n.q - q[0]) / span for n in nodes], most, increasing=True)
-    given = [
+    derivatives = [
         [state_components(n.state) for n in nodes],
         [state_components(n.first) for n in nodes],
         [state_components(n.second) for n in nodes],
     ]
     matrix = np.concatenate([powers, powers @ slope, powers @ slope @ slope])
-    found = np.linalg.solve(matrix, np.concatenate([np.array(part) * span**k for k, part in enumerate(given)]))
-    return states_from_components(np.vander((q - q[0]) / span, most, increasing=True) @ found)
+    coefficients = np.linalg.solve(
+        matrix, np.concatenate([np.array(values) * span**k for k, values in enumerate(derivatives)])
+    )
+    return states_from_components(np.vander((q - q[0]) / span, most, increasing=True) @ coefficients)
 
 
 def state_components(state: GroupState) -> Real:
@@ -111,18 +113,18 @@ class Corrector:
         """Return the group at q, from an initial guess, and its distance from the guess; None if there is no
         solution.
         """
-        found = self.nodes(np.array([q]), start)[0]
-        return None if found is None else (found, self.apart(found.state, start))
+        corrected = self.nodes(np.array([q]), start)[0]
+        return None if corrected is None else (corrected, self.apart(corrected.state, start))
 
     def nodes(self, q: Real, start: GroupState) -> list[BranchNode | None]:
         """Return the group at many driver coordinates at once, each from an initial guess of its own."""
-        found = self.motion(q, start)
-        if found is None:
+        corrected = self.motion(q, start)
+        if corrected is None:
             return [None] * len(q)
-        *motion, det, sound = found
+        *motion, det, sound = corrected
 
         def one(k: int) -> BranchNode:
-            state, first, second = (part.part(slice(k, k + 1)) for part in motion)
+            state, first, second = (states.part(slice(k, k + 1)) for states in motion)
             return BranchNode(float(q[k]), state, first, second, float(det[k]), float(np.sign(det[k])))
 
         return [one(k) if sound[k] else None for k in range(len(q))]
@@ -136,8 +138,8 @@ class Corrector:
             return None
         kernel = self.kernel
         with np.errstate(all="ignore"):
-            state, size = kernel.close(start, before.poses, before.drives, FEW_ITERATIONS)
-            sound = before.placed & (size < CONVERGED)
+            state, step_size = kernel.close(start, before.poses, before.drives, FEW_ITERATIONS)
+            sound = before.placed & (step_size < CONVERGED)
             if not np.any(sound):
                 return None
             everything = {**before.poses, **kernel.poses_of(state)}
@@ -152,49 +154,49 @@ class Corrector:
         second = GroupState(np.stack([a.a for a in accels], -1), np.stack([a.e for a in accels], -1))
         return state, first, second, det, sound
 
-    def step(self, smooth: list[BranchNode], places: list[float]) -> tuple[BranchNode, float] | None:
+    def step(self, smooth: list[BranchNode], targets: list[float]) -> tuple[BranchNode, float] | None:
         """Return the group at the first of `places`, as `node` finds it from the last of the nodes on a smooth branch.
 
         Many coordinates are solved at once: those of halved steps and, from a polynomial through the smooth nodes, as
         many of the others as it has predicted correctly so far. Results are kept for the next steps; one from the
         polynomial counts only if a single step leads to the same state; otherwise `smooth` is restarted.
         """
-        here, q = smooth[-1], places[0]
-        start = predict_state(here, q)
-        there = self.far.get(q)
-        if there is not None and (apart := self.apart(there.state, start)) < CORRECTION:
-            return there, apart
-        if (here.q, q) not in self.near:
+        node, q = smooth[-1], targets[0]
+        start = predict_state(node, q)
+        predicted = self.far.get(q)
+        if predicted is not None and (apart := self.apart(predicted.state, start)) < CORRECTION:
+            return predicted, apart
+        if (node.q, q) not in self.near:
             if q in self.far:  # the prediction of the polynomial failed
                 smooth[:-1] = []
-            places = places[: max(1, len(smooth) - 1)]
+            targets = targets[: max(1, len(smooth) - 1)]
             halves = [q]
             for _ in range(PATIENCE - 1):
-                halves.append(here.q + (halves[-1] - here.q) / 2)
-            starts = [predict_state(here, np.array(halves))]
-            if len(places) > 1:
-                starts.append(extrapolate_states(smooth[-NODES:], np.array(places[1:])))
-            found = self.nodes(np.array([*halves, *places[1:]]), join_states(starts))
-            self.near = dict(zip(((here.q, half) for half in halves), found, strict=False))
-            self.far = dict(zip(places[1:], found[PATIENCE:], strict=True))
-        there = self.near[here.q, q]
-        return None if there is None else (there, self.apart(there.state, start))
+                halves.append(node.q + (halves[-1] - node.q) / 2)
+            starts = [predict_state(node, np.array(halves))]
+            if len(targets) > 1:
+                starts.append(extrapolate_states(smooth[-NODES:], np.array(targets[1:])))
+            corrected = self.nodes(np.array([*halves, *targets[1:]]), join_states(starts))
+            self.near = dict(zip(((node.q, half) for half in halves), corrected, strict=False))
+            self.far = dict(zip(targets[1:], corrected[PATIENCE:], strict=True))
+        predicted = self.near[node.q, q]
+        return None if predicted is None else (predicted, self.apart(predicted.state, start))
 
-    def apart(self, one: GroupState, other: GroupState) -> float:
+    def apart(self, state: GroupState, other: GroupState) -> float:
         """Return the distance of two states: lengths divided by the size of the group, angles in rad."""
-        away, wound = self.gone(one)
+        away, wound = self.gone(state)
         return float(
             max(
-                np.max(np.abs(one.x - other.x)) / (self.kernel.size * max(1.0, away)),
-                np.max(np.abs(one.unwrapped - other.unwrapped)) / max(1.0, wound / MANY_TURNS),
+                np.max(np.abs(state.x - other.x)) / (self.kernel.size * max(1.0, away)),
+                np.max(np.abs(state.unwrapped - other.unwrapped)) / max(1.0, wound / MANY_TURNS),
             )
         )
 
-    def returned(self, one: GroupState, other: GroupState) -> bool:
+    def returned(self, state: GroupState, other: GroupState) -> bool:
         """Return True if two states are equal up to full turns."""
-        around = (other.unwrapped - one.unwrapped) / (2 * np.pi)
-        same = GroupState(other.x, one.unwrapped + (around - np.round(around)) * 2 * np.pi)
-        return self.apart(one, same) < SAME_STATE
+        around = (other.unwrapped - state.unwrapped) / (2 * np.pi)
+        same = GroupState(other.x, state.unwrapped + (around - np.round(around)) * 2 * np.pi)
+        return self.apart(state, same) < SAME_STATE
 
     def gone(self, state: GroupState) -> tuple[float, float]:
         """Return the distance of the group from its first state: of the farthest link (sizes of the group), largest
@@ -211,13 +213,13 @@ class Corrector:
 
 def places_ahead(q: float, end: float, step: float, growth: float, largest: float) -> list[float]:
     """Return driver coordinates up to `end` in growing steps."""
-    found: list[float] = []
-    while q != end and len(found) < MOST_AHEAD:
+    coordinates: list[float] = []
+    while q != end and len(coordinates) < MOST_AHEAD:
         step = np.sign(step) * min(abs(step), largest)
         q = end if abs(end - q) <= abs(step) * (1 + 1e-9) else float(q + step)
-        found.append(q)
+        coordinates.append(q)
         step *= growth
-    return found
+    return coordinates
 
 
 # A group whose lengths differ little from those of a traced one: all nodes of its cycle are corrected at once.
@@ -239,8 +241,8 @@ def correct_trace(
         at: driver coordinate of the sketch.
         state: the group at `at`, in the required assembly.
     """
-    here = np.flatnonzero(trace.q == at)
-    if not trace.closed or trace.dead.size or not here.size or kernel.passive:
+    sketch_node = np.flatnonzero(trace.q == at)
+    if not trace.closed or trace.dead.size or not sketch_node.size or kernel.passive:
         return None
     corrector = Corrector(kernel, source)
     motion = corrector.motion(trace.q, trace.states)
@@ -250,10 +252,10 @@ def correct_trace(
     but_last = slice(-1)
     led = taylor_step(states.part(but_last), first.part(but_last), second.part(but_last), np.diff(trace.q)[:, None])
     same_way = np.all(det * np.sign(det[0]) > NEARLY_DEAD * np.max(np.abs(det)))
-    found = (
+    valid = (
         bool(np.all(sound) and same_way)
         and corrector.apart(led, states.part(slice(1, None))) < CORRECTION
         and corrector.returned(states.part(slice(1)), states.part(slice(-1, None)))
-        and corrector.apart(GroupState(states.x[here], states.unwrapped[here]), state) < SAME_STATE
+        and corrector.apart(GroupState(states.x[sketch_node], states.unwrapped[sketch_node]), state) < SAME_STATE
     )
-    return replace(trace, states=states, first=first, second=second) if found else None
+    return replace(trace, states=states, first=first, second=second) if valid else None

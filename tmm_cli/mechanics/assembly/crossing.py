@@ -70,8 +70,11 @@ class _Fit:
     def state(self, q: float, order: int = 0) -> GroupState:
         """Return the state at q, or its derivative of this order with respect to q."""
         t = (q - self.middle) / self.radius
-        found = np.array([(part.deriv(order) if order else part)(t) for part in self.parts]) / self.radius**order
-        return states_from_components(found[None, :])
+        components = (
+            np.array([(polynomial.deriv(order) if order else polynomial)(t) for polynomial in self.parts])
+            / self.radius**order
+        )
+        return states_from_components(components[None, :])
 
 
 class CrossingFinder:
@@ -89,19 +92,19 @@ class CrossingFinder:
 
         largest: largest determinant so far.
         """
-        here = nodes[-1]
-        if self.kernel.passive or here.dead:
+        node = nodes[-1]
+        if self.kernel.passive or node.dead:
             return None
-        if beyond.side == here.side and not self._touches(here, beyond, largest):
+        if beyond.side == node.side and not self._touches(node, beyond, largest):
             return None
-        middle, span = (here.q + beyond.q) / 2, abs(beyond.q - here.q)
+        middle, span = (node.q + beyond.q) / 2, abs(beyond.q - node.q)
         if any(abs(middle - q) < 2 * old and span > old / CLOSER for q, old in self.refused):
             return None
-        found = find_crossing(self.correct, self._finest, nodes, beyond, self.scale)
-        if found is None or (found.q - here.q) * (beyond.q - here.q) <= 0:
+        crossing = find_crossing(self.correct, self._finest, nodes, beyond, self.scale)
+        if crossing is None or (crossing.q - node.q) * (beyond.q - node.q) <= 0:
             self.refused.append((middle, span))
             return None
-        return found
+        return crossing
 
     def _finest(self, nodes: list[BranchNode]) -> list[BranchNode]:
         """Return the nodes solved in double-doubles and rounded."""
@@ -109,28 +112,28 @@ class CrossingFinder:
         before = self.source(to_double_double([n.q for n in nodes]), 0)
         states = join_states(n.state for n in nodes)
         with np.errstate(all="ignore"):
-            states, size = kernel.close(
+            states, step_size = kernel.close(
                 GroupState(to_double_double(states.x), to_double_double(states.unwrapped)), before.poses, before.drives
             )
             det = np.linalg.det(to_float(kernel.matrix({**before.poses, **kernel.poses_of(states)})))
         states = GroupState(to_float(states.x), to_float(states.unwrapped))
         return [
-            replace(n, state=states.part(slice(k, k + 1)), det=float(det[k])) if size[k] < LAST_STEP else n
+            replace(n, state=states.part(slice(k, k + 1)), det=float(det[k])) if step_size[k] < LAST_STEP else n
             for k, n in enumerate(nodes)
         ]
 
-    def _touches(self, here: BranchNode, beyond: BranchNode, largest: float) -> bool:
+    def _touches(self, node: BranchNode, beyond: BranchNode, largest: float) -> bool:
         """Return True if a determinant of constant sign seems to touch zero between two nodes, like the square of the
         distance.
 
         From both nodes the zero is then at twice the distance to which the tangent leads.
         """
-        if max(abs(here.det), abs(beyond.det)) > SMALL * largest:
+        if max(abs(node.det), abs(beyond.det)) > SMALL * largest:
             return False
-        way, middle = beyond.q - here.q, (here.q + beyond.q) / 2
+        distance, middle = beyond.q - node.q, (node.q + beyond.q) / 2
         with np.errstate(all="ignore"):
-            ends = [n.q - 2 * n.det / self._slope(n) for n in (here, beyond)]
-        return all(abs(end - middle) < abs(way) for end in ends)
+            ends = [n.q - 2 * n.det / self._slope(n) for n in (node, beyond)]
+        return all(abs(end - middle) < abs(distance) for end in ends)
 
     def _slope(self, node: BranchNode) -> np.float64:
         """Return the approximate derivative of the determinant with respect to q."""
@@ -160,16 +163,16 @@ def find_crossing(
     about = _bracket_crossing(correct, nodes[-1], beyond) if flips else (nodes[-1].q + beyond.q) / 2
     best, error = None, CROSSING_KNOWN * scale
     for radius in RADII:
-        found = _fit_crossing(correct, finest, nodes, about, radius * scale, flips)
-        if found is None:
+        fitted = _fit_crossing(correct, finest, nodes, about, radius * scale, flips)
+        if fitted is None:
             continue
-        dead, known, fit = found
-        known += scale * SAMPLES_ROUNDED / (MIDDLE * radius) ** (1 if flips else 2)
-        if not known < error:
+        dead, uncertainty, fit = fitted
+        uncertainty += scale * SAMPLES_ROUNDED / (MIDDLE * radius) ** (1 if flips else 2)
+        if not uncertainty < error:
             continue
         if not _is_passed_smoothly(correct, dead, fit, scale):
             return None
-        best, error = dead, known
+        best, error = dead, uncertainty
         if error < CROSSING_AGREES * scale:
             break
     return best
@@ -180,13 +183,13 @@ def _bracket_crossing(correct: Correct, low: BranchNode, high: BranchNode) -> fl
     for _ in range(ROUNDS):
         q = low.q + (high.q - low.q) * low.det / (low.det - high.det)
         near = low if abs(q - low.q) < abs(high.q - q) else high
-        found = correct(q, predict_state(near, q))
-        if found is None or found[1] > FOUND:
+        corrected = correct(q, predict_state(near, q))
+        if corrected is None or corrected[1] > FOUND:
             return q
-        if found[0].side == low.side:
-            low = found[0]
+        if corrected[0].side == low.side:
+            low = corrected[0]
         else:
-            high = found[0]
+            high = corrected[0]
     return low.q + (high.q - low.q) * low.det / (low.det - high.det)
 
 
@@ -226,35 +229,37 @@ def _sample_branch(
     it.
     """
     sense = np.sign(about - nodes[-1].q)
-    places = np.cos(np.pi * (np.arange(SAMPLES) + 0.5) / SAMPLES)
-    places = places[np.abs(places) > MIDDLE]
-    before = [about + sense * radius * t for t in places if t < 0]
-    after = sorted((about + sense * radius * t for t in places if t > 0), key=lambda q: abs(q - about))
+    nodes_t = np.cos(np.pi * (np.arange(SAMPLES) + 0.5) / SAMPLES)
+    nodes_t = nodes_t[np.abs(nodes_t) > MIDDLE]
+    before = [about + sense * radius * t for t in nodes_t if t < 0]
+    after = sorted((about + sense * radius * t for t in nodes_t if t > 0), key=lambda q: abs(q - about))
     last = max((k for k, n in enumerate(nodes) if n.dead), default=0)
     far = [n for n in nodes[last:] if abs(n.q - about) > MIDDLE * radius]
     start = min(far or nodes[-1:], key=lambda n: abs(n.q - before[0]))
-    here = _correct_along(correct, start, sorted(before, key=lambda q: abs(q - start.q)), nodes[-1].side)
-    if here is None:
+    samples_before = _correct_along(correct, start, sorted(before, key=lambda q: abs(q - start.q)), nodes[-1].side)
+    if samples_before is None:
         return None
-    reaching = _fit_samples(here, about, radius, len(here) - 4)
+    reaching = _fit_samples(samples_before, about, radius, len(samples_before) - 4)
     first = correct(after[0], reaching.state(after[0]))
     side = -nodes[-1].side if flips else nodes[-1].side
     if first is None or first[1] > FOUND or first[0].side != side:
         return None
-    there = _correct_along(correct, first[0], after[1:], side)
-    return None if there is None else sorted([*here, first[0], *there], key=lambda n: n.q)
+    samples_beyond = _correct_along(correct, first[0], after[1:], side)
+    return None if samples_beyond is None else sorted([*samples_before, first[0], *samples_beyond], key=lambda n: n.q)
 
 
-def _correct_along(correct: Correct, start: BranchNode, places: list[float], side: float) -> list[BranchNode] | None:
-    found: list[BranchNode] = []
-    for q in places:
-        known = [start, *found]
-        near = known[int(np.argmin([abs(n.q - q) for n in known]))]
-        one = correct(q, predict_state(near, q))
-        if one is None or one[1] > FOUND or one[0].side != side:
+def _correct_along(
+    correct: Correct, start: BranchNode, coordinates: list[float], side: float
+) -> list[BranchNode] | None:
+    samples: list[BranchNode] = []
+    for q in coordinates:
+        nodes = [start, *samples]
+        near = nodes[int(np.argmin([abs(n.q - q) for n in nodes]))]
+        corrected = correct(q, predict_state(near, q))
+        if corrected is None or corrected[1] > FOUND or corrected[0].side != side:
             return None
-        found.append(one[0])
-    return found
+        samples.append(corrected[0])
+    return samples
 
 
 def _fit_samples(samples: list[BranchNode], about: float, radius: float, degree: int) -> _Fit:
@@ -286,12 +291,12 @@ def _is_passed_smoothly(correct: Correct, dead: BranchNode, fit: _Fit, scale: fl
     If the branch turns back before a gap, however narrow (w), it deviates by w^2/h at the distance h.
     """
     for h in PROBES if dead.flips else PROBES[:2]:
-        places = (dead.q - h * scale, dead.q + h * scale)
-        found = [correct(q, fit.state(q)) for q in places]
+        probes = (dead.q - h * scale, dead.q + h * scale)
+        corrected = [correct(q, fit.state(q)) for q in probes]
         most = CROSSING_FITTED + CROSSING_ROUNDED / h ** (1 if dead.flips else 2)
-        if any(one is None or one[1] > most for one in found):
+        if any(result is None or result[1] > most for result in corrected):
             return False
-        low, high = (one[0].side for one in found if one is not None)
+        low, high = (result[0].side for result in corrected if result is not None)
         if (low != high) != dead.flips:
             return False
     return True

@@ -76,7 +76,7 @@ class GroupAssemblies:
     @property
     def dead(self) -> bool:
         """True if two assemblies coincide here."""
-        return any(found.margin < DEAD for found in self.assemblies)
+        return any(assembly.margin < DEAD for assembly in self.assemblies)
 
 
 @dataclass(frozen=True)
@@ -98,17 +98,17 @@ class Assemblies:
     lost: tuple[Group, ...] = ()
 
 
-def name_assembly_files(places: Sequence[Assemblies]) -> list[tuple[str, Assemblies, GroupAssemblies]]:
+def name_assembly_files(positions: Sequence[Assemblies]) -> list[tuple[str, Assemblies, GroupAssemblies]]:
     """Return the groups with their file names: assemblies-III-2-3-4-5, with the position if there are several."""
-    found: dict[str, tuple[str, Assemblies, GroupAssemblies]] = {}
-    for here in places:
-        for group in here.groups:
-            number = f"-{here.number:02d}" if len(places) > 1 and here.number is not None else ""
+    files: dict[str, tuple[str, Assemblies, GroupAssemblies]] = {}
+    for position in positions:
+        for group in position.groups:
+            number = f"-{position.number:02d}" if len(positions) > 1 and position.number is not None else ""
             name = "-".join(["assemblies", group.group.title.split("(")[0], *group.group.links])
             stem = re.sub(r"[^A-Za-z0-9_-]", "_", name)[:80] + number
-            stem = f"{stem}-{len(found)}" if stem in found else stem
-            found[stem] = (stem, here, group)
-    return list(found.values())
+            stem = f"{stem}-{len(files)}" if stem in files else stem
+            files[stem] = (stem, position, group)
+    return list(files.values())
 
 
 def find_assemblies(
@@ -123,30 +123,30 @@ def find_assemblies(
     motion = link_states(linkage, kernels, np.array([q]), 0)
     decided = {kernel.group.links for kernel in kernels}
     undecided = next((group for group in structure.solved if group.links not in decided), None)
-    found, lost = [], []
+    listed, lost = [], []
     placed = {link: motion.poses[link] for link in (FRAME, *(driver.link for driver in linkage.cranks))}
     for group in [*(kernel.group for kernel in kernels), *([undecided] if undecided else [])]:
         if all(bool(np.isfinite(motion.poses[link].x[0] + motion.poses[link].z[0])) for link in group.known):
-            found.append(_list_assemblies(group, linkage, motion, dict(placed)))
+            listed.append(_list_assemblies(group, linkage, motion, dict(placed)))
         else:
             lost.append(group)
         placed |= {link: motion.poses[link] for link in group.links if link in motion.poses}
-    return Assemblies(q, number, motion.poses, tuple(found), undecided, tuple(lost))
+    return Assemblies(q, number, motion.poses, tuple(listed), undecided, tuple(lost))
 
 
 def _list_assemblies(group: Group, linkage: Linkage, motion: LinkStates, placed: Mapping[str, Pose]) -> GroupAssemblies:
     kernel = closed_form_solver(group, linkage)
     if kernel is not None:
-        own = tuple(_closed_form_assemblies(kernel, linkage, placed, motion.drives))
-        found = GroupAssemblies(group, own, "closed form", kernel.assemblies)
+        assemblies = tuple(_closed_form_assemblies(kernel, linkage, placed, motion.drives))
+        listed = GroupAssemblies(group, assemblies, "closed form", kernel.assemblies)
     else:
-        found = _iterated_assemblies(group, linkage, placed, motion)
+        listed = _iterated_assemblies(group, linkage, placed, motion)
     sketched = _sketched_poses(group, motion)
     if sketched is None:
-        return found
+        return listed
     size = max((abs(p) for link in group.links for p in linkage.links[link].points.values()), default=1.0) or 1.0
-    marked = [replace(a, of_sketch=_pose_distance(a.poses, sketched, size) < SAME_ASSEMBLY) for a in found.assemblies]
-    return replace(found, assemblies=tuple(marked))
+    marked = [replace(a, of_sketch=_pose_distance(a.poses, sketched, size) < SAME_ASSEMBLY) for a in listed.assemblies]
+    return replace(listed, assemblies=tuple(marked))
 
 
 def _sketched_poses(group: Group, motion: LinkStates) -> dict[str, Pose] | None:
@@ -156,21 +156,22 @@ def _sketched_poses(group: Group, motion: LinkStates) -> dict[str, Pose] | None:
     return poses if sound else None
 
 
-def _pose_distance(one: Mapping[str, Pose], other: Mapping[str, Pose], size: float) -> float:
+def _pose_distance(poses: Mapping[str, Pose], other_poses: Mapping[str, Pose], size: float) -> float:
     """Return the distance of two sets of poses of the same links; infinite where a pose is undefined."""
     off = max(
-        abs(complex(p.x[0] - other[n].x[0])) / size + abs(complex(p.z[0] - other[n].z[0])) for n, p in one.items()
+        abs(complex(p.x[0] - other_poses[n].x[0])) / size + abs(complex(p.z[0] - other_poses[n].z[0]))
+        for n, p in poses.items()
     )
     return float(off) if np.isfinite(off) else np.inf
 
 
 def _make_assembly(linkage: Linkage, placed: Iterable[str], poses: Mapping[str, Pose], margin: float) -> Assembly:
-    known = {point for link in placed for point in linkage.links[link].points}
+    known_points = {point for link in placed for point in linkage.links[link].points}
     points = {
         point: complex(pose.at(local)[0])
         for link, pose in poses.items()
         for point, local in linkage.links[link].points.items()
-        if point not in known
+        if point not in known_points
     }
     angles = {link: float(np.angle(pose.z)[0]) for link, pose in poses.items()}
     return Assembly(poses, angles, points, margin)
@@ -197,7 +198,7 @@ def _iterated_assemblies(
     kernel = NewtonSolver.of(group, linkage)
     with np.errstate(all="ignore"):
         states, method, most = _search_states(kernel, linkage, placed, motion)
-        found: list[Assembly] = []
+        assemblies: list[Assembly] = []
         moves = False
         for state in states:
             poses = kernel.poses_of(state)
@@ -206,10 +207,10 @@ def _iterated_assemblies(
                 if moves:
                     continue
                 moves = True
-            if not any(_is_listed(kernel.size, poses, margin, other) for other in found):
-                found.append(_make_assembly(linkage, placed, poses, margin))
-    found.sort(key=lambda a: tuple(round(angle, 6) for angle in a.angles.values()))
-    return GroupAssemblies(group, tuple(found), method, most, moves)
+            if not any(_is_listed(kernel.size, poses, margin, other) for other in assemblies):
+                assemblies.append(_make_assembly(linkage, placed, poses, margin))
+    assemblies.sort(key=lambda a: tuple(round(angle, 6) for angle in a.angles.values()))
+    return GroupAssemblies(group, tuple(assemblies), method, most, moves)
 
 
 def _search_states(
@@ -218,21 +219,21 @@ def _search_states(
     """Return the states of all assemblies (possibly repeated), the method, and the largest possible number."""
     drives = motion.drives
     triad = Triad.of(kernel.group, linkage, kernel.size)
-    found = None if triad is None else triad_starts(triad, placed)
-    if found is None and kernel.by_angle:
+    guesses = None if triad is None else triad_starts(triad, placed)
+    if guesses is None and kernel.by_angle:
         return all_assemblies(kernel, placed, drives), "angles", 1
-    if found is None:
+    if guesses is None:
         return _by_many_starts(kernel, placed, motion), "many starts", None
-    start, most = found
+    start, most = guesses
     number = len(start.x)
     if not number:
         return [], "polynomial", most
-    known = {name: pose.spread((number,)) for name, pose in placed.items()}
-    residuals = np.max(np.abs(kernel.residuals({**known, **kernel.poses_of(start)}, drives)), axis=-1)
+    known_poses = {name: pose.spread((number,)) for name, pose in placed.items()}
+    residuals = np.max(np.abs(kernel.residuals({**known_poses, **kernel.poses_of(start)}, drives)), axis=-1)
     near, closed = close_from_afar(kernel, placed, drives, start)
     # exactly in a dead position Newton's method has no next step, but the initial guess is the solution
     sound = [(near if closed[k] else start, k) for k in range(number) if closed[k] or residuals[k] < GROUP_CLOSED]
-    return [which.part(slice(k, k + 1)) for which, k in sound], "polynomial", most
+    return [states.part(slice(k, k + 1)) for states, k in sound], "polynomial", most
 
 
 def _by_many_starts(kernel: NewtonSolver, placed: Mapping[str, Pose], motion: LinkStates) -> list[GroupState]:
@@ -241,17 +242,19 @@ def _by_many_starts(kernel: NewtonSolver, placed: Mapping[str, Pose], motion: Li
     With revolute pairs alone the curve of a group with one external pair released is closed, so that the pair closes an
     even number of times: an odd number shows that one is missing.
     """
-    own = _sketched_poses(kernel.group, motion)
+    sketched = _sketched_poses(kernel.group, motion)
     states: list[GroupState] = []
-    if own is not None:
-        poses = [own[link] for link in kernel.group.links]
+    if sketched is not None:
+        poses = [sketched[link] for link in kernel.group.links]
         states.append(GroupState(np.stack([p.x for p in poses], -1), np.stack([p.turned for p in poses], -1)))
     number = max(LEAST_STARTS, int(STARTS * min(1.0, (SMALL / len(kernel.group.links)) ** 3)))
     turning = not kernel.passive and all(c.kind == "R" for c in kernel.constraints)
     for seed in range(1, ROUNDS + 1):
         for state in all_assemblies(kernel, placed, motion.drives, seed, number):
-            here = kernel.poses_of(state)
-            if not any(_pose_distance(here, kernel.poses_of(other), kernel.size) < SAME_ASSEMBLY for other in states):
+            new_poses = kernel.poses_of(state)
+            if not any(
+                _pose_distance(new_poses, kernel.poses_of(other), kernel.size) < SAME_ASSEMBLY for other in states
+            ):
                 states.append(state)
         if not turning or len(states) % 2 == 0:
             break
@@ -267,12 +270,12 @@ def _is_listed(size: float, poses: Mapping[str, Pose], margin: float, other: Ass
 def _moves_by_itself(kernel: NewtonSolver, state: GroupState, placed: Mapping[str, Pose], drives: DriverStates) -> bool:
     """Return True if a dead group is movable: closed again after a step along its free motion, it does not return."""
     free = np.linalg.svd(kernel.matrix({**placed, **kernel.poses_of(state)})[0])[2][-1]
-    here = state.moved(STEP * free / np.max(np.abs(free)), kernel.size)
+    moved = state.moved(STEP * free / np.max(np.abs(free)), kernel.size)
     residual = np.inf
     for _ in range(BACK):
-        poses = {**placed, **kernel.poses_of(here)}
+        poses = {**placed, **kernel.poses_of(moved)}
         residuals = kernel.residuals(poses, drives)[0]
         residual = float(np.max(np.abs(residuals)))
-        here = here.moved(-np.linalg.pinv(kernel.matrix(poses)[0], rcond=DEAD) @ residuals, kernel.size)
-    off = max(np.max(np.abs(here.x - state.x)) / kernel.size, np.max(np.abs(here.unwrapped - state.unwrapped)))
+        moved = moved.moved(-np.linalg.pinv(kernel.matrix(poses)[0], rcond=DEAD) @ residuals, kernel.size)
+    off = max(np.max(np.abs(moved.x - state.x)) / kernel.size, np.max(np.abs(moved.unwrapped - state.unwrapped)))
     return bool(residual < GROUP_CLOSED and off > STAYS)

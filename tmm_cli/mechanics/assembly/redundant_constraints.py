@@ -117,7 +117,7 @@ class RemainingLinkage:
         fields = {link: np.zeros(2 * len(free), complex) for link in self.links}
         size = 1.0 if self._kernel is None else float(np.ravel(self._kernel.size)[0])
         for k, link in enumerate(self.moving):
-            x, y, turn = (free[:, 3 * k + part] for part in range(3))
+            x, y, turn = (free[:, 3 * k + coordinate] for coordinate in range(3))
             origin = complex(np.ravel(self.poses[link].x)[0]) / size
             fields[link] = np.concatenate([x + 1j * y - 1j * turn * origin, turn])
         sets = _group_by_velocity(fields)
@@ -155,8 +155,10 @@ class _Selection:
 
     def excess(self, left: RemainingLinkage) -> int:
         """Return the number of redundant constraints outside the rigid sets."""
-        there = {*left.links}
-        return left.redundant - sum(number for links, number in self.among_rigid.items() if there.issuperset(links))
+        remaining_links = {*left.links}
+        return left.redundant - sum(
+            number for links, number in self.among_rigid.items() if remaining_links.issuperset(links)
+        )
 
     @property
     def ties(self) -> list[int]:
@@ -253,18 +255,18 @@ def analyse_mobile_structure(linkage: Linkage) -> Structure:
 
 def analyse_by_rank(linkage: Linkage, structure: Structure) -> Structure | None:
     """Return the structure without redundant constraints; None if the linkage is locked by rank as well."""
-    wanted = len(linkage.drivers)
-    if structure.under_constrained or structure.mobility >= wanted:
+    drivers = len(linkage.drivers)
+    if structure.under_constrained or structure.mobility >= drivers:
         return None
     kernel = _whole_linkage_solver(linkage, structure)
-    found = _close_at_sketch(kernel, linkage)
-    if found is None:
+    closed = _close_at_sketch(kernel, linkage)
+    if closed is None:
         return None
-    state, poses = found
+    state, poses = closed
     matrix = kernel.matrix({**poses, **kernel.poses_of(state)})[0]
-    undriven = matrix[: len(matrix) - wanted]
+    undriven = matrix[: len(matrix) - drivers]
     rank, whole = (int(np.linalg.matrix_rank(rows, rtol=REDUNDANT)) for rows in (undriven, matrix))
-    if matrix.shape[1] - rank != wanted or whole != matrix.shape[1] or not _can_move(kernel, linkage, state):
+    if matrix.shape[1] - rank != drivers or whole != matrix.shape[1] or not _can_move(kernel, linkage, state):
         return None
     everything = {**poses, **kernel.poses_of(state)}
     return _leave_out_redundant(linkage, structure, kernel, undriven, everything, len(undriven) - rank)
@@ -299,8 +301,8 @@ def _can_move(kernel: NewtonSolver, linkage: Linkage, state: GroupState) -> bool
         q = np.array([linkage.sketch.at + sense * step])
         poses, drives = {FRAME: frame_state(q)[0]}, drives_at(linkage, q)
         with np.errstate(all="ignore"):
-            there, last = kernel.close(state, poses, drives)
-            residual = np.max(np.abs(kernel.residuals({**poses, **kernel.poses_of(there)}, drives)))
+            moved_state, last = kernel.close(state, poses, drives)
+            residual = np.max(np.abs(kernel.residuals({**poses, **kernel.poses_of(moved_state)}, drives)))
         ways.append(bool(last[0] < CONVERGED and residual < CONVERGED))
     return any(ways)
 
@@ -314,35 +316,35 @@ def _leave_out_redundant(
     left = np.linalg.svd(undriven.T)[2][len(undriven) - number :]  # null space: combinations of rows that are redundant
     rows = [c for c in kernel.constraints for _ in c.lengths][: len(undriven)]
     heavy = np.max(np.abs(left), axis=0) > SHARED
-    names = dict.fromkeys(row.name for row, there in zip(rows, heavy, strict=True) if there)
+    names = dict.fromkeys(row.name for row, is_heavy in zip(rows, heavy, strict=True) if is_heavy)
     pairs = {p.name: p for p in structure.pairs}
     among = tuple(n for n in linkage.links if any(n in (pairs[name].i, pairs[name].j) for name in names))
     keys = {pairs[name].point or name if pairs[name].kind == "R" else name for name in names}
-    every = tuple(list_ties(linkage))
-    ties = {k: tie for k, tie in enumerate(every) if tie.name in keys}
+    all_ties = tuple(list_ties(linkage))
+    ties = {k: tie for k, tie in enumerate(all_ties) if tie.name in keys}
     reduction = find_reduction(linkage, poses, structure)
     for report in (reduction, None) if reduction else (None,):
         first = dict(report.conditions) if report else {}
-        from_ties = [k for k in ties if report is None or k in report.touched(every)]
+        from_ties = [k for k in ties if report is None or k in report.touched(all_ties)]
         choices = combinations_with_replacement(from_ties[::-1], number - sum(first.values()))
         for drop in islice(choices, MOST_TRIES):
             dropped = first | {k: drop.count(k) for k in drop}
             if any(count > ties[k].constraints for k, count in dropped.items()):
                 continue
-            found = analyse_structure(linkage, dropped)
-            if found.freedom == len(linkage.drivers) and not found.redundant_pairs and not found.under_constrained:
-                whole = replace(found, passive=tuple(_list_redundancies(found, dropped, ties, among)))
+            trial = analyse_structure(linkage, dropped)
+            if trial.freedom == len(linkage.drivers) and not trial.redundant_pairs and not trial.under_constrained:
+                whole = replace(trial, passive=tuple(_list_redundancies(trial, dropped, ties, among)))
                 return reduce_structure(linkage, whole, report or Reduction(conditions=dropped))
     return None
 
 
 def _list_redundancies(
-    found: Structure, dropped: Mapping[int, int], ties: Mapping[int, Tie], among: tuple[str, ...]
+    structure: Structure, dropped: Mapping[int, int], ties: Mapping[int, Tie], among: tuple[str, ...]
 ) -> Iterable[PairRedundancy]:
-    placed = {link: k for k, group in enumerate(found.all_groups) for link in group.links}
+    placed = {link: k for k, group in enumerate(structure.all_groups) for link in group.links}
     for k, count in dropped.items():
         name = ties[k].name
-        joined = [p for p in found.pairs if name in (p.name, p.point)]
+        joined = [p for p in structure.pairs if name in (p.name, p.point)]
         joined = [
             p for p in joined if ties[k].b in (p.i, p.j)
         ] or joined  # in a compound hinge, the pair of the link of the tie

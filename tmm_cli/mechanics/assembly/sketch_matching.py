@@ -52,23 +52,23 @@ SketchableValues = dict[str, complex | float]  # points (m) and angles of links 
 
 def sketchable_values(linkage: Linkage, poses: Mapping[str, Pose]) -> SketchableValues:
     """Return the points (m) and angles (rad) of some links that a sketch may contain, by name."""
-    shown: SketchableValues = {}
+    values: SketchableValues = {}
     for name, pose in poses.items():
-        shown |= {point: complex(pose.at(local)[0]) for point, local in linkage.links[name].points.items()}
-        shown[name] = float(np.angle(pose.z)[0])
-    return shown
+        values |= {point: complex(pose.at(local)[0]) for point, local in linkage.links[name].points.items()}
+        values[name] = float(np.angle(pose.z)[0])
+    return values
 
 
-def sketch_distance(sketched: Mapping[str, complex | float], shown: SketchableValues, size: float) -> float:
+def sketch_distance(sketched: Mapping[str, complex | float], computed: SketchableValues, size: float) -> float:
     """Return the largest deviation of the sketch from an assembly: points relative to the size of the group, angles in
     rad.
     """
     worst = 0.0
     for name, value in sketched.items():
         if isinstance(value, complex):
-            worst = max(worst, abs(value - shown[name]) / size)
+            worst = max(worst, abs(value - computed[name]) / size)
         else:
-            worst = max(worst, abs(np.angle(np.exp(1j * (value - float(shown[name].real))))))
+            worst = max(worst, abs(np.angle(np.exp(1j * (value - float(computed[name].real))))))
     return worst
 
 
@@ -85,21 +85,22 @@ def nearest_to_sketch(
     """
     if len(assemblies) == 1:
         return 0
-    shown = [sketchable_values(linkage, poses) for poses in assemblies]
+    candidates = [sketchable_values(linkage, poses) for poses in assemblies]
     tells = [
         name
-        for name in shown[0]
+        for name in candidates[0]
         if any(
-            abs(one[name] - shown[0][name]) > SAME_IN_SKETCH * (1.0 if name in linkage.links else kernel.size)
-            for one in shown[1:]
+            abs(candidate[name] - candidates[0][name])
+            > SAME_IN_SKETCH * (1.0 if name in linkage.links else kernel.size)
+            for candidate in candidates[1:]
         )
     ]
     sketched = {p: place - shift for p, place in linkage.sketch.points.items()} | dict(linkage.sketch.angles)
-    given = {name: sketched[name] for name in tells if name in sketched}
-    errors = [sketch_distance(given, one, kernel.size) for one in shown]
+    deciding = {name: sketched[name] for name in tells if name in sketched}
+    errors = [sketch_distance(deciding, candidate, kernel.size) for candidate in candidates]
     best, second = (int(k) for k in np.argsort(errors, kind="stable")[:2])
-    if not given or errors[best] > DISTINCT * errors[second]:
-        choices = {name: (shown[best][name], shown[second][name]) for name in tells}
+    if not deciding or errors[best] > DISTINCT * errors[second]:
+        choices = {name: (candidates[best][name], candidates[second][name]) for name in tells}
         raise AmbiguousSketchError(kernel.group, choices, len(assemblies))
     return best
 
@@ -108,14 +109,14 @@ def sketch_deviations(linkage: Linkage, poses: Mapping[str, Pose]) -> dict[str, 
     """Return the distance of each sketched point from its computed position, as a fraction of the size of the
     linkage.
     """
-    places = [complex(pose.at(p)[0]) for name, pose in poses.items() for p in linkage.links[name].points.values()]
-    size = max(abs(p - q) for p in places for q in places) or 1.0
-    found = {}
+    points = [complex(pose.at(p)[0]) for name, pose in poses.items() for p in linkage.links[name].points.values()]
+    size = max(abs(p - q) for p in points for q in points) or 1.0
+    deviations = {}
     for point, sketched in linkage.sketch.points.items():
         owner = linkage.owner(point)
         if owner in poses:
-            found[point] = abs(complex(poses[owner].at(linkage.local(owner, point))[0]) - sketched) / size
-    return found
+            deviations[point] = abs(complex(poses[owner].at(linkage.local(owner, point))[0]) - sketched) / size
+    return deviations
 
 
 def check_fit(linkage: Linkage, poses: Mapping[str, Pose], fits: float = SKETCH_FITS) -> None:
@@ -125,8 +126,8 @@ def check_fit(linkage: Linkage, poses: Mapping[str, Pose], fits: float = SKETCH_
     for point, off in sketch_deviations(linkage, poses).items():
         if off > fits:
             owner = linkage.owner(point)
-            found = complex(poses[owner].at(linkage.local(owner, point))[0])
-            raise SketchMismatchError(point, linkage.sketch.points[point], found)
+            computed = complex(poses[owner].at(linkage.local(owner, point))[0])
+            raise SketchMismatchError(point, linkage.sketch.points[point], computed)
     for link, angle in linkage.sketch.angles.items():
         if link in poses:
             turned = float(np.angle(poses[link].z)[0])
@@ -173,8 +174,8 @@ def assemble_by_iteration(
     kernel = NewtonSolver.of(group, linkage)
     q = np.array([linkage.sketch.at])
     state = _close_from_sketch(kernel, linkage, poses, drives) or _search_state(kernel, linkage, poses, drives)
-    here = {**poses, **kernel.poses_of(state)}
-    if float(singular_value_ratio(kernel.matrix(here))[0]) < DEAD_SKETCH:
+    all_poses = {**poses, **kernel.poses_of(state)}
+    if float(singular_value_ratio(kernel.matrix(all_poses))[0]) < DEAD_SKETCH:
         raise AmbiguousSketchError(group, {})
     kernel = replace(kernel, start=state)
     if not kernel.by_angle:
@@ -192,8 +193,10 @@ def _trace_branch(
 
     turns = linkage.driver.kind == "turn"
     half = np.pi * (turns_of_cycle(linkage) or 1) if turns else slider_search_range(linkage)
-    known = like.followed if like is not None else None
-    trace = correct_trace(kernel, source, known, linkage.sketch.at, state) if known is not None else None
+    earlier_trace = like.followed if like is not None else None
+    trace = (
+        correct_trace(kernel, source, earlier_trace, linkage.sketch.at, state) if earlier_trace is not None else None
+    )
     trace = trace or BranchFollower(kernel, source, half / np.pi).follow(linkage.sketch.at, state, half, turns)
     return trace if trace is None or turns else replace(trace, unit=kernel.size)
 
@@ -204,30 +207,30 @@ def placed_by_angles(
     """Return the state with the given angles (..., links) and the origins that close the group best."""
     shape, links = unwrapped.shape[:-1], len(kernel.group.links)
     still = GroupState(np.zeros((*shape, links), complex), unwrapped)
-    known = {name: pose.spread(shape) for name, pose in poses.items()}
-    everything = {**known, **kernel.poses_of(still)}
-    places = [3 * k + part for k in range(links) for part in (0, 1)]
-    matrix = kernel.matrix(everything)[..., places]
-    found = solve(matrix, -kernel.residuals(everything, drives))
-    return GroupState(kernel.size * (found[..., 0::2] + 1j * found[..., 1::2]), unwrapped)
+    known_poses = {name: pose.spread(shape) for name, pose in poses.items()}
+    everything = {**known_poses, **kernel.poses_of(still)}
+    origin_columns = [3 * k + coordinate for k in range(links) for coordinate in (0, 1)]
+    matrix = kernel.matrix(everything)[..., origin_columns]
+    origins = solve(matrix, -kernel.residuals(everything, drives))
+    return GroupState(kernel.size * (origins[..., 0::2] + 1j * origins[..., 1::2]), unwrapped)
 
 
 def close_from_afar(
     kernel: NewtonSolver, poses: Mapping[str, Pose], drives: DriverStates, state: GroupState
 ) -> tuple[GroupState, Real]:
     """Apply damped steps, then Newton's method; return the states and where they have closed."""
-    known = {name: pose.spread(state.x.shape[:-1]) for name, pose in poses.items()}
+    known_poses = {name: pose.spread(state.x.shape[:-1]) for name, pose in poses.items()}
     with np.errstate(all="ignore"):
         for _ in range(ROUNDS):
-            everything = {**known, **kernel.poses_of(state)}
+            everything = {**known_poses, **kernel.poses_of(state)}
             step = solve(kernel.matrix(everything), -kernel.residuals(everything, drives))
-            size = np.max(np.abs(step), axis=-1, keepdims=True)
-            step = step * np.minimum(1.0, STRIDE / size)
+            step_size = np.max(np.abs(step), axis=-1, keepdims=True)
+            step = step * np.minimum(1.0, STRIDE / step_size)
             state = state.moved(step, kernel.size)
-            if bool(np.all((size < LAST_STEP_AFAR) | ~np.isfinite(size))):
+            if bool(np.all((step_size < LAST_STEP_AFAR) | ~np.isfinite(step_size))):
                 break
-        state, last = kernel.close(state, known, drives)
-        everything = {**known, **kernel.poses_of(state)}
+        state, last = kernel.close(state, known_poses, drives)
+        everything = {**known_poses, **kernel.poses_of(state)}
         residual = np.max(np.abs(kernel.residuals(everything, drives)), axis=-1)
     return state, (last < CONVERGED) & (residual < CONVERGED)
 
@@ -239,30 +242,32 @@ def all_assemblies(
     some.
     """
     random = np.random.default_rng(seed)
-    found: list[GroupState] = []
+    assemblies: list[GroupState] = []
     quiet = 0
     links = len(kernel.group.links)
-    while quiet < QUIET_ROUNDS and len(found) < MOST_ASSEMBLIES:
+    while quiet < QUIET_ROUNDS and len(assemblies) < MOST_ASSEMBLIES:
         unwrapped = random.uniform(-np.pi, np.pi, (starts, links))
         start = placed_by_angles(kernel, poses, drives, unwrapped)
         states, closed = close_from_afar(kernel, poses, drives, start)
         new = False
         for k in np.flatnonzero(closed):
-            if len(found) == MOST_ASSEMBLIES:
+            if len(assemblies) == MOST_ASSEMBLIES:
                 break
             state = GroupState(states.x[k : k + 1], np.angle(unit(states.unwrapped[k : k + 1])))
-            if not any(_is_same_state(kernel, state, other) for other in found):
-                found.append(state)
+            if not any(_is_same_state(kernel, state, other) for other in assemblies):
+                assemblies.append(state)
                 new = True
         quiet = 0 if new else quiet + 1
-        if kernel.by_angle and found:
+        if kernel.by_angle and assemblies:
             break
-    return sorted(found, key=lambda s: tuple(np.round(s.unwrapped[0], 9)))
+    return sorted(assemblies, key=lambda s: tuple(np.round(s.unwrapped[0], 9)))
 
 
-def _is_same_state(kernel: NewtonSolver, one: GroupState, other: GroupState) -> bool:
-    turned = np.abs(unit(one.unwrapped) - unit(other.unwrapped))
-    return bool(np.max(turned) < SAME_ASSEMBLY and np.max(np.abs(one.x - other.x)) < SAME_ASSEMBLY * kernel.size)
+def _is_same_state(kernel: NewtonSolver, state: GroupState, other_state: GroupState) -> bool:
+    turned = np.abs(unit(state.unwrapped) - unit(other_state.unwrapped))
+    return bool(
+        np.max(turned) < SAME_ASSEMBLY and np.max(np.abs(state.x - other_state.x)) < SAME_ASSEMBLY * kernel.size
+    )
 
 
 def _close_from_sketch(
@@ -276,10 +281,10 @@ def _close_from_sketch(
     state, closed = close_from_afar(kernel, poses, drives, start)
     if not closed[0] or np.max(np.abs(state.unwrapped - start.unwrapped)) > SKETCH_CLOSE:
         return None
-    found = sketchable_values(linkage, kernel.poses_of(state))
+    computed = sketchable_values(linkage, kernel.poses_of(state))
     sketched = {**linkage.sketch.points, **linkage.sketch.angles}
-    given = {name: value for name, value in sketched.items() if name in found}
-    return state if sketch_distance(given, found, kernel.size) < SKETCH_CLOSE else None
+    comparable = {name: value for name, value in sketched.items() if name in computed}
+    return state if sketch_distance(comparable, computed, kernel.size) < SKETCH_CLOSE else None
 
 
 def sketched_angles(
@@ -293,15 +298,15 @@ def sketched_angles(
     for driver in kernel.group.drivers:  # the angle of a driven link follows from that of its base
         if driver.kind == "turn" and driver.base in angles:
             angles[driver.link] = angles[driver.base] + drives[driver.link].value
-    known = {p: pose.at(at) for n, pose in poses.items() for p, at in linkage.links[n].points.items()}
-    points: Mapping[str, Any] = {**linkage.sketch.points, **known}
+    known_points = {p: pose.at(at) for n, pose in poses.items() for p, at in linkage.links[n].points.items()}
+    points: Mapping[str, Any] = {**linkage.sketch.points, **known_points}
     for link in kernel.group.links:
-        shown = [(local, points[p]) for p, local in linkage.links[link].points.items() if p in points]
-        if link in angles or len(shown) < 2:
+        sketched_points = [(local, points[p]) for p, local in linkage.links[link].points.items() if p in points]
+        if link in angles or len(sketched_points) < 2:
             continue
-        middle = sum(local for local, _ in shown) / len(shown)
-        centre = sum(place for _, place in shown) / len(shown)
-        turned = sum((place - centre) * (local - middle).conjugate() for local, place in shown)
+        middle = sum(local for local, _ in sketched_points) / len(sketched_points)
+        centre = sum(point for _, point in sketched_points) / len(sketched_points)
+        turned = sum((point - centre) * (local - middle).conjugate() for local, point in sketched_points)
         if np.all(np.abs(turned) > 0):
             angles[link] = np.angle(turned)
     for _ in kernel.group.links:

@@ -96,16 +96,16 @@ def _find_joint(
     link: str, others: Sequence[str], pairs: Iterable[Pair], linkage: Linkage
 ) -> tuple[str, LegJoint] | None:
     """Return the only joint of a link with any of the others, or None; a compound hinge joins each two of its links."""
-    found: dict[str, tuple[str, LegJoint]] = {}
+    joints: dict[str, tuple[str, LegJoint]] = {}
     for hinge in linkage.hinges:
         other = next((n for n in hinge.links if n in others), None)
         if link in hinge.links and other is not None:
             joint = LegJoint(linkage.local(other, hinge.point), linkage.local(link, hinge.point))
-            found[hinge.point] = (other, joint)
+            joints[hinge.point] = (other, joint)
     for pair in pairs:
         if pair.kind == "P" and link in (pair.i, pair.j) and pair.other(link) in others:
-            found[pair.name] = (pair.other(link), LegJoint(run=slider_end(pair, link)))
-    return next(iter(found.values())) if len(found) == 1 else None
+            joints[pair.name] = (pair.other(link), LegJoint(run=slider_end(pair, link)))
+    return next(iter(joints.values())) if len(joints) == 1 else None
 
 
 @dataclass(frozen=True)
@@ -137,25 +137,25 @@ def triad_starts(triad: Triad, poses: Mapping[str, Pose]) -> tuple[GroupState, i
     They follow from all roots of the polynomial that are real or nearly so. None if the polynomial vanishes
     identically.
     """
-    known = {name: Pose(np.ravel(pose.x)[0], np.ravel(pose.z)[0]) for name, pose in poses.items()}
-    fixed = next((c.z for c in leg_conditions(triad, known, np.ones(1, complex)) if c.z is not None), None)
+    known_poses = {name: Pose(np.ravel(pose.x)[0], np.ravel(pose.z)[0]) for name, pose in poses.items()}
+    fixed = next((c.z for c in leg_conditions(triad, known_poses, np.ones(1, complex)) if c.z is not None), None)
     if fixed is not None:
         lines_only = all(leg.outer.run or leg.inner.run for leg in triad.legs)
         directions, most = np.array([fixed]), 1 if lines_only else 2
     else:
-        coefficients = triad_polynomial(triad, known)
-        size = np.abs(coefficients)
-        if np.max(size) < VANISHED:
+        coefficients = triad_polynomial(triad, known_poses)
+        magnitudes = np.abs(coefficients)
+        if np.max(magnitudes) < VANISHED:
             return None
-        most = 2 * max(k for k in range(DEGREE + 1) if size[DEGREE + k] > VANISHED * np.max(size))
+        most = 2 * max(k for k in range(DEGREE + 1) if magnitudes[DEGREE + k] > VANISHED * np.max(magnitudes))
         roots = np.roots(coefficients[::-1])
         directions = np.array([z / abs(z) for z in roots if ANNULUS < abs(z) < 1 / ANNULUS])
-    found = [
+    guesses = [
         (x * triad.size, z)
         for z in directions
-        for x in _middle_link_origins(leg_conditions(triad, known, np.array([z])))
+        for x in _middle_link_origins(leg_conditions(triad, known_poses, np.array([z])))
     ]
-    return _make_state(triad, known, found), most
+    return _make_state(triad, known_poses, guesses), most
 
 
 def triad_polynomial(triad: Triad, poses: Mapping[str, Pose]) -> Vector:
@@ -225,47 +225,47 @@ def _leg_direction(leg: Leg, poses: Mapping[str, Pose]) -> Any:
 def _middle_link_origins(three: Sequence[LegCondition]) -> list[complex]:
     """Return the origins x (in sizes) at one direction where two conditions hold and the third nearly holds."""
     binding = [c for c in three if c.z is None]
-    places = []
-    for one, other in combinations(binding, 2):
-        third = [c for c in binding if c is not one and c is not other]
-        for x in _meeting_points(one, other):
+    origins = []
+    for first, second in combinations(binding, 2):
+        third = [c for c in binding if c is not first and c is not second]
+        for x in _meeting_points(first, second):
             if all(abs(complex(c.residual(x)[0])) < NEAR for c in third):
-                places.append(complex(x[0]))
-    return places
+                origins.append(complex(x[0]))
+    return origins
 
 
-def _meeting_points(one: LegCondition, other: LegCondition) -> list[Vector]:
+def _meeting_points(first: LegCondition, second: LegCondition) -> list[Vector]:
     """Return the points where two conditions hold, or are nearest to each other if they just miss."""
-    if one.g is None:
-        one, other = other, one
-    if one.g is None:  # two lines
-        assert one.n is not None and other.n is not None
-        det = cross(one.n, other.n)
-        return [] if abs(det[0]) < PARALLEL else [1j * (other.e * one.n - one.e * other.n) / det]
-    n, e = _as_line(other, one)
+    if first.g is None:
+        first, second = second, first
+    if first.g is None:  # two lines
+        assert first.n is not None and second.n is not None
+        det = cross(first.n, second.n)
+        return [] if abs(det[0]) < PARALLEL else [1j * (second.e * first.n - first.e * second.n) / det]
+    n, e = _as_line(second, first)
     if abs(n[0]) < PARALLEL:  # concentric circles
         return []
     foot = n * (e / np.abs(n) ** 2)
-    half = np.sqrt(np.maximum(one.r**2 - np.abs(foot) ** 2, 0)) * 1j * n / np.abs(n)
-    if abs(foot[0]) > one.r + NEAR:
+    half = np.sqrt(np.maximum(first.r**2 - np.abs(foot) ** 2, 0)) * 1j * n / np.abs(n)
+    if abs(foot[0]) > first.r + NEAR:
         return []
-    return [foot + half - one.g, foot - half - one.g]
+    return [foot + half - first.g, foot - half - first.g]
 
 
 def _make_state(triad: Triad, poses: Mapping[str, Pose], starts: Sequence[tuple[complex, complex]]) -> GroupState:
     """Return the states of all links for origins x (m) and directions z of the middle one."""
     x, z = (np.array([start[k] for start in starts], complex) for k in (0, 1))
-    places = {triad.middle: (x, z)}
+    link_states = {triad.middle: (x, z)}
     for leg in triad.legs:
         outer, inner = leg.outer, leg.inner
         if outer.run is not None:
             along = _leg_direction(leg, poses) * np.ones(np.shape(z))
             if inner.run is None:
-                places[leg.link] = (x + inner.there * z - inner.here * along, along)
+                link_states[leg.link] = (x + inner.there * z - inner.here * along, along)
                 continue
             (foot, u), v = guide_line(outer.run, poses), z * unit(inner.run.direction)
             with np.errstate(all="ignore"):
-                places[leg.link] = (
+                link_states[leg.link] = (
                     intersect_lines(
                         foot - outer.run.here * along, u, x + inner.run.there * z - inner.run.here * along, v
                     )[0],
@@ -278,6 +278,6 @@ def _make_state(triad: Triad, poses: Mapping[str, Pose], starts: Sequence[tuple[
         else:
             arm = (x + inner.there * z - centre) / (inner.here - outer.here)
             along = arm / np.maximum(np.abs(arm), 1e-300)
-        places[leg.link] = (centre - outer.here * along, along)
-    ordered = [places[link] for link in triad.order]
+        link_states[leg.link] = (centre - outer.here * along, along)
+    ordered = [link_states[link] for link in triad.order]
     return GroupState(np.stack([p for p, _ in ordered], -1), np.stack([np.angle(d) for _, d in ordered], -1))

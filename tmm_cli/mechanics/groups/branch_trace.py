@@ -46,13 +46,13 @@ class ChangePoints:
         return passed
 
 
-def repeat_in_cycles(places: Real, start: float, cycle: float | None, low: float, high: float) -> Real:
+def repeat_in_cycles(coordinates: Real, start: float, cycle: float | None, low: float, high: float) -> Real:
     """Repeat values of a cycle from `start` throughout the interval from low to high; cycle None: they occur once."""
     turns = np.zeros(1)
     if cycle is not None:
         turns = np.arange(np.floor((low - start) / cycle) - 1, np.ceil((high - start) / cycle) + 1)
-    found = np.sort((places[:, None] + (cycle or 0.0) * turns).ravel())
-    return found[(found >= low) & (found < high)]
+    repeated = np.sort((coordinates[:, None] + (cycle or 0.0) * turns).ravel())
+    return repeated[(repeated >= low) & (repeated < high)]
 
 
 # States of a group along the range of the driver: nodes from which Newton's method starts at any position on its own.
@@ -107,8 +107,8 @@ class BranchTrace:
         if not self.dead.size:
             return np.zeros(np.shape(q), dtype=bool)
         width = np.where(self.flips, rounding ** (1 / 2), rounding ** (1 / 3)) * self.unit
-        found: Real = np.any(np.abs(self.within(q)[..., None] - self.dead) < width, axis=-1)
-        return found
+        near: Real = np.any(np.abs(self.within(q)[..., None] - self.dead) < width, axis=-1)
+        return near
 
     def side(self, q: Real) -> Real:
         """Return 1, or -1 where the sign of the determinant differs from that at the beginning of the trace."""
@@ -141,15 +141,15 @@ class BranchTrace:
         near_limit = (self.limits[0] & (left == 0)) | (self.limits[1] & (right == len(self.q) - 1))
         limit = np.where(left == 0, 0, len(self.q) - 1)
         inner = np.where(left == 0, right, left)
-        way = np.abs(self.q[limit] - self.q[inner])
-        share = np.sqrt(np.abs(self.q[limit] - within) / np.where(way > 0, way, 1.0))[..., None]
+        interval = np.abs(self.q[limit] - self.q[inner])
+        share = np.sqrt(np.abs(self.q[limit] - within) / np.where(interval > 0, interval, 1.0))[..., None]
 
         def at(value: Vector, first: Vector, second: Vector) -> Vector:
             taylor = value[node] + step * (first[node] + step / 2 * second[node])
             # near a limit the group moves as the square root of the distance of the driver from it
             root = value[limit] + (value[inner] - value[limit]) * share
-            here: Vector = np.where(near_limit[..., None], root, taylor)
-            return here
+            extrapolated: Vector = np.where(near_limit[..., None], root, taylor)
+            return extrapolated
 
         state = GroupState(
             at(self.states.x, self.first.x, self.second.x),
@@ -186,15 +186,15 @@ class AccumulatedAngles:
 
     def followed(self, links: tuple[str, ...], poses: tuple[Pose, ...], q: Real) -> tuple[Pose, ...]:
         """Return the poses with their angles accumulated through full turns."""
-        found = []
+        accumulated = []
         for link, pose in zip(links, poses, strict=True):
             if link not in self.angles:
-                found.append(pose)
+                accumulated.append(pose)
                 continue
             angle = np.arctan2(pose.z.imag, pose.z.real)
             turned = angle + 2 * pi(angle) * np.round((self._about(link, q) - angle) / TAU)
-            found.append(replace(pose, unwrapped=turned))
-        return tuple(found)
+            accumulated.append(replace(pose, unwrapped=turned))
+        return tuple(accumulated)
 
     def sure(self, links: tuple[str, ...], poses: tuple[Pose, ...], q: Real) -> Real:
         """Return True where the table determines the full turns: it is less than a quarter of a turn off."""

@@ -73,28 +73,28 @@ class SliderEnd:
     turned: float
     runs_here: bool
 
-    def runner_arm(self, own: Pose, poses: Poses) -> Vector:
+    def runner_arm(self, own_pose: Pose, poses: Poses) -> Vector:
         """Return the vector from the origin of the own link to the sliding point, at which the couple is given (m, axes
         of the drawing).
         """
-        return self.here * own.z if self.runs_here else poses[self.known].at(self.there) - own.x
+        return self.here * own_pose.z if self.runs_here else poses[self.known].at(self.there) - own_pose.x
 
 
-def slider_end(pair: Pair, own: str) -> SliderEnd:
+def slider_end(pair: Pair, link: str) -> SliderEnd:
     """Return a prismatic pair as seen from its link `own`."""
     slide = pair.slide
     assert slide is not None
-    if own == slide.runner:
+    if link == slide.runner:
         return SliderEnd(slide.carrier, slide.through, slide.at, slide.direction, slide.turned, True)
     return SliderEnd(slide.runner, slide.at, slide.through, slide.direction - slide.turned, -slide.turned, False)
 
 
-def pair_end(pair: Pair, own: str, linkage: Linkage) -> HingeEnd | SliderEnd:
+def pair_end(pair: Pair, link: str, linkage: Linkage) -> HingeEnd | SliderEnd:
     """Return a lower pair as seen from its link `own`."""
     if pair.kind == "P":
-        return slider_end(pair, own)
-    known = pair.other(own)
-    return HingeEnd(known, linkage.local(known, pair.point), linkage.local(own, pair.point))
+        return slider_end(pair, link)
+    known = pair.other(link)
+    return HingeEnd(known, linkage.local(known, pair.point), linkage.local(link, pair.point))
 
 
 @dataclass(frozen=True)
@@ -340,9 +340,9 @@ class WrappedSolver(GroupSolver):
         """Wrap a solver; own: the further fields of the subclass."""
         return cls(inner.group, inner.size, inner, *own)
 
-    def passed(self, work: Callable[..., Step], *given: Any) -> Step:
+    def passed(self, work: Callable[..., Step], *arguments: Any) -> Step:
         """Call one step of the inner solver."""
-        return work(*given)
+        return work(*arguments)
 
     def rebind(self, linkage: Linkage) -> Self:
         return replace(self, inner=self.inner.rebind(linkage))

@@ -207,16 +207,16 @@ class NewtonSolver(GroupSolver):
         state = start
         if isinstance(self.size, DoubleDouble) or any(isinstance(pose.x, DoubleDouble) for pose in poses.values()):
             state = GroupState(to_double_double(start.x), to_double_double(start.unwrapped))
-        size = np.full(np.shape(start.x)[:-1], np.inf)
+        step_size = np.full(np.shape(start.x)[:-1], np.inf)
         for _ in range(rounds):
-            near = size < (LAST_STEP_EXTENDED if isinstance(state.unwrapped, DoubleDouble) else LAST_STEP)
+            near = step_size < (LAST_STEP_EXTENDED if isinstance(state.unwrapped, DoubleDouble) else LAST_STEP)
             everything = {**poses, **self.poses_of(state)}
             step = solve(to_float(self.matrix(everything)), -to_float(self.residuals(everything, drives)))
-            size = np.max(np.abs(step), axis=-1)
+            step_size = np.max(np.abs(step), axis=-1)
             state = state.moved(step, self.unit)
-            if bool(np.all(near | ~np.isfinite(size))):
+            if bool(np.all(near | ~np.isfinite(step_size))):
                 break
-        return state, size
+        return state, step_size
 
     def begun(self, poses: Poses, q: Real, drives: DriverStates) -> tuple[GroupState, Real]:
         """Return initial guesses for Newton's method, and the residual of q relative to the range of the group (see
@@ -240,8 +240,8 @@ class NewtonSolver(GroupSolver):
             dead, side = self.trace.in_dead(q, ROUNDINGS**2 * roundoff(start.unwrapped)), self.trace.side(q)
             through = dead[..., None]
             state = GroupState(np.where(through, start.x, state.x), np.where(through, start.unwrapped, state.unwrapped))
-        own = self.poses_of(state)
-        everything = {**poses, **own}
+        own_poses = self.poses_of(state)
+        everything = {**poses, **own_poses}
         matrix = self.matrix(everything)
         margin = singular_value_ratio(matrix)
         missed = np.max(np.abs(self.residuals(everything, drives)), axis=-1) if self.passive else np.zeros(np.shape(q))
@@ -256,7 +256,7 @@ class NewtonSolver(GroupSolver):
         )
         det = determinant_sign(matrix) * margin * side
         return Placement(
-            tuple(own[link] for link in self.group.links), det, margin, residual * self.size, slack * self.size
+            tuple(own_poses[link] for link in self.group.links), det, margin, residual * self.size, slack * self.size
         )
 
     def _all_poses(self, at: Placement, poses: Poses) -> dict[str, Pose]:
@@ -271,8 +271,8 @@ class NewtonSolver(GroupSolver):
     ) -> tuple[Rate, ...]:
         """Return the velocities of the links from all poses and their matrix; nan where det is nan."""
         known = self.known(everything, {name: (rate.v, rate.w) for name, rate in rates.items()})
-        found = solve(matrix, self.asked(drives, 1, np.shape(det)) - known)
-        return tuple(Rate(v, w) for v, w in self._by_link(found, det))
+        solution = solve(matrix, self.asked(drives, 1, np.shape(det)) - known)
+        return tuple(Rate(v, w) for v, w in self._by_link(solution, det))
 
     def accelerations(
         self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
@@ -286,32 +286,32 @@ class NewtonSolver(GroupSolver):
         """Return the accelerations likewise; `rates` contains the velocities of the group's own links too."""
         known = self.known(everything, {name: (accel.a, accel.e) for name, accel in accels.items()})
         bend = _stack(self.velocity_terms(everything, rates)) * self._scale
-        found = solve(matrix, self.asked(drives, 2, np.shape(det)) - known - bend)
-        return tuple(Accel(a, e) for a, e in self._by_link(found, det))
+        solution = solve(matrix, self.asked(drives, 2, np.shape(det)) - known - bend)
+        return tuple(Accel(a, e) for a, e in self._by_link(solution, det))
 
     def velocity_terms(self, poses: Poses, rates: Rates) -> list[Real]:
         """Return the second derivative of each row with all link accelerations zero."""
         return [term for constraint in self.constraints for term in constraint.velocity_terms(poses, rates)]
 
-    def _by_link(self, found: Real, det: Real) -> Iterator[tuple[Vector, Real]]:
+    def _by_link(self, solution: Real, det: Real) -> Iterator[tuple[Vector, Real]]:
         """Yield the unknowns of each link with their dimensions; nan where det is nan."""
-        found = np.where(np.isfinite(det)[..., None], found * self._columns, np.nan)
-        for k in range(0, found.shape[-1], 3):
-            yield found[..., k] + 1j * found[..., k + 1], found[..., k + 2]
+        solution = np.where(np.isfinite(det)[..., None], solution * self._columns, np.nan)
+        for k in range(0, solution.shape[-1], 3):
+            yield solution[..., k] + 1j * solution[..., k + 1], solution[..., k + 2]
 
-    def _by_constraint(self, found: Sequence[Real]) -> list[tuple[PairConstraint, list[Real]]]:
+    def _by_constraint(self, multipliers: Sequence[Real]) -> list[tuple[PairConstraint, list[Real]]]:
         """Split the multipliers of all rows by pair and driver."""
         each, row = [], 0
         for constraint in self.constraints:
-            each.append((constraint, list(found[row : row + len(constraint.lengths)])))
+            each.append((constraint, list(multipliers[row : row + len(constraint.lengths)])))
             row += len(constraint.lengths)
         return each
 
-    def _apart(self, everything: Poses, found: Sequence[Real]) -> dict[str, Wrench]:
+    def _apart(self, everything: Poses, multipliers: Sequence[Real]) -> dict[str, Wrench]:
         """Return the separating forces of teeth on the links, which follow from the tangential ones and do no work."""
         total: dict[str, Wrench] = {}
-        for constraint, here in self._by_constraint(found):
-            apart = constraint.apart(everything, here)
+        for constraint, constraint_multipliers in self._by_constraint(multipliers):
+            apart = constraint.apart(everything, constraint_multipliers)
             if apart is None:
                 continue
             point, force = apart
@@ -325,12 +325,12 @@ class NewtonSolver(GroupSolver):
         """Solve the transposed equations; then again with the separating forces of teeth, which only hinges carry."""
         everything = self._all_poses(at, poses)
         under = self._transposed(at, everything)
-        found = under(applied)
-        more = self._apart(everything, found)
+        multipliers = under(applied)
+        more = self._apart(everything, multipliers)
         if more:
             both = zip(self.group.links, applied, strict=True)
-            found = under([wrench + more[link] if link in more else wrench for link, wrench in both])
-        return self.given_by(everything, self._by_constraint(found))
+            multipliers = under([wrench + more[link] if link in more else wrench for link, wrench in both])
+        return self.given_by(everything, self._by_constraint(multipliers))
 
     def _transposed(self, at: Placement, everything: Poses) -> Callable[[Sequence[Wrench]], Sequence[Real]]:
         """Return a function from wrenches on the links to the multipliers of all rows."""
@@ -338,23 +338,30 @@ class NewtonSolver(GroupSolver):
         turned = np.swapaxes(pushes, -1, -2)
 
         def under(wrenches: Sequence[Wrench]) -> Sequence[Real]:
-            borne = [part for wrench in wrenches for part in (wrench.force.real, wrench.force.imag, wrench.moment)]
-            found = solve(turned, -_stack(borne) * self._columns)
-            found = np.where(np.isfinite(at.det)[..., None], found, np.nan) * self._scale
-            return [found[..., row] for row in range(found.shape[-1])]
+            borne = [
+                component for wrench in wrenches for component in (wrench.force.real, wrench.force.imag, wrench.moment)
+            ]
+            multipliers = solve(turned, -_stack(borne) * self._columns)
+            multipliers = np.where(np.isfinite(at.det)[..., None], multipliers, np.nan) * self._scale
+            return [multipliers[..., row] for row in range(multipliers.shape[-1])]
 
         return under
 
     def given_by(self, everything: Poses, multipliers: Sequence[tuple[PairConstraint, list[Real]]]) -> GroupReactions:
         """Return the reactions from the multipliers of each pair and driver."""
-        reaction = [constraint.reaction(everything, here) for constraint, here in multipliers]
+        reaction = [
+            constraint.reaction(everything, constraint_multipliers)
+            for constraint, constraint_multipliers in multipliers
+        ]
         outer, inner = len(self.group.outer), len(self.group.inner)
         for k, pair in enumerate(self.group.outer):
             if pair.i in self.order:
                 reaction[k] = reaction[k].opposite
         drives = {
-            driver.link: here[0]
-            for driver, (_, here) in zip(self.group.drivers, multipliers[outer + inner :], strict=True)
+            driver.link: constraint_multipliers[0]
+            for driver, (_, constraint_multipliers) in zip(
+                self.group.drivers, multipliers[outer + inner :], strict=True
+            )
         }
         return GroupReactions(tuple(reaction[:outer]), tuple(reaction[outer : outer + inner]), drives)
 

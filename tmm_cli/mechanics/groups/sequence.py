@@ -92,8 +92,8 @@ class LinkStates:
 
     def angle(self, name: str) -> Real:
         """Return the angle of a link, rad: in -pi..pi, or the driver coordinate of a driven crank."""
-        own = any(d.link == name and d.kind == "turn" for d in self.linkage.cranks)
-        return self.drives[name].value if own else np.angle(self.poses[name].z)
+        is_driven = any(d.link == name and d.kind == "turn" for d in self.linkage.cranks)
+        return self.drives[name].value if is_driven else np.angle(self.poses[name].z)
 
     def run(self, slide: Slide) -> Real:
         """Return the run in a prismatic pair, m."""
@@ -117,9 +117,9 @@ class NotComputed(LookupError):  # noqa: N818  the name is the message
 class MissingRates(dict[str, Any]):
     """Placeholder for rates that were not computed; any access raises NotComputed."""
 
-    def __init__(self, what: str) -> None:
+    def __init__(self, quantity: str) -> None:
         super().__init__()
-        self.what = what
+        self.what = quantity
 
     def __missing__(self, link: str) -> Any:
         raise NotComputed(f"{self.what} were not computed")
@@ -127,14 +127,14 @@ class MissingRates(dict[str, Any]):
 
 def solvers_towards(kernels: Iterable[GroupSolver], links: Iterable[str]) -> tuple[GroupSolver, ...]:
     """Return the solvers of the groups between the drivers and the given links, in solving order."""
-    wanted, kept = set(links), []
+    required, kept = set(links), []
     for kernel in reversed(tuple(kernels)):
         group = kernel.group
-        if not wanted.isdisjoint(group.links):
+        if not required.isdisjoint(group.links):
             pairs = (*group.outer, *group.inner)
-            wanted.update(link for pair in pairs for link in (pair.i, pair.j))
-            wanted.update(pair.mesh.carrier for pair in pairs if pair.mesh is not None)
-            wanted.update(link for driver in group.drivers for link in (driver.link, driver.base))
+            required.update(link for pair in pairs for link in (pair.i, pair.j))
+            required.update(pair.mesh.carrier for pair in pairs if pair.mesh is not None)
+            required.update(link for driver in group.drivers for link in (driver.link, driver.base))
             kept.append(kernel)
     return tuple(reversed(kept))
 
@@ -150,9 +150,9 @@ def driven_state(linkage: Linkage, driver: Driver, drive: DriverState) -> tuple[
     q = drive.value
     zero = np.zeros(np.shape(q))
     if driver.kind == "turn":
-        pivot, here = linkage.local(FRAME, driver.joint), linkage.local(driver.link, driver.joint)
+        pivot, hinge = linkage.local(FRAME, driver.joint), linkage.local(driver.link, driver.joint)
         z = unit(q)
-        arm = -here * z
+        arm = -hinge * z
         pose, v, bend, w = Pose(pivot + arm, z, q), 1j * arm, -arm, zero + 1
     else:
         slide = linkage.slide(driver.joint)
@@ -175,7 +175,7 @@ def drives_at(linkage: Linkage, q: Real) -> dict[str, DriverState]:
     Several drivers move at their own speeds and are in the position of the sketch at the same time.
     """
     zero = np.zeros(np.shape(q))
-    found = {linkage.driver.link: DriverState(q, zero + 1, zero)}
+    states = {linkage.driver.link: DriverState(q, zero + 1, zero)}
     if linkage.others:
         lead = linkage.driver
         law = DriverMotion(linkage.sketch.at, lead.rate, lead.acceleration, lead.sense)
@@ -184,8 +184,8 @@ def drives_at(linkage: Linkage, q: Real) -> dict[str, DriverState]:
             value = driver.at + driver.sense * time * (driver.rate + driver.acceleration * time / 2)
             first = driver.sense * (driver.rate + driver.acceleration * time) / speed
             second = (driver.sense * driver.acceleration - first * lead.sense * lead.acceleration) / speed**2
-            found[driver.link] = DriverState(value, first, second)
-    return found
+            states[driver.link] = DriverState(value, first, second)
+    return states
 
 
 def link_states(

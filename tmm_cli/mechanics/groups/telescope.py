@@ -61,13 +61,13 @@ class TelescopeParts:
             return None
         (joint,) = (pair for pair in group.inner if pair is not driven[0])
         common = {joint.i, joint.j} & {driven[0].i, driven[0].j}
-        own = {group.own(pair): pair for pair in group.outer}
+        external_pair = {group.own(pair): pair for pair in group.outer}
         n = common.pop()
         m, arm = driven[0].other(n), joint.other(n)
-        if common or set(own) != {m, arm}:
+        if common or set(external_pair) != {m, arm}:
             return None
-        links = sorted((link for link in group.links if link != n), key=lambda link: own[link].kind == "P")
-        outer = tuple(own[link] for link in links)
+        links = sorted((link for link in group.links if link != n), key=lambda link: external_pair[link].kind == "P")
+        outer = tuple(external_pair[link] for link in links)
         slide = driven[0].slide
         assert slide is not None
         return cls(
@@ -138,18 +138,18 @@ class Telescope(ClosedFormSolver):
         slide = self.chain.slide
         if slide.carrier == self.chain.m:
             return slide.through + run * unit(slide.direction) - slide.at * unit(slide.turned), slide.turned
-        there = slide.through + run * unit(slide.direction)
-        return slide.at - there * unit(-slide.turned), -slide.turned
+        guide_point = slide.through + run * unit(slide.direction)
+        return slide.at - guide_point * unit(-slide.turned), -slide.turned
 
     def _locked(self, run: Real) -> AnyDyad:
         """Return the dyad with the driver fixed at a run."""
         origin, angle = self._of_n(run)
         of_m, inner = self.chain.m == self.dyad.group.links[0], self.dyad.inner
-        known = self.chain.m if of_m else self.chain.arm
+        other_link = self.chain.m if of_m else self.chain.arm
         turned = unit(angle)
-        there = origin + inner.there * turned if of_m else inner.there
-        here = inner.here if of_m else origin + inner.here * turned
-        moved = replace(inner, known=known, there=there, here=here)
+        on_other = origin + inner.there * turned if of_m else inner.there
+        on_own = inner.here if of_m else origin + inner.here * turned
+        moved = replace(inner, known=other_link, there=on_other, here=on_own)
         if isinstance(moved, SliderEnd):  # angles of a guide are now relative to m
             moved = replace(
                 moved, direction=moved.direction + angle * of_m, turned=moved.turned + (angle if of_m else -angle)
@@ -158,16 +158,16 @@ class Telescope(ClosedFormSolver):
 
     def _two(self, at: Placement) -> Placement:
         """Return the placement of the two links of the dyad."""
-        own = dict(zip(self.group.links, at.poses, strict=True))
-        return replace(at, poses=tuple(own[link] for link in self.chain.dyad.links))
+        pose_of = dict(zip(self.group.links, at.poses, strict=True))
+        return replace(at, poses=tuple(pose_of[link] for link in self.chain.dyad.links))
 
     def _poses(self, poses: Poses) -> dict[str, Pose]:
         return {**poses, UNDER: poses[self.hung]}
 
     def _ordered(self, arm: Any, n: Any, m: Any) -> Any:
         """Return the values of the three links in the order of the group."""
-        own = {self.chain.arm: arm, self.chain.n: n, self.chain.m: m}
-        return tuple(own[link] for link in self.group.links)
+        value_of = {self.chain.arm: arm, self.chain.n: n, self.chain.m: m}
+        return tuple(value_of[link] for link in self.group.links)
 
     def _drive(self, drives: DriverStates) -> DriverState:
         return drives[self.driver.link]
@@ -175,10 +175,10 @@ class Telescope(ClosedFormSolver):
     def closed(self, poses: Poses, drives: DriverStates) -> Placement:
         run = self._drive(drives).value
         at = self._locked(run).closed(self._poses(poses), drives)
-        own = dict(zip(self.chain.dyad.links, at.poses, strict=True))
+        pose_of = dict(zip(self.chain.dyad.links, at.poses, strict=True))
         origin, angle = self._of_n(run)
-        m = own[self.chain.m]
-        return replace(at, poses=self._ordered(own[self.chain.arm], Pose(m.at(origin), m.z * unit(angle)), m))
+        m = pose_of[self.chain.m]
+        return replace(at, poses=self._ordered(pose_of[self.chain.arm], Pose(m.at(origin), m.z * unit(angle)), m))
 
     def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> Real:
         drive, known = self._drive(drives), self._poses(poses)
@@ -198,19 +198,21 @@ class Telescope(ClosedFormSolver):
         drive = self._drive(drives)
         m, off = self._m(at)
         slid = drive.first * self._along * m.z
-        found = self._locked(drive.value).rates(self._two(at), self._poses(poses), self._rates(rates, slid), drives)
-        own = dict(zip(self.chain.dyad.links, found, strict=True))
-        body = own[self.chain.m]  # velocity of n at the origin of m
+        dyad_rates = self._locked(drive.value).rates(
+            self._two(at), self._poses(poses), self._rates(rates, slid), drives
+        )
+        rate_of = dict(zip(self.chain.dyad.links, dyad_rates, strict=True))
+        body = rate_of[self.chain.m]  # velocity of n at the origin of m
         ordered: tuple[Rate, ...] = self._ordered(
-            own[self.chain.arm], Rate(body.at(off), body.w), Rate(body.v - slid, body.w)
+            rate_of[self.chain.arm], Rate(body.at(off), body.w), Rate(body.v - slid, body.w)
         )
         return ordered
 
     def _m(self, at: Placement) -> tuple[Pose, Vector]:
         """Return the pose of m, and the vector from its origin to that of n."""
-        own = dict(zip(self.group.links, at.poses, strict=True))
-        m = own[self.chain.m]
-        return m, own[self.chain.n].x - m.x
+        pose_of = dict(zip(self.group.links, at.poses, strict=True))
+        m = pose_of[self.chain.m]
+        return m, pose_of[self.chain.n].x - m.x
 
     def accelerations(
         self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
@@ -222,13 +224,13 @@ class Telescope(ClosedFormSolver):
         slid = drive.first * u
         more = drive.second * u + 2j * of_m.w * slid  # Coriolis
         moving = {**self._rates(rates, slid), self.chain.m: Rate(of_m.v + slid, of_m.w)}
-        found = self._locked(drive.value).accelerations(
+        dyad_accels = self._locked(drive.value).accelerations(
             self._two(at), self._poses(poses), moving, {**accels, UNDER: Accel(hung.a + more, hung.e)}, drives
         )
-        own = dict(zip(self.chain.dyad.links, found, strict=True))
-        body = own[self.chain.m]
+        accel_of = dict(zip(self.chain.dyad.links, dyad_accels, strict=True))
+        body = accel_of[self.chain.m]
         ordered: tuple[Accel, ...] = self._ordered(
-            own[self.chain.arm], Accel(body.at(off, of_m.w), body.e), Accel(body.a - more, body.e)
+            accel_of[self.chain.arm], Accel(body.at(off, of_m.w), body.e), Accel(body.a - more, body.e)
         )
         return ordered
 
@@ -248,8 +250,8 @@ class Telescope(ClosedFormSolver):
             self._two(at), self._poses(poses), tuple(two[link] for link in chain.dyad.links)
         )
         outer = {
-            pair.name: PairReaction(part.force, part.couple)
-            for pair, part in zip(chain.dyad.outer, reaction.outer, strict=True)
+            pair.name: PairReaction(pair_reaction.force, pair_reaction.couple)
+            for pair, pair_reaction in zip(chain.dyad.outer, reaction.outer, strict=True)
         }
         joint = reaction.inner[0]  # on the dyad's second link
         on_arm = joint if chain.dyad.links[1] == chain.arm else joint.opposite

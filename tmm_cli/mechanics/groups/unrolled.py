@@ -55,11 +55,11 @@ class ExplicitOrder:
 def find_explicit_order(constraints: Sequence[PairConstraint], links: Sequence[str]) -> ExplicitOrder:
     """Find the order for the constraints on these links that makes as many unknowns as possible explicit."""
     alike = {n for n, c in enumerate(constraints) if type(c).pushes is PairConstraint.pushes}
-    own = {n: [link for link in _links_with_angles(c) if link in links] for n, c in enumerate(constraints)}
-    angles, origins, order = _order_unknowns(constraints, links, own)
+    angle_links = {n: [link for link in _links_with_angles(c) if link in links] for n, c in enumerate(constraints)}
+    angles, origins, order = _order_unknowns(constraints, links, angle_links)
     pushing = order
     if len(alike) < len(constraints):
-        pushing = _order_unknowns(constraints, links, {n: own[n] for n in alike})[2]
+        pushing = _order_unknowns(constraints, links, {n: angle_links[n] for n in alike})[2]
     return ExplicitOrder(angles, origins, order, pushing)
 
 
@@ -85,7 +85,10 @@ def _order_unknowns(
         explicit += [(first[n], 3 * order[link]), (first[n] + 1, 3 * order[link] + 1)]
     rows = sum(len(c.lengths) for c in constraints)
     closing = tuple(row for row in range(rows) if row not in {row for row, _ in explicit})
-    columns = (*(3 * order[link] + part for link in loose for part in (0, 1)), *(3 * order[link] + 2 for link in free))
+    columns = (
+        *(3 * order[link] + coordinate for link in loose for coordinate in (0, 1)),
+        *(3 * order[link] + 2 for link in free),
+    )
     return tuple(angles), tuple(origins), EliminationOrder(tuple(explicit), closing, columns)
 
 
@@ -103,20 +106,22 @@ def _assign_rows(
 
     If no row has a single undetermined link, the link with most constraints is left free.
     """
-    found: list[tuple[int, str]] = []
+    assigned: list[tuple[int, str]] = []
     free: list[str] = []
     left, rows = list(links), dict(rows)
     while left:
-        ready = next((n for n, own in rows.items() if sum(link in left for link in own) == 1), None)
+        ready = next((n for n, row_links in rows.items() if sum(link in left for link in row_links) == 1), None)
         if ready is not None:
             link = next(link for link in rows.pop(ready) if link in left)
-            found.append((ready, link))
+            assigned.append((ready, link))
         else:
-            open_ones = {link for own in rows.values() for link in own if link in left} or set(left)
-            link = max((one for one in left if one in open_ones), key=lambda one: busy[one])
+            open_ones = {link for row_links in rows.values() for link in row_links if link in left} or set(left)
+            link = max(
+                (candidate for candidate in left if candidate in open_ones), key=lambda candidate: busy[candidate]
+            )
             free.append(link)
         left.remove(link)
-    return found, free
+    return assigned, free
 
 
 # Newton's method on the free unknowns.
@@ -155,7 +160,7 @@ class UnrolledNewton(NewtonSolver):
         if kernel.passive or kernel.start is None or rows != 3 * len(kernel.group.links):
             raise NotUnrolledError
         closure = find_explicit_order(kernel.constraints, kernel.group.links)
-        found = cls(
+        unrolled = cls(
             kernel.group,
             kernel.size,
             kernel.constraints,
@@ -165,13 +170,13 @@ class UnrolledNewton(NewtonSolver):
             kernel.order,
             closure,
         )
-        if kernel.trace is None and not found.linear:
+        if kernel.trace is None and not unrolled.linear:
             raise NotUnrolledError
         for number, link in closure.angles:
-            known = [one for one in kernel.constraints[number].links if one not in kernel.order]
-            if link in geared and any(poses[one].unwrapped is None for one in known):
+            known = [name for name in kernel.constraints[number].links if name not in kernel.order]
+            if link in geared and any(poses[name].unwrapped is None for name in known):
                 raise NotUnrolledError
-        return replace(found, closure=replace(closure, shifts=found._shifts(poses, drives)))
+        return replace(unrolled, closure=replace(closure, shifts=unrolled._shifts(poses, drives)))
 
     def rebind(self, linkage: Linkage) -> UnrolledNewton:
         new = NewtonSolver.of(self.group.rebind(linkage), linkage)
@@ -208,9 +213,9 @@ class UnrolledNewton(NewtonSolver):
         angles |= {link: float(self.start.unwrapped[0, k]) for link, k in self.order.items()}
         shifts = {}
         for number, link in self.closed_by.angles:
-            given = self.constraints[number].turned(link, angles, drives)
-            assert given is not None
-            shifts[link] = 2 * np.pi * float(np.round((angles[link] - float(np.ravel(given)[0])) / (2 * np.pi)))
+            angle = self.constraints[number].turned(link, angles, drives)
+            assert angle is not None
+            shifts[link] = 2 * np.pi * float(np.round((angles[link] - float(np.ravel(angle)[0])) / (2 * np.pi)))
         return shifts
 
     def posed(self, free: Mapping[int, Any], poses: Poses, drives: DriverStates) -> dict[str, Pose]:
@@ -219,34 +224,36 @@ class UnrolledNewton(NewtonSolver):
         names = self.group.links
         angles.update({names[k // 3]: value for k, value in free.items() if k % 3 == 2})
         for number, link in self.closed_by.angles:
-            given: Any = self.constraints[number].turned(link, angles, drives)
-            angles[link] = given + self.closed_by.shifts[link]
+            angle: Any = self.constraints[number].turned(link, angles, drives)
+            angles[link] = angle + self.closed_by.shifts[link]
         turned = {link: unit(angles[link]) for link in names}
-        found: dict[str, Pose] = dict(poses)
+        link_poses: dict[str, Pose] = dict(poses)
         for k, link in enumerate(names):
             if 3 * k in free:
-                found[link] = Pose(free[3 * k] + 1j * free[3 * k + 1], turned[link], angles[link])
+                link_poses[link] = Pose(free[3 * k] + 1j * free[3 * k + 1], turned[link], angles[link])
         for number, link in self.closed_by.origins:
             pair = self.constraints[number]
             assert isinstance(pair, HingeConstraint)
-            other, there, here = (pair.i, pair.at_i, pair.at_j) if link == pair.j else (pair.j, pair.at_j, pair.at_i)
-            found[link] = Pose(found[other].at(there) - here * turned[link], turned[link], angles[link])
-        return found
+            other, on_other, on_link = (
+                (pair.i, pair.at_i, pair.at_j) if link == pair.j else (pair.j, pair.at_j, pair.at_i)
+            )
+            link_poses[link] = Pose(link_poses[other].at(on_other) - on_link * turned[link], turned[link], angles[link])
+        return link_poses
 
     def rows(self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]]) -> list[EquationRow]:
         """Return the rows of all constraints; lengths are not scaled."""
-        found: list[dict[int, Any]] = []
+        all_rows: list[dict[int, Any]] = []
         for constraint, of_links in zip(self.constraints, parts, strict=True):
-            own: list[dict[int, Any]] = [{} for _ in constraint.lengths]
+            pair_rows: list[dict[int, Any]] = [{} for _ in constraint.lengths]
             for link, lines in of_links.items():
                 if link in self.order:
-                    for row, (c, m) in zip(own, lines, strict=True):
-                        for part, value in enumerate((c.real, c.imag, m)):
-                            plain = isinstance(c if part < 2 else value, complex | float)
+                    for row, (c, m) in zip(pair_rows, lines, strict=True):
+                        for coordinate, value in enumerate((c.real, c.imag, m)):
+                            plain = isinstance(c if coordinate < 2 else value, complex | float)
                             if not plain or value:
-                                row[3 * self.order[link] + part] = value
-            found += own
-        return list(found)
+                                row[3 * self.order[link] + coordinate] = value
+            all_rows += pair_rows
+        return list(all_rows)
 
     def eliminated(
         self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]], order: EliminationOrder
@@ -269,24 +276,26 @@ class UnrolledNewton(NewtonSolver):
     def place(self, poses: Poses, q: Real, drives: DriverStates) -> Placement:
         starts = self.starts or tuple(np.zeros(np.shape(q)) for _ in self.free)
         free = dict(zip(self.free, starts, strict=True))
-        size: Any = np.zeros(np.shape(q))
+        step_size: Any = np.zeros(np.shape(q))
         for _ in range(self.steps if self.free else 0):
             step = self._moved(free, poses, drives)
             free = {k: free[k] + step[k] for k in self.free}
-            size = reduce(np.maximum, [np.abs(value / self.size if k % 3 < 2 else value) for k, value in step.items()])
+            step_size = reduce(
+                np.maximum, [np.abs(value / self.size if k % 3 < 2 else value) for k, value in step.items()]
+            )
         everything = self.posed(free, poses, drives)
         rows = self._rows(everything)
-        own = tuple(everything[link] for link in self.group.links)
+        own_poses = tuple(everything[link] for link in self.group.links)
         diagonal = self.eliminated(rows, self.closed_by.order).diagonal
         det = reduce(np.multiply, diagonal, 1.0 + np.zeros(np.shape(q)))
         sharp: Any = 1.0
         if diagonal:
             sizes = [np.abs(value) for value in diagonal]
             sharp = reduce(np.minimum, sizes) / reduce(np.maximum, sizes)
-        sure = (sharp > NEAR_SINGULAR) & ((size < self.enough) | self.linear)
+        sure = (sharp > NEAR_SINGULAR) & ((step_size < self.enough) | self.linear)
         margin = singular_margin(self.rows(rows), self.lengths, self.size)
         residual = np.where(sure, -1.0, 1.0) * self.size
-        return Placement(own, det, margin, residual, np.zeros(np.shape(q)))
+        return Placement(own_poses, det, margin, residual, np.zeros(np.shape(q)))
 
     def rates_at(
         self, everything: Poses, matrix: Any, det: Real, rates: Rates, drives: DriverStates
@@ -299,8 +308,8 @@ class UnrolledNewton(NewtonSolver):
     ) -> tuple[Accel, ...]:
         right = self._right(everything, {name: (accel.a, accel.e) for name, accel in accels.items()}, drives, 2)
         bend = self.velocity_terms(everything, rates)
-        found = matrix.solve([value - term for value, term in zip(right, bend, strict=True)])
-        return tuple(Accel(a, e) for a, e in _split_by_link(found))
+        solution = matrix.solve([value - term for value, term in zip(right, bend, strict=True)])
+        return tuple(Accel(a, e) for a, e in _split_by_link(solution))
 
     def matrix(self, poses: Poses) -> Any:
         return self.eliminated(self._rows(poses), self.closed_by.order)
@@ -311,7 +320,7 @@ class UnrolledNewton(NewtonSolver):
         """Return the right-hand sides: derivatives prescribed by drivers less the contributions of the known links, in
         SI.
         """
-        found = []
+        right_sides = []
         for constraint in self.constraints:
             total = list(constraint.asked(drives, order))
             if any(link not in self.order for link in constraint.links):
@@ -319,14 +328,16 @@ class UnrolledNewton(NewtonSolver):
                     if link not in self.order:
                         v, w = motion[link]
                         total = [t - (dot(c, v) + m * w) for t, (c, m) in zip(total, lines, strict=True)]
-            found += total
-        return found
+            right_sides += total
+        return right_sides
 
     def _transposed(self, at: Placement, everything: Poses) -> Callable[[Sequence[Wrench]], list[Any]]:
         by = self.eliminated([c.pushes(everything) for c in self.constraints], self.closed_by.pushing)
 
         def under(wrenches: Sequence[Wrench]) -> list[Any]:
-            borne = [part for one in wrenches for part in (one.force.real, one.force.imag, one.moment)]
+            borne = [
+                component for wrench in wrenches for component in (wrench.force.real, wrench.force.imag, wrench.moment)
+            ]
             return by.transposed([-value for value in borne])
 
         return under
@@ -344,7 +355,7 @@ class _AnglesOfLinks(dict[str, Any]):
         return self[link]
 
 
-def _split_by_link(found: Sequence[Any]) -> Iterator[tuple[Any, Any]]:
+def _split_by_link(unknowns: Sequence[Any]) -> Iterator[tuple[Any, Any]]:
     """Yield origin and angle of each link from the list of unknowns."""
-    for k in range(0, len(found), 3):
-        yield found[k] + 1j * found[k + 1], found[k + 2]
+    for k in range(0, len(unknowns), 3):
+        yield unknowns[k] + 1j * unknowns[k + 1], unknowns[k + 2]

@@ -124,10 +124,10 @@ def _range_about_sketch(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> D
             gone = np.any(_is_lost(link_states(linkage, kernels, between, 0), side), axis=0) | _stops_before(
                 linkage, between
             )
-            found = np.flatnonzero(gone)
-            places = np.array([good, *between, bad])
-            there = int(found[0]) + 1 if found.size else len(places) - 1
-            good, bad = places[there - 1], places[there]
+            blocked_samples = np.flatnonzero(gone)
+            samples = np.array([good, *between, bad])
+            first_blocked = int(blocked_samples[0]) + 1 if blocked_samples.size else len(samples) - 1
+            good, bad = samples[first_blocked - 1], samples[first_blocked]
         if stopped[index]:
             return DriverLimit(float(good), "", linkage.driver.link)
         return DriverLimit(_at_infinity(first, float(good), towards), first.group.title)
@@ -195,14 +195,14 @@ def link_rotations(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> dict[s
     """Return the turns in one turn of the driver of the links on which gears depend, where their angles were
     accumulated.
     """
-    found = {}
+    rotations = {}
     for kernel in kernels:
         winding = kernel.winding if isinstance(kernel, ClosedFormSolver) else None
         if isinstance(winding, AccumulatedAngles) and winding.closed:
             turns = (winding.q[-1] - winding.q[0]) / (2 * np.pi)
             for link, angles in winding.angles.items():
-                found[link] = round(float((angles[-1] - angles[0]) / (2 * np.pi) / turns))
-    return found
+                rotations[link] = round(float((angles[-1] - angles[0]) / (2 * np.pi) / turns))
+    return rotations
 
 
 def cycle_turns(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> int | None:
@@ -214,9 +214,14 @@ def cycle_turns(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> int | Non
         trace = kernel.followed
         if trace is not None and trace.closed and turns is not None:
             turns = math.lcm(turns, round((trace.q[-1] - trace.q[0]) / (2 * np.pi)))
-        way = kernel.way if isinstance(kernel, ClosedFormSolver) else None
-        if way is not None and way.cycle is not None and len(way.places) % 2 and turns is not None:
-            turns = math.lcm(turns, round(way.cycle / np.pi))
+        change_points = kernel.way if isinstance(kernel, ClosedFormSolver) else None
+        if (
+            change_points is not None
+            and change_points.cycle is not None
+            and len(change_points.places) % 2
+            and turns is not None
+        ):
+            turns = math.lcm(turns, round(change_points.cycle / np.pi))
     if turns is not None:
         turns = math.lcm(turns, linkage.turns)
     return turns if turns is not None and turns <= MOST_TURNS else None
@@ -254,15 +259,19 @@ def _is_lost(motion: LinkStates, side: list[float]) -> Real:
 
 
 def limit_a_cycle_away(
-    known: DriverLimit, blocked: Real, steps: Real, about: tuple[float, float], limit: Callable[[int, int], DriverLimit]
+    known_limit: DriverLimit,
+    blocked: Real,
+    steps: Real,
+    about: tuple[float, float],
+    limit: Callable[[int, int], DriverLimit],
 ) -> DriverLimit | None:
     """Return the other limit if all blocked coordinates lie on one side of the sketch: a cycle away.
 
     None if the blocked coordinates extend to the end of the examined interval.
     """
     at, cycle = about
-    sense = -1 if known.place > at else 1
-    index = int(blocked[-1 if known.place > at else 0])
+    sense = -1 if known_limit.place > at else 1
+    index = int(blocked[-1 if known_limit.place > at else 0])
     if index in (0, len(steps) - 1):
         return None
     other = limit(index, sense)
@@ -275,7 +284,7 @@ def find_dead_positions(
     """Find the dead positions inside the range; its limits, which are dead positions too, are not repeated."""
     q = np.linspace(driver_range.start, driver_range.end, SCAN * driver_range.turns + 1)
     motion = link_states(linkage, kernels, q, 0)
-    found = []
+    dead_positions = []
     for number, dyad in enumerate(kernels):
         at = motion.placements[number]
         margin = np.where(motion.placed | at.dead, at.margin, np.inf)
@@ -283,21 +292,23 @@ def find_dead_positions(
         with np.errstate(invalid="ignore"):  # no dead position where the margin cannot fall so much between two samples
             reach = inner - 2 * np.maximum(margin[:-2] - inner, margin[2:] - inner) < DEAD
         low = np.flatnonzero((inner <= margin[:-2]) & (inner < margin[2:]) & (inner < 0.1) & reach) + 1
-        places = list(q[low])
+        candidates = list(q[low])
         steps = q[1] - q[0]
         if driver_range.full and margin[0] < 0.1 and margin[0] < margin[1] and margin[0] <= margin[-2]:
-            places.append(q[0])
+            candidates.append(q[0])
         upto = solvers_towards(kernels, dyad.group.links)
         passed = _passed_dead_positions(linkage, upto, driver_range)
-        found += passed
-        away = [p for p in places if all(abs(_driver_distance(p, o.place, driver_range)) > 2 * steps for o in passed)]
+        dead_positions += passed
+        away = [
+            p for p in candidates if all(abs(_driver_distance(p, o.place, driver_range)) > 2 * steps for o in passed)
+        ]
         narrowest = find_minima(partial(_last_margin, linkage, upto), np.array(away) - steps, np.array(away) + steps)
         for best, left in zip(*narrowest, strict=True):
             if left < DEAD and (driver_range.full or driver_range.start + steps < best < driver_range.end - steps):
                 best = float(refine_dead_positions(linkage, upto, np.array([best]), steps)[0])
                 passive = getattr(dyad, "passive", False)  # the redundant constraints guide it through
-                found.append(DeadPosition(best, dyad.group.title, left, passive))
-    return tuple(sorted(found, key=lambda d: d.place))
+                dead_positions.append(DeadPosition(best, dyad.group.title, left, passive))
+    return tuple(sorted(dead_positions, key=lambda d: d.place))
 
 
 def _passed_dead_positions(
@@ -307,21 +318,21 @@ def _passed_dead_positions(
     points.
     """
     last, title = upto[-1], upto[-1].group.title
-    trace, way = last.followed, last.way if isinstance(last, ClosedFormSolver) else None
+    trace, change_points = last.followed, last.way if isinstance(last, ClosedFormSolver) else None
     if trace is not None and trace.dead.size:
-        places = trace.dead_within(driver_range.start, driver_range.end)
-    elif way is not None:
-        places = way.within(driver_range.start, driver_range.end)
+        coordinates = trace.dead_within(driver_range.start, driver_range.end)
+    elif change_points is not None:
+        coordinates = change_points.within(driver_range.start, driver_range.end)
     else:
         return []
-    left = _last_margin(linkage, upto, places) if places.size else places
-    return [DeadPosition(float(q), title, float(margin), True) for q, margin in zip(places, left, strict=True)]
+    left = _last_margin(linkage, upto, coordinates) if coordinates.size else coordinates
+    return [DeadPosition(float(q), title, float(margin), True) for q, margin in zip(coordinates, left, strict=True)]
 
 
-def _driver_distance(one: float, other: float, driver_range: DriverRange) -> float:
+def _driver_distance(q: float, other_q: float, driver_range: DriverRange) -> float:
     """Return the signed distance of two driver coordinates, the shorter way round a full cycle."""
     cycle = driver_range.end - driver_range.start
-    return one - other - cycle * round((one - other) / cycle) if driver_range.full else one - other
+    return q - other_q - cycle * round((q - other_q) / cycle) if driver_range.full else q - other_q
 
 
 def _last_margin(linkage: Linkage, kernels: tuple[GroupSolver, ...], q: Real) -> Real:
@@ -355,7 +366,7 @@ class SlotExcess:
 
 
 def find_slot_excess(
-    linkage: Linkage, kernels: tuple[GroupSolver, ...], driver_range: DriverRange, asked: Sequence[float]
+    linkage: Linkage, kernels: tuple[GroupSolver, ...], driver_range: DriverRange, requested: Sequence[float]
 ) -> tuple[SlotExcess, ...]:
     """Return the result for both ends of every bounded guide, over the range of the driver.
 
@@ -367,18 +378,20 @@ def find_slot_excess(
     if not slides:
         return ()
     start, end = driver_range.start, driver_range.end
-    if len(asked) and not driver_range.full:
-        start, end = max(start, float(np.min(asked))), min(end, float(np.max(asked)))
+    if len(requested) and not driver_range.full:
+        start, end = max(start, float(np.min(requested))), min(end, float(np.max(requested)))
     q = np.linspace(start, end, SCAN * driver_range.turns + 1)
     scan = link_states(linkage, kernels, q, 0)
-    found = []
+    results = []
     for slide in slides:
         upto = solvers_towards(kernels, (slide.carrier, slide.runner))
-        run, there = scan.run(slide)[scan.placed], q[scan.placed]
+        run, placed_q = scan.run(slide)[scan.placed], q[scan.placed]
         for point, forward in zip(slide.ends or (), (-1.0, 1.0), strict=True):
-            if there.size > 1:
-                found.append(_SegmentEnd(linkage, upto, slide, point, forward).excess(there, run, driver_range.full))
-    return tuple(found)
+            if placed_q.size > 1:
+                results.append(
+                    _SegmentEnd(linkage, upto, slide, point, forward).excess(placed_q, run, driver_range.full)
+                )
+    return tuple(results)
 
 
 @dataclass(frozen=True)
@@ -417,8 +430,8 @@ class _SegmentEnd:
         """Return the intervals beyond the end; in a cycle the last interval may continue through its end."""
         out = far > 0
         change = np.flatnonzero(out[:-1] != out[1:])
-        places = find_roots(self.at, q[change], q[change + 1]) if change.size else np.zeros(0)
-        leaves, returns = list(places[~out[change]]), list(places[out[change]])
+        crossings = find_roots(self.at, q[change], q[change + 1]) if change.size else np.zeros(0)
+        leaves, returns = list(crossings[~out[change]]), list(crossings[out[change]])
         if out[0] and full and leaves:
             returns = [*returns[1:], returns[0] + q[-1] - q[0]]
         elif out[0]:

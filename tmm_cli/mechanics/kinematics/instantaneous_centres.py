@@ -51,25 +51,25 @@ def find_centres(states: LinkStates, structure: Structure, k: int) -> list[Insta
     size = _linkage_size(states, k)
     motion = {name: _velocity_about_origin(states, name, k) for name in names}
     least = STILL * max(max(abs(v), abs(w) * size) for v, w in motion.values())
-    places = {(i, j): _relative_centre(motion[i], motion[j], size, least) for i, j in combinations(names, 2)}
+    centre_of = {(i, j): _relative_centre(motion[i], motion[j], size, least) for i, j in combinations(names, 2)}
     pairs = {
         _ordered_links(p.i, p.j, names): p for p in reversed(structure.pairs) if p.kind != "C"
     }  # a cam pair does not determine a centre
     for links, pair in pairs.items():
-        places[links] = _pair_centre(states, pair, k) or places[links]
-    told = [InstantCentre(links, *places[links], pair=pairs[links].name) for links in places if links in pairs]
-    known = {centre.links for centre in told}
+        centre_of[links] = _pair_centre(states, pair, k) or centre_of[links]
+    centres = [InstantCentre(links, *centre_of[links], pair=pairs[links].name) for links in centre_of if links in pairs]
+    known = {centre.links for centre in centres}
     while True:
         step = [
-            InstantCentre(links, *places[links], lines=lines)
-            for links in places
-            if links not in known and (lines := _crossing_lines(links, names, places, known, size))
+            InstantCentre(links, *centre_of[links], lines=lines)
+            for links in centre_of
+            if links not in known and (lines := _crossing_lines(links, names, centre_of, known, size))
         ]
         if not step:
             break
-        told += step
+        centres += step
         known |= {centre.links for centre in step}
-    return [*told, *(InstantCentre(links, *places[links]) for links in places if links not in known)]
+    return [*centres, *(InstantCentre(links, *centre_of[links]) for links in centre_of if links not in known)]
 
 
 def _pair_centre(states: LinkStates, pair: Pair, k: int) -> CentrePlace | None:
@@ -91,12 +91,12 @@ def _linkage_size(states: LinkStates, k: int) -> float:
 
 
 def _relative_centre(
-    one: tuple[complex, float], other: tuple[complex, float], size: float, least: float
+    motion: tuple[complex, float], other_motion: tuple[complex, float], size: float, least: float
 ) -> CentrePlace:
     """Return the centre of two links, or its direction at infinity, from their motions; least: velocity of a link at
     rest.
     """
-    slip, turn = one[0] - other[0], one[1] - other[1]
+    slip, turn = motion[0] - other_motion[0], motion[1] - other_motion[1]
     if abs(turn) * size <= max(least, abs(slip) / FAR):
         return None, None if abs(slip) <= least else 1j * slip / abs(slip)
     return 1j * slip / turn, None
@@ -107,35 +107,35 @@ def _velocity_about_origin(states: LinkStates, name: str, k: int) -> tuple[compl
     if name == FRAME:
         return 0j, 0.0
     pose, rate = states.poses[name], states.first[name]
-    v, w, x = (np.broadcast_to(part, np.shape(states.q))[k] for part in (rate.v, rate.w, pose.x))
+    v, w, x = (np.broadcast_to(component, np.shape(states.q))[k] for component in (rate.v, rate.w, pose.x))
     return complex(v - 1j * w * x), float(w)
 
 
 def _crossing_lines(
     links: LinkPair,
     names: tuple[str, ...],
-    places: dict[LinkPair, CentrePlace],
+    centre_of: dict[LinkPair, CentrePlace],
     known: set[LinkPair],
     size: float,
 ) -> tuple[CentreLine, ...]:
     """Return two lines through known centres that intersect in this one; one line if its centres coincide in it."""
     i, j = links
-    ways: list[tuple[CentreLine, complex]] = []
+    candidates: list[tuple[CentreLine, complex]] = []
     for k in names:
         if k in links:
             continue
         line = _ordered_links(i, k, names), _ordered_links(k, j, names)
         if not known.issuperset(line):
             continue
-        along = _line_direction(places[line[0]], places[line[1]], size)
+        along = _line_direction(centre_of[line[0]], centre_of[line[1]], size)
         if along is None:
             continue
         if along == 0:  # both centres coincide: a compound hinge
             return (line,)
-        ways.append((line, along))
-    for (one, along), (other, across) in combinations(ways, 2):
+        candidates.append((line, along))
+    for (line_a, along), (line_b, across) in combinations(candidates, 2):
         if abs(cross(along, across)) > SHARP:
-            return one, other
+            return line_a, line_b
     return ()
 
 
@@ -143,9 +143,9 @@ def _ordered_links(i: str, j: str, names: tuple[str, ...]) -> LinkPair:
     return (i, j) if names.index(i) < names.index(j) else (j, i)
 
 
-def _line_direction(one: CentrePlace, other: CentrePlace, size: float) -> complex | None:
+def _line_direction(centre: CentrePlace, other_centre: CentrePlace, size: float) -> complex | None:
     """Return the direction of the line through two centres; 0 if they coincide, None if both are at infinity."""
-    (p, u), (q, v) = one, other
+    (p, u), (q, v) = centre, other_centre
     if p is not None and q is not None:
         return (q - p) / abs(q - p) if abs(q - p) > NEAR * size else 0j
     if p is None and q is None:

@@ -98,22 +98,24 @@ class Motion(LinkStates):
         """Cache of motions requested by name: tables, result.json, forces and energy request the same ones."""
         return {}
 
-    def _once(self, kind: str, name: str, of: Callable[[], Record]) -> Record:
+    def _once(self, kind: str, name: str, compute: Callable[[], Record]) -> Record:
         if (kind, name) not in self._known:
-            self._known[kind, name] = of()
-        found: Record = self._known[kind, name]
-        return found
+            self._known[kind, name] = compute()
+        motion: Record = self._known[kind, name]
+        return motion
 
     @cached_property
     def largest(self) -> LargestRates:
         """Largest rates of the links at every position."""
         return LargestRates.of(self)
 
-    def _finest(self, of: Callable[[Motion], Record]) -> Record:
+    def _finest(self, evaluate: Callable[[Motion], Record]) -> Record:
         """Evaluate a function of the motion, taking values from the finer one where available."""
-        found = of(self)
+        values = evaluate(self)
         return (
-            found if self.finer is None or self.where is None else splice_positions(found, of(self.finer), self.where)
+            values
+            if self.finer is None or self.where is None
+            else splice_positions(values, evaluate(self.finer), self.where)
         )
 
     def _point(self, link: str, local: complex) -> PointMotion:
@@ -124,9 +126,9 @@ class Motion(LinkStates):
 
     def named(self, point: str) -> PointMotion:
         """Return the motion of a named point, from the link with the smallest motion, which loses the fewest digits."""
-        there = [link for link in self.linkage.carriers(point) if link in self.poses]
+        owners = [link for link in self.linkage.carriers(point) if link in self.poses]
         return self._once(
-            "point", point, lambda: self.named_on(min(there, key=lambda link: self._sway(link, point)), point)
+            "point", point, lambda: self.named_on(min(owners, key=lambda link: self._sway(link, point)), point)
         )
 
     def _sway(self, link: str, point: str) -> float:
@@ -240,7 +242,7 @@ def zero_at_rest(rates: Real | Vector, largest: Real) -> Real | Vector:
     return np.where(np.abs(rates) > AT_REST * largest, rates, 0.0)
 
 
-def splice_positions(full: Record, part: Record, where: Real) -> Record:
+def splice_positions(full: Record, finer_record: Record, where: Real) -> Record:
     """Return a record whose arrays take the positions of the mask `where` from another record, rounded to their
     precision.
     """
@@ -248,11 +250,11 @@ def splice_positions(full: Record, part: Record, where: Real) -> Record:
     def joined(path: str, leaf: Any, finer: Any) -> Any:
         if not isinstance(leaf, np.ndarray) or not hasattr(finer, "astype") or leaf.shape[-1:] != where.shape:
             return leaf
-        found = leaf.copy()
-        found[..., where] = finer.astype(leaf.dtype)
-        return found
+        spliced = leaf.copy()
+        spliced[..., where] = finer.astype(leaf.dtype)
+        return spliced
 
-    return map_record(joined, full, part, skip=FIELDS_WITHOUT_POSITIONS)
+    return map_record(joined, full, finer_record, skip=FIELDS_WITHOUT_POSITIONS)
 
 
 # Limits of velocities and accelerations in dead positions that the mechanism passes smoothly.
@@ -294,19 +296,19 @@ def fill_in_limits(motion: Motion) -> Motion:
     dead = np.any(list(motion.dead.values()), axis=0) & ~motion.moving & np.isfinite(motion.rate)
     if not np.any(dead):
         return motion
-    places = np.flatnonzero(dead)
-    limits, smooth = _interpolate_limits(motion, np.asarray(motion.q, dtype=float)[places])
+    dead_positions = np.flatnonzero(dead)
+    limits, smooth = _interpolate_limits(motion, np.asarray(motion.q, dtype=float)[dead_positions])
     if not np.any(smooth):
         return motion
-    filled = places[smooth]
+    filled = dead_positions[smooth]
 
     def put(_path: str, values: Any, limit: Any) -> Any:
         if not isinstance(values, np.ndarray):
             return values
-        found, own = values.copy(), limit[smooth]
-        known = np.abs(values[..., filled] - own) <= LIMIT_ROUNDED * np.maximum(np.abs(own), 1.0)
-        found[..., filled] = np.where(known, values[..., filled], own)  # a known value is kept
-        return found
+        replaced, limit_values = values.copy(), limit[smooth]
+        agrees = np.abs(values[..., filled] - limit_values) <= LIMIT_ROUNDED * np.maximum(np.abs(limit_values), 1.0)
+        replaced[..., filled] = np.where(agrees, values[..., filled], limit_values)  # a known value is kept
+        return replaced
 
     parts = {name: map_record(put, getattr(motion, name), getattr(limits, name)) for name in STATE_FIELDS}
     mask = np.zeros(np.shape(motion.q), dtype=bool)
@@ -319,7 +321,7 @@ def _interpolate_limits(motion: Motion, q: Real) -> tuple[LinkStates, Real]:
     size = float(np.max([np.max(kernel.size) for kernel in motion.kernels], initial=0.0)) or 1.0
     unit = 1.0 if motion.linkage.driver.kind == "turn" else size
     smooth = np.ones(len(q), dtype=bool)
-    found = []
+    interpolated = []
     for radius in RADII:
         nodes = q[:, None] + radius * unit * CHEBYSHEV_NODES
         states = link_states(motion.linkage, motion.kernels, nodes.ravel(), 2)
@@ -332,12 +334,12 @@ def _interpolate_limits(motion: Motion, q: Real) -> tuple[LinkStates, Real]:
 
         with np.errstate(invalid="ignore"):
             states = replace(states, **{name: map_record(middle, getattr(states, name)) for name in STATE_FIELDS})
-        found.append(states)
-    far, near = found
+        interpolated.append(states)
+    far, near = interpolated
     return far, smooth & _limits_agree(far, near, size)
 
 
-def _limits_agree(one: LinkStates, other: LinkStates, size: float) -> Real:
+def _limits_agree(states: LinkStates, other_states: LinkStates, size: float) -> Real:
     """Return where two states of all links agree; size: of the mechanism (m)."""
     gaps: dict[str, Any] = dict.fromkeys(COMPARED_FIELDS, 0.0)
     largest: dict[str, Any] = dict.fromkeys(COMPARED_FIELDS, 0.0)
@@ -350,7 +352,7 @@ def _limits_agree(one: LinkStates, other: LinkStates, size: float) -> Real:
         return values
 
     for name in STATE_FIELDS:
-        map_record(compare, getattr(one, name), getattr(other, name))
+        map_record(compare, getattr(states, name), getattr(other_states, name))
     speed = np.maximum(largest["v"], largest["w"] * size)
     gain = np.maximum(np.maximum(largest["a"], largest["e"] * size), speed**2 / size)
     scales = {

@@ -112,8 +112,8 @@ def driven_links(group: Group) -> Iterable[DrivenLink]:
 
 def pressure_angle(motion: LinkStates, kernel: GroupSolver, at: Placement, lead: DrivenLink) -> Real:
     """Return the pressure angle of a driven link at every position, rad; nan where undefined."""
-    found: Real = np.arctan2(*pressure_sine_and_cosine(motion, kernel, at, lead))
-    return np.where(found < NO_PRESSURE, 0.0, found)
+    angles: Real = np.arctan2(*pressure_sine_and_cosine(motion, kernel, at, lead))
+    return np.where(angles < NO_PRESSURE, 0.0, angles)
 
 
 def signed_pressure_angle(motion: LinkStates, kernel: GroupSolver, at: Placement, lead: DrivenLink) -> Real:
@@ -195,7 +195,7 @@ def find_pressure(
     ends = (driver_range.end - driver_range.start) * 1e-9 * (not (driver_range.full or driver_range.inclusive))
     q = np.linspace(driver_range.start + ends, driver_range.end - ends, SCAN * driver_range.turns + 1)
     scan = link_states(linkage, kernels, q, 0)  # statics needs no velocities
-    found = []
+    pressure_angles = []
     with np.errstate(all="ignore"):
         for number, kernel in enumerate(kernels):
             upto = solvers_towards(kernels, kernel.group.links)
@@ -229,8 +229,8 @@ def find_pressure(
                 other = _other_extreme(linkage, upto, lead, scan, number, place) if value > 0 else None
                 if other is not None:
                     largest = replace(largest, other=other[0], other_place=other[1])
-                found.append(largest)
-    return tuple(found)
+                pressure_angles.append(largest)
+    return tuple(pressure_angles)
 
 
 def _other_extreme(
@@ -243,9 +243,9 @@ def _other_extreme(
         return None
     q = scan.q
     angles = signed_pressure_angle(scan, scan.kernels[number], scan.placements[number], lead)
-    known = np.isfinite(angles)  # undefined at a change point
-    side = np.sign(angles[int(np.argmin(np.where(known, np.abs(q - place), np.inf)))])
-    if not side or not np.ptp(angles[known]) > ALIKE_ANGLES:
+    defined = np.isfinite(angles)  # undefined at a change point
+    side = np.sign(angles[int(np.argmin(np.where(defined, np.abs(q - place), np.inf)))])
+    if not side or not np.ptp(angles[defined]) > ALIKE_ANGLES:
         return None
 
     def leaning(at: Real) -> Real:

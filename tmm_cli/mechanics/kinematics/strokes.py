@@ -57,8 +57,8 @@ def output_slope(motion: LinkStates, link: str) -> Real:
     linkage = motion.linkage
     point = linkage.output_point(link)
     if point is not None:
-        own = linkage.owner(point)
-        return _coordinate(link, motion.first[own].at(linkage.local(own, point) * motion.poses[own].z))
+        owner = linkage.owner(point)
+        return _coordinate(link, motion.first[owner].at(linkage.local(owner, point) * motion.poses[owner].z))
     slide = linkage.output_guide(link)
     return motion.first[link].w if slide is None else motion.slope(slide)
 
@@ -123,7 +123,7 @@ class OutputCurve:
         return moving_slope(link_states(self.linkage, self.kernels, q, 1), self.link)
 
 
-def measure_runs(curve: StrokeCurve, starts: Real, ways: Real) -> tuple[Real, Real]:
+def measure_runs(curve: StrokeCurve, starts: Real, lengths: Real) -> tuple[Real, Real]:
     """Return the coordinate of an output at the start of each driver interval, and its change over the interval.
 
     Angles are accumulated, so that they may pass 180 degrees.
@@ -133,8 +133,8 @@ def measure_runs(curve: StrokeCurve, starts: Real, ways: Real) -> tuple[Real, Re
         ways: signed lengths of the intervals, same shape.
     """
     shares = np.linspace(0, 1, PARTS + 1 if curve.swings else 2)
-    places = starts[..., None] + ways[..., None] * shares
-    run = curve.place(places.reshape(*starts.shape[:-1], -1)).reshape(places.shape)
+    samples = starts[..., None] + lengths[..., None] * shares
+    run = curve.place(samples.reshape(*starts.shape[:-1], -1)).reshape(samples.shape)
     run = np.unwrap(run, axis=-1) if curve.swings else run
     return run[..., 0], run[..., -1] - run[..., 0]
 
@@ -153,12 +153,12 @@ class OutputTravel:
     high_at: float
 
 
-def find_travel(linkage: Linkage, kernels: tuple[GroupSolver, ...], asked: Real, link: str) -> OutputTravel | None:
+def find_travel(linkage: Linkage, kernels: tuple[GroupSolver, ...], requested: Real, link: str) -> OutputTravel | None:
     """Find the extremes of an output over the requested driver coordinates, for drivers that cannot make a full
     turn.
     """
     curve = OutputCurve(linkage, solvers_towards(kernels, [linkage.output_carrier(link)]), link)
-    q = np.linspace(np.min(asked), np.max(asked), SCAN + 1)
+    q = np.linspace(np.min(requested), np.max(requested), SCAN + 1)
     moved = link_states(linkage, kernels, q, 1)  # all groups: the output moves only where the whole linkage can
     run, slope = output_coordinate(moved, link), output_slope(moved, link)
     before, after = moved.placed[:-1], moved.placed[1:]
@@ -170,10 +170,10 @@ def find_travel(linkage: Linkage, kernels: tuple[GroupSolver, ...], asked: Real,
     change = np.flatnonzero(turning)
     if change.size:
         ends = find_roots(curve.slope, q[change], q[change + 1])
-        there = curve.place(ends)
+        end_runs = curve.place(ends)
         if curve.swings:
-            there = there + 2 * np.pi * np.round((run[change] - there) / (2 * np.pi))
-        q, run = np.concatenate([q, ends]), np.concatenate([run, there])
+            end_runs = end_runs + 2 * np.pi * np.round((run[change] - end_runs) / (2 * np.pi))
+        q, run = np.concatenate([q, ends]), np.concatenate([run, end_runs])
     low, high = int(np.argmin(run)), int(np.argmax(run))
     return OutputTravel(link, curve.kind, float(run[low]), float(run[high]), float(q[low]), float(q[high]))
 
@@ -366,12 +366,12 @@ def _drop_rounding_reversals(curve: OutputCurve, turns: Real, cycle: float, sens
     return np.sort(np.array(kept))[::sense]
 
 
-def _working_direction(asked: str, forward: float, back: float, resists: float) -> tuple[int, str]:
+def _working_direction(given_direction: str, forward: float, back: float, resists: float) -> tuple[int, str]:
     """Return the working direction (+1 or -1) and the reason; forward, back: total length (rad) of the strokes of
     each.
     """
-    if asked != "auto":
-        return (1 if asked == "forward" else -1), "as the file says"
+    if given_direction != "auto":
+        return (1 if given_direction == "forward" else -1), "as the file says"
     if abs(forward - back) > SAME_DRIVER_POSITION:
         return (1 if forward > back else -1), "the slower one"
     if resists:

@@ -40,8 +40,8 @@ from tmm_cli.mechanics.numerics.double_double_number import (
 )
 
 
-def _where(truth: Any, one: Any, other: Any) -> DoubleDouble:
-    (a, b), (c, d) = high_and_low(one), high_and_low(other)
+def _where(truth: Any, true_values: Any, false_values: Any) -> DoubleDouble:
+    (a, b), (c, d) = high_and_low(true_values), high_and_low(false_values)
     return DoubleDouble(np.where(truth, a, c), np.where(truth, b, d))
 
 
@@ -65,8 +65,8 @@ def _sum(x: DoubleDouble, axis: int | None = None) -> DoubleDouble:
 
 
 def _cumsum(x: DoubleDouble, axis: int) -> DoubleDouble:
-    found: Any = np.stack(list(accumulate(np.moveaxis(x, axis, 0), add)))  # type: ignore[type-var]
-    return np.moveaxis(found, 0, axis)  # type: ignore[no-any-return]
+    sums: Any = np.stack(list(accumulate(np.moveaxis(x, axis, 0), add)))  # type: ignore[type-var]
+    return np.moveaxis(sums, 0, axis)  # type: ignore[no-any-return]
 
 
 def _interp(x: Any, at: Any, values: Any) -> DoubleDouble:

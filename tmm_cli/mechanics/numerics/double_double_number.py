@@ -145,10 +145,10 @@ class DoubleDouble(NDArrayOperatorsMixin):
         raise TypeError("as a plain array it would lose half of its digits; astype(float) rounds")
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **more: Any) -> Any:
-        known = UFUNCS.get(ufunc.__name__)
-        if known is None or method != "__call__" or any(value is not None for value in more.values()):
+        implementation = UFUNCS.get(ufunc.__name__)
+        if implementation is None or method != "__call__" or any(value is not None for value in more.values()):
             return NotImplemented
-        return known(*inputs)
+        return implementation(*inputs)
 
     def __array_function__(self, function: Any, types: Any, args: Any, kwargs: Any) -> Any:
         if function in FUNCTIONS:
@@ -157,7 +157,7 @@ class DoubleDouble(NDArrayOperatorsMixin):
             return function(args[0].hi, *args[1:], **kwargs)
         if function not in ARRANGING:
             return NotImplemented
-        hi, lo = (function(*_arguments_of_part(args, part), **kwargs) for part in (0, 1))
+        hi, lo = (function(*_arguments_of_part(args, low), **kwargs) for low in (0, 1))
         if isinstance(hi, list | tuple):
             return type(hi)(DoubleDouble(*both) for both in zip(hi, lo, strict=True))
         return DoubleDouble(hi, lo)
@@ -175,17 +175,17 @@ def _arguments_of_part(args: Any, part: int) -> Any:
     """Return the arguments of a rearranging NumPy function with the high (part 0) or low (part 1) parts of double-
     doubles.
     """
-    found = []
+    converted = []
     mixed = any(isinstance(arg, DoubleDouble) for arg in args)
     for arg in args:
         if isinstance(arg, tuple | list):
-            found.append(_arguments_of_part(arg, part))
+            converted.append(_arguments_of_part(arg, part))
         elif isinstance(arg, DoubleDouble):
-            found.append((arg.hi, arg.lo)[part])
+            converted.append((arg.hi, arg.lo)[part])
         else:  # integers and booleans are indices or masks; other ordinary numbers have a zero low part
             number = mixed and part and np.asarray(arg).dtype.kind in "fc"
-            found.append(np.zeros_like(arg) if number else arg)
-    return type(args)(found)
+            converted.append(np.zeros_like(arg) if number else arg)
+    return type(args)(converted)
 
 
 def to_double_double(values: Any) -> Any:
@@ -199,11 +199,11 @@ def array(values: Any) -> Any:
         return values
     if not isinstance(values, list | tuple):
         return np.asarray(values)
-    found = [array(value) if isinstance(value, list | tuple) else value for value in values]
-    if any(isinstance(value, DoubleDouble) for value in found):
-        higher, lower = zip(*map(high_and_low, found), strict=True)
+    elements = [array(value) if isinstance(value, list | tuple) else value for value in values]
+    if any(isinstance(value, DoubleDouble) for value in elements):
+        higher, lower = zip(*map(high_and_low, elements), strict=True)
         return DoubleDouble(np.array(higher), np.array(lower))
-    return np.asarray(found)
+    return np.asarray(elements)
 
 
 def to_float(values: Any) -> Any:
@@ -279,19 +279,19 @@ def multiply(x: Any, y: Any) -> DoubleDouble:
     if not isinstance(y, DoubleDouble):
         x, y = y, x
     if isinstance(x, DoubleDouble):
-        one, rest = x.hi, x.hi * y.lo + x.lo * y.hi
+        first, rest = x.hi, x.hi * y.lo + x.lo * y.hi
     elif _is_exact_factor(x):
         return DoubleDouble(x * y.hi, x * y.lo)
     else:
-        one, rest = np.asarray(x), x * y.lo
-    other = y.hi
-    if one.dtype.kind == "c" and other.dtype.kind == "c":
-        one, other = (one, other) if one.ndim >= other.ndim else (other, one)
-        products, errors = two_product(_real_and_imaginary(one), other)
+        first, rest = np.asarray(x), x * y.lo
+    second = y.hi
+    if first.dtype.kind == "c" and second.dtype.kind == "c":
+        first, second = (first, second) if first.ndim >= second.ndim else (second, first)
+        products, errors = two_product(_real_and_imaginary(first), second)
         product, error = two_sum(products[0], 1j * products[1])
         error = error + (errors[0] + 1j * errors[1])
     else:
-        product, error = two_product(one, other)
+        product, error = two_product(first, second)
     return DoubleDouble(*fast_two_sum(product, error + rest))
 
 
@@ -320,12 +320,12 @@ def divide(x: Any, y: Any) -> DoubleDouble:
     return _keep_nonfinite(DoubleDouble(*fast_two_sum(first, rest / y.hi)), first)
 
 
-def _keep_nonfinite(found: DoubleDouble, plain: Any) -> DoubleDouble:
+def _keep_nonfinite(refined: DoubleDouble, plain: Any) -> DoubleDouble:
     """Return `found`, but the float64 result `plain` where that is infinite or nan."""
     sound = np.isfinite(plain)
     if sound.all():
-        return found
-    return DoubleDouble(np.where(sound, found.hi, plain), np.where(sound, found.lo, 0.0))
+        return refined
+    return DoubleDouble(np.where(sound, refined.hi, plain), np.where(sound, refined.lo, 0.0))
 
 
 def square(z: DoubleDouble) -> DoubleDouble:
@@ -360,8 +360,8 @@ def power(x: Any, n: Any) -> DoubleDouble:
         return sqrt(x)
     if not number.is_integer() or abs(number) > LARGEST_POWER:
         return DoubleDouble(np.power(x.hi, number))
-    found = reduce(multiply, [x] * int(abs(number))) if number else DoubleDouble(np.ones(np.shape(x)))
-    return found if number >= 0 else divide(1.0, found)
+    product = reduce(multiply, [x] * int(abs(number))) if number else DoubleDouble(np.ones(np.shape(x)))
+    return product if number >= 0 else divide(1.0, product)
 
 
 def floor(x: DoubleDouble) -> DoubleDouble:
@@ -395,13 +395,13 @@ def exp_i(x: DoubleDouble) -> DoubleDouble:
         small: Any = 0.0
         for k in range(POWERS - 1, PRECISE - 1, -1):
             small = series[k].hi[column] + square.hi * small
-        found = DoubleDouble(small)
+        terms = DoubleDouble(small)
         for k in range(PRECISE - 1, -1, -1):
-            power, less = series[k], multiply(square, found)
+            power, less = series[k], multiply(square, terms)
             total, error = fast_two_sum(power.hi[column], less.hi)
-            found = DoubleDouble(*fast_two_sum(total, error + (power.lo[column] + less.lo)))
-        sine = multiply(found[1], rest)
-        near = DoubleDouble(found.hi[0] + 1j * sine.hi, found.lo[0] + 1j * sine.lo)
+            terms = DoubleDouble(*fast_two_sum(total, error + (power.lo[column] + less.lo)))
+        sine = multiply(terms[1], rest)
+        near = DoubleDouble(terms.hi[0] + 1j * sine.hi, terms.lo[0] + 1j * sine.lo)
         x.turn = multiply(directions[np.nan_to_num(number).astype(int) % PARTS], near)
     return x.turn
 
@@ -412,9 +412,9 @@ def arctan2(y: Any, x: Any) -> DoubleDouble:
     """
     y, x = DoubleDouble(*high_and_low(y)), DoubleDouble(*high_and_low(x))
     near = DoubleDouble(np.arctan2(y.hi, x.hi))
-    there, size = exp_i(near), np.hypot(y.hi, x.hi)
-    left = subtract(multiply(y, there.real), multiply(x, there.imag)).hi
-    return add(near, left / np.where(size == 0, 1.0, size))
+    direction, length = exp_i(near), np.hypot(y.hi, x.hi)
+    left = subtract(multiply(y, direction.real), multiply(x, direction.imag)).hi
+    return add(near, left / np.where(length == 0, 1.0, length))
 
 
 def angle(z: DoubleDouble) -> DoubleDouble:

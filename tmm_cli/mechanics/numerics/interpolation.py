@@ -38,20 +38,20 @@ class InterpolationTable:
     closed: bool = False
 
     def __call__(self, argument: Real) -> Real:
-        found: Real
+        interpolated: Real
         argument = self._as_precise(argument)
         if self.between == "linear" and self._plain and not self.jumps:
-            found = np.interp(argument, self.arguments, self.values)
-            return found
+            interpolated = np.interp(argument, self.arguments, self.values)
+            return interpolated
         from_row, pieces = self._from_row(argument)
-        found = pieces[0] + from_row * (pieces[1] + from_row * (pieces[2] + from_row * pieces[3]))
-        return found
+        interpolated = pieces[0] + from_row * (pieces[1] + from_row * (pieces[2] + from_row * pieces[3]))
+        return interpolated
 
     def slope(self, argument: Real) -> Real:
         """Return the derivative; at a jump, the one after it."""
         from_row, (_, first, second, third) = self._from_row(self._as_precise(argument))
-        found: Real = first + from_row * (2 * second + 3 * from_row * third)
-        return found
+        derivative: Real = first + from_row * (2 * second + 3 * from_row * third)
+        return derivative
 
     @property
     def overshoot(self) -> tuple[int, float]:
@@ -61,9 +61,9 @@ class InterpolationTable:
         if self.between != "smooth":
             return 0, 0.0
         rows, low, span = np.array(self.arguments, float), min(self.values), np.ptp(np.array(self.values, float))
-        places = rows[:-1, None] + np.diff(rows)[:, None] * np.linspace(0, 1, SAMPLES_BETWEEN)
-        found = self(places)
-        beyond = np.max(np.maximum(low - found, found - low - span), axis=1)
+        samples = rows[:-1, None] + np.diff(rows)[:, None] * np.linspace(0, 1, SAMPLES_BETWEEN)
+        interpolated = self(samples)
+        beyond = np.max(np.maximum(low - interpolated, interpolated - low - span), axis=1)
         row = int(np.argmax(beyond))
         return row, float(beyond[row] / span) if span > 0 else 0.0
 
@@ -93,15 +93,15 @@ class InterpolationTable:
 
     def _held(self, at: Real, starts: Sequence[Any], values: Sequence[Any]) -> Real:
         """Return the value that belongs to the last start at or before each argument."""
-        found: Real
+        latest: Real
         if self._plain:
             twice = [start for start in starts for _ in range(2)][1:]
-            found = np.interp(at, twice, [value for value in values for _ in range(2)][:-1])
-            return found
-        found = values[0] + 0 * at
+            latest = np.interp(at, twice, [value for value in values for _ in range(2)][:-1])
+            return latest
+        latest = values[0] + 0 * at
         for start, (before, after) in zip(starts[1:], pairwise(values), strict=True):
-            found = found + np.where(at >= start, after - before, 0.0)
-        return found
+            latest = latest + np.where(at >= start, after - before, 0.0)
+        return latest
 
     @cached_property
     def _pieces(self) -> list[tuple[Any, ...]]:
@@ -109,11 +109,11 @@ class InterpolationTable:
         if self.between == "step":
             return [(value, 0.0, 0.0, 0.0) for value in self.values]
         borders = [0, *self.jumps, len(self.arguments)]
-        found: list[tuple[Any, ...]] = []
+        pieces: list[tuple[Any, ...]] = []
         for first, last in pairwise(borders):
-            found += self._smooth_or_linear(self.arguments[first:last], self.values[first:last])
-            found.append((self.values[last - 1], 0.0, 0.0, 0.0))  # piece of zero length up to the jump
-        return found if len(self.arguments) - 1 in self.jumps else found[:-1]
+            pieces += self._smooth_or_linear(self.arguments[first:last], self.values[first:last])
+            pieces.append((self.values[last - 1], 0.0, 0.0, 0.0))  # piece of zero length up to the jump
+        return pieces if len(self.arguments) - 1 in self.jumps else pieces[:-1]
 
     def _smooth_or_linear(self, arguments: Sequence[Any], values: Sequence[Any]) -> list[tuple[Any, ...]]:
         """Return the coefficients of the pieces between rows without a jump; empty for a single row."""
@@ -155,9 +155,9 @@ def _periodic_spline_slopes(steps: list[Any], rises: list[Any]) -> list[Any]:
     nothing = [0.0] * (len(right) - 2)
     by_last = _solve_tridiagonal(lower[1:], middle, upper[:-1], [-lower[0], *nothing, -upper[-1]])
     first, last = steps[0], steps[-1]
-    wanted = 3 * (rises[-1] / last + rises[0] / first) - fixed[0] / first - fixed[-1] / last
-    m = wanted / (2 / first + 2 / last + by_last[0] / first + by_last[-1] / last)
-    return [m, *(one + m * other for one, other in zip(fixed, by_last, strict=True)), m]
+    right_side = 3 * (rises[-1] / last + rises[0] / first) - fixed[0] / first - fixed[-1] / last
+    m = right_side / (2 / first + 2 / last + by_last[0] / first + by_last[-1] / last)
+    return [m, *(constant + m * factor for constant, factor in zip(fixed, by_last, strict=True)), m]
 
 
 def _inner_equations(steps: list[Any], rises: list[Any]) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
@@ -176,10 +176,10 @@ def _inner_equations(steps: list[Any], rises: list[Any]) -> tuple[list[Any], lis
 def _solve_tridiagonal(lower: list[Any], middle: list[Any], upper: list[Any], right: list[Any]) -> list[Any]:
     """Solve a diagonally dominant tridiagonal system."""
     kept = [(middle[0], right[0])]
-    for below, own, above, value in zip(lower, middle[1:], upper, right[1:], strict=True):
+    for below, diagonal, above, value in zip(lower, middle[1:], upper, right[1:], strict=True):
         pivot, before = kept[-1]
-        kept.append((own - below / pivot * above, value - below / pivot * before))
-    found = [kept[-1][1] / kept[-1][0]]
+        kept.append((diagonal - below / pivot * above, value - below / pivot * before))
+    solution = [kept[-1][1] / kept[-1][0]]
     for above, (pivot, value) in zip(reversed(upper), reversed(kept[:-1]), strict=True):
-        found.append((value - above * found[-1]) / pivot)
-    return found[::-1]
+        solution.append((value - above * solution[-1]) / pivot)
+    return solution[::-1]

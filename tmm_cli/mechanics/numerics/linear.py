@@ -42,23 +42,23 @@ def solve(matrix: Real, right: Real) -> Real:
 def _solve_refined(matrix: Real, right: Real) -> Real:
     """Solve in double-doubles by iterative refinement of the float64 solution."""
     near = to_float(matrix)
-    found: Real = to_double_double(solve(near, to_float(right)))
+    solution: Real = to_double_double(solve(near, to_float(right)))
     for _ in range(REFINEMENTS):
-        rest = right - np.sum(matrix * found[..., None, :], axis=-1)
-        found = found + solve(near, to_float(rest))
-    return found
+        rest = right - np.sum(matrix * solution[..., None, :], axis=-1)
+        solution = solution + solve(near, to_float(rest))
+    return solution
 
 
 def _least_squares(matrix: Real, right: Real) -> Real:
     sound = np.all(np.isfinite(matrix), axis=(-1, -2))
     clean = np.where(sound[..., None, None], matrix, 0.0)
     inverse = np.linalg.pinv(clean, rcond=TRUNCATED)
-    found = np.einsum("...ij,...j->...i", inverse, right)
-    rest = right - np.einsum("...ij,...j->...i", clean, found)
-    found = found + np.einsum(
+    solution = np.einsum("...ij,...j->...i", inverse, right)
+    rest = right - np.einsum("...ij,...j->...i", clean, solution)
+    solution = solution + np.einsum(
         "...ij,...j->...i", inverse, rest
     )  # one refinement, as an inverse is less accurate than a solution
-    return np.where(sound[..., None], found, np.nan)
+    return np.where(sound[..., None], solution, np.nan)
 
 
 def singular_value_ratio(matrix: Real) -> Real:
@@ -148,21 +148,21 @@ class EliminatedSystem:
 
     def _by_free(self, row: int, skip: int = -1) -> dict[int, Any]:
         """Return a row in terms of the free unknowns alone."""
-        found: dict[int, Any] = {}
+        coefficients: dict[int, Any] = {}
         for column, value in self.rows[row].items():
             if column in self.following:
                 for k, by in self.following[column].items():
-                    found[k] = found[k] + value * by if k in found else value * by
+                    coefficients[k] = coefficients[k] + value * by if k in coefficients else value * by
             elif column != skip:
-                found[column] = found[column] + value if column in found else value
-        return found
+                coefficients[column] = coefficients[column] + value if column in coefficients else value
+        return coefficients
 
     def _triangular(self, left: list[dict[int, Any]]) -> None:
         if self.scales is not None:
             down, across = self.scales
             left = [
-                {k: value * (down[row] * across[k]) for k, value in one.items()}
-                for row, one in zip(self.order.closing, left, strict=True)
+                {k: value * (down[row] * across[k]) for k, value in row_left.items()}
+                for row, row_left in zip(self.order.closing, left, strict=True)
             ]
         self.left = left
         self.turns: list[tuple[int, int, Any, Any]] = []  # two rows, and cosine and sine of their rotation
@@ -176,10 +176,10 @@ class EliminatedSystem:
                 length = np.sqrt(a * a + b * b)
                 c, s = a / length, b / length
                 self.turns.append((top, row, c, s))
-                one, other = left[top], left[row]
-                both = list(dict.fromkeys([*one, *other]))
-                left[top] = {k: _combine(c, one.get(k), s, other.get(k)) for k in both} | {column: length}
-                left[row] = {k: _combine(-s, one.get(k), c, other.get(k)) for k in both if k != column}
+                row_left, other = left[top], left[row]
+                both = list(dict.fromkeys([*row_left, *other]))
+                left[top] = {k: _combine(c, row_left.get(k), s, other.get(k)) for k in both} | {column: length}
+                left[row] = {k: _combine(-s, row_left.get(k), c, other.get(k)) for k in both if k != column}
             self.pivots.append((top, column))
             rows.remove(top)
             columns.remove(column)
@@ -191,19 +191,19 @@ class EliminatedSystem:
 
     def solve(self, right: Sequence[Any]) -> list[Any]:
         """Return x of matrix x = right."""
-        found: dict[int, Any] = {}
+        solution: dict[int, Any] = {}
         for row, column in self.order.explicit:
-            found[column] = self._rest(row, right[row], found, column) / self.rows[row][column]
-        free = self.free([self._rest(row, right[row], found) for row in self.order.closing])
+            solution[column] = self._rest(row, right[row], solution, column) / self.rows[row][column]
+        free = self.free([self._rest(row, right[row], solution) for row in self.order.closing])
         for _, column in self.order.explicit:
-            found[column] = sum((by * free[k] for k, by in self.following[column].items()), found[column])
-        found |= free
-        return [found[k] for k in range(len(found))]
+            solution[column] = sum((by * free[k] for k, by in self.following[column].items()), solution[column])
+        solution |= free
+        return [solution[k] for k in range(len(solution))]
 
-    def _rest(self, row: int, right: Any, found: Mapping[int, Any], skip: int = -1) -> Any:
+    def _rest(self, row: int, right: Any, solved: Mapping[int, Any], skip: int = -1) -> Any:
         for column, value in self.rows[row].items():
-            if column in found and column != skip:
-                right = right - value * found[column]
+            if column in solved and column != skip:
+                right = right - value * solved[column]
         return right
 
     def free(self, right: Sequence[Any]) -> dict[int, Any]:
@@ -217,14 +217,14 @@ class EliminatedSystem:
         for top, row, c, s in self.turns:
             a, b = turned[top], turned[row]
             turned[top], turned[row] = c * a + s * b, c * b - s * a
-        found: dict[int, Any] = {}
+        solution: dict[int, Any] = {}
         for row, column in reversed(self.pivots):
             value = turned[row]
             for k, coefficient in self.left[row].items():
                 if k != column:
-                    value = value - coefficient * found[k]
-            found[column] = value / self.left[row][column]
-        return found if self.scales is None else {k: value * across[k] for k, value in found.items()}
+                    value = value - coefficient * solution[k]
+            solution[column] = value / self.left[row][column]
+        return solution if self.scales is None else {k: value * across[k] for k, value in solution.items()}
 
     def transposed(self, right: Sequence[Any]) -> list[Any]:
         """Return y of y matrix = right."""
@@ -244,20 +244,20 @@ class EliminatedSystem:
         for top, row, c, s in reversed(self.turns):
             a, b = turned[top], turned[row]
             turned[top], turned[row] = c * a - s * b, s * a + c * b
-        found = dict(zip(self.order.closing, turned, strict=True))
+        multipliers = dict(zip(self.order.closing, turned, strict=True))
         if self.scales is not None:
-            found = {row: value * down[row] for row, value in found.items()}
+            multipliers = {row: value * down[row] for row, value in multipliers.items()}
         for row, column in reversed(self.order.explicit):
             value = right[column]
-            for other, multiplier in found.items():
+            for other, multiplier in multipliers.items():
                 if column in self.rows[other]:
                     value = value - self.rows[other][column] * multiplier
-            found[row] = value / self.rows[row][column]
-        return [found[k] for k in range(len(found))]
+            multipliers[row] = value / self.rows[row][column]
+        return [multipliers[k] for k in range(len(multipliers))]
 
 
-def _combine(c: Any, one: Any, s: Any, other: Any) -> Any:
+def _combine(c: Any, a: Any, s: Any, b: Any) -> Any:
     """Return c one + s other, where None stands for zero."""
-    if one is None:
-        return s * other
-    return c * one if other is None else c * one + s * other
+    if a is None:
+        return s * b
+    return c * a if b is None else c * a + s * b

@@ -71,9 +71,9 @@ def bisect(
     return inside, outside
 
 
-def count_halvings(places: Real) -> int:
+def count_halvings(ends: Real) -> int:
     """Return the number of bisections that reduce an interval to the precision of its ends."""
-    return int(np.finfo(np.result_type(places, float)).nmant) + SPARE
+    return int(np.finfo(np.result_type(ends, float)).nmant) + SPARE
 
 
 def _bisect_sign_changes(function: Callable[[Real], Real], low: Real, high: Real, at_low: Real) -> Real:
@@ -93,9 +93,9 @@ def find_minima(function: Callable[[Real], Real], low: Real | float, high: Real 
     if not ends.size:
         return ends[0], ends[1]
     for _ in range(THIRDS):
-        places = np.linspace(ends[0], ends[1], 9)
-        best = np.argmin(function(places.ravel()).reshape(places.shape), axis=0)
-        ends = np.take_along_axis(places, np.clip([best - 1, best + 1], 0, 8), 0)
+        samples = np.linspace(ends[0], ends[1], 9)
+        best = np.argmin(function(samples.ravel()).reshape(samples.shape), axis=0)
+        ends = np.take_along_axis(samples, np.clip([best - 1, best + 1], 0, 8), 0)
     middle = np.mean(ends, axis=0)
     return middle, function(np.ravel(middle)).reshape(np.shape(middle))[()]
 
@@ -152,14 +152,14 @@ def locate_extreme(function: Callable[[Real], Real], place: float, half: float) 
     fit = np.polynomial.Chebyshev.fit(nodes, values, DEGREE, domain=[-1, 1])
     rough = float(np.max(np.abs(fit(nodes) - values)))
     slope, bend = fit.deriv(), fit.deriv(2)
-    here = 0.0
+    t = 0.0
     for _ in range(8):
-        curved = float(bend(here))
-        if curved == 0 or abs(here) > 1:
+        curved = float(bend(t))
+        if curved == 0 or abs(t) > 1:
             return place
-        here -= float(slope(here)) / curved
+        t -= float(slope(t)) / curved
     smooth = rough < SMOOTH * float(np.max(np.abs(values))) and float(np.ptp(values)) > 1e3 * rough
-    return place + half * here if smooth and abs(here) < 1 else place
+    return place + half * t if smooth and abs(t) < 1 else place
 
 
 # Peaks and zeros between the samples of a quantity, for many variants at once.
@@ -198,10 +198,10 @@ def _derivative_coefficients(c: Real, order: int) -> list[Real]:
 
 
 def _horner(coefficients: list[Real], u: Real) -> Real:
-    found, *rest = coefficients
+    total, *rest = coefficients
     for coefficient in rest:
-        found = found * u + coefficient
-    return found
+        total = total * u + coefficient
+    return total
 
 
 def window_peak(y: Real) -> Real:
@@ -218,8 +218,8 @@ def window_peak(y: Real) -> Real:
             )
             if np.array_equal(u, last):
                 break
-    found: Real = np.maximum(polynomial_value(c, u), most)
-    return np.where((middle == top) & (np.abs(u) < WINDOW_SIDE), found, most)
+    peaks: Real = np.maximum(polynomial_value(c, u), most)
+    return np.where((middle == top) & (np.abs(u) < WINDOW_SIDE), peaks, most)
 
 
 def locate_zero(y: Real) -> Real:
@@ -255,10 +255,10 @@ def highest_peaks(y: Real, most: int, closed: bool) -> list[int]:
     before, after = np.roll(y, 1), np.roll(y, -1)
     if not closed:
         before[0] = after[-1] = -np.inf
-    found = np.flatnonzero((y >= before) & (y > after))
-    if not found.size:
+    peaks = np.flatnonzero((y >= before) & (y > after))
+    if not peaks.size:
         return [int(np.argmax(y))]
-    found = found[np.argsort(-y[found], kind="stable")][:most]
+    peaks = peaks[np.argsort(-y[peaks], kind="stable")][:most]
     return [
-        int(k) for k in found if not y[k] < np.max(y) - LOWEST_PEAK * np.ptp(y)
+        int(k) for k in peaks if not y[k] < np.max(y) - LOWEST_PEAK * np.ptp(y)
     ]  # `not <` keeps peaks where values are nan

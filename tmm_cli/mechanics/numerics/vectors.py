@@ -91,22 +91,22 @@ def map_record(
         path: path of the record itself.
     """
 
-    def at(name: str, part: Any, rest: Any) -> Any:
-        return map_record(change, part, *rest, skip=skip, path=name)
+    def at(name: str, child: Any, rest: Any) -> Any:
+        return map_record(change, child, *rest, skip=skip, path=name)
 
-    found: Any
+    mapped: Any
     if is_dataclass(record) and not isinstance(record, type):
         names = [f.name for f in fields(record) if f.init and f.name not in skip]
         new = {n: at(f"{path}.{n}" if path else n, getattr(record, n), [getattr(o, n) for o in others]) for n in names}
-        found = replace(record, **new)
+        mapped = replace(record, **new)
     elif isinstance(record, Mapping):
-        found = {key: at(f"{path}.{key}", part, [o[key] for o in others]) for key, part in record.items()}
+        mapped = {key: at(f"{path}.{key}", child, [o[key] for o in others]) for key, child in record.items()}
     elif isinstance(record, tuple | list):
         rows = enumerate(zip(record, *others, strict=True))
-        found = type(record)(at(f"{path}[{k}]", part, rest) for k, (part, *rest) in rows)
+        mapped = type(record)(at(f"{path}[{k}]", child, rest) for k, (child, *rest) in rows)
     else:
-        found = change(path, record, *others)
-    whole: Record = found
+        mapped = change(path, record, *others)
+    whole: Record = mapped
     return whole
 
 

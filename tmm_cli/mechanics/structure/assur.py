@@ -67,9 +67,9 @@ class Structure:
     @property
     def sound(self) -> bool:
         """True if every freedom is driven and no constraint is redundant, apart from those in `passive`."""
-        wanted = len(self.drivers)
+        drivers = len(self.drivers)
         return (
-            self.freedom == wanted == self.mobility + self.redundant
+            self.freedom == drivers == self.mobility + self.redundant
             and not self.redundant_pairs
             and not self.under_constrained
         )
@@ -218,12 +218,20 @@ def analyse_structure(linkage: Linkage, dropped: Mapping[int, int] | None = None
     bodies = tuple(linkage.links)
     undriven, driven = _play_pebble_games(bodies, ties, pins, [(d.base, d.link) for d in linkage.drivers])
     solved = _list_group_bodies(driven, bodies)
-    rank = {FRAME: -1} | {link: k for k, part in enumerate(solved) for link in part}
+    rank = {FRAME: -1} | {link: k for k, bodies_of_group in enumerate(solved) for link in bodies_of_group}
     pairs = tuple(_iterate_pairs(linkage, rank))
     mobility = 3 * len(linkage.moving) - sum(2 if pair.lower else 1 for pair in pairs)
     sound = _is_sound(undriven, driven, linkage)
     cranks = {(driver.link,) for driver in linkage.cranks}
-    groups = tuple(_make_group(part, pairs, rank, linkage) for part in solved if part not in cranks) if sound else ()
+    groups = (
+        tuple(
+            _make_group(bodies_of_group, pairs, rank, linkage)
+            for bodies_of_group in solved
+            if bodies_of_group not in cranks
+        )
+        if sound
+        else ()
+    )
     order = {name: k for k, name in enumerate(linkage.links)}
     over_held = undriven.redundant_pairs or driven.redundant_pairs
     structure = Structure(
@@ -249,8 +257,8 @@ def reduce_structure(linkage: Linkage, structure: Structure, reduction: Reductio
 
     Groups of all links get the class of the groups of the report that they contain.
     """
-    every = list(list_ties(linkage))
-    ties = list(reduction.ties(every))
+    all_ties = list(list_ties(linkage))
+    ties = list(reduction.ties(all_ties))
     tied = {end for tie in ties for end in (tie.a, tie.b)}
     pins = tuple(pin for pin in _list_pins(linkage) if pin in tied)
     bodies = reduction.bodies(linkage.links)
@@ -260,11 +268,13 @@ def reduce_structure(linkage: Linkage, structure: Structure, reduction: Reductio
         return None
     solved = _list_group_bodies(driven, bodies)
     rank = dict.fromkeys(reduction.members(FRAME), -1)
-    rank |= {link: k for k, part in enumerate(solved) for body in part for link in reduction.members(body)}
+    rank |= {
+        link: k for k, group_bodies in enumerate(solved) for body in group_bodies for link in reduction.members(body)
+    }
     pairs = tuple(reduction.reduced_pairs(linkage, structure.pairs, rank, ties))
     redundant, as_higher = [], set()
     for number, constraints in reduction.conditions.items():
-        tie = every[number]
+        tie = all_ties[number]
         left = tie.constraints - constraints
         pair = reduction.pair_of(tie, pairs if left else structure.pairs)
         if pair is None:
@@ -274,7 +284,9 @@ def reduce_structure(linkage: Linkage, structure: Structure, reduction: Reductio
             as_higher.add(pair.name)
     cranks = {(reduction.body(driver.link),) for driver in linkage.cranks}
     groups = tuple(
-        _make_group(part, pairs, rank, linkage, reduction, as_higher) for part in solved if part not in cranks
+        _make_group(group_bodies, pairs, rank, linkage, reduction, as_higher)
+        for group_bodies in solved
+        if group_bodies not in cranks
     )
     if any(group.mobility for group in groups):
         return None
@@ -298,10 +310,10 @@ def _play_pebble_games(
 def _list_group_bodies(driven: PebbleCount, bodies: Sequence[str]) -> list[tuple[str, ...]]:
     """Return the bodies of each group in solving order, without pins and the frame."""
     parts = [
-        tuple(body for body in part if body in bodies and body != FRAME)
-        for part in dependence_components(driven.depends)
+        tuple(body for body in component if body in bodies and body != FRAME)
+        for component in dependence_components(driven.depends)
     ]
-    return [tuple(sorted(part, key=bodies.index)) for part in parts if part]
+    return [tuple(sorted(component, key=bodies.index)) for component in parts if component]
 
 
 def _is_sound(undriven: PebbleCount, driven: PebbleCount, linkage: Linkage) -> bool:
@@ -375,20 +387,22 @@ def _make_group(
     as_higher: Collection[str] = (),
 ) -> Group:
     """Make the group of these bodies. rank: index of the group of each link; as_higher: see Group."""
-    here, member = rank[bodies[0]], {body: reduction.members(body) for body in bodies}
+    group_rank, member = rank[bodies[0]], {body: reduction.members(body) for body in bodies}
     links = tuple(link for body in bodies for link in member[body])
     rigid = tuple(links for links in member.values() if len(links) > 1)
-    inner = tuple(p for p in pairs if rank[p.i] == rank[p.j] == here)
-    outer = [p for p in pairs if max(rank[p.i], rank[p.j]) == here != min(rank[p.i], rank[p.j])]
-    own = {p.name: p.i if rank[p.i] == here else p.j for p in outer}
-    outer.sort(key=lambda p: links.index(own[p.name]))
-    drivers = tuple(d for d in linkage.drivers if d not in linkage.cranks and max(rank[d.base], rank[d.link]) == here)
+    inner = tuple(p for p in pairs if rank[p.i] == rank[p.j] == group_rank)
+    outer = [p for p in pairs if max(rank[p.i], rank[p.j]) == group_rank != min(rank[p.i], rank[p.j])]
+    own_link = {p.name: p.i if rank[p.i] == group_rank else p.j for p in outer}
+    outer.sort(key=lambda p: links.index(own_link[p.name]))
+    drivers = tuple(
+        d for d in linkage.drivers if d not in linkage.cranks and max(rank[d.base], rank[d.link]) == group_rank
+    )
     halved = tuple(pair.name for pair in (*inner, *outer) if pair.name in as_higher)
     if len(bodies) == 2 and len(inner) == 1 and len(outer) == 2 and not drivers and not halved:
         # The standard names start with the revolute end: RRP, RPP.
         outer.sort(key=lambda p: p.kind == "P")
         kind = outer[0].kind + inner[0].kind + outer[1].kind
-        in_order = tuple(link for p in outer for link in member[reduction.body(own[p.name])])
+        in_order = tuple(link for p in outer for link in member[reduction.body(own_link[p.name])])
         return Group(in_order, inner, tuple(outer), 2, kind, rigid=rigid)
     kind = "".join(sorted((p.kind for p in (*inner, *outer)), key="RPGKC".index))
     grade = group_class([*map(member.__getitem__, bodies)], inner, outer, drivers, halved)

@@ -39,33 +39,33 @@ def _gear_turns(linkage: Linkage, rounds: Mapping[str, int]) -> dict[str, Fracti
     integer serves.
     """
     whole, lead = Fraction(1), linkage.driver
-    found: dict[str, Fraction | None] = {FRAME: Fraction(0)}
+    turns_of: dict[str, Fraction | None] = {FRAME: Fraction(0)}
     for driver in linkage.cranks:
-        found[driver.link] = whole if driver is lead or not lead.rate else _fraction(driver.rate / lead.rate)
+        turns_of[driver.link] = whole if driver is lead or not lead.rate else _fraction(driver.rate / lead.rate)
     gears = [mesh for mesh in linkage.meshes if mesh.kind == "gear"]
     while gears:
-        known = [m for m in gears if m.carrier in found and (m.i in found or m.j in found)]
-        if not known:
-            together = _solve_gear_turns(gears, found)
+        solvable = [m for m in gears if m.carrier in turns_of and (m.i in turns_of or m.j in turns_of)]
+        if not solvable:
+            together = _solve_gear_turns(gears, turns_of)
             if together:
-                found.update(together)
+                turns_of.update(together)
                 continue
             wheels = {m.i for m in gears} | {m.j for m in gears}
-            free = [n for m in gears for n in (m.carrier, m.i) if n not in found]
+            free = [n for m in gears for n in (m.carrier, m.i) if n not in turns_of]
             first = next((n for n in free if n not in wheels), free[0])
-            found[first] = Fraction(rounds.get(first, 1))
+            turns_of[first] = Fraction(rounds.get(first, 1))
             continue
-        mesh = known[0]
+        mesh = solvable[0]
         gears.remove(mesh)
-        ratio, carrier = _fraction(mesh.ratio), found[mesh.carrier]
-        for one, other, step in ((mesh.i, mesh.j, ratio), (mesh.j, mesh.i, ratio and 1 / ratio)):
-            if one in found and other not in found:
-                found[other] = _mate_turns(found[one], carrier, step)
+        ratio, carrier = _fraction(mesh.ratio), turns_of[mesh.carrier]
+        for gear, mate, step in ((mesh.i, mesh.j, ratio), (mesh.j, mesh.i, ratio and 1 / ratio)):
+            if gear in turns_of and mate not in turns_of:
+                turns_of[mate] = _mate_turns(turns_of[gear], carrier, step)
                 break
-    return found
+    return turns_of
 
 
-def _solve_gear_turns(gears: list[Mesh], found: Mapping[str, Fraction | None]) -> dict[str, Fraction]:
+def _solve_gear_turns(gears: list[Mesh], turns_of: Mapping[str, Fraction | None]) -> dict[str, Fraction]:
     """Solve for turns that follow from several gear pairs together, e.g. of a carrier between its sun and a fixed ring
     gear.
 
@@ -74,22 +74,22 @@ def _solve_gear_turns(gears: list[Mesh], found: Mapping[str, Fraction | None]) -
     solved: dict[str, dict[str, Fraction]] = {}  # turns of a link in terms of those of others; "" is the constant term
     for mesh in gears:
         ratio = _fraction(mesh.ratio)
-        if ratio is None or any(found.get(link, ratio) is None for link in (mesh.i, mesh.j, mesh.carrier)):
+        if ratio is None or any(turns_of.get(link, ratio) is None for link in (mesh.i, mesh.j, mesh.carrier)):
             continue
         row: dict[str, Fraction] = {}
         for link, factor in ((mesh.j, Fraction(1)), (mesh.i, -ratio), (mesh.carrier, ratio - 1)):
-            known = found.get(link)
-            _add_multiple(row, {link: Fraction(1)} if known is None else {"": known}, factor)
+            turns = turns_of.get(link)
+            _add_multiple(row, {link: Fraction(1)} if turns is None else {"": turns}, factor)
         for link, by in solved.items():
             _add_multiple(row, by, row.pop(link, Fraction(0)))
         first = next((link for link in row if link), None)
         if first is None:
             continue
         share = row.pop(first)
-        own = {link: -factor / share for link, factor in row.items()}
+        expression = {link: -factor / share for link, factor in row.items()}
         for by in solved.values():
-            _add_multiple(by, own, by.pop(first, Fraction(0)))
-        solved[first] = own
+            _add_multiple(by, expression, by.pop(first, Fraction(0)))
+        solved[first] = expression
     return {link: by.get("", Fraction(0)) for link, by in solved.items() if not set(by) - {""}}
 
 

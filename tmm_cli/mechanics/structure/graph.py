@@ -216,21 +216,24 @@ def find_contours(pairs: Sequence[AnyPair], links: Iterable[str]) -> tuple[Conto
     """Return the independent contours of the links that the pairs join to the frame, in the order of `links`."""
     ways = _shortest_paths(pairs)
     rank = {link: number for number, link in enumerate((FRAME, *links))}
-    found = []
+    independent = []
     for pair in pairs:
         if pair.i not in ways or pair.j not in ways or pair in (ways[pair.i][0][1], ways[pair.j][0][1]):
             continue  # not connected to the frame, or in the tree
-        one, other = list(ways[pair.i]), list(ways[pair.j])
-        while len(one) > 1 and len(other) > 1 and one[-2][0] == other[-2][0]:
-            one.pop()
-            other.pop()
-        if (rank[_second_link(one, other)], len(one) == 1) > (rank[_second_link(other, one)], len(other) == 1):
-            one, other = other, one
+        path, other_path = list(ways[pair.i]), list(ways[pair.j])
+        while len(path) > 1 and len(other_path) > 1 and path[-2][0] == other_path[-2][0]:
+            path.pop()
+            other_path.pop()
+        if (rank[_second_link(path, other_path)], len(path) == 1) > (
+            rank[_second_link(other_path, path)],
+            len(other_path) == 1,
+        ):
+            path, other_path = other_path, path
         # from the common link down one path, over the pair, and back up the other
-        names = [link for link, _ in reversed(one)] + [link for link, _ in other[:-1]]
-        joints = [p.name for _, p in reversed(one[:-1]) if p] + [pair.name] + [p.name for _, p in other[:-1] if p]
-        found.append(Contour(tuple(names), tuple(joints)))
-    return tuple(sorted(found, key=lambda c: [rank[link] for link in c.links]))
+        names = [link for link, _ in reversed(path)] + [link for link, _ in other_path[:-1]]
+        joints = [p.name for _, p in reversed(path[:-1]) if p] + [pair.name] + [p.name for _, p in other_path[:-1] if p]
+        independent.append(Contour(tuple(names), tuple(joints)))
+    return tuple(sorted(independent, key=lambda c: [rank[link] for link in c.links]))
 
 
 def classify_linkage(structure: Structure) -> tuple[str, ...]:

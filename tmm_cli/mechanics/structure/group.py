@@ -30,15 +30,15 @@ def group_class(
         inner, outer: internal and external pairs.
         as_higher: names of lower pairs that count as higher ones.
     """
-    one = {name: links[0] for links in bodies for name in links}
+    representative = {name: links[0] for links in bodies for name in links}
     for driver in drivers:
-        if driver.base in one:
-            keep, gone = one[driver.base], one[driver.link]
-            one = {name: keep if as_one == gone else as_one for name, as_one in one.items()}
-    replaced = list(dict.fromkeys(one.values()))
+        if driver.base in representative:
+            keep, gone = representative[driver.base], representative[driver.link]
+            representative = {name: keep if as_one == gone else as_one for name, as_one in representative.items()}
+    replaced = list(dict.fromkeys(representative.values()))
     joints: list[tuple[str, str]] = []
     for pair in (*inner, *outer):
-        ends = [one[link] for link in (pair.i, pair.j) if link in one]
+        ends = [representative[link] for link in (pair.i, pair.j) if link in representative]
         if not pair.lower or pair.name in as_higher:
             replaced.append(f"tooth {pair.name}")
             joints += [(end, replaced[-1]) for end in ends]
@@ -169,21 +169,21 @@ class Reduction:
         """
         tied = {(tie.name, end) for tie in ties for end in (tie.a, tie.b)}
         for hinge in linkage.hinges:
-            here = [pair for pair in pairs if pair.point == hinge.point and pair.slide is None]
+            pairs_of_hinge = [pair for pair in pairs if pair.point == hinge.point and pair.slide is None]
             links = [n for n in hinge.links if n in rank and (hinge.point, self.body(n)) in tied]
             first = {body: next(n for n in links if self.body(n) == body) for body in self.bodies(links)}
             if len(first) < 2:
                 continue
-            ends = {pair: {self.body(pair.i), self.body(pair.j)} for pair in here}
+            ends = {pair: {self.body(pair.i), self.body(pair.j)} for pair in pairs_of_hinge}
             lowest = min(rank[n] for n in links)
             centre = max(
                 (body for body in first if rank[first[body]] == lowest or body == self.body(hinge.attached_to)),
                 key=lambda body: sum(body in both for both in ends.values()),
             )
-            spare = [pair for pair in here if not ends[pair] <= {*first} or centre not in ends[pair]]
+            spare = [pair for pair in pairs_of_hinge if not ends[pair] <= {*first} or centre not in ends[pair]]
             for body, link in first.items():
                 if body != centre:
-                    joined = next((pair for pair in here if ends[pair] == {centre, body}), None)
+                    joined = next((pair for pair in pairs_of_hinge if ends[pair] == {centre, body}), None)
                     yield joined or replace(spare.pop(0), i=first[centre], j=link)
         for pair in pairs:
             hinged = pair.slide is None and pair.mesh is None
@@ -193,8 +193,8 @@ class Reduction:
     def pair_of(self, tie: Tie, pairs: Iterable[Pair]) -> Pair | None:
         """Return the pair of a tie, or None; in a compound hinge the pair that attaches its link."""
         ends = {self.body(tie.a), self.body(tie.b)}
-        here = (pair for pair in pairs if tie.name == (pair.name if pair.slide or pair.mesh else pair.point))
-        return next((pair for pair in here if ends & {self.body(pair.i), self.body(pair.j)}), None)
+        candidates = (pair for pair in pairs if tie.name == (pair.name if pair.slide or pair.mesh else pair.point))
+        return next((pair for pair in candidates if ends & {self.body(pair.i), self.body(pair.j)}), None)
 
 
 NO_REDUCTION = Reduction()
@@ -322,7 +322,7 @@ class Group:
     def rebind(self, linkage: Linkage) -> Group:
         """Return the same group with the dimensions of another linkage."""
         inner, outer = (tuple(pair.rebind(linkage) for pair in pairs) for pairs in (self.inner, self.outer))
-        drivers = tuple(d for own in self.drivers for d in linkage.drivers if d.link == own.link)
+        drivers = tuple(d for driver in self.drivers for d in linkage.drivers if d.link == driver.link)
         return replace(self, inner=inner, outer=outer, drivers=drivers)
 
     @property

@@ -102,7 +102,7 @@ class SpatialCount:
 
 def count_in_space(linkage: Linkage, structure: Structure) -> SpatialCount:
     """Count the mobility of the linkage in space (one freedom for each driver) and propose pairs without redundancy."""
-    chain, wanted = spatial_chain(structure, {}), len(structure.drivers)
+    chain, mobility = spatial_chain(structure, {}), len(structure.drivers)
     heights = OutOfPlaneConditions(linkage)
     for pins_first in (True, False):
         kinds = _choose_kinds(heights, structure, pins_first)
@@ -114,8 +114,8 @@ def count_in_space(linkage: Linkage, structure: Structure) -> SpatialCount:
                     for p in structure.pairs
                     if kinds.get(p.name, PAIR_CHOICES[p.kind][0]) != PAIR_CHOICES[p.kind][0]
                 )
-                return SpatialCount(chain, wanted, replaced, spatial_chain(structure, kinds), rank)
-    return SpatialCount(chain, wanted, None, chain, out_of_plane_rank(linkage, structure, {}))
+                return SpatialCount(chain, mobility, replaced, spatial_chain(structure, kinds), rank)
+    return SpatialCount(chain, mobility, None, chain, out_of_plane_rank(linkage, structure, {}))
 
 
 def spatial_chain(structure: Structure, kinds: Mapping[str, str]) -> SpatialChain:
@@ -155,20 +155,20 @@ class OutOfPlaneConditions:
         """
         slide = pair.slide
         if pair.mesh is not None:  # the normal of the teeth may have any direction in the plane
-            places = dict.fromkeys((pair.i, pair.j), 0j)
-            ahead = {link: cmath.exp(-1j * self.angle[link]) for link in places}
+            points = dict.fromkeys((pair.i, pair.j), 0j)
+            ahead = {link: cmath.exp(-1j * self.angle[link]) for link in points}
         elif slide is None:
-            places = {link: _first_value(self.linkage.local(link, pair.point)) for link in (pair.i, pair.j)}
-            ahead = {link: cmath.exp(-1j * self.angle[link]) for link in places}
+            points = {link: _first_value(self.linkage.local(link, pair.point)) for link in (pair.i, pair.j)}
+            ahead = {link: cmath.exp(-1j * self.angle[link]) for link in points}
         else:
             along = cmath.exp(1j * _first_value(slide.direction))
             ahead = {slide.carrier: along, slide.runner: along * cmath.exp(-1j * _first_value(slide.turned))}
             run = GOLDEN * self.size  # arbitrary: the condition holds along the whole guide or nowhere
-            places = {slide.carrier: _first_value(slide.through) + run * along, slide.runner: _first_value(slide.at)}
-        height = {link: (1.0, place.real / self.size, place.imag / self.size) for link, place in places.items()}
+            points = {slide.carrier: _first_value(slide.through) + run * along, slide.runner: _first_value(slide.at)}
+        height = {link: (1.0, place.real / self.size, place.imag / self.size) for link, place in points.items()}
         slope = {link: (0.0, e.real, e.imag) for link, e in ahead.items()}
         across = {link: (0.0, -e.imag, e.real) for link, e in ahead.items()}
-        asked = {
+        conditions = {
             "turning": (height, slope, across),
             "sliding": (height, slope, across),
             "spherical": (height,),
@@ -177,13 +177,13 @@ class OutOfPlaneConditions:
             "sphere on plane": (),
             "cylindrical": (slope, across) if slide is None else (height, slope),
         }[kind]
-        found = np.zeros((len(asked), CONDITIONS * len(links)))
-        for row, condition in zip(found, asked, strict=True):
+        matrix = np.zeros((len(conditions), CONDITIONS * len(links)))
+        for row, condition in zip(matrix, conditions, strict=True):
             for link, sign in ((pair.i, 1.0), (pair.j, -1.0)):
                 if link in links:
                     at = CONDITIONS * list(links).index(link)
                     row[at : at + CONDITIONS] = sign * np.array(condition[link])
-        return found
+        return matrix
 
 
 def _first_value(number: Any) -> complex:
@@ -227,7 +227,7 @@ def _choose_kinds(heights: OutOfPlaneConditions, structure: Structure, pins_firs
 
 
 def _choose_kinds_of_group(
-    heights: OutOfPlaneConditions, links: tuple[str, ...], own: tuple[Pair, ...], pins: set[str]
+    heights: OutOfPlaneConditions, links: tuple[str, ...], group_pairs: tuple[Pair, ...], pins: set[str]
 ) -> dict[str, str] | None:
     """Choose kinds for the pairs of one group, earlier links being fixed: fewest changes, then fewest freedoms; or
     None.
@@ -236,9 +236,9 @@ def _choose_kinds_of_group(
     Pairs with the frame locate shafts and guides and are not changed. Each pair starts with the kind of most freedoms;
     then as many as possible get their original kind again, and the freedoms still left are taken by cylindrical pairs.
     """
-    on_frame = {p.other(FRAME) for p in own if p.lower and FRAME in (p.i, p.j)}
+    on_frame = {p.other(FRAME) for p in group_pairs if p.lower and FRAME in (p.i, p.j)}
     floating = tuple(link for link in links if link not in on_frame)
-    pairs = [p for p in own if p.lower and FRAME not in (p.i, p.j)]
+    pairs = [p for p in group_pairs if p.lower and FRAME not in (p.i, p.j)]
     blocks = {(p.name, kind): heights.rows(p, kind, floating) for p in pairs for kind in PAIR_CHOICES[p.kind]}
 
     def matrix(kinds: Mapping[str, str]) -> Real:
@@ -261,8 +261,10 @@ def _choose_kinds_of_group(
     for first in range(min(len(pairs), MOST_TRIES)):
         kinds = held(freest, [pairs[first], *pairs[:first], *pairs[first + 1 :]], 0)
         kinds = held(kinds, sorted(pairs, key=lambda p: p.name not in pins), 1)
-        found = matrix(kinds)
-        if found.shape[1] - len(found) == _count_local_freedoms(found):  # only local freedoms of single links remain
+        conditions = matrix(kinds)
+        if conditions.shape[1] - len(conditions) == _count_local_freedoms(
+            conditions
+        ):  # only local freedoms of single links remain
             changed = [kind for p in pairs if (kind := kinds[p.name]) != PAIR_CHOICES[p.kind][0]]
             proposals.append(((len(changed), sum(PAIR_FREEDOMS[kind] for kind in changed)), kinds))
     return min(proposals, key=lambda proposal: proposal[0])[1] if proposals else {} if not pairs else None

@@ -144,7 +144,7 @@ class ChainCount:
     @property
     def local_mobility(self) -> int:
         """Local freedoms Wm: as given, or as found."""
-        return sum(part.freedoms for part in self.local) if self.given_local is None else self.given_local
+        return sum(freedom.freedoms for freedom in self.local) if self.given_local is None else self.given_local
 
     @property
     def redundant(self) -> int | None:
@@ -167,7 +167,7 @@ class ChainCount:
         if self.effective < 1:
             return self.chain.links
         closed = self.chain.only(link for link in self.chain.links if link not in self.branches)
-        local = sum(part.freedoms for part in self.local if not {*part.links} & {*self.branches})
+        local = sum(freedom.freedoms for freedom in self.local if not {*freedom.links} & {*self.branches})
         return closed.links if self.branches and self.given_local is None and closed.mobility - local < 1 else ()
 
     @property
@@ -178,7 +178,9 @@ class ChainCount:
     @property
     def idle_manoeuvrability(self) -> int:
         """Part of the manoeuvrability that consists of local freedoms, which do not help to avoid obstacles."""
-        return sum(part.freedoms for part in self.local if self.output is not None and self.output not in part.links)
+        return sum(
+            freedom.freedoms for freedom in self.local if self.output is not None and self.output not in freedom.links
+        )
 
     @property
     def branches(self) -> tuple[str, ...]:
@@ -198,18 +200,18 @@ def count_chain(
     chain: SpatialChain, output: str | None = None, given_local: int | None = None, wanted: int | None = None
 ) -> ChainCount:
     """Count mobility, contours and local freedoms of a spatial chain; arguments as in ChainCount."""
-    found = find_contours(chain.pairs, chain.links)
-    closed = {link for contour in found for link in contour.links}
+    chain_contours = find_contours(chain.pairs, chain.links)
+    closed = {link for contour in chain_contours for link in contour.links}
     certain = local_freedoms(chain)
-    spare = chain.mobility - sum(part.freedoms for part in certain) - (1 if wanted is None else wanted)
+    spare = chain.mobility - sum(freedom.freedoms for freedom in certain) - (1 if wanted is None else wanted)
     pistons = [p for p in pistons_on_balls(chain) if closed.issuperset(p.links) and not _shares_links(p, certain)]
     order = {link: number for number, link in enumerate(chain.links)}
-    local = sorted((*certain, *pistons[: max(spare, 0)]), key=lambda part: order[part.links[0]])
-    return ChainCount(chain, found, tuple(local), given_local, wanted, output)
+    local = sorted((*certain, *pistons[: max(spare, 0)]), key=lambda freedom: order[freedom.links[0]])
+    return ChainCount(chain, chain_contours, tuple(local), given_local, wanted, output)
 
 
-def _shares_links(part: LocalFreedom, others: Iterable[LocalFreedom]) -> bool:
-    return any({*part.links} & {*other.links} for other in others)
+def _shares_links(freedom: LocalFreedom, others: Iterable[LocalFreedom]) -> bool:
+    return any({*freedom.links} & {*other.links} for other in others)
 
 
 def pistons_on_balls(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
@@ -237,16 +239,16 @@ def local_freedoms(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
     for pair in chain.pairs:
         around[pair.i].append(pair)
         around[pair.j].append(pair)
-    found = []
+    struts = []
     for links in _struts(chain, around):
         touching = list(dict.fromkeys(p for link in links for p in around[link]))
         inner = [p for p in touching if p.i in links and p.j in links]
         ends = [p for p in touching if p not in inner]
         freedoms = _certain_freedoms(inner, ends)
         if freedoms > 0 and len({other for p in ends for other in (p.i, p.j) if other not in links}) > 1:
-            found.append(LocalFreedom(links, freedoms, tuple(ends)))
-    rollers = [part for part in _rollers(chain) if not _shares_links(part, found)]
-    return (*found, *rollers)
+            struts.append(LocalFreedom(links, freedoms, tuple(ends)))
+    rollers = [roller for roller in _rollers(chain) if not _shares_links(roller, struts)]
+    return (*struts, *rollers)
 
 
 def _rollers(chain: SpatialChain) -> Iterable[LocalFreedom]:

@@ -80,9 +80,9 @@ class GearConstraint(ToothConstraint):
 
     def contact(self, poses: Poses) -> tuple[Vector, Vector]:
         ratio, carrier = self.mesh.ratio, poses[self.mesh.carrier]
-        here = (self.axis_i - ratio * self.axis_j) / (1 - ratio)
+        pitch_point = (self.axis_i - ratio * self.axis_j) / (1 - ratio)
         line = (self.axis_j - self.axis_i) / abs(self.axis_j - self.axis_i)
-        return carrier.at(here), 1j * (line * carrier.z)
+        return carrier.at(pitch_point), 1j * (line * carrier.z)
 
 
 # Gear and rack.
@@ -116,25 +116,25 @@ class RackConstraint(ToothConstraint):
         return (True,)
 
     def residuals(self, poses: Poses, drives: DriverStates) -> Sequence[Real]:
-        here = GuideGeometry.at(self.slide, poses)
+        guide = GuideGeometry.at(self.slide, poses)
         turned = poses[self.mesh.i].turned - poses[self.mesh.carrier].turned
-        return (dot(here.u, here.off) - self.mesh.ratio * turned - self.mesh.offset,)
+        return (dot(guide.u, guide.off) - self.mesh.ratio * turned - self.mesh.offset,)
 
     def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
-        here = GuideGeometry.at(self.slide, poses)
-        rows = {name: [row] for name, row in here.jacobian_rows(self.slide, here.u).items()}
+        guide = GuideGeometry.at(self.slide, poses)
+        rows = {name: [row] for name, row in guide.jacobian_rows(self.slide, guide.u).items()}
         c, m = rows[self.mesh.carrier][0]
         rows[self.mesh.carrier] = [(c, m + self.mesh.ratio)]
         return rows | {self.mesh.i: [(0j, -self.mesh.ratio)]}
 
     def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
-        here = GuideGeometry.at(self.slide, poses)
-        return (dot(here.u, here.bend(self.slide, rates)),)
+        guide = GuideGeometry.at(self.slide, poses)
+        return (dot(guide.u, guide.bend(self.slide, rates)),)
 
     def contact(self, poses: Poses) -> tuple[Vector, Vector]:
         """Return the pitch point, and the direction of increasing run of the rack."""
-        here = GuideGeometry.at(self.slide, poses)
-        forward = here.u if self.slide.runner == self.mesh.j else -here.u
+        guide = GuideGeometry.at(self.slide, poses)
+        forward = guide.u if self.slide.runner == self.mesh.j else -guide.u
         return poses[self.mesh.carrier].at(self.axis) - 1j * self.mesh.ratio * forward, forward
 
 
@@ -179,18 +179,18 @@ class CamConstraint(HigherPairConstraint):
         if self.slide is None:
             residual = poses[self.mesh.j].z * np.conj(unit(want))
             return (np.arctan2(residual.imag, residual.real),)
-        here = GuideGeometry.at(self.slide, poses)
-        return (dot(here.u, here.off) - want,)
+        guide = GuideGeometry.at(self.slide, poses)
+        return (dot(guide.u, guide.off) - want,)
 
     def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
         slope = self._law(poses)[1]
         rows: dict[str, JacobianRow] = {self.mesh.i: (0j, -slope), self.mesh.carrier: (0j, slope)}
         if self.slide is None:
-            own: Mapping[str, JacobianRow] = {self.mesh.j: (0j, 1.0)}
+            follower_rows: Mapping[str, JacobianRow] = {self.mesh.j: (0j, 1.0)}
         else:
-            here = GuideGeometry.at(self.slide, poses)
-            own = here.jacobian_rows(self.slide, here.u)
-        for name, (place, angle) in own.items():
+            guide = GuideGeometry.at(self.slide, poses)
+            follower_rows = guide.jacobian_rows(self.slide, guide.u)
+        for name, (place, angle) in follower_rows.items():
             other = rows.get(name, (0j, 0.0))
             rows[name] = (place + other[0], angle + other[1])
         return {name: (row,) for name, row in rows.items()}
@@ -199,14 +199,14 @@ class CamConstraint(HigherPairConstraint):
         bend = -self._law(poses)[2] * (rates[self.mesh.i].w - rates[self.mesh.carrier].w) ** 2
         if self.slide is None:
             return (bend,)
-        here = GuideGeometry.at(self.slide, poses)
-        return (dot(here.u, here.bend(self.slide, rates)) + bend,)
+        guide = GuideGeometry.at(self.slide, poses)
+        return (dot(guide.u, guide.bend(self.slide, rates)) + bend,)
 
     def contact(self, poses: Poses) -> tuple[Vector, Vector]:
         """Return the contact point of a flat-faced follower, and the direction of increasing run."""
         assert self.slide is not None
-        here = GuideGeometry.at(self.slide, poses)
-        forward = here.u if self.slide.runner == self.mesh.j else -here.u
+        guide = GuideGeometry.at(self.slide, poses)
+        forward = guide.u if self.slide.runner == self.mesh.j else -guide.u
         return poses[self.mesh.carrier].at(self.axis) - 1j * self._law(poses)[1] * forward, forward
 
     def pushes(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
@@ -322,12 +322,12 @@ class CamLaw:
         slopes = [RISE_LAWS[piece.shape](np.array([0.0, 1.0]))[1] for piece in self.pieces]
         ends = [piece.rise / piece.over * slope for piece, slope in zip(self.pieces, slopes, strict=True)]
         most = max(abs(piece.rise) for piece in self.pieces)
-        found = [
+        jump_angles = [
             float(np.mod(start + self.start, TAU))
             for start, now, before in zip(self._table[0], ends, [ends[-1], *ends[:-1]], strict=True)
             if abs(now[0] - before[1]) > NO_JUMP_OF_CAM * most
         ]
-        return tuple(sorted(found))
+        return tuple(sorted(jump_angles))
 
     def __call__(self, angle: Real) -> tuple[Real, Real, Real]:
         """Return the run of the follower and its first and second derivatives with respect to the cam angle."""
@@ -340,17 +340,21 @@ class CamLaw:
         starts, overs, lows, rises = self._table
         passed = np.searchsorted(starts, ahead, side="right") if starts.ndim == 1 else np.sum(starts <= ahead, axis=0)
         number = np.clip(passed - 1, 0, len(self.pieces) - 1)
-        over, rise, start, low = (_select_pieces(part, number) for part in (overs, rises, starts, lows))
+        over, rise, start, low = (_select_pieces(column, number) for column in (overs, rises, starts, lows))
         x = np.clip((turned - start) / over, 0.0, 1.0)
         value, first, second = (np.zeros(np.shape(turned)) for _ in range(3))
         shapes = [p.shape for p in self.pieces]
         for shape in dict.fromkeys(shapes):
-            here = np.array([name == shape for name in shapes])[number]
+            of_shape = np.array([name == shape for name in shapes])[number]
             s, ds, dds = RISE_LAWS[shape](x)
-            value, first, second = np.where(here, s, value), np.where(here, ds, first), np.where(here, dds, second)
+            value, first, second = (
+                np.where(of_shape, s, value),
+                np.where(of_shape, ds, first),
+                np.where(of_shape, dds, second),
+            )
         return low + rise * value, rise / over * first, rise / over**2 * second
 
 
-def _select_pieces(part: Real, number: Real) -> Real:
+def _select_pieces(column: Real, number: Real) -> Real:
     """Return the values of the pieces with these numbers."""
-    return part[number] if part.ndim == 1 else np.take_along_axis(part, number[None], axis=0)[0]
+    return column[number] if column.ndim == 1 else np.take_along_axis(column, number[None], axis=0)[0]

@@ -241,13 +241,13 @@ class SlideConstraint(PairConstraint):
         return False, True
 
     def residuals(self, poses: Poses, drives: DriverStates) -> Sequence[Real]:
-        here = GuideGeometry.at(self.slide, poses)
+        guide = GuideGeometry.at(self.slide, poses)
         turned = poses[self.slide.runner].z * np.conj(poses[self.slide.carrier].z * unit(self.slide.turned))
-        return np.arctan2(turned.imag, turned.real), cross(here.u, here.off)
+        return np.arctan2(turned.imag, turned.real), cross(guide.u, guide.off)
 
     def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
-        here = GuideGeometry.at(self.slide, poses)
-        across = here.jacobian_rows(self.slide, 1j * here.u)
+        guide = GuideGeometry.at(self.slide, poses)
+        across = guide.jacobian_rows(self.slide, 1j * guide.u)
         return {
             self.slide.carrier: ((0j, -1.0), across[self.slide.carrier]),
             self.slide.runner: ((0j, 1.0), across[self.slide.runner]),
@@ -259,13 +259,13 @@ class SlideConstraint(PairConstraint):
         return angles[self.slide.runner] - self.slide.turned
 
     def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
-        here = GuideGeometry.at(self.slide, poses)
-        coriolis = 2 * rates[self.slide.carrier].w * here.sliding(self.slide, rates)
-        return np.zeros(np.shape(coriolis)), cross(here.u, here.bend(self.slide, rates)) - coriolis
+        guide = GuideGeometry.at(self.slide, poses)
+        coriolis = 2 * rates[self.slide.carrier].w * guide.sliding(self.slide, rates)
+        return np.zeros(np.shape(coriolis)), cross(guide.u, guide.bend(self.slide, rates)) - coriolis
 
     def reaction(self, poses: Poses, multipliers: Sequence[Real]) -> PairReaction:
-        here = GuideGeometry.at(self.slide, poses)
-        return PairReaction(1j * here.u * multipliers[1], multipliers[0])
+        guide = GuideGeometry.at(self.slide, poses)
+        return PairReaction(1j * guide.u * multipliers[1], multipliers[0])
 
 
 # Driver between two moving links, as an additional row of their group: a cylinder, or a drive in a hinge.
@@ -301,26 +301,28 @@ class DriverConstraint(PairConstraint):
             turned = poses[self.driver.link].z * np.conj(poses[self.driver.base].z)
             residual = turned * unit(-want)
             return (np.arctan2(residual.imag, residual.real),)
-        here = GuideGeometry.at(self.slide, poses)
-        return (dot(here.u, here.off) - want,)
+        guide = GuideGeometry.at(self.slide, poses)
+        return (dot(guide.u, guide.off) - want,)
 
     def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
         if self.slide is None:
             return {self.driver.base: ((0j, -1.0),), self.driver.link: ((0j, 1.0),)}
-        here = GuideGeometry.at(self.slide, poses)
-        return {name: (row,) for name, row in here.jacobian_rows(self.slide, here.u).items()}
+        guide = GuideGeometry.at(self.slide, poses)
+        return {name: (row,) for name, row in guide.jacobian_rows(self.slide, guide.u).items()}
 
     def turned(self, link: str, angles: Mapping[str, Any], drives: DriverStates) -> Any | None:
         if self.slide is not None:
             return None
-        place = drives[self.driver.link].value
-        return angles[self.driver.base] + place if link == self.driver.link else angles[self.driver.link] - place
+        coordinate = drives[self.driver.link].value
+        return (
+            angles[self.driver.base] + coordinate if link == self.driver.link else angles[self.driver.link] - coordinate
+        )
 
     def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
         if self.slide is None:
             return (np.zeros(np.shape(rates[self.driver.link].w)),)
-        here = GuideGeometry.at(self.slide, poses)
-        return (dot(here.u, here.bend(self.slide, rates)),)
+        guide = GuideGeometry.at(self.slide, poses)
+        return (dot(guide.u, guide.bend(self.slide, rates)),)
 
     def asked(self, drives: DriverStates, order: int) -> Sequence[Real | float]:
         drive = drives[self.driver.link]
