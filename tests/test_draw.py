@@ -132,8 +132,8 @@ def test_without_positions_in_detail_the_one_of_the_largest_balancing_moment_is_
     moments = abs(results.reactions.balance.moment)
     assert [here.k for here in detailed_drawings(results)] == [moments.argmax()]
     assert list(position_remarks(results)) == [
-        f"note: no positions.detail in the file, drawn in full is position {moments.argmax()}, of the largest "
-        f"balancing moment: {moments.max():.4g} N*m"
+        f"note: the file has no positions.detail; position {moments.argmax()}, with the largest balancing moment, "
+        f"is drawn in detail: {moments.max():.4g} N*m"
     ]
 
 

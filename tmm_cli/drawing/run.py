@@ -32,7 +32,7 @@ from tmm_cli.mechanics.analysis import Results, balancing_magnitude, detail_chos
 from tmm_cli.mechanics.quantities import FORCE, MOMENT
 
 POSITION_DRAWINGS = (draw_position, draw_motion_plans, draw_group_loads, draw_force_plans, draw_lever)
-MOST_POSITION_PARTS = 32  # of the positions in detail, each of which takes the results to another process
+MOST_POSITION_PARTS = 32  # of the detailed positions; every job transfers the results to another process
 
 DrawingJob = Callable[[], NamedDrawings]  # may be pickled
 

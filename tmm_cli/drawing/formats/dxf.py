@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from ezdxf.layouts import Modelspace
 
 
-CAPITAL_HEIGHT = 0.729  # height of the capital letters of DejaVu Sans, which DXF counts, of its size
+CAPITAL_HEIGHT = 0.729  # of the font size: height of capital letters in DejaVu Sans, which DXF uses as text height
 LINE_TYPES: dict[Style, str] = {"-": "CONTINUOUS", "--": "TMM_DASHED", ":": "TMM_DOTTED", "-.": "TMM_DASHDOT"}
 TEXT_STYLES = {  # bold, italic: style and file
     (False, False): ("TMM", "DejaVuSans.ttf"),
@@ -21,7 +21,7 @@ TEXT_STYLES = {  # bold, italic: style and file
     (True, True): ("TMM_BOLD_ITALIC", "DejaVuSans-BoldOblique.ttf"),
 }
 FOREGROUND = 7  # black on paper, white on a dark screen
-BLACK_BELOW = 0x30  # of each part of a colour that is meant as black
+BLACK_BELOW = 0x30  # every channel of a colour that is drawn as black
 LINE_WEIGHTS = (0, 5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100, 106, 120, 140, 158, 200, 211)
 UNIT_MILLIMETRES = 4
 CODE_BREAKER = "\N{HAIR SPACE}"
@@ -65,7 +65,7 @@ def write_dxf(drawing: Drawing) -> bytes:
         else:
             _add_shape(space, mark)
     document.set_modelspace_vport(height=drawing.paper[1], center=(drawing.paper[0] / 2, drawing.paper[1] / 2))
-    for kind in sorted(document.entitydb.dxf_types_in_use()):  # ezdxf itself takes them in the order of a set
+    for kind in sorted(document.entitydb.dxf_types_in_use()):  # ezdxf would take them in arbitrary order
         document.classes.add_class(kind)
     stream = io.StringIO()
     document.write(stream)

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from tmm_cli.drawing.paper import AreaMark, CircleMark, Drawing, LineMark, Mark, TextMark, baseline, glyph_outline
 from tmm_cli.mechanics.numerics import Vector
 
-UNITS_PER_MM = 100  # a millimetre
-DEVICE_PIXELS = 30000  # of pixels, over DEVICE / UNIT millimetres
+UNITS_PER_MM = 100  # logical units per mm
+DEVICE_PIXELS = 30000  # width and height of the reference device
 NO_PEN, NO_BRUSH = 0x80000008, 0x80000005  # stock objects
 HEADER_RECORD, END_RECORD, BACKGROUND_MODE, FILL_MODE = 1, 14, 18, 19
 SELECT_OBJECT, CREATE_BRUSH, DRAW_ELLIPSE = 37, 39, 42

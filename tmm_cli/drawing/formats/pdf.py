@@ -27,11 +27,11 @@ from tmm_cli.drawing.paper import (
     replace_missing,
 )
 
-HINT_TABLES = ("cvt ", "fpgm", "prep")  # what the hints of the letters need
+HINT_TABLES = ("cvt ", "fpgm", "prep")  # tables that the hinting instructions need
 ARGUMENTS_ARE_WORDS, HAS_SCALE, MORE_COMPONENTS = 0x01, 0x08, 0x20  # flags of a component of a composite glyph
 HAS_TWO_SCALES, HAS_MATRIX = 0x40, 0x80
 HEAD_BYTES, MAXP_BYTES = 54, 32  # lengths of these tables
-CHECKSUM_BASE = 0xB1B0AFBA  # what the sum of a font is subtracted from
+CHECKSUM_BASE = 0xB1B0AFBA  # constant of the TrueType specification for the checksum of the font
 
 
 def subset_font(path: str, glyphs: Sequence[int]) -> bytes:
@@ -43,7 +43,7 @@ def subset_font(path: str, glyphs: Sequence[int]) -> bytes:
     offsets = np.frombuffer(tables["loca"], ">u4" if tables["head"][51] else ">u2").astype(int)
     offsets *= 1 if tables["head"][51] else 2
     order, shapes = list(glyphs), list[bytes]()
-    for glyph in order:  # grows while its parts are met
+    for glyph in order:  # grows as components are found
         shape = bytearray(tables["glyf"][offsets[glyph] : offsets[glyph + 1]])
         for at in _component_offsets(shape):
             order.append(struct.unpack_from(">H", shape, at)[0])
@@ -75,7 +75,7 @@ def _read_tables(path: str) -> dict[str, bytes]:
 
 def _component_offsets(shape: bytearray) -> Iterator[int]:
     """Yield the byte offsets at which a composite glyph stores the numbers of its components."""
-    if len(shape) < 10 or shape[0] < 0x80:  # its number of contours is not negative
+    if len(shape) < 10 or shape[0] < 0x80:  # not composite: the number of contours is not negative
         return
     at, more = 10, True
     while more:
@@ -107,11 +107,11 @@ def _checksum(data: bytes | bytearray) -> int:
     return int(np.frombuffer(data, ">u4").sum(dtype=np.uint64)) % 2**32
 
 
-# Pages of drawings: PDF with vectors; texts can be searched, the letters of their fonts are in the file.
+# Pages of drawings as PDF vector graphics with searchable text and embedded fonts.
 
 
-CIRCLE_HANDLE = 0.5522847498  # of the radius: how long the handles of a quarter of a circle are
-ROUND_LINES = "1 J 1 j\n"  # ends and corners of lines
+CIRCLE_HANDLE = 0.5522847498  # of the radius: length of the handles of a Bézier quarter circle
+ROUND_LINES = "1 J 1 j\n"  # round line caps and joins
 SYMBOLIC_FLAG, ITALIC_FLAG = 4, 64
 CAPITAL_HEIGHT = 729  # thousandths of the font size
 STEM_WIDTH = 100  # thousandths of the font size: about the width of a stroke

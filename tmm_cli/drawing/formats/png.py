@@ -30,9 +30,9 @@ from tmm_cli.drawing.paper import (
 )
 
 DPI = 110
-COMPRESSION = 3  # of 9: drawings get hardly smaller beyond
-UP_FILTER = 2  # PNG's filter: a line is told by how it differs from that above it
-AGG: Any = backend_agg  # matplotlib does not say its types
+COMPRESSION = 3  # zlib level; higher ones make files hardly smaller
+UP_FILTER = 2  # PNG filter "up": each row is stored as its difference from the row above
+AGG: Any = backend_agg  # matplotlib has no type hints here
 
 
 def write_png(drawing: Drawing) -> bytes:
@@ -99,7 +99,7 @@ def _draw_texts(marks: Sequence[TextMark], colour: str, renderer: RendererBase, 
     context = renderer.new_gc()
     context.set_foreground(colour)
     context.set_linewidth(0.0)
-    context.set_snap(False)  # else letters of upright and level lines (l, E, F) may lose them between pixels
+    context.set_snap(False)  # otherwise the strokes of letters such as l, E, F may vanish between pixels
     path = Path(np.column_stack([points.real, points.imag]), np.concatenate(codes))
     renderer.draw_path(context, path, to_pixels, to_rgb(colour))
     context.restore()

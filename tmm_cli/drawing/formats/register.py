@@ -21,7 +21,7 @@ FORMATS: dict[str, Callable[[Drawing], bytes]] = {
     "png": write_png,
     "emf": write_emf,
 }
-WITH_PAGES: dict[str, Callable[..., bytes]] = {"pdf": write_pdf}  # those in which a file holds several drawings
+WITH_PAGES: dict[str, Callable[..., bytes]] = {"pdf": write_pdf}  # formats whose files hold several drawings
 RUN_FORMATS = ("png", "svg")
 NamedDrawings = Iterable[tuple[str, Drawing]]
 FormatFiles = list[tuple[str, bytes]]

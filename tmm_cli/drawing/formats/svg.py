@@ -11,7 +11,7 @@ from tmm_cli.drawing.paper import BASELINE_SHARE, FONT_FAMILY, AreaMark, CircleM
 ANCHOR = {"left": "start", "center": "middle", "right": "end"}
 COLLAPSED_SPACES = re.compile(
     r"^ +| +$| {2,}"
-)  # that a browser would leave out, though what follows is placed after them
+)  # browsers would drop these spaces, although the text after them is placed behind them
 NOT_XML = dict.fromkeys((*range(9), 11, 12, *range(14, 32), 65534, 65535), "�")
 
 

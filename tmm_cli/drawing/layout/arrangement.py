@@ -56,13 +56,13 @@ from tmm_cli.mechanics.analysis import Results
 from tmm_cli.problem import ProblemError, parse_names
 
 PAPERS = {"A1": (841.0, 594.0), "A2": (594.0, 420.0), "A3": (420.0, 297.0)}
-FRAME_GAP = 6.0  # mm between the frame and what is drawn
-LETTER_LIMITS = (0.85, 1.6)  # of a table, to how they come: the smallest and the largest
+FRAME_GAP = 6.0  # mm between the frame and the drawings
+LETTER_LIMITS = (0.85, 1.6)  # smallest and largest letters of a table, relative to the usual ones
 FULL_SIZE_POSITIONS = 1.5  # with more positions the drawings of each position become smaller
 SMALLEST_SHARE = 0.45  # of the usual size: the least they become
-NOTABLE_GROWTH = 1.1  # times larger: it is drawn again
-SHRINK_SHARE = 0.75  # of its room: so much smaller something is tried where it became larger than thought
-SHRINK_TRIES = 5  # of that
+NOTABLE_GROWTH = 1.1  # growth that justifies drawing again
+SHRINK_SHARE = 0.75  # factor for drawings that became larger than expected
+SHRINK_TRIES = 5  # of SHRINK_SHARE
 GROWTH_ROUNDS = 3  # of enlarging what proves to have room
 MOST_ROUNDS = 8  # while a page stays thin
 
@@ -212,7 +212,7 @@ def _arrange_sheet(
         if held is not None and len(held) <= len(pages):
             pieces, pages = larger, held
             break
-    else:  # something became larger than thought
+    else:  # a drawing became larger than expected
         large = list(range(len(pieces)))
         for __ in range(SHRINK_TRIES):
             rooms = shrink_rooms(pieces, rooms, SHRINK_SHARE, large)
@@ -231,7 +231,7 @@ def _arrange_sheet(
             break
         larger = drawn(rooms)
         accepted = _accept_larger(pieces, larger, pages, field)
-        pieces = [  # what had no room is tried half as much larger
+        pieces = [  # pieces without enough room are tried with half the growth
             request if request is new else replace(request, most=(old + room) / 2)
             for request, new, old, room in zip(accepted, larger, before, rooms, strict=True)
         ]
@@ -356,7 +356,7 @@ def frame_pictures(
     return LargeSheet(paper, (*marks, sheet_frame(paper), *block), tuple(placed))
 
 
-MOST_PLANS = 24  # positions of which plans are drawn
+MOST_PLANS = 24  # positions with motion plans
 
 
 def parse_formats(text: str) -> list[str]:

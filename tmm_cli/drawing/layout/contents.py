@@ -44,9 +44,9 @@ SUBJECTS = (
     ("forces", N_("Forces")),
     ("law-of-motion", N_("Law of motion")),
 )
-SYNTHESIS_TITLE = N_("Structure and synthesis")  # where there is one
+SYNTHESIS_TITLE = N_("Structure and synthesis")  # if the problem has a synthesis
 STRUCTURE_SHEET, FORCES_SHEET = 0, 2
-CONTINUATION_SUFFIX = "-sheet-"  # in the name of a drawing that goes on with another one
+CONTINUATION_SUFFIX = "-sheet-"  # in the names of drawings that continue another one
 
 
 @dataclass(frozen=True)

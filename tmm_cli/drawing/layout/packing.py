@@ -13,10 +13,10 @@ from tmm_cli.language import _
 from tmm_cli.problem import SheetTexts
 
 Size = tuple[float, float]
-SkylineStep = tuple[float, float, float]  # of a skyline: from, to, down to
-RANDOM_ORDERS = 30  # orders by chance that are tried too, always the same ones
-ORDER_SHIFT = 3.0  # places by which boxes that are to stay about in their order change it, at most
-THOROUGH_ORDERS = 300  # where the best of all arrangements is looked for
+SkylineStep = tuple[float, float, float]  # start, end, depth
+RANDOM_ORDERS = 30  # random orders that are tried too (reproducible)
+ORDER_SHIFT = 3.0  # most positions by which boxes are shifted in order
+THOROUGH_ORDERS = 300  # random orders when the best arrangement is sought
 
 
 @dataclass(frozen=True)
@@ -195,10 +195,10 @@ def _stretch(at: Size, axis: int, factor: float) -> Size:
 # The frame of a sheet and its title block: GOST 2.104, form 1 (185 x 55 mm), or a plain one.
 
 
-LEFT_MARGIN, OTHER_MARGIN = 20.0, 5.0  # mm: the frame from the left edge of the paper, and from the others
+LEFT_MARGIN, OTHER_MARGIN = 20.0, 5.0  # mm between the frame and the left edge of the paper, and the other edges
 MAIN_LINE, THIN_LINE = 0.6, 0.25  # mm: main and thin lines
 TITLE_BLOCK_SIZES = {"gost": (185.0, 55.0), "plain": (140.0, 32.0)}
-SMALL_LETTERS, USUAL_LETTERS, LARGE_LETTERS = 2.8, 3.5, 5.0  # mm: sizes of letters' bodies
+SMALL_LETTERS, USUAL_LETTERS, LARGE_LETTERS = 2.8, 3.5, 5.0  # mm: font sizes
 
 
 @dataclass(frozen=True)

@@ -15,29 +15,29 @@ from tmm_cli.mechanics.plans import round_scale
 from tmm_cli.problem import ProblemError
 
 DRAWING_GAP = 7.0  # mm between two drawings
-LEAST_SHARE = 0.6  # of its usual size: what would be smaller comes on a further sheet
-FILL_STEP = 1.05  # steps in which pages may become fuller than the average one
-SCALE_RATIOS = (1.25, 1.6, 2.0)  # how many times finer than a round scale factor the next one is
-GROWTH_STEP = 1.04  # by which a drawing without a scale is made larger
-ROOM_TOLERANCE = 1.2  # of its room a figure may take, or the next round scale would make it much smaller
-POINT_SIZE = 1e-6  # mm: a figure of this size has none
-ENOUGH_FILLED = 0.74  # of a page: then nothing more is made larger
-FLAT_HEIGHTS = (0.62, 0.5)  # of the height of a page: drawings that find room beside one another
-FULL_ENOUGH = 0.6  # of a page: what a teacher takes
-THIN_BELOW = 0.63  # of a page: with less something else is tried
-# whether the first one is in the corner and all are in their order, and of how much of a page it is given up
+LEAST_SHARE = 0.6  # of the usual size: smaller drawings move to a further sheet
+FILL_STEP = 1.05  # factor by which the limit of a page is raised above the average
+SCALE_RATIOS = (1.25, 1.6, 2.0)  # ratios of neighbouring round scales
+GROWTH_STEP = 1.04  # growth of a drawing without scale in one step
+ROOM_TOLERANCE = 1.2  # of its room that a figure may take, because the next round scale is much smaller
+POINT_SIZE = 1e-6  # mm: a smaller figure is a point and has no scale
+ENOUGH_FILLED = 0.74  # of a page: drawings grow no further
+FLAT_HEIGHTS = (0.62, 0.5)  # of the height of a page: lower limits of height, so that drawings fit side by side
+FULL_ENOUGH = 0.6  # of a page: full enough to hand in
+THIN_BELOW = 0.63  # of a page: with less, other arrangements are tried
+# first piece in the corner, pieces in order; share of a page above which the rule is applied no further
 PACKING_RULES = (
     (True, True, ENOUGH_FILLED),
     (False, True, THIN_BELOW),
     (True, False, THIN_BELOW),
     (False, False, THIN_BELOW),
 )
-SHRINK_SHARES = (0.93, 0.86, 0.78, 0.7, 0.62)  # of their rooms: drawings for which a page can be in order
-LETTER_RATIO = 1.08  # times larger than those of another table of its page the letters of one may be
-EVEN_ENOUGH = 0.68  # of every page: then pieces are shared out in no further way
-MOST_GROWTH = 3.0  # of its usual size: nothing is made larger
-SIZES_TRIED = 60  # that are tried from the largest to the least
-MOST_PAGES = 40  # of one sheet at most
+SHRINK_SHARES = (0.93, 0.86, 0.78, 0.7, 0.62)  # of their rooms: reductions that may let a page pack in order
+LETTER_RATIO = 1.08  # largest ratio of letter sizes of tables on one page
+EVEN_ENOUGH = 0.68  # of every page: no further partition is tried
+MOST_GROWTH = 3.0  # of the usual size: nothing grows beyond it
+SIZES_TRIED = 60  # relative sizes tried, from the largest down
+MOST_PAGES = 40  # of one sheet
 PARTITIONS_TRIED = 8  # ways to divide the pieces among pages that are compared
 MOST_PARTITIONS = 2000  # with more possible ways none is tried
 
@@ -50,7 +50,7 @@ class SheetPiece:
     usual: float
     least: float = 0.0
     most: float = math.inf
-    letters: bool = False  # it is a table: as large as its letters
+    letters: bool = False  # a table, whose size follows from its letters
 
     @property
     def length(self) -> float:

@@ -45,13 +45,13 @@ from tmm_cli.mechanics.quantities import (
 from tmm_cli.problem import UnitSystem, typeset_unit
 from tmm_cli.reports import terminal_cells, walk
 
-LETTER_SIZE = 3.2  # mm: letters of a table as it comes
+LETTER_SIZE = 3.2  # mm: letters of a table at its usual size
 OUTER_LINE, INNER_LINE = 0.5, 0.2  # mm: widths
 TEXT_AIR = 1.4  # of the letter size: free width of a cell
 ROW_HEIGHT = 1.7  # of the letter size
-MOST_ROWS = 28  # rows, beyond which a table goes on beside itself
-PART_GAP = 3.0  # of the size, between two parts
-WIDEST_TEXT = 24.0  # of the size: a longer text is cut
+MOST_ROWS = 28  # longer tables are split into parts side by side
+PART_GAP = 3.0  # of the letter size
+WIDEST_TEXT = 24.0  # of the letter size: a longer text is cut
 
 
 def draw_table(
@@ -117,11 +117,11 @@ def _is_number(text: Words) -> bool:
 # Tables of values on large sheets: structure, motion in all positions, forces of a position.
 
 
-SIGNIFICANT_FIGURES = 4  # of each number
-ZERO_BELOW = 1e-9  # of the largest number of a column: less is written as zero
-MOST_DECIMALS = 6  # at most; what would need more is written with a power of ten
-MOST_COLUMNS = 8  # quantities beside one another in a table
-MOST_POSITIONS = 36  # rows of a table at most: of more positions only some have one
+SIGNIFICANT_FIGURES = 4  # in each number
+ZERO_BELOW = 1e-9  # of the largest number of a column: smaller ones are written as zero
+MOST_DECIMALS = 6  # numbers that need more are written with a power of ten
+MOST_COLUMNS = 8  # in a table
+MOST_POSITIONS = 36  # in a table; of more positions only some are listed
 
 QuantityColumn = tuple[str | Symbol, Any, Dimension]
 
@@ -241,7 +241,7 @@ def format_column(values: Any, dimension: Dimension, units: UnitSystem, rows: It
             n for n in range(decimals) if np.allclose(np.round(finite, n), finite, rtol=0, atol=10.0**-decimals / 2)
         )
         decimals = next(needed, max(decimals, 0))
-        form, picked = f".{decimals}f", np.round(picked, decimals) + 0.0  # no zero with a sign
+        form, picked = f".{decimals}f", np.round(picked, decimals) + 0.0  # no negative zero
     least = ZERO_BELOW * largest
     return ["-" if not math.isfinite(v) else numeral(v, form) if abs(v) > least else "0" for v in picked.tolist()]
 

@@ -20,9 +20,9 @@ NOTE_LINE, TABLE_ROW = 5.0, 4.3  # mm: heights of a line of notes and of a row o
 BLOCK_EDGE = 2.0  # mm between the frame of a block and its text
 COLUMN_GAP = 3.0  # mm between columns
 PART_GAP = 6.0  # mm between parts of a table side by side
-BLOCK_CLEARANCE = 4.0  # mm about a block that are free
-EDGE_STEPS = 12  # places along an edge that are tried for a block
-MOST_PARTS = 4  # of one table side by side, at most
+BLOCK_CLEARANCE = 4.0  # mm kept free about a block
+EDGE_STEPS = 12  # positions along an edge that are tried for a block
+MOST_PARTS = 4  # of one table side by side
 
 
 @dataclass(frozen=True)
@@ -143,7 +143,7 @@ def least_covering_block(block: NoteBlock, low: complex, high: complex, crowd: V
         counts = count_covered(crowd, positions, shape.size)
         if len(positions) and (best is None or counts.min() < best[0]):
             best = int(counts.min()), shape, complex(positions[counts.argmin()])
-    if best is None:  # larger than the field in each of its shapes
+    if best is None:  # every layout is larger than the field
         return next(block.shapes()), low
     return best[1:]
 
@@ -183,13 +183,13 @@ def free_block_position(
     return shape, at
 
 
-# The paper, the scale and the place at which a figure is largest and leaves room for a block of notes and tables.
+# Scale selection: paper, scale and position at which a figure is largest and leaves room for notes and tables.
 
 
-SHIFT_SHARES = (0.5, 0.0, 1.0, 0.25, 0.75)  # of what is free beside the figure, across and up: where it is put
+SHIFT_SHARES = (0.5, 0.0, 1.0, 0.25, 0.75)  # shares of the free width and height at which the figure is placed
 FIGURE_SHIFTS = [complex(x, y) for x in SHIFT_SHARES for y in SHIFT_SHARES]
-MOST_REDUCTION = 4.0  # times smaller a figure may become for the sake of a block
-LINE_POINTS = 40  # points that stand for a line
+MOST_REDUCTION = 4.0  # times: how far a figure may be reduced to make room for a block
+LINE_POINTS = 40  # sample points of a line
 
 
 @dataclass
@@ -291,7 +291,7 @@ def scaleless_layout(
     size, across, up, __ = extent(list(points) or [0j])
     factor = longest_for(max(LANDSCAPE)) / (size or 1.0)
     low, high = drawing_area((0.0, 0.0))
-    figure = max(factor * across, 1.0), max(factor * up, 1.0)  # one without width has a scale too
+    figure = max(factor * across, 1.0), max(factor * up, 1.0)  # a figure without width needs a scale too
     paper = complex(max(figure[0] + 2 * pad, least), figure[1] + 2 * pad + below(least)) + low - high
     return PaperLayout((paper.real, paper.imag), 1.0, 0j, figure, free=True)
 

@@ -28,12 +28,12 @@ def convex_hull(corners: list[complex]) -> list[complex]:
     return half(ordered) + half(ordered[::-1])
 
 
-# Boxes along the axes of the paper, many at once (an array of left, right, low, high; mm), and what is in them.
+# Axis-parallel boxes as arrays (left, right, low, high; mm), and what lies in them.
 
 
 Box = tuple[float, float, float, float]  # left, right, low, high
 Boxes = NDArray[Any]  # (number, 4)
-LEAST_STEP = 1e-12  # mm, in the place of no way at all along an axis
+LEAST_STEP = 1e-12  # mm: replaces a zero component of a segment
 
 
 def box_about(middle: complex, width: float, height: float) -> Box:

@@ -24,10 +24,10 @@ from tmm_cli.language import numeral
 
 ROUND_SCALES = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)  # scale factors, times a power of ten
 DEGREE_SCALES = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
-TICK_STEPS = (1.0, 2.0, 5.0, 10.0)  # between numbers on an axis, times a power of ten
-ANGLE_STEPS = (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0)  # the same in degrees, from a degree on
-EQUAL_WITHIN = 1e-9  # of the values: what differs by less does not change
-MOST_DECADES = 12  # most of them on a logarithmic axis; what is smaller stands at its end
+TICK_STEPS = (1.0, 2.0, 5.0, 10.0)  # steps between numbers on an axis, times a power of ten
+ANGLE_STEPS = (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0)  # the same for angles
+EQUAL_WITHIN = 1e-9  # relative: values that differ by less are equal
+MOST_DECADES = 12  # on a logarithmic axis; smaller values are drawn at its end
 
 
 @dataclass(frozen=True)
@@ -151,14 +151,14 @@ def _widen_range(low: float, high: float) -> tuple[float, float]:
 GRID_COLOUR = "#dcdcdc"  # of grids
 SCALE_COLOUR = "#505050"  # of scales and numbers of positions
 SMALL_TEXT, PLAIN_TEXT = 8.0, 9.0  # points
-LEFT_MARGIN, RIGHT_MARGIN = 17.0, 6.0  # mm beside the panels, for numbers on their axes
-TEXT_ROW = 4.5  # mm from a line of text to the next
+LEFT_MARGIN, RIGHT_MARGIN = 17.0, 6.0  # mm on both sides of the panels, for the numbers on their axes
+TEXT_ROW = 4.5  # mm: line spacing
 LEGEND_SAMPLE = 8.0  # mm of a curve in a legend
 LEGEND_GAP = 5.0  # mm between entries of a legend
 NUMBER_GAPS = (11.0, 6.0)  # mm between numbers on an axis, across and upwards
 DOT_RADIUS = 0.55  # mm: radius
 LEAST_PANEL_HEIGHT = 12.0  # mm: least height of a panel
-LABEL_SAMPLING = 8  # of so many places of a curve one keeps labels off it
+LABEL_SAMPLING = 8  # every eighth point of a curve keeps labels off it
 
 
 @dataclass(frozen=True)

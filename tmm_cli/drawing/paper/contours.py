@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from tmm_cli.mechanics.numerics import SAME_POINTS
 
-CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))  # of a cell, round it
-BorderShare = Callable[[tuple[int, int], tuple[int, int]], float]  # how far from a node to its neighbour a border lies
+CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))  # of a cell, counterclockwise
+BorderShare = Callable[[tuple[int, int], tuple[int, int]], float]  # of the way to the next node
 
 
 def contour_lines(values: NDArray[Any], level: float) -> list[NDArray[Any]]:
@@ -55,7 +55,7 @@ def hatch_polygons(pieces: Sequence[Sequence[complex]], pitch: float) -> list[tu
     along, across = np.exp(0.25j * np.pi), np.exp(0.75j * np.pi)
     spans: dict[int, list[tuple[float, float]]] = {}
     for piece in pieces:
-        corners = np.asarray(piece) / along  # lines are level there
+        corners = np.asarray(piece) / along  # in these axes the hatching lines are horizontal
         heights = corners.imag
         for k in range(int(np.ceil(heights.min() / pitch)), int(np.floor(heights.max() / pitch)) + 1):
             crossings = []

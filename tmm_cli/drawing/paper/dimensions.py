@@ -15,24 +15,24 @@ from tmm_cli.drawing.paper.sheet import GREY_TEXT, NAME_COLOUR, THIN_COLOUR, Dra
 from tmm_cli.drawing.paper.texts import DARK_COLOUR
 from tmm_cli.mechanics.numerics import Real, Vector, cross, dot
 
-LINE_OFFSETS = (9.0, 12.0, 16.0, 20.0, 25.0, 30.0, 36.0)  # mm of a dimension line from what it measures
+LINE_OFFSETS = (9.0, 12.0, 16.0, 20.0, 25.0, 30.0, 36.0)  # mm between a dimension line and the measured points
 EXTENSION_OVERHANG = 1.8  # mm of an extension line beyond the dimension line
 ARROWHEAD_ROOM = 3.0  # mm of a dimension line that are reserved for an arrowhead
 DIMENSION_TEXT = 9.0  # points
-LEAST_LENGTH = 0.4  # mm: smaller sizes are not drawn
+LEAST_LENGTH = 0.4  # mm: shorter dimensions are not drawn
 LARGEST_RADIUS = 45.0  # mm: largest radius of the arc of an angle
-INNER_HEADS = 4.2  # heads that fit between the extension lines, with a shaft between them
-LETTER_CLEARANCE = 6.0  # mm about a lettered place: its letter needs room there
-HEAD_SHARE = 0.25  # of the price of what a text covers: of what is near a head
+INNER_HEADS = 4.2  # arrowheads: shorter dimension lines have them outside the extension lines
+LETTER_CLEARANCE = 6.0  # mm kept free about a lettered point for its letter
+HEAD_SHARE = 0.25  # of the price of covering with a text: price of covering with an arrowhead
 TEXT_POSITION_COSTS = {
     "before": 2.0,
     "after": 1.0,
     "low": 0.5,
     "high": 0.5,
     "wider": 6.0,
-}  # price of where a text stands
-TEXT_SHARES = {"middle": 0.5, "low": 0.3, "high": 0.7}  # where a text stands between the heads, shares of the length
-UPRIGHT_BELOW = 0.3  # of a direction: sideways part of a line that is nearly upright
+}  # price of each position of the text
+TEXT_SHARES = {"middle": 0.5, "low": 0.3, "high": 0.7}  # of the length: positions of the text
+UPRIGHT_BELOW = 0.3  # horizontal component of the direction of a nearly upright line
 
 
 def draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str, along: complex = 0j) -> None:
@@ -109,10 +109,10 @@ def _draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str
         sheet.line([first, last], DARK_COLOUR, 0.6, z=4.5)
     backs = (
         (last, first) if inner else (first - 2 * ARROWHEAD_ROOM * u, last + 2 * ARROWHEAD_ROOM * u)
-    )  # of short ones heads from outside
+    )  # arrowheads of short lines point inwards from outside
     for back, tip in zip(backs, (first, last), strict=True):
         sheet.arrow(back, tip, DARK_COLOUR, 0.6, 4.5)
-    if stand in ("after", "before"):  # the line goes on under the text
+    if stand in ("after", "before"):  # the line continues under the text
         sheet.line([last, last + u * tail] if stand == "after" else [first, first - u * tail], DARK_COLOUR, 0.6, z=4.5)
     sheet.along(middle, text, DIMENSION_TEXT, v)
 
@@ -139,7 +139,7 @@ def draw_angle(sheet: DrawingSheet, vertex: complex, first: complex, last: compl
 def _draw_angle(sheet: DrawingSheet, vertex: complex, first: complex, last: complex, name: str, *, right: bool) -> None:
     ways = [(z - vertex) / abs(z - vertex) for z in (first, last)]
     if right:
-        corner = 5.4  # beyond the edge of a stone
+        corner = 5.4  # larger than a sliding block
         sheet.line(
             [vertex + corner * direction for direction in (ways[0], sum(ways), ways[1])], DARK_COLOUR, 0.8, z=3.2
         )
@@ -158,13 +158,13 @@ def _draw_angle(sheet: DrawingSheet, vertex: complex, first: complex, last: comp
     sheet.label(name, arc[len(arc) // 2], 9, NAME_COLOUR, "italic")
 
 
-# A scale with numbers of positions beside the way of an output, straight or about a pivot.
+# Rulers with numbers of positions beside the path of an output, straight or about a pivot.
 
 
 NUMBER_SIZE = 8.0  # points
 TICK_LENGTH = 1.6  # mm
 NUMBER_GAP = 0.7  # mm between a tick and its number, and between numbers
-PATH_CLEARANCE = 5.6  # mm on both sides of the way, for boxes and rails
+PATH_CLEARANCE = 5.6  # mm on both sides of the path, for boxes and rails
 RULER_OFFSETS = (0.0, 5.0, 10.0, 15.0)  # mm
 ARC_STEP = 1.0  # mm between points of a drawn arc
 
@@ -314,7 +314,7 @@ def draw_ruler(sheet: DrawingSheet, ruler: Ruler, numbers: Sequence[RulerNumber]
 
 def spread_intervals(middles: Sequence[float], sizes: Sequence[float]) -> list[float]:
     """Return the middles of intervals of these sizes, in order and without overlap, nearest to the wanted middles."""
-    heaps: list[tuple[float, list[int]]] = []  # where each heap of touching intervals begins
+    heaps: list[tuple[float, list[int]]] = []  # start of each group of touching intervals, and the group
     for k in range(len(middles)):
         heap = [k]
         while True:

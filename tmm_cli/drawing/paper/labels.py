@@ -50,21 +50,21 @@ LINE_SHARES = (
     0.74,
     0.18,
     0.82,
-)  # where a text stands beside a line, shares of its length
+)  # positions of a text beside a line, shares of the length
 DIRECTIONS = 16
-RING_TIERS = (0, 3, 6, 9, 13)  # rings between these are looked at together, later ones if there is nothing free
-MOST_DISTANCES = 1_000_000  # between candidate places and other anchors that are held in memory at once: 8 MB an array
-LEADERS_KEPT = 24  # places with leaders, the cheapest ones, that are looked at more closely
-LEADER_FROM = 4.0  # mm from which a line leads from a place to its label
-LEADER_GAP = 0.5  # mm by which it ends before the label
+RING_TIERS = (0, 3, 6, 9, 13)  # rings between these numbers are evaluated together, later ones only if nothing is free
+MOST_DISTANCES = 1_000_000  # distances from candidates to other anchors held in memory at once: 8 MB for each array
+LEADERS_KEPT = 24  # the cheapest candidates with leaders, whose crossings are computed
+LEADER_FROM = 4.0  # mm between anchor and label from which on a leader is drawn
+LEADER_GAP = 0.5  # mm between the end of a leader and its label
 DISTANCE_PRICE = 0.35  # of each mm between a label and its anchor
 LEADER_PRICE = 2.0  # of a leader
 OFF_MIDDLE_PRICE = 3.0  # of a label away from the middle of its line
 AMBIGUITY_PRICE = 6.0  # of a label closer to another named place than to its own
 CROSSING_PRICE = 0.2  # of each line that a leader crosses
-PLACEMENT_ROUNDS = 3  # in which labels are put again, given where the others are, if they cost more than this:
+PLACEMENT_ROUNDS = 3  # of placing labels again, given the others, if they cost more than ACCEPTED_COST
 ACCEPTED_COST = 6.0
-SAME_PLACE = 0.5  # mm: nearer places are one
+SAME_PLACE = 0.5  # mm: closer points coincide
 
 Item = TypeVar("Item")
 
@@ -169,7 +169,7 @@ class LabelPlacer:
     ) -> NDArray[Any]:
         """Return the price of standing nearer to another named point or line than to the label's own."""
         nearer = np.zeros(len(middles), bool)
-        if len(self.rivals) and not led.all():  # a leader says what is meant
+        if len(self.rivals) and not led.all():  # a leader makes a label unambiguous
             off = box_distances(boxes, self.rivals)
             is_anchor = (
                 np.abs(np.array([label.anchor for label in self.labels])[whose][:, None] - self.rivals) <= SAME_PLACE
@@ -293,5 +293,5 @@ def gather_coincident(placed: Iterable[tuple[complex, Item]]) -> list[tuple[comp
 
 def text_extent(text: Words, size: float) -> tuple[float, float]:
     """Return width and height (mm) of a text, with a small margin at its ends; size in points."""
-    high = 1.0 if isinstance(text, str) else 1.3  # letters below and above the line
+    high = 1.0 if isinstance(text, str) else 1.3  # with indices below and above the line
     return script_width(text, size * POINT) + 0.6, high * size * POINT

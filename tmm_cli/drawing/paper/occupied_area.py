@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 from tmm_cli.drawing.paper.boxes import Box, Boxes, lengths_inside, shared_areas, widen
 from tmm_cli.drawing.paper.record import ARROWHEAD_HALF_WIDTH
 
-SAMPLE_STEP = 1.2  # mm between the points that stand for a line
-LONGEST_LINE = 5000.0  # mm: longer lines are no part of a sheet
-CIRCLE_CORNERS = np.exp(1j * np.linspace(0, 2 * np.pi, 9))  # of what stands for a small circle
-TEXT_AIR = 0.35  # mm about a text that are free
+SAMPLE_STEP = 1.2  # mm between sample points of a line
+LONGEST_LINE = 5000.0  # mm: longer lines are ignored
+CIRCLE_CORNERS = np.exp(1j * np.linspace(0, 2 * np.pi, 9))  # polygon that represents a small circle
+TEXT_AIR = 0.35  # mm kept free about a text
 LINE_PRICE = 14.0  # of covering any line
 LINE_PRICE_PER_MM, FAINT_PRICE_PER_MM = 2.0, 0.3  # of each covered mm of a solid and of a faint line
 TEXT_PRICE, TEXT_PRICE_PER_MM2 = 40.0, 2.0  # of covering any text, and of each covered mm²
-OUTSIDE_PRICE = 200.0  # of a place beyond the edge
+OUTSIDE_PRICE = 200.0  # of a position beyond the edge of the field
 
 
 @dataclass
@@ -36,7 +36,7 @@ class Segments:
         self.fresh += [
             (start, end)
             for start, end in pairwise(points)
-            if abs(end - start) < LONGEST_LINE  # of what is not finite it is not
+            if abs(end - start) < LONGEST_LINE  # False for non-finite points too
         ]
 
     @property
@@ -151,7 +151,7 @@ def overlap_price(boxes: Boxes, others: Boxes) -> NDArray[Any]:
 SQUARE_SIDE = 0.5  # mm: side of a square of the raster
 MOST_SQUARES = 2000  # on the diagonal of a field
 RASTER_STEP = 0.4  # mm between the points that are counted on a line
-RASTER_AIR = 0.35  # mm about a text that are free, besides what the squares at its edge take
+RASTER_AIR = 0.35  # mm kept free about a text, in addition to the squares at its edge
 SOLID_UNIT, TEXT_UNIT = 1 << 20, 1 << 40  # one count holds points on faint lines, on solid lines, squares in texts
 
 

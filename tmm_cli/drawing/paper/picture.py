@@ -18,10 +18,10 @@ from tmm_cli.mechanics.plans import LANDSCAPE, MARGIN, STRIP, extent, round_scal
 
 HEADING_SIZE, REMARK_SIZE = 4.2, 3.2  # mm: letters of a heading and of the remarks below it
 LEAST_HEADING_WIDTH = 70.0  # mm: a heading is not broken into shorter lines
-POINT_SPACING = 1.5  # mm between places that stand for a line
-LEAST_PAPER = 170.0  # mm: longest side of a paper that is asked for; what is on it cannot be smaller
+POINT_SPACING = 1.5  # mm between sample points of a line
+LEAST_PAPER = 170.0  # mm: least longest side of a requested paper; its contents cannot be reduced further
 HEADING_GAP = 2.5  # mm between a heading and what is below it
-MOST_LINES = 3  # lines of a heading, and of each note
+MOST_LINES = 3  # of a heading, and of each note
 
 Size = tuple[float, float]
 

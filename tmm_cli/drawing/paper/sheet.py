@@ -64,8 +64,8 @@ VECTOR_COLOURS = {
     "inner": NAME_COLOUR,
 }
 GREY_TEXT = "#505050"  # of titles of columns
-HATCH_DEPTHS = (0.9, 1.7)  # mm: depths in hatching that stand for all of it
-CURVE_EDGE = 4.0  # mm inside the field where curves are cut
+HATCH_DEPTHS = (0.9, 1.7)  # mm: depths of two lines that represent hatching for label placement
+CURVE_EDGE = 4.0  # mm inside the edge of the field: curves are cut there
 
 
 class DrawingSheet:
@@ -102,8 +102,8 @@ class DrawingSheet:
         if room is not None:
             self.origin = room.origin
         self.marks: list[Mark] = []
-        self.faint: list[int] = []  # marks that are interrupted where texts stand
-        self.parts: list[tuple[str, slice]] = []  # which marks belong to which body, of those that belong to one
+        self.faint: list[int] = []  # indices of marks that texts interrupt
+        self.parts: list[tuple[str, slice]] = []  # bodies with their marks
         self.layer: Layer = "frame"
         self.labels: list[Label] = []
         self.block = NoteBlock()
@@ -316,7 +316,7 @@ def finite_stretches(points: Sequence[complex]) -> Iterator[tuple[complex, ...]]
     """Yield the parts of a polyline between non-finite points."""
     array = np.asarray(points, complex)
     finite = np.isfinite(array)
-    for stretch in [array] if finite.all() else np.split(array, np.flatnonzero(~finite)):  # mostly there is one
+    for stretch in [array] if finite.all() else np.split(array, np.flatnonzero(~finite)):  # most polylines are finite
         kept = stretch[np.isfinite(stretch)]
         if len(kept) > 1:
             yield tuple(kept.tolist())

@@ -20,9 +20,9 @@ from tmm_cli.language import signed, typeset
 from tmm_cli.mechanics.forces import Symbol
 
 FONT_FAMILY = "DejaVu Sans"
-ALIGN_SHARE = {"left": 0.0, "center": 0.5, "right": 1.0}  # of the width, from the left end to where a text is put
-BASELINE_SHARE = 0.265  # of the size: from the base line to the middle of the letters' height
-MISSING_GLYPH = "\u25a1"  # stands for what the font lacks
+ALIGN_SHARE = {"left": 0.0, "center": 0.5, "right": 1.0}  # anchor, as a share of the width
+BASELINE_SHARE = 0.265  # of the font size: from the baseline to half the height of the letters
+MISSING_GLYPH = "\u25a1"  # replaces characters that the font lacks
 FONT_UNITS = 1000  # the size at which advances are read
 
 
@@ -116,7 +116,7 @@ def missing_characters(text: str) -> set[str]:
 Words = str | Symbol | tuple[str | Symbol, ...]
 
 INDEX_SIZE = 0.68  # size of indices
-INDEX_BELOW, INDEX_ABOVE = -0.30, 0.36  # how far their middle is off that of the letter
+INDEX_BELOW, INDEX_ABOVE = -0.30, 0.36  # of the font size: offset of the middle of an index
 
 
 def split_symbols(words: Words) -> tuple[str | Symbol, ...]:
@@ -207,10 +207,10 @@ def _split_at_spaces(words: Words) -> Iterator[tuple[str | Symbol, ...]]:
 
 DARK_COLOUR = "#1a1a1a"
 ELLIPSIS = "…"
-LEAST_TEXT_SHARE = 0.75  # of its size: a text is made that much smaller before it is cut
+LEAST_TEXT_SHARE = 0.75  # of the font size: a text is reduced to this before it is cut
 CELL_GAP = 0.8  # mm between a text and the lines of its cell
-NARROWING = 0.01  # of the size: by how much a room in which the longest line has no place is narrower than that
-LINE_SPACING = 1.25  # of the size: from line to line
+NARROWING = 0.01  # of the font size: a trial width is this much less than the longest line
+LINE_SPACING = 1.25  # of the font size
 
 
 def cut_text(text: str, size: float, room: float, *, bold: bool = False) -> str:

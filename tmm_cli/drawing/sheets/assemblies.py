@@ -37,12 +37,12 @@ from tmm_cli.mechanics.plans import LANDSCAPE, MARGIN, PORTRAIT, drawing_area, e
 from tmm_cli.mechanics.structure import Pair, Structure
 from tmm_cli.reports import describe_position
 
-ASSEMBLIES_PER_SHEET = 12  # assemblies on one
+ASSEMBLIES_PER_SHEET = 12  # on one sheet
 ASSEMBLY_PAD = 10.0  # mm about a group for its symbols and names
 CELL_GAP = 4.0  # mm
-CAPTION_HEIGHT = 6.0  # mm of the words below a group
+CAPTION_HEIGHT = 6.0  # mm of the caption below a group
 LEAST_CELL = 5.0  # mm: in a smaller cell nothing is drawn
-LEAST_SYMBOLS = 0.7  # size of symbols: smaller ones cannot be read
+LEAST_SYMBOLS = 0.7  # relative size of symbols; smaller ones are illegible
 
 
 def draw_assemblies(results: Results) -> Iterable[tuple[str, Drawing]]:

@@ -34,16 +34,16 @@ COLUMN_SPACE, TABLE_GAP = 2.6, 5.0  # mm between columns, and between tables
 CAPTION_GAP = 3.0  # mm between the drawing and its caption
 DRAWING_PAD = 11.0  # mm about the drawing, for labels
 LEAST_DRAWING = 12.0  # mm: a smaller drawing is not reduced further
-LABEL_ROOM = 8.0  # mm that labels may take beyond that
-MOST_CAPTION_SHARE = 0.5  # of a sheet: more than this is written on another one
+LABEL_ROOM = 8.0  # mm that labels may extend beyond that
+MOST_CAPTION_SHARE = 0.5  # of a sheet: a longer caption gets a sheet of its own
 CAPTION_WIDTHS = (
     110.0,
     150.0,
     200.0,
     260.0,
     330.0,
-)  # mm: what is beneath a drawing on a large sheet is folded into one
-OWN_SHEET_GROWTH = 2.5  # times larger a drawing must become to have a sheet for itself
+)  # mm: widths that are tried for a caption on a large sheet
+OWN_SHEET_GROWTH = 2.5  # times: growth of a drawing that justifies a sheet without the caption
 HANGING_INDENT = " " * 8
 SHEET_PAPERS = (LANDSCAPE, PORTRAIT)
 

@@ -24,9 +24,9 @@ from tmm_cli.mechanics.kinematics import CentreLine, InstantCentre, LinkPair
 from tmm_cli.mechanics.numerics import dot
 from tmm_cli.reports import centre_name
 
-SHEET_REACH = 2.0  # sizes of the mechanism about its middle: centres that are farther are not on the sheet
+SHEET_REACH = 2.0  # sizes of the mechanism from its middle: centres farther away are not on the sheet
 CENTRE_RADIUS = 0.9  # mm: radius of a centre
-FAR_AWAY = 1e4  # mm: beyond every sheet
+FAR_AWAY = 1e4  # mm: beyond any sheet
 
 
 def draw_centres(results: Results) -> Iterator[tuple[str, Drawing]]:

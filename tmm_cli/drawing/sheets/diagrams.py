@@ -56,7 +56,7 @@ from tmm_cli.mechanics.structure import POSITIONS_PER_TURN
 from tmm_cli.problem import UnitSystem, typeset_unit
 from tmm_cli.reports import output_motion
 
-MOST_CURVES = 6  # courses in a panel of reactions, of pressure angles, of what balances the drivers
+MOST_CURVES = 6  # in a panel of reactions, pressure angles or balancing moments
 
 
 @dataclass(frozen=True)
@@ -168,7 +168,7 @@ def shaking_plots(results: Results, q: Any) -> list[QuantityPlot]:
         return []
     ways = [(_("without counterweights"), balancing.before), (_("with counterweights"), balancing.after)]
     stages = [(*stage, curve) for stage, curve in zip(ways, balancing.at(results.mechanism, q), strict=True)]
-    stages = stages[::-1] if balancing.cycle.counterweights else stages[:1]  # dashed is without, as in the hodograph
+    stages = stages[::-1] if balancing.cycle.counterweights else stages[:1]  # dashed: without counterweights
     nothing = NO_FORCE * float(np.nanmax(np.abs(balancing.cycle.before.force)))
 
     def size(force: Any) -> Any:
@@ -205,11 +205,11 @@ def pressure_plots(results: Results, motion: Motion) -> list[QuantityPlot]:
 
 
 MOST_POINTS = 1440  # of a curve over a cycle
-MOST_DOTS = 90  # computed positions that are marked on a curve; more of them would hide it
+MOST_DOTS = 90  # computed positions marked on a curve; more would hide it
 MOST_PANELS = 5  # of a sheet
-BORDER_OFFSET = 1e-6  # rad: so far before and after the border of a stroke a curve is computed
-LEAST_JUMP = 1e-3  # of all a curve runs through: what it does there in one step is a jump
-CONSTANT_BELOW = 1e-9  # of its largest value: what runs through less stays the same
+BORDER_OFFSET = 1e-6  # rad: curves are computed this much before and after the end of a stroke
+LEAST_JUMP = 1e-3  # of the range of a curve: a larger step at the end of a stroke is a jump
+CONSTANT_BELOW = 1e-9  # of the largest value: a curve with a smaller range is constant
 LEAST_SUDDEN_JUMP = 0.01  # of the range of a curve: a jump away from the borders
 JUMP_STEEPNESS = 6.0  # times the slopes just before and after it
 MOST_WRITTEN_CURVES = 2  # in a panel: with more the values of jumps are not written
@@ -237,7 +237,7 @@ SCALE_SYMBOLS = {
     quantities.INERTIA: "J",
     quantities.MASS: "m",
 }
-SYMBOL_UNITS = {"T": "J", "A": "J", "P": "W", "t": "s"}  # of what has no unit in the file
+SYMBOL_UNITS = {"T": "J", "A": "J", "P": "W", "t": "s"}  # units of quantities without a unit in the file
 
 
 def draw_diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
@@ -306,7 +306,7 @@ def _stroke_names(results: Results, strokes: Sequence[tuple[float, float, bool]]
     if not results.counts_strokes:
         return [_("working stroke") if working else _("return stroke") for __, __, working in strokes]
     numbers = list(range(1, len(strokes) + 1))
-    if len(strokes) % 2:  # position 0 is within a stroke, and this is its other part
+    if len(strokes) % 2:  # position 0 divides a stroke, of which this is the other part
         numbers[-1] = 1
     return [_("stroke {number}").format(number=number) for number in numbers]
 

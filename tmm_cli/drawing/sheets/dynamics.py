@@ -63,7 +63,7 @@ if TYPE_CHECKING:
 
 
 LEAST_STRETCH = 1 / 2000  # of a cycle: 0.1 mm of a diagram as wide as a page
-MOST_CURVES = 6  # loads, or links, that have a curve each; the smallest of more are summed up
+MOST_CURVES = 6  # loads or links with a curve each; of more, the smallest are added up
 
 
 def draw_law_of_motion(results: Results) -> Iterable[tuple[str, Drawing]]:
@@ -229,13 +229,13 @@ def _total_curve(courses: Sequence[SampledCurve], name: str) -> SampledCurve:
     )
 
 
-FAR_RATIO = 2.0  # times as wide as the diagram is: farther off, the inertia of zero is not on the sheet
-LEAST_WIDTH_SHARE = 0.1  # of the largest inertia: the diagram is taken for so wide at least
+FAR_RATIO = 2.0  # widths of the diagram: if zero inertia is farther away, it is not on the sheet
+LEAST_WIDTH_SHARE = 0.1  # of the largest inertia: least width of the diagram
 AXIS_OVERHANG = 0.08  # of the axis, beyond the curve
 TANGENT_OVERHANG = 0.3  # of the axis, beyond the point of contact
 ARC_RADII = (26.0, 16.0)  # mm: radii of the angles
-ANGLE_LINE = 6.0  # mm of the line beyond an arc from which an angle is counted
-MOST_NUMBERED = 24  # positions at most that have their numbers
+ANGLE_LINE = 6.0  # mm by which the zero line of an angle extends beyond its arc
+MOST_NUMBERED = 24  # positions with numbers
 TANGENT_COLOURS = (LOAD_COLOUR, INERTIA_COLOUR)
 TANGENT_ANGLES = (Symbol("ψ", "max"), Symbol("ψ", "min"))
 SEGMENT_ENDS = ("a", "b")
@@ -370,7 +370,7 @@ def _flywheel_text(inertia: float, begins: float, units: UnitSystem) -> Words:
     )
 
 
-MOST_SAMPLES = 480  # of all pieces of a run together
+MOST_SAMPLES = 480  # in all pieces of a run together
 SAMPLES_PER_PIECE = 40  # least number, where there are few pieces
 LEAST_SAMPLES = 4  # in a piece, where there are very many
 

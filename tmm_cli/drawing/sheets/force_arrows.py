@@ -12,7 +12,7 @@ from tmm_cli.mechanics.forces import DRIVE, ForceOrCouple, MomentEquation
 from tmm_cli.mechanics.numerics import Vector, cross, dot
 
 ARM_COLOUR = "#00757d"
-LOAD_LENGTH = 20.0  # loads are drawn without a scale, as long as one another (guidelines, 2.3.2)
+LOAD_LENGTH = 20.0  # mm: loads are not to scale and have equal lengths (guidelines, 2.3.2)
 SAME_DIRECTION = 0.05  # rad, about: forces in one direction
 EXTRA_LENGTH = 9.0  # mm by which each further force in one direction is longer
 SHAFT_REACH = 1.3  # mm on either side of a shaft that count as covered
@@ -21,7 +21,7 @@ LEAST_MARKED_ARM = 5.0  # mm: a shorter arm has no right-angle mark
 ON_BAR_WITHIN = 0.6  # mm between an arm and the points of a bar on which it lies
 COVERED_SHARE = 0.6  # of an arm that lies on bars: beyond it the arm is drawn beside them
 LEAST_DRAWN_ARM = 1.5  # mm: a shorter arm is only in the table
-COUPLE_RADII = (5.5, 8.1, 10.7, 13.3)  # mm of couples about one place
+COUPLE_RADII = (5.5, 8.1, 10.7, 13.3)  # mm: successive radii of couples at one point
 
 
 @dataclass
@@ -66,14 +66,14 @@ class ForceArrows:
             if abs(at - place) < 1 and abs(along - direction) < SAME_DIRECTION
         ]
         against = any(abs(at - place) < 1 and abs(along + direction) < SAME_DIRECTION for place, direction in self.ways)
-        # one that ends at its place would lie on one that begins there against it, or on another that ends there
+        # with its head there, the arrow would cover an opposite one that begins there, or another that ends there
         free = not against and all(alike)
         out = self.whole or not free or self._covered(at, -along) + 3 >= self._covered(at, along)
         self.taken.append((at, along, out))
         start = at if out else at - LOAD_LENGTH * along
         end = start + (LOAD_LENGTH + EXTRA_LENGTH * sum(alike) if out else LOAD_LENGTH) * along
         if style == "-":
-            self.sheet.arrow(start, end, colour, 1.5, z=5 - 0.01 * sum(alike))  # a longer one under those on it
+            self.sheet.arrow(start, end, colour, 1.5, z=5 - 0.01 * sum(alike))  # longer arrows lie under shorter ones
         else:
             self.sheet.line([start, end], colour, 1.0, style, 4)
             self.sheet.arrow(end - 4 * along, end, colour, 1.0)
@@ -135,7 +135,7 @@ def draw_arms(sheet: DrawingSheet, equations: Sequence[MomentEquation], links: V
                 beside_links.append((centre, foot, term.letter.name))
                 continue
             sheet.line([centre, foot], ARM_COLOUR, 0.7, z=4.6)
-            # arms in one line share its beginning: each letter stands at the part that no shorter one has
+            # collinear arms overlap: the letter stands at the part beyond the shorter ones
             direction = (foot - centre) / (length or 1.0)
             inner = [f for f in feet if abs(cross(direction, f - centre)) < 0.5 and dot(direction, f - centre) > 0]
             start = max(inner, key=lambda f: abs(f - centre), default=centre)
@@ -143,7 +143,7 @@ def draw_arms(sheet: DrawingSheet, equations: Sequence[MomentEquation], links: V
             feet.append(foot)
             if length > LEAST_MARKED_ARM:
                 _draw_right_angle(sheet, foot, direction, at)
-    for centre, foot, name in beside_links:  # now that all is drawn that they keep off
+    for centre, foot, name in beside_links:  # last, so that they avoid everything else
         draw_dimension(sheet, centre, foot, name)
 
 

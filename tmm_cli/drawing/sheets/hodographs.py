@@ -31,8 +31,8 @@ from tmm_cli.mechanics.quantities import FORCE
 AXIS_OVERHANG = 8.0  # mm of the axes beyond the curves
 AXIS_HEAD_LENGTH = 3.0  # mm
 FIGURE_PAD = 30.0  # mm about the figure
-LEAST_JUMP = 0.5  # mm from a place to the next at the end of a stroke
-MOST_NUMBERED = 24  # positions with numbers, at most
+LEAST_JUMP = 0.5  # mm between two points at the end of a stroke that count as a jump
+MOST_NUMBERED = 24  # positions with numbers
 
 
 @dataclass(frozen=True)

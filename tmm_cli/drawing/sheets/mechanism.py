@@ -45,12 +45,12 @@ from tmm_cli.mechanics.plans import links_with_mass
 from tmm_cli.mechanics.quantities import ANGLE, LENGTH
 from tmm_cli.mechanics.structure import POSITIONS_PER_TURN
 
-POSITION_MARGIN = 14.0  # mm about what is to scale on a position's sheet, for couples, rails and labels
-SAME_LINE = 0.1  # mm between lines that look like one
-COORDINATE_DECIMALS = 2  # of the place of the driver, in the unit of the file
+POSITION_MARGIN = 14.0  # mm about the mechanism for couples, rails and labels
+SAME_LINE = 0.1  # mm: closer lines look like one
+COORDINATE_DECIMALS = 2  # of the driver coordinate, in the unit of the file
 COORDINATES_TRIED = 47  # driver coordinates besides the sketch at which the view is tested for hidden pairs
 MOST_PAIRS = 40  # with more pairs some hide others at any coordinate, so only the sketch is drawn
-HIDDEN_WITHIN = 0.03  # share of the mechanism's size: pairs nearer than that to others hide them
+HIDDEN_WITHIN = 0.03  # of the size of the mechanism: closer pairs hide each other
 
 
 @dataclass(frozen=True)
@@ -243,7 +243,7 @@ def _clearness(scenes: Sequence[MechanismScene]) -> Real:
     It is relative to the size of the mechanism. Pairs that always coincide do not count.
     """
     moving, all_pairs = scenes[0].structure.links, scenes[0].structure.pairs
-    # a guide on the frame may be drawn anywhere along itself
+    # the position of a box along a guide on the frame is arbitrary
     pairs = [p for p in all_pairs if p.kind == "R" or (p.slide is not None and p.slide.carrier != FRAME)]
     spots = np.array([[s.at(p) for p in pairs] for s in scenes])
     spines = [[[*s.joints(link), *(stone for stone, __ in s.guides(link))] for link in moving] for s in scenes]

@@ -146,7 +146,7 @@ def forces_table(acting: Iterable[ForceOrCouple], unit: str = "N·m") -> Caption
     rows: list[tuple[Words, ...]] = []
     for load in acting:
         direction = f"{numeral(round(float(np.degrees(np.angle(load.force))), 1) % 360, '.1f')}°"
-        if load.couple:  # the equations have its sense as a sign
+        if load.couple:  # in the equations its sense is the sign
             direction = _("ccw") if load.moment > 0 else _("cw") if load.moment < 0 else ""
         rows.append((load.symbol, f"{format_figures(load.size)} {spelt(unit if load.couple else 'N')}", direction))
     return CaptionTable((_("force"), _("magnitude"), _("angle")), rows)
@@ -182,10 +182,10 @@ def format_figures(value: float) -> str:
     return numeral(rounded, f".{decimals}f" if abs(value) > PLAIN_DOWN_TO else ".4g")
 
 
-# Each group apart, and each driving link: its links to scale under loads and reactions, arms, equations of moments.
+# Each group and each driving link separately: links to scale with loads and reactions, arms, equations of moments.
 
 
-MOST_ARMS = 12  # arms on one sheet
+MOST_ARMS = 12  # on one sheet
 
 
 def draw_group_loads(position: Position) -> Iterable[tuple[str, Drawing]]:
@@ -227,7 +227,7 @@ def _group_sheets(
     position: Position, loaded: FreeBody, equations: Sequence[MomentEquation], sums: Sequence[ForceSum]
 ) -> Iterable[DrawingSheet]:
     linkage = position.results.linkage
-    linkage = replace(linkage, springs=())  # they are loads here
+    linkage = replace(linkage, springs=())  # springs act as loads here
     scene = MechanismScene(linkage, position.results.structure, position.motion.poses, position.k)
     terms = [t for e in equations for t in e.terms]
     listed = [*(t.acting for t in terms), *(s.found.acting for s in sums)]
@@ -249,7 +249,7 @@ def _group_sheets(
     sized = [*((place, 0j) for place in points), *arrow_extent(listed)]
     if (
         extent_of([place for place, __ in sized])[0] <= SAME_POINTS * position.motion.largest.size
-    ):  # but for rounding one
+    ):  # one point, apart from rounding
         points, sized = points[:1], [(points[0], along) for __, along in sized]
     sheet, text = captioned_sheets(position, title, sized, beneath, links=", ".join(loaded.links))
     draw_measured(sheet, scene, links=loaded.links)

@@ -78,7 +78,7 @@ def _gear_radii(linkage: Linkage) -> Iterator[TableSize]:
     """Yield the pitch radii of gears in mesh; the mesh is named if there are several."""
     teeth = [mesh for mesh in linkage.meshes if mesh.kind != "cam"]
     for mesh in teeth:
-        radii = {mesh.i: abs(mesh.ratio)}  # of one that rolls on a rack
+        radii = {mesh.i: abs(mesh.ratio)}  # of a gear that rolls on a rack
         if mesh.kind == "gear":
             apart = abs(carrier_axis(linkage, mesh.j, mesh.carrier) - carrier_axis(linkage, mesh.i, mesh.carrier))
             turn = float(apart) / abs(1 - mesh.ratio)
@@ -224,7 +224,7 @@ def output_path(results: Results) -> NumberedPath | None:
     if slide is None:
         return swinging_path(linkage, link)
     runs = linkage.slides_on_frame(link)
-    if slide.runner == FRAME:  # the guide moves
+    if slide.runner == FRAME:  # a moving guide
         return NumberedPath("any", link, 0j)
     return NumberedPath("line" if runs else "any", link, slide.at, line=complex(unit(slide.direction)))
 
@@ -257,21 +257,21 @@ def extreme_states(results: Results, extremes: list[OutputExtreme]) -> LinkState
     return motion_at_positions(results, np.array([extreme.q for extreme in extremes]), 0)
 
 
-# The mechanism in all positions: numbers at the driver and the output, ends of its way, stroke, a table of lengths.
+# The sheet of all positions: numbers at driver and output, extreme positions, stroke, a table of lengths.
 
 
 MOST_SHOWN, MOST_NUMBERED = 48, 24  # positions drawn as thin lines, and positions with numbers
 EXTRA_SCALES = (0.015, 0.075)  # m/mm: scales of GOST 2.302 in one decade only, 1:15 and 1:75
-LARGEST_ANGLE = 0.95 * math.pi  # rad: a wider swing has no angle drawn, its arc would be on either side
+LARGEST_ANGLE = 0.95 * math.pi  # rad: a larger swing angle is not drawn, because the side of its arc would be ambiguous
 STROKE_OFFSET = 13.0  # mm beside a ruler for the stroke
 RULER_OVERHANG = 4.0  # mm for numbers at either end of the ruler
 SHORT_STROKE = 30.0  # mm: the dimension text of a shorter stroke stands beside it
 EXTREME_COLOUR = "#6a6a6a"
-BOLD_WEIGHT = 4  # how much more a link in full is in the way than a thin one
-LINE_SHARES = np.linspace(0, 1, 30)  # of a line: points that stand for it
+BOLD_WEIGHT = 4  # weight of lines drawn in full relative to thin ones
+LINE_SHARES = np.linspace(0, 1, 30)  # sample points of a line
 THIN_CLEARANCE, BOLD_CLEARANCE = 3.0, 8.0  # mm about thin lines and about the position drawn in full
 PIVOT_CLEARANCE, GUIDE_CLEARANCE = 11.0, 13.0  # mm about fixed hinges and sliders
-RIM_CLEARANCE = 10.0  # mm about the pitch line of a wheel, for a hatched rim
+RIM_CLEARANCE = 10.0  # mm about a pitch circle, for a hatched rim
 
 
 @dataclass(frozen=True)
@@ -411,7 +411,7 @@ def _reserve_ruler(
     low, high = min(number.run for number in numbers), max(number.run for number in numbers)
     more = (
         RULER_OVERHANG if high - low > SHORT_STROKE else RULER_OVERHANG + SHORT_STROKE
-    )  # the text of a short stroke stands beside it
+    )  # room for the text beside a short stroke
     for run in np.linspace(low - more, high + more, len(LINE_SHARES)).tolist():
         path_point = ruler.path_point(min(max(run, low), high))
         for out in (0.0, ruler_reach(ruler, numbers), ruler_reach(ruler, numbers) + STROKE_OFFSET):
@@ -467,7 +467,7 @@ def _number_points(sheet: DrawingSheet, marks: list[PositionMark]) -> None:
     if not finite:
         return
     middle = sheet.on(sum(mark.place for mark in finite) / len(finite))
-    # in a cycle of several turns the crank comes back to its places
+    # in a cycle of several revolutions the crank passes its positions again
     for at, marks_there in in_place((sheet.on(mark.place), mark) for mark in finite):
         out = at - middle
         end = any(mark.end for mark in marks_there)

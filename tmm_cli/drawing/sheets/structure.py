@@ -52,12 +52,12 @@ from tmm_cli.mechanics.plans import LANDSCAPE, MARGIN, PORTRAIT, drawing_area
 from tmm_cli.mechanics.structure import Group, Pair, RedundantLink, Structure
 from tmm_cli.reports import ROLES, mobility_equation, reduction_sentences
 
-SCHEME_PAD = 20.0  # mm kept free about the pairs, for guides, supports and names
+SCHEME_PAD = 20.0  # mm kept free about the pairs for guides, supports and names
 SCHEME_BASE_SIZE = 45.0  # mm: the scheme is drawn no larger than this ...
 SCHEME_SIZE_PER_LINK = 25.0  # mm ... and this for each moving link
 LEGEND_WIDTH = 190.0  # mm: the legend on a large sheet, unless the scheme is wider
 LEGEND_ROW = 5.4  # mm of a line of the legend
-JOINT_RADIUS = 0.9  # mm: pairs of a link in place of a higher pair
+JOINT_RADIUS = 0.9  # mm: joints of a link that replaces a higher pair
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ def scheme_sheet(title: str, place: str, scene: MechanismScene) -> DrawingSheet:
         most = math.inf
         sheet = DrawingSheet(title, subject, room=scaleless_layout(points, SCHEME_PAD, LEGEND_WIDTH, legend.height))
     else:
-        # upright only where the mechanism becomes much larger
+        # portrait only if the mechanism becomes much larger
         paper = LANDSCAPE if scale(LANDSCAPE) < 1.4 * scale(PORTRAIT) else PORTRAIT
         sheet = DrawingSheet(title, subject, paper=paper)
     sheet.ground.low += 1j * legend.height(sheet.paper[0])
@@ -242,7 +242,7 @@ GROUP_CAPTION_LINE = 4.6  # mm
 GROUP_PAD = (17.0, 12.5)  # mm about a group, in one row of groups and in more
 GROUP_GAP = 6.0  # mm between groups
 GROUP_CAPTION_WIDTH = 110.0  # mm: width of a caption on a large sheet
-STUB_LENGTH = 8.0  # mm of what a lead would be joined to
+STUB_LENGTH = 8.0  # mm: piece of the link to which an external pair would be joined
 
 
 def draw_all_groups(results: Results) -> Iterable[tuple[str, Drawing]]:
@@ -352,7 +352,7 @@ def _draw_part(sheet: DrawingSheet, scene: MechanismScene, part: MechanismPart, 
     scene = fit_links(sheet, scene, links, pad, most)
     look = STRUCTURAL.sized(symbol_scale(sheet, scene, links))
     part_colours = dict.fromkeys(links, part.colour)
-    for pair in pairs:  # of wheels and cams that this part shares with others, also later ones, its own side
+    for pair in pairs:  # higher pairs shared with other parts: draw only the side of this part
         if not pair.lower and pair not in inner and {pair.i, pair.j} & set(links):
             draw_higher_pair(sheet, scene.higher(pair), part_colours)
     for pair in outer:

@@ -71,7 +71,7 @@ from tmm_cli.synthesis import (
 
 CENTRE_LETTERS = "MNKQSTUVWXYZ"  # letters of centres of circles
 BAR_ENDS = {"l1": "AB", "l2": "BC", "l3": "DC", "l4": "AD"}
-SAME_LENGTH = 1e-6  # relative: a link as long as that of the construction
+SAME_LENGTH = 1e-6  # relative difference of equal lengths
 
 
 def use_problem_names(
@@ -88,7 +88,7 @@ def use_problem_names(
     taken = set(joint_names.values()) | {spot.name[:1] for spot in drawn.spots if spot.name[:1] not in joint_names}
     centre = next(letter for letter in CENTRE_LETTERS if letter not in taken)
     parameters = {name: file_name for name, file_name in names.items() if file_name != name}
-    if set(parameters) & set(BAR_ENDS) and drawn.chain == "four-bar":  # the others are called likewise
+    if set(parameters) & set(BAR_ENDS) and drawn.chain == "four-bar":  # name the other sizes in the same way
         parameters = {bar: "".join(joint_names[c] for c in ends) for bar, ends in BAR_ENDS.items()} | parameters
 
     def point(text: str) -> str:
@@ -135,7 +135,7 @@ def match_joints(linkage: Linkage, chain: Chain, drawn: GeometricConstruction) -
         if len(candidates) == 1:
             joints += candidates
             link = link if pivots else next((n for n in ends[candidates[0]] if n != link), FRAME)
-        elif not candidates and len(across) == 1:  # a stone: the chain goes on along its lever
+        elif not candidates and len(across) == 1:  # a block: the chain continues with its lever
             (link,) = across
         else:
             return {}
@@ -147,7 +147,7 @@ def match_joints(linkage: Linkage, chain: Chain, drawn: GeometricConstruction) -
     return dict(zip(letters, joints, strict=True)) if abs(crank_length - wished) <= SAME_LENGTH * wished else {}
 
 
-# A construction on its sheet: the mechanism as large as can be, what is beyond the edge cut there, sizes, angles.
+# The sheet of a construction: the mechanism as large as possible, lines cut at the edge, dimensions, angles.
 
 
 LINE_STYLES: Mapping[str, tuple[str, float, Style]] = {  # colour, width, line
@@ -158,12 +158,12 @@ LINE_STYLES: Mapping[str, tuple[str, float, Style]] = {  # colour, width, line
     "axis": (THIN_COLOUR, 0.7, "-."),
     "bold": (LOAD_COLOUR, 1.5, "-"),
 }
-CONSTRUCTION_PAD = 27.0  # mm about what must be on the sheet, for dimension lines and labels
-MOST_REDUCTION = 1.6  # so many times smaller the mechanism may become for what else is wished on the sheet
-ARC_STEP = 1.0  # mm between places along an arc
-NAME_CLEARANCE = 12.0  # mm about a place on a curve that should be free for its name
-EDGE_TOLERANCE = 1e-6  # mm from the edge of the field: a line is cut there
-CUT_ARROW = 4.0  # mm long: the mark of a line that goes on beyond the edge
+CONSTRUCTION_PAD = 27.0  # mm about the required points, for dimension lines and labels
+MOST_REDUCTION = 1.6  # times: how far the mechanism may be reduced to show optional points
+ARC_STEP = 1.0  # mm between points of an arc
+NAME_CLEARANCE = 12.0  # mm about a point of a curve that should be free for its name
+EDGE_TOLERANCE = 1e-6  # mm: tolerance for points on the edge of the field
+CUT_ARROW = 4.0  # mm: length of the arrow on a line that continues beyond the edge
 BOX_SIZES = {"slider": MEASURED.box, "stone": MEASURED.stone}
 
 
@@ -285,7 +285,7 @@ def _arc_points(sheet: DrawingSheet, arc: Arc) -> list[complex]:
     centre, radius = sheet.on(arc.centre), arc.radius / sheet.mu
     middle, reach = (sheet.ground.low + sheet.ground.high) / 2, abs(sheet.ground.high - sheet.ground.low) / 2
     start, end = arc.start, arc.end
-    if abs(middle - centre) > 1.01 * reach:  # the sheet is seen from the centre under a small angle
+    if abs(middle - centre) > 1.01 * reach:  # the sheet subtends a small angle at the centre
         half = float(np.arcsin(reach / abs(middle - centre)))
         towards = float(np.angle(middle - centre))
         towards += 2 * np.pi * np.round(((start + end) / 2 - towards) / (2 * np.pi))
@@ -368,7 +368,7 @@ def _write_notes(
         sheet.note(translated(key).format(**letters))
 
 
-STROKE_MARKS = ("ᴵ", "ᴵᴵ", "ᴵᴵᴵ", "ᴵⱽ")  # of strokes, in their order
+STROKE_MARKS = ("ᴵ", "ᴵᴵ", "ᴵᴵᴵ", "ᴵⱽ")  # marks of successive strokes
 
 
 def draw_synthesis(

@@ -49,10 +49,10 @@ from tmm_cli.mechanics.plans import (
 
 PLAN_MARGIN = 9.0  # mm about the lines of a plan, for letters
 LANE_WIDTH = 5.0  # mm between vectors that would coincide
-LEAST_NAMED = 4.0  # mm: a shorter vector has no name beside it, only in the table
-EQUATION_WIDTH = 120.0  # mm: lines of the equation are no longer
-OVERLAP_WITHIN = 0.01  # of a plan: lines nearer than this lie on one another
-LEAST_DIFFERENCE = 0.03  # of a plan: a vector that differs from another one by less is not drawn beside it
+LEAST_NAMED = 4.0  # mm: a shorter vector is named only in the table
+EQUATION_WIDTH = 120.0  # mm: longest line of an equation
+OVERLAP_WITHIN = 0.01  # of the plan: closer lines coincide
+LEAST_DIFFERENCE = 0.03  # of the plan: vectors that differ by less are drawn once
 
 
 def draw_force_plans(position: Position) -> Iterable[tuple[str, Drawing]]:
@@ -80,7 +80,7 @@ def _force_plan_sheet(position: Position, plan: ForcePlan, title: str) -> Drawin
     for vector, off in zip(drawn, aside, strict=True):
         ground.line(vector.start, vector.end, PLAN_MARGIN, off)
     equation = list(wrap_symbols(_force_sum(plan), NOTE_SIZE * POINT, EQUATION_WIDTH)) if writes_equations() else []
-    # how wide the table is hardly hangs on the scale
+    # the width of the table hardly depends on the scale
     notes = [*equation, "μ = 0.0000 N/mm"]
     layout = choose_scale(ground, NoteBlock(notes, force_plan_rows(plan, plan.plan.size / 100 or 1.0), 3))
     sheet = position.sheet(title, room=layout, links=", ".join(plan.links))
@@ -172,7 +172,7 @@ def _draw_force(sheet: DrawingSheet, vector: NamedVector, off: complex, *, full:
         sheet.label(vector.symbol, (start + end) / 2, 10, colour)
 
 
-CORNER_WITHIN = 1.5  # mm: a corner that is nearer to a lettered end is lettered with it
+CORNER_WITHIN = 1.5  # mm: a corner closer to a lettered end shares its circle
 NAME_SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)  # of a vector: positions of its name, in order of preference
 NAME_CLEARANCE = 0.02  # of the plan: least distance of a name from other vectors
 
@@ -216,14 +216,14 @@ def draw_motion_plans(position: Position) -> Iterable[tuple[str, Drawing]]:
         figure.spots([0j], PLAN_MARGIN)
         for vector in plan.vectors:
             figure.line(vector.start, vector.end, PLAN_MARGIN)
-        # how wide the table is hardly hangs on the scale
+        # the width of the table hardly depends on the scale
         layout = choose_scale(
             figure,
             NoteBlock(["μ = 0.0000 (m/s²)/mm"], motion_plan_rows(position, sort, plan, plan.size / 100 or 1.0), 2),
         )
         sheet = position.sheet(sort.title, room=layout)
         for vector in plan.drawn():
-            # of points of mass a thin ray is enough: the letters say the rest
+            # a thin ray is enough for a centre of mass, which has its letter
             mass = vector.kind == "absolute" and vector.symbol.below.startswith("S")
             width = {"absolute": 0.7 if mass else 1.5, "relative": 1.1}.get(vector.kind, 1.2)
             sheet.arrow(

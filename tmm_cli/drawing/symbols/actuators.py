@@ -20,7 +20,7 @@ COIL_HALF_WIDTH = 2.2  # mm
 SPRING_END = 4.0  # mm: straight end of a spring
 TORSION_SPIRAL = (1.9, 5.8, 2.25)  # mm: inner and outer radius of a torsion spring, its turns
 SPRING_COLOUR = "#5f3b8a"
-SPRING_BODY = "{}|spring"  # the body that a spring is, which is stretched
+SPRING_BODY = "{}|spring"  # name of the body of a spring, which is stretched
 
 
 def cylinder_drivers(linkage: Linkage) -> dict[str, Driver]:

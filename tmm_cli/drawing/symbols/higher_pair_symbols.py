@@ -20,10 +20,10 @@ DASHED_STYLE: Style = "--"
 TOOTH_PITCH = 3.6  # mm
 TOOTH_HALF_HEIGHT = 1.1  # mm
 TEETH_SHOWN = 5  # at the pitch point of each gear
-RIM_DEPTH = 3.4  # mm: what a wheel with inner teeth and a rack have behind their pitch line
+RIM_DEPTH = 3.4  # mm: depth of an internal gear or a rack behind its pitch line
 AXLE_RADIUS = 0.9  # mm: the circle in the middle of a roller
-GEAR_Z = 2.3  # plates do not hide wheels
-HATCH_OPENING = 1.1  # mm from a rod in which nothing is hatched
+GEAR_Z = 2.3  # gears are drawn above plates
+HATCH_OPENING = 1.1  # mm about a rod that are kept free of hatching
 
 
 def draw_higher_pair(
@@ -193,5 +193,5 @@ def _draw_corner(sheet: DrawingSheet, at: complex, arm: complex, form: LinkForm,
     nearest = min(others, key=lambda other: abs(float(np.angle(other / arm))))
     if abs(float(np.angle(nearest / arm))) < np.pi - STRAIGHT_ANGLE:
         draw_weld(sheet, at, arm, nearest, colour, hinge)
-    else:  # a bar that goes on beyond the hinge
+    else:  # the bar continues beyond the hinge
         sheet.line([at + hinge * arm / abs(arm), at, at + hinge * nearest / abs(nearest)], colour, THROUGH_WIDTH, z=6.2)

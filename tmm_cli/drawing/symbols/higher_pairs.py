@@ -24,10 +24,8 @@ if TYPE_CHECKING:
 
 ROLLER_ARM, ROLLER_RADIUS = 0.8, 0.1  # of the distance of the axes
 PROFILE_STEPS = 361
-CIRCLE_ANGLES = [2 * math.pi * n / 24 for n in range(24)]  # rad: points of a wheel that must be on the sheet
-LARGE_GEAR = (
-    3.0  # times the mechanism's size, or the distance of axes: larger wheels do not decide the scale of a sheet
-)
+CIRCLE_ANGLES = [2 * math.pi * n / 24 for n in range(24)]  # rad: points of a pitch circle that must be on the sheet
+LARGE_GEAR = 3.0  # times the size of the mechanism or the centre distance: larger gears do not decide the scale
 
 
 @dataclass(frozen=True)
@@ -168,12 +166,12 @@ def _flat_faced_cam(scene: MechanismScene, mesh: Mesh) -> CamOutline:
     now, slope_now, _ = (float(v) for v in mesh.law(np.array(angle)))
     height = float(dot(forward, runs - centre)) - now
     true = bool(np.min(height + rise + bend) > 0 and np.min(height + rise) > 0)
-    if not true:  # no convex cam has its face there: the least that is convex, and not too slender
+    if not true:  # no convex cam fits this face: use the smallest convex one that is not too slender
         height = 1.15 * float(np.max(-(rise + np.maximum(bend, -3 * np.ptp(rise))))) + 0.3 * float(np.ptp(rise))
         height = max(height, 0.8 * float(np.ptp(rise)) - float(np.min(rise)))
     ways = forward * unit(angle - turn)
     disk = (height + rise - 1j * slope) * ways
-    # where no cam could have the law, the envelope has tails beyond the face
+    # where no cam can follow the law, the envelope has tails beyond the face
     tails = np.max(dot(ways[:, None], disk) - (height + rise)[:, None], axis=0) > 1e-6 * height
     disk = centre + disk[~tails]
     foot = centre + (height + now) * forward

@@ -19,7 +19,7 @@ from tmm_cli.mechanics.linkage import Slide
 from tmm_cli.mechanics.numerics import cross, dot
 
 Segment = tuple[complex, complex]
-GUIDE_REACH = 5.0 + GUIDE_EXTENSION  # mm from the middle of a stone to the end of the bar that guides it
+GUIDE_REACH = 5.0 + GUIDE_EXTENSION  # mm from the middle of a block to the end of its guide
 BLOCK_HALF_LENGTH = 3.75  # mm: half the length of a sliding block
 GUIDE_OVERHANG = 7.0  # mm by which a guide extends beyond the travel of the middle of its block
 
@@ -194,7 +194,7 @@ def _join_parts(
         else:
             struts.append((near, foot))
             welds.append((foot, near - foot, _longer_arm(bar, foot)))
-            # at a hinge, bars of one link would look like two links without a mark
+            # without a mark, bars of one link that meet at a hinge would look like two links
             welds += [(near, foot - near, other - near) for other in loose if other != near]
     hull = _flatten_hull(convex_hull(loose)) if len(loose) > 1 else ()
     return LinkForm(joints, boxes, hull, bars, struts, welds)

@@ -16,7 +16,7 @@ WELD_LEG = 3.2  # mm: leg of a rigid corner's mark
 NUMBER_CLEARANCE = 3.2  # mm about the number on a plate
 RAIL_GAP = 0.5  # mm between a box and its rails
 MASS_RADIUS = 1.4  # mm: radius of a centre of mass
-FREE_COLOUR = "#6a6a6a"  # what a lead would be joined to
+FREE_COLOUR = "#6a6a6a"  # colour of the link to which an external pair would be joined
 PART_COLOURS = ("#b3261e", "#1f4e9c", "#1d7a3a", "#7a3d99", "#b86a00", "#00757d", "#8a3b5c", "#5f6b00", "#3d4a5c")
 BOX_CORNERS = ((1, 1), (-1, 1), (-1, -1), (1, -1))
 
@@ -59,7 +59,7 @@ class SymbolStyle:
 MEASURED = SymbolStyle(True, 1.3, (9.0, 5.0), (7.5, 4.2), (5.6, 3.4), 2.4, (0j,))
 MOVING = replace(MEASURED, moves=True)
 STRUCTURAL = SymbolStyle(False, 1.7, (10.0, 6.0), (10.0, 6.0), (6.0, 3.4), 2.7, (0.8j, -0.8j))
-PLATE_COLOUR = "#eceff3"  # of measured drawings
+PLATE_COLOUR = "#eceff3"  # in drawings to scale
 
 
 def tint_colour(colour: str, share: float = 0.16) -> str:
@@ -82,7 +82,7 @@ def draw_body(sheet: DrawingSheet, form: LinkForm, colour: str, look: SymbolStyl
         sheet.area(form.hull, PLATE_COLOUR if look.measured else tint_colour(colour), colour, 1.5, 2.2)
     guides = [bar.tips for bar in form.bars]
     for start, end in form.lines:
-        # a guide goes behind its stone, a link that is only hinged to a stone comes in front of it
+        # a guide passes behind its block; a link that is only hinged to a block is in front of it
         behind = (start, end) in guides or any(abs(p - at) < ON_LINE for p in (start, end) for at in form.boxes)
         sheet.line([start, end], colour, look.bar, z=3 if behind else 4.5, blocks=False)
         if abs(end - start) > ON_LINE:
@@ -115,7 +115,7 @@ def draw_box(
     """Draw a slider or block; dashed if it only indicates the link to which an external pair is joined."""
     length, width = size
     corners = [at + along * complex(sx * length / 2, sy * width / 2) for sx, sy in BOX_CORNERS]
-    for share in (0.25, -0.25):  # nothing is written into a box
+    for share in (0.25, -0.25):  # keeps labels out of the box
         shift = 1j * along * share * width
         sheet.ground.line(at + shift - along * length / 2, at + shift + along * length / 2)
     if style == "-":
@@ -197,8 +197,8 @@ def draw_link_numbers(sheet: DrawingSheet, forms: Mapping[str, LinkForm], hue: M
 HATCH_DEPTH = 1.7  # mm
 ROD_CLEARANCE = 0.6  # mm between rods and hatching
 OPENING_CLEARANCE = 1.1  # mm on either side of a rod in an opening of the hatching
-TRIANGLE_CLEARANCE = 0.2  # mm: how far rods keep off a support's triangle
-GROUND_HALF_WIDTHS = 2.2  # half widths of a support's triangle: its hatched ground
+TRIANGLE_CLEARANCE = 0.2  # mm between rods and the triangle of a support
+GROUND_HALF_WIDTHS = 2.2  # half width of the hatched ground, relative to that of the triangle
 LEAST_RAIL = 2.0  # mm: shorter pieces of a rail are left out
 ROD_STEP = 0.4  # mm between sample points of a rod
 

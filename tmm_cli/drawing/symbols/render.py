@@ -32,8 +32,8 @@ from tmm_cli.language import _, printed
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.structure import Pair
 
-BOX_BODY = "{}|box"  # the body that the box of a sliding pair is
-AXIS_OVERHANG = 10.0  # mm: how far the axis of a guide goes on beyond the way of its stone
+BOX_BODY = "{}|box"  # name of the body of a slider's box
+AXIS_OVERHANG = 10.0  # mm by which the axis of a guide extends beyond the travel of its block
 MESH_COLOUR = "#404040"
 
 
@@ -94,7 +94,7 @@ def _render_links(
     for link, form in forms.items():
         with sheet.part(link):
             draw_body(sheet, form, hue[link], look)
-            for pair in scene.structure.pairs:  # also of those that are drawn from one side only
+            for pair in scene.structure.pairs:  # includes pairs of which only one link is drawn
                 if not pair.lower and link in (pair.i, pair.j):
                     draw_rigid_marks(sheet, scene.higher(pair), form, link, hue[link], look.hinge)
     for pair in pairs:

@@ -20,8 +20,8 @@ from tmm_cli.mechanics.numerics import cross, dot, unit
 from tmm_cli.mechanics.plans import extent
 from tmm_cli.mechanics.structure import Pair, Structure
 
-ON_LINE = 0.3  # mm: what still lies on a line
-GUIDE_EXTENSION = 6.0  # mm: how far a guide goes on beyond its stone
+ON_LINE = 0.3  # mm: tolerance for points on a line
+GUIDE_EXTENSION = 6.0  # mm by which a guide extends beyond its block
 LEAST_BOX_GAP = 12.0  # mm: boxes closer than this would overlap
 BOX_SHIFT = 19.0  # mm by which a box that would overlap is moved along its guide
 
@@ -152,7 +152,7 @@ def spread_boxes(sheet: DrawingSheet, scene: MechanismScene, links: Sequence[str
         if any(abs(place - at) < LEAST_BOX_GAP for name, place in boxes.items() if name != pair.name):
             others = [place for place in (*all_points, *boxes.values()) if abs(place - at) > ON_LINE]
             choices = [at + side * BOX_SHIFT * scene.along(pair.slide) for side in (1, -1)]
-            # farther from the others; without any, lower
+            # the side farther from the other boxes; if there are none, the lower one
             free = max(choices, key=lambda z: (min((abs(z - other) for other in others), default=0.0), -z.imag))
             boxes[pair.name] = free
             moved[pair.name] = (free - at) * sheet.mu
