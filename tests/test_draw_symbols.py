@@ -120,7 +120,7 @@ def test_a_stone_runs_on_a_bar_of_its_guide_and_is_no_corner_of_a_plate(name, lo
         if slide.carrier == FRAME or slide.name in {d.joint for d in linkage.drivers}:
             continue
         stone, along = sheet.on(found.scene.place(slide.runner, slide.at)), found.scene.along(slide)
-        before, after = stone - look.stone[0] / 2 * along, stone + look.stone[0] / 2 * along
+        before, after = stone - look.block[0] / 2 * along, stone + look.block[0] / 2 * along
         bars = [p for p in lines if max(distance(end, (p[0], p[-1])) for end in (before, stone, after)) < NEAR]
         assert bars, slide.name
         named = [sheet.on(found.scene.place(slide.carrier, p)) for p in linkage.links[slide.carrier].points.values()]

@@ -123,7 +123,7 @@ def test_points_and_labels_are_on_the_sheet_and_no_two_labels_overlap(case):
     make, values = CASES[case]
     for one in make(*values):
         sheet = draw_construction("A task", one, UnitSystem())
-        low, high = sheet.ground.low, sheet.ground.high
+        low, high = sheet.canvas.low, sheet.canvas.high
         for spot in one.spots:
             at = sheet.on(spot.at)
             assert low.real < at.real < high.real and low.imag < at.imag < high.imag, spot.name

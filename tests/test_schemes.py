@@ -352,7 +352,7 @@ def test_a_group_of_the_table_is_of_the_class_and_order_under_which_it_stands(ex
     """3n - 2p = 0 with its leads; the class by the count of the report, the order by its leads."""
     joined = example.pairs
     assert 3 * len(example.links) == 2 * len(joined)
-    assert {point for point, links in joined if len(links) == 1} == set(example.leads)
+    assert {point for point, links in joined if len(links) == 1} == set(example.external)
     pairs = [SimpleNamespace(i=links[0], j=(*links, "0")[1], lower=True, name=point) for point, links in joined]
     inner, outer = [p for p in pairs if p.j != "0"], [p for p in pairs if p.j == "0"]
     assert group_class([(link,) for link in example.links], inner, outer, ()) == example.group_class

@@ -114,7 +114,7 @@ def chart_data(results: Results, quantities: QuantityPlot) -> dict[str, Any]:
 
     return {
         "title": with_unit(quantities.words, quantities.dimension, results.problem.units),
-        "courses": [{"name": course.name, "values": values(course.values)} for course in quantities.courses],
+        "courses": [{"name": course.name, "values": values(course.values)} for course in quantities.curves],
     }
 
 

@@ -54,7 +54,7 @@ def chart(task: Task, marks: Sequence[StudentMarks]) -> Drawing:
     sheet = DrawingSheet(task.problem.title, caption, paper=LANDSCAPE)
     difficulties, mistakes = hardest(task, marks)[:MOST], commonest(marks)[:MOST]
     rows = max(len(difficulties), len(mistakes), FEWEST)
-    low, high = sheet.ground.low, sheet.ground.high
+    low, high = sheet.canvas.low, sheet.canvas.high
     half = ((high - low).real - GAP) / 2
     counts = histogram(marks)
     upper = filling_axis(0, 1.12 * max(1, counts.max(initial=0)), high.imag - 8 - UPPER, UPPER)
@@ -109,7 +109,7 @@ def _difficulties(panel: Panel, found: Sequence[Difficulty]) -> None:
             left += share
         _name(panel, row, own.name)
     entries = [(_(name), colour) for name, colour in STATES.values()]
-    middle = complex((panel.sheet.ground.low.real + panel.x.end - _room(entries)) / 2, panel.y.start - 8)
+    middle = complex((panel.sheet.canvas.low.real + panel.x.end - _room(entries)) / 2, panel.y.start - 8)
     _legend(panel, entries, middle)
 
 

@@ -90,7 +90,7 @@ def curve_sheet(title: str, sweep: SweepResults, part: Sequence[int], units: Uni
     panels = draw_chart(sheet, plots, CommonAxis(over, _axis_label(axis), spans=spans if sweep.marks else ()))
     for panel, plot in zip(panels, plots, strict=True):
         for curve in plot.curves:
-            sheet.ground.path(panel.at(curve.xs, curve.ys)[:: max(1, len(curve.xs) // 200)].tolist())
+            sheet.canvas.path(panel.at(curve.xs, curve.ys)[:: max(1, len(curve.xs) // 200)].tolist())
         for (low, high), n in zip(pairwise(ends), goes, strict=True):
             if n >= LIMIT:
                 _hatch_stretch(panel, low, high, fails=n >= STOPS)
@@ -124,7 +124,7 @@ def contour_sheet(title: str, sweep: SweepResults, k: int, units: UnitSystem) ->
     one = sweep.shown[k]
     caption = _("{quantity}: lines of equal value over two parameters").format(quantity=_quantity_label(one, units))
     sheet = DrawingSheet(title, caption, paper=LANDSCAPE)
-    low, high = sheet.ground.low, sheet.ground.high
+    low, high = sheet.canvas.low, sheet.canvas.high
     across, up = sweep.axes
     x = filling_axis(
         float(across.values[0]),
@@ -223,7 +223,7 @@ def _draw_levels(lines: _Grid, values: Any, *, degrees: bool) -> None:
 def _draw_legend(panel: Panel, drawn: Sequence[tuple[bool, str]]) -> None:
     """Explain the hatching above the panel, on the right."""
     at = panel.x.end - sum(SAMPLE + 5 + text_width(text, SMALL_TEXT * POINT) for __, text in drawn)
-    height = panel.sheet.ground.high.imag - TEXT_ROW / 2
+    height = panel.sheet.canvas.high.imag - TEXT_ROW / 2
     for fails, text in drawn:
         field = [
             complex(at, height - 1.3),

@@ -107,10 +107,10 @@ def stretches_outside(points: Sequence[complex], boxes: Boxes) -> Iterator[tuple
     if not len(boxes):
         yield tuple(points)
         return
-    starts, ways = z[:-1], np.diff(z)
-    firsts, lasts = shares_inside(boxes, starts, starts + ways)
+    starts, spans = z[:-1], np.diff(z)
+    firsts, lasts = shares_inside(boxes, starts, starts + spans)
     stretch: list[complex] = []
-    for k, (start, span) in enumerate(zip(starts.tolist(), ways.tolist(), strict=True)):
+    for k, (start, span) in enumerate(zip(starts.tolist(), spans.tolist(), strict=True)):
         met, free = np.flatnonzero(lasts[:, k] > firsts[:, k]), 0.0
         for first, last in sorted(zip(firsts[met, k].tolist(), lasts[met, k].tolist(), strict=True)):
             if first > free:

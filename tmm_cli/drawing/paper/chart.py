@@ -218,8 +218,8 @@ class CommonAxis:
 
 def axis_extent(sheet: DrawingSheet) -> tuple[float, float]:
     """Return the start (mm) and the largest length (mm) of the common axis."""
-    start = sheet.ground.low.real + LEFT_MARGIN
-    return start, sheet.ground.high.real - RIGHT_MARGIN - start
+    start = sheet.canvas.low.real + LEFT_MARGIN
+    return start, sheet.canvas.high.real - RIGHT_MARGIN - start
 
 
 def count_fitting(sheet: DrawingSheet, plots: Sequence[PlotContent], over: CommonAxis) -> int:
@@ -232,7 +232,7 @@ def count_fitting(sheet: DrawingSheet, plots: Sequence[PlotContent], over: Commo
 def _height_for_panels(sheet: DrawingSheet, over: CommonAxis, count: int) -> float:
     """Return the height (mm) that `count` panels of the least height leave for their heads."""
     beside = (2 + bool(over.spans)) * TEXT_ROW
-    return float((sheet.ground.high - sheet.ground.low).imag - beside - count * (_panel_gap(over) + LEAST_PANEL_HEIGHT))
+    return float((sheet.canvas.high - sheet.canvas.low).imag - beside - count * (_panel_gap(over) + LEAST_PANEL_HEIGHT))
 
 
 def _panel_gap(over: CommonAxis) -> float:
@@ -258,9 +258,9 @@ def draw_chart(
     """
     start, most = axis_extent(sheet)
     x = replace(over.axis, start=start + (most - over.axis.length) / 2)
-    top = sheet.ground.high.imag - (TEXT_ROW if over.spans else 0.0)
+    top = sheet.canvas.high.imag - (TEXT_ROW if over.spans else 0.0)
     under = _panel_gap(over) - 0.3 * TEXT_ROW
-    low = sheet.ground.low.imag + 2 * TEXT_ROW
+    low = sheet.canvas.low.imag + 2 * TEXT_ROW
     heads = [_legend_rows(plot, x.length) for plot in plots]
     allowed = _height_for_panels(sheet, over, len(plots)) / TEXT_ROW
     if sum(map(len, heads)) > allowed:
@@ -284,9 +284,9 @@ def draw_chart(
         top = bottom - under
     last = panels[-1]
     last.numbers_across(under)
-    middle = complex(last.x.start + last.x.length / 2, sheet.ground.low.imag + 1.5)
+    middle = complex(last.x.start + last.x.length / 2, sheet.canvas.low.imag + 1.5)
     sheet.text(middle, over.words, PLAIN_TEXT, ha="center")
-    _draw_spans(panels, over.spans, sheet.ground.high.imag - 1.5)
+    _draw_spans(panels, over.spans, sheet.canvas.high.imag - 1.5)
     return panels
 
 
@@ -360,7 +360,7 @@ class Panel:
             if plot.jumps:
                 kept = points[np.isfinite(points)][::LABEL_SAMPLING].tolist()
                 for start, end in pairwise(kept):
-                    self.sheet.ground.line(start, end)
+                    self.sheet.canvas.line(start, end)
         for jump in plot.jumps:
             for value, text in zip(jump.values, jump.texts, strict=True):
                 place = complex(self.at(jump.at, value))

@@ -59,7 +59,7 @@ def _draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str
     if length < LEAST_LENGTH:
         return
     u = span / length
-    crowd = sheet.ground.crowd
+    crowd = sheet.canvas.crowd
     width, height = text_extent(text, DIMENSION_TEXT)
     tail = 2 * ARROWHEAD_ROOM + 3 + width
     fits = length > 2 * ARROWHEAD_ROOM + 1 and length > width + 3
@@ -87,12 +87,12 @@ def _draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str
         outer = 0.0 if inner else 2 * ARROWHEAD_ROOM
         low_run, high_run = (tail if stand == position else outer for position in ("before", "after"))
         stretch = first - (low_run + 1) * u, last + (high_run + 1) * u
-        price = 4.0 * sum(distance_to_segment(z, *stretch) < LETTER_CLEARANCE for z in sheet.ground.rivals)
+        price = 4.0 * sum(distance_to_segment(z, *stretch) < LETTER_CLEARANCE for z in sheet.canvas.rivals)
         legs = [(z, foot + 2 * EXTENSION_OVERHANG * side) for z, foot in ((start, first), (end, last))]
-        price += count_beside(crowd, *stretch, 1.5) + sheet.ground.crossed([*legs, stretch])
+        price += count_beside(crowd, *stretch, 1.5) + sheet.canvas.crossed([*legs, stretch])
         price += 0.5 * sum(count_beside(crowd, z + 4 * side, foot, 0.8) for z, foot in ((start, first), (end, last)))
         squares = np.array([*text_squares(middle, v, width, height), first, last])
-        prices = sheet.ground.price(boxes_about(squares, height, height))
+        prices = sheet.canvas.price(boxes_about(squares, height, height))
         price += float(prices[:-2].sum() + HEAD_SHARE * prices[-2:].sum())
         return price + least(offset, stand)
 
@@ -137,19 +137,22 @@ def draw_angle(sheet: DrawingSheet, vertex: complex, first: complex, last: compl
 
 
 def _draw_angle(sheet: DrawingSheet, vertex: complex, first: complex, last: complex, name: str, *, right: bool) -> None:
-    ways = [(z - vertex) / abs(z - vertex) for z in (first, last)]
+    directions = [(z - vertex) / abs(z - vertex) for z in (first, last)]
     if right:
         corner = 5.4  # larger than a sliding block
         sheet.line(
-            [vertex + corner * direction for direction in (ways[0], sum(ways), ways[1])], DARK_COLOUR, 0.8, z=3.2
+            [vertex + corner * direction for direction in (directions[0], sum(directions), directions[1])],
+            DARK_COLOUR,
+            0.8,
+            z=3.2,
         )
         return
-    turn = float(np.angle(ways[1] / ways[0]))
+    turn = float(np.angle(directions[1] / directions[0]))
     if abs(turn) * LARGEST_RADIUS < LEAST_LENGTH:
         return
     room = 0.85 * min(abs(first - vertex), abs(last - vertex))
     radius = float(min(max(9.0, 7.0 / abs(turn)), max(room, 6.0), LARGEST_RADIUS))
-    angles = float(np.angle(ways[0])) + np.linspace(0, turn, 30)
+    angles = float(np.angle(directions[0])) + np.linspace(0, turn, 30)
     arc = [vertex + radius * complex(z) for z in np.exp(1j * angles)]
     sheet.line(arc, DARK_COLOUR, 0.7, z=2.6)
     for tail, tip in ((arc[8], arc[0]), (arc[-9], arc[-1])):
@@ -306,7 +309,7 @@ def draw_ruler(sheet: DrawingSheet, ruler: Ruler, numbers: Sequence[RulerNumber]
             if abs(run - number.run) > 1.0:
                 sheet.line([tip, ruler.at(run, sign * (TICK_LENGTH + NUMBER_GAP))], THIN_COLOUR, 0.4, z=2.6)
             colour = DARK_COLOUR if number.strong else GREY_TEXT
-            if sheet.ground.free(box_about(middle, *text_extent(number.text, NUMBER_SIZE))):
+            if sheet.canvas.free(box_about(middle, *text_extent(number.text, NUMBER_SIZE))):
                 sheet.text(middle, number.text, NUMBER_SIZE, colour=colour, ha="center")
             else:
                 sheet.label(number.text, tip, NUMBER_SIZE, colour)

@@ -112,11 +112,11 @@ class LabelCandidates:
 class LabelPlacer:
     """Search for label positions. rivals: points with other names, or named by these labels."""
 
-    def __init__(self, ground: OccupiedArea, labels: Sequence[Label]) -> None:
-        self.ground, self.labels, self.raster = ground, labels, PriceRaster(ground)
+    def __init__(self, canvas: OccupiedArea, labels: Sequence[Label]) -> None:
+        self.canvas, self.labels, self.raster = canvas, labels, PriceRaster(canvas)
         anchors = [label.anchor for label in labels if label.line is None]
-        self.rivals = np.array([*dict.fromkeys([*anchors, *ground.rivals])], complex)
-        self.texts = np.reshape(np.array(ground.boxes), (-1, 4))
+        self.rivals = np.array([*dict.fromkeys([*anchors, *canvas.rivals])], complex)
+        self.texts = np.reshape(np.array(canvas.boxes), (-1, 4))
         sizes = [text_extent(label.text, label.size) for label in labels]
         self.tiers = [
             (candidates_beside if label.line else candidates_about)(label, *size)
@@ -159,7 +159,7 @@ class LabelPlacer:
         best = np.argsort(candidates.price, kind="stable")[:LEADERS_KEPT]
         kept = candidates.part(best)
         both = np.concatenate([kept.feet, kept.ends])
-        lines = self.ground.solid.near((both.real.min(), both.real.max(), both.imag.min(), both.imag.max()))
+        lines = self.canvas.solid.near((both.real.min(), both.real.max(), both.imag.min(), both.imag.max()))
         crossed = segments_cross(kept.feet, kept.ends, *lines.T).sum(axis=1)
         through = (lengths_inside(self.texts, kept.feet, kept.ends) > 0).sum(axis=0)
         return replace(kept, price=kept.price + CROSSING_PRICE * crossed + LINE_PRICE * through)
@@ -177,7 +177,7 @@ class LabelPlacer:
             nearer = np.where(is_anchor, np.inf, off).min(axis=1) < away + 0.8
         for k in {int(k) for k in whose if self.labels[k].line is not None}:
             line, on_line = self.labels[k].line, whose == k
-            others = [other for other in self.ground.lines if other != line]
+            others = [other for other in self.canvas.lines if other != line]
             near = distances_to_segments(middles[on_line], *np.array([line, *others]).T)
             nearer[on_line] = near[:, 1:].min(axis=1, initial=np.inf) < near[:, 0] + 0.5
         return np.where(nearer, np.where(led, 0.0, AMBIGUITY_PRICE), 0.0)
@@ -208,13 +208,13 @@ class LabelPlacer:
         return best
 
 
-def place_labels(ground: OccupiedArea, labels: Sequence[Label]) -> list[PlacedLabel]:
+def place_labels(canvas: OccupiedArea, labels: Sequence[Label]) -> list[PlacedLabel]:
     """Place labels where they cover least.
 
     Labels with the least choice come first; then every label is placed again, given the others, until nothing moves.
 
     Args:
-        ground: Area with the lines and texts drawn so far.
+        canvas: Area with the lines and texts drawn so far.
         labels: Labels to be placed.
 
     Returns:
@@ -222,7 +222,7 @@ def place_labels(ground: OccupiedArea, labels: Sequence[Label]) -> list[PlacedLa
     """
     if not labels:
         return []
-    placer = LabelPlacer(ground, labels)
+    placer = LabelPlacer(canvas, labels)
     boxes, leaders = np.full((len(labels), 4), np.nan), np.full((len(labels), 2), np.nan, complex)
     middles, costs = [label.anchor for label in labels], [math.inf] * len(labels)
     order = sorted(range(len(labels)), key=lambda k: -float(np.sort(placer.known[k][0].price)[:4].sum()))

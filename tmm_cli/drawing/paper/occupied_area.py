@@ -158,19 +158,19 @@ SOLID_UNIT, TEXT_UNIT = 1 << 20, 1 << 40  # one count holds points on faint line
 class PriceRaster:
     """Cumulative counts of what is drawn, on a raster of squares: four look-ups give the content of any box."""
 
-    def __init__(self, ground: OccupiedArea) -> None:
-        self.low, self.high = ground.low, ground.high
+    def __init__(self, canvas: OccupiedArea) -> None:
+        self.low, self.high = canvas.low, canvas.high
         size = self.high - self.low
         self.cell = max(SQUARE_SIDE, abs(size) / MOST_SQUARES)
         across, up = (max(1, int(np.ceil(length / self.cell))) for length in (size.real, size.imag))
         self.shape = across, up
         count = np.zeros(across * up, np.int64)
-        for pieces, weight in ((ground.faint, 1), (ground.solid, SOLID_UNIT)):
+        for pieces, weight in ((canvas.faint, 1), (canvas.solid, SOLID_UNIT)):
             x, y = self._squares(pieces.points(RASTER_STEP))
             inside = (x >= 0) & (x < across) & (y >= 0) & (y < up)
             count += weight * np.bincount(x[inside] * up + y[inside], minlength=across * up)
         squares = count.reshape(across, up)
-        for left, right, low, high in self._edges(np.reshape(np.array(ground.boxes), (-1, 4))).tolist():
+        for left, right, low, high in self._edges(np.reshape(np.array(canvas.boxes), (-1, 4))).tolist():
             squares[left:right, low:high] += TEXT_UNIT
         self.sums = np.zeros((across + 1, up + 1), np.int64)
         np.cumsum(np.cumsum(squares, axis=1, out=squares), axis=0, out=self.sums[1:, 1:])

@@ -97,8 +97,8 @@ class DrawingSheet:
         self.paper, self.mu = (room.paper, room.mu) if room else choose_paper(finite, pad, paper)
         self.free = room.free if room else paper is not None
         self.figure = room.figure if room else None if paper else (across / self.mu, up / self.mu)
-        self.ground = OccupiedArea(*drawing_area(self.paper))
-        self.origin = (self.ground.low + self.ground.high) / 2 - middle / self.mu
+        self.canvas = OccupiedArea(*drawing_area(self.paper))
+        self.origin = (self.canvas.low + self.canvas.high) / 2 - middle / self.mu
         if room is not None:
             self.origin = room.origin
         self.marks: list[Mark] = []
@@ -128,7 +128,7 @@ class DrawingSheet:
     @property
     def field(self) -> tuple[complex, complex]:
         """Corners of the field to which curves and guides are cut, mm."""
-        return self.ground.low + CURVE_EDGE * (1 + 1j), self.ground.high - CURVE_EDGE * (1 + 1j)
+        return self.canvas.low + CURVE_EDGE * (1 + 1j), self.canvas.high - CURVE_EDGE * (1 + 1j)
 
     @contextmanager
     def on_layer(self, layer: Layer) -> Iterator[None]:
@@ -168,7 +168,7 @@ class DrawingSheet:
         wide, high = label_extent(text, size)
         middle = complex(at) + (0.5 - ALIGN_SHARE[ha]) * (wide - 0.6) * along
         squares = text_squares(middle, along, wide, high) if turn else []
-        self.ground.boxes += [box_about(place, high, high) for place in squares] or [box_about(middle, wide, high)]
+        self.canvas.boxes += [box_about(place, high, high) for place in squares] or [box_about(middle, wide, high)]
 
     def label(
         self, text: Words, anchor: complex, size: float = 9, colour: str = DARK_COLOUR, style: str = "normal"
@@ -197,7 +197,7 @@ class DrawingSheet:
                 self.faint.append(len(self.marks))
             self.marks.append(LineMark(stretch, colour, width * POINT, style, self.layer, z))
             if faint or blocks:
-                (self.ground.faint if faint else self.ground.solid).path(stretch)
+                (self.canvas.faint if faint else self.canvas.solid).path(stretch)
 
     def area(
         self,
@@ -213,7 +213,7 @@ class DrawingSheet:
         outline = None if edge == "none" else edge
         self.marks.append(AreaMark(tuple(map(complex, corners)), face, outline, width * POINT, self.layer, z))
         if blocks:
-            self.ground.path([*corners, corners[0]])
+            self.canvas.path([*corners, corners[0]])
 
     def circle(
         self, at: complex, radius: float, face: str = "white", edge: str = DARK_COLOUR, width: float = 1.0, z: float = 6
@@ -221,7 +221,7 @@ class DrawingSheet:
         """Draw a circle about a point (mm)."""
         if np.isfinite(at):
             self.marks.append(CircleMark(complex(at), radius, face, edge, width * POINT, self.layer, z))
-            self.ground.spot(at, radius)
+            self.canvas.spot(at, radius)
 
     def arrow(self, start: complex, end: complex, colour: str = DARK_COLOUR, width: float = 1.2, z: float = 5) -> None:
         """Draw an arrow; on a short shaft its head is smaller."""
@@ -260,7 +260,7 @@ class DrawingSheet:
 
     def _interrupt(self) -> None:
         """Cut faint lines where texts stand on them."""
-        boxes = widen(np.array(self.ground.boxes), TEXT_AIR)
+        boxes = widen(np.array(self.canvas.boxes), TEXT_AIR)
         for number in reversed(self.faint):
             mark = self.marks[number]
             assert isinstance(mark, LineMark)
@@ -271,7 +271,7 @@ class DrawingSheet:
 
     def settle(self) -> None:
         """Place the pending labels in the current field."""
-        for placed in place_labels(self.ground, self.labels):
+        for placed in place_labels(self.canvas, self.labels):
             label = placed.label
             self.text(placed.middle, label.text, label.size, colour=label.colour, ha="center", style=label.style)
             if placed.leader:
@@ -293,8 +293,8 @@ class DrawingSheet:
                 self.block, *bounding_corners(self.marks), points_covered(self.marks), fits_sheet
             )
         else:
-            crowd = np.concatenate([self.ground.crowd, self.ground.faint.points(), self.ground.written])
-            shape, at = least_covering_block(self.block, self.ground.low, self.ground.high, crowd)
+            crowd = np.concatenate([self.canvas.crowd, self.canvas.faint.points(), self.canvas.written])
+            shape, at = least_covering_block(self.block, self.canvas.low, self.canvas.high, crowd)
         wide, high = complex(shape.size.real), 1j * shape.size.imag
         self.area([at, at + wide, at + shape.size, at + high], "white", THIN_COLOUR, 0.6, 8, blocks=False)
         for start, end in shape.lines:
@@ -308,7 +308,7 @@ class DrawingSheet:
                 colour=colour,
                 ha="right" if block_text.right else "left",
             )
-        self.ground.boxes.append((at.real, (at + wide).real, at.imag, (at + high).imag))
+        self.canvas.boxes.append((at.real, (at + wide).real, at.imag, (at + high).imag))
         self.block = NoteBlock()
 
 
@@ -331,7 +331,7 @@ def draw_hatching(sheet: DrawingSheet, start: complex, end: complex, outward: co
             foot = start + along * (k + 0.5) * abs(end - start) / number
             sheet.line([foot, foot + 1.7 * outward - 1.2 * along], THIN_COLOUR, 0.6, z=2.4, blocks=False)
     for depth in HATCH_DEPTHS:
-        sheet.ground.line(start + depth * outward, end + depth * outward)
+        sheet.canvas.line(start + depth * outward, end + depth * outward)
 
 
 def divide_into_cells(

@@ -80,7 +80,7 @@ def assemblies_sheet(
     sheet.mu = mu
     look = STRUCTURAL.sized(max(LEAST_SYMBOLS, min(symbol_scale(sheet, scene, links) for scene in scenes.values())))
     for (n, assembly), (low, high) in zip(numbered, corners, strict=False):
-        sheet.ground = OccupiedArea(low + 1j * CAPTION_HEIGHT, high)
+        sheet.canvas = OccupiedArea(low + 1j * CAPTION_HEIGHT, high)
         sheet.origin = (low + 1j * CAPTION_HEIGHT + high) / 2 - boxes[n][0] / sheet.mu
         _draw_assembly(sheet, scenes[n], group, look)
         _draw_cell(sheet, low, high, n, assembly)

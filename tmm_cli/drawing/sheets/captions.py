@@ -188,11 +188,11 @@ class _CaptionedLayout:
 
 
 def _best_layout(
-    points: Sequence[tuple[complex, complex]], *ways: Callable[[float], DrawingCaption]
+    points: Sequence[tuple[complex, complex]], *captions: Callable[[float], DrawingCaption]
 ) -> _CaptionedLayout:
     """Return the layout with the largest drawing; of equal ones, the first."""
     return min(
-        (_fit_layout(paper, points, caption_at) for caption_at in ways for paper in SHEET_PAPERS),
+        (_fit_layout(paper, points, caption_at) for caption_at in captions for paper in SHEET_PAPERS),
         key=lambda placed: placed.mu,
     )
 
@@ -233,8 +233,8 @@ def _captioned_sheet(
     on = PaperLayout(placed.paper, placed.mu, 0j, (across / placed.mu, up / placed.mu))
     sheet, room = DrawingSheet(name, subject, room=on), placed.written.left(low, high)
     placed.written.put(sheet, low, high)
-    sheet.ground = OccupiedArea(complex(low.real, high.imag - room.imag), complex(low.real + room.real, high.imag))
-    sheet.origin = (sheet.ground.low + sheet.ground.high) / 2 - placed.middle
+    sheet.canvas = OccupiedArea(complex(low.real, high.imag - room.imag), complex(low.real + room.real, high.imag))
+    sheet.origin = (sheet.canvas.low + sheet.canvas.high) / 2 - placed.middle
     return sheet
 
 

@@ -75,7 +75,7 @@ class QuantityPlot:
 
     words: str
     dimension: Dimension
-    courses: Sequence[SampledCurve]
+    curves: Sequence[SampledCurve]
     symbol: str = ""
 
 
@@ -110,9 +110,9 @@ def balancing_plots(whole: Results, results: Results) -> list[QuantityPlot]:
     moments = _("balancing moments") if several else _("balancing moment")
     forces = _("balancing forces") if several else _("balancing force")
     return [
-        QuantityPlot(words, dimension, courses[first : first + MOST_CURVES])
-        for words, dimension, courses in ((moments, MOMENT, curves_of[True]), (forces, FORCE, curves_of[False]))
-        for first in range(0, len(courses), MOST_CURVES)
+        QuantityPlot(words, dimension, sampled[first : first + MOST_CURVES])
+        for words, dimension, sampled in ((moments, MOMENT, curves_of[True]), (forces, FORCE, curves_of[False]))
+        for first in range(0, len(sampled), MOST_CURVES)
     ]
 
 
@@ -123,13 +123,13 @@ def reaction_plots(whole: Results, results: Results) -> list[QuantityPlot]:
     computed = {r.pair.name: r for r in results.reactions.all}
     plots = []
     for words, on_frame in ((_("reactions of the frame"), True), (_("reactions between moving links"), False)):
-        courses = [
+        sampled = [
             SampledCurve(f"{symbol.name} ({r.pair.name})", np.abs(r.force), np.abs(computed[r.pair.name].force))
             for r, symbol in ((r, reaction_symbol(r.by, r.on)) for r in whole.reactions.all)
             if (FRAME in (r.on, r.by)) == on_frame
         ]
         plots += [
-            QuantityPlot(words, FORCE, courses[i : i + MOST_CURVES], "R") for i in range(0, len(courses), MOST_CURVES)
+            QuantityPlot(words, FORCE, sampled[i : i + MOST_CURVES], "R") for i in range(0, len(sampled), MOST_CURVES)
         ]
     return plots
 
@@ -154,10 +154,10 @@ def energy_plots(whole: Results, results: Results) -> list[QuantityPlot]:
         (_("kinetic energy T, J"), NUMBER, {"": "kinetic"}, "T"),
         (_("power, W"), NUMBER, powers, "P"),
     ):
-        courses = [SampledCurve(label, getattr(curve, name), getattr(computed, name)) for label, name in parts.items()]
-        courses = [course for course in courses if np.any(np.nan_to_num(course.values) != 0)]
-        if courses:
-            plots.append(QuantityPlot(words, dimension, courses, symbol))
+        sampled = [SampledCurve(label, getattr(curve, name), getattr(computed, name)) for label, name in parts.items()]
+        sampled = [sampled_curve for sampled_curve in sampled if np.any(np.nan_to_num(sampled_curve.values) != 0)]
+        if sampled:
+            plots.append(QuantityPlot(words, dimension, sampled, symbol))
     return plots
 
 
@@ -166,8 +166,8 @@ def shaking_plots(results: Results, q: Any) -> list[QuantityPlot]:
     balancing = results.balancing
     if balancing is None or not np.any(np.nan_to_num(balancing.cycle.before.force) != 0):
         return []
-    ways = [(_("without counterweights"), balancing.before), (_("with counterweights"), balancing.after)]
-    stages = [(*stage, curve) for stage, curve in zip(ways, balancing.at(results.mechanism, q), strict=True)]
+    stage_names = [(_("without counterweights"), balancing.before), (_("with counterweights"), balancing.after)]
+    stages = [(*stage, curve) for stage, curve in zip(stage_names, balancing.at(results.mechanism, q), strict=True)]
     stages = stages[::-1] if balancing.cycle.counterweights else stages[:1]  # dashed: without counterweights
     nothing = NO_FORCE * float(np.nanmax(np.abs(balancing.cycle.before.force)))
 
@@ -192,15 +192,15 @@ def pressure_plots(results: Results, motion: Motion) -> list[QuantityPlot]:
     for slides in (True, False):
         angles = [p for p in results.pressure if p.slides == slides]
         text = _("link {link} in pair {pair}")
-        courses = [
+        sampled = [
             SampledCurve(text.format(link=p.link, pair=p.pair), curves[p.group, p.link, p.pair], p.angles)
             for p in angles
         ]
         words = _("pressure angle of sliding links") if slides else _("pressure angle of rotating links")
-        for first in range(0, len(courses), MOST_CURVES):
+        for first in range(0, len(sampled), MOST_CURVES):
             allowed = np.full(np.shape(motion.q), angles[0].allowed)
             limit = SampledCurve(_("allowed"), allowed, np.full(np.shape(angles[0].angles), np.nan), limit=True)
-            plots.append(QuantityPlot(words, ANGLE, [*courses[first : first + MOST_CURVES], limit], "θ"))
+            plots.append(QuantityPlot(words, ANGLE, [*sampled[first : first + MOST_CURVES], limit], "θ"))
     return plots
 
 
@@ -390,10 +390,10 @@ def plot_quantities(
     """
     factor, unit = units.factor(quantity_plot.dimension), typeset_unit(units.spelt(quantity_plot.dimension))
     curves, jumps = [], []
-    for k, course in enumerate(quantity_plot.courses):
-        values, points = (np.asarray(v) / factor for v in (course.values, course.points))
-        if course.limit:
-            curves.append(ChartCurve(xs, values, course.name, THIN_COLOUR, "--", 1.0))
+    for k, sampled_curve in enumerate(quantity_plot.curves):
+        values, points = (np.asarray(v) / factor for v in (sampled_curve.values, sampled_curve.points))
+        if sampled_curve.limit:
+            curves.append(ChartCurve(xs, values, sampled_curve.name, THIN_COLOUR, "--", 1.0))
             continue
         colour, style = (
             CURVE_COLOURS[k % len(CURVE_COLOURS)],
@@ -403,13 +403,13 @@ def plot_quantities(
         leaps = _find_jumps(xs, values, borders)
         after = np.array(leaps, dtype=int) + 1
         whole = np.insert(values, after, np.nan)
-        curves.append(ChartCurve(np.insert(xs, after, np.nan), whole, course.name, colour, style))
+        curves.append(ChartCurve(np.insert(xs, after, np.nan), whole, sampled_curve.name, colour, style))
         dot_step = slice(None, None, math.ceil(len(marks) / MOST_DOTS) or 1)
         curves.append(
             ChartCurve(marks[dot_step], np.broadcast_to(points, np.shape(marks))[dot_step], "", colour, dots=True)
         )
         for i in leaps:
-            written = len(quantity_plot.courses) <= MOST_WRITTEN_CURVES and len(leaps) <= MOST_WRITTEN_JUMPS
+            written = len(quantity_plot.curves) <= MOST_WRITTEN_CURVES and len(leaps) <= MOST_WRITTEN_JUMPS
             jump_texts = [numeral(v, ".4g") if written else "" for v in (values[i], values[i + 1])]
             jumps.append(CurveJump(xs[i], (values[i], values[i + 1]), (jump_texts[0], jump_texts[1]), colour))
     return PlotContent(

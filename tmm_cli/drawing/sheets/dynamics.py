@@ -209,23 +209,25 @@ def _curves_with_sum(curves: dict[str, Real], points: dict[str, Real], total: st
     """Return the sum, then a curve for each nonzero part; of many parts the smallest are added up."""
     sizes = {name: float(np.max(np.abs(values))) for name, values in curves.items()}
     largest = max(sizes.values(), default=0.0)
-    courses = [SampledCurve(name, curves[name], points[name]) for name, size in sizes.items() if size > 1e-9 * largest]
-    total_curve = _total_curve(courses, total)
-    if len(courses) > MOST_CURVES:
-        kept = sorted(courses, key=lambda curve: -sizes[curve.name])[: MOST_CURVES - 1]
-        rest = [curve for curve in courses if curve not in kept]
-        courses = [*(curve for curve in courses if curve in kept), _total_curve(rest, _("others"))]
+    curves_drawn = [
+        SampledCurve(name, curves[name], points[name]) for name, size in sizes.items() if size > 1e-9 * largest
+    ]
+    total_curve = _total_curve(curves_drawn, total)
+    if len(curves_drawn) > MOST_CURVES:
+        kept = sorted(curves_drawn, key=lambda curve: -sizes[curve.name])[: MOST_CURVES - 1]
+        rest = [curve for curve in curves_drawn if curve not in kept]
+        curves_drawn = [*(curve for curve in curves_drawn if curve in kept), _total_curve(rest, _("others"))]
     return (
-        [total_curve, *courses]
-        if len(courses) > 1
-        else [replace(total_curve, name=curve.name) for curve in courses] or [total_curve]
+        [total_curve, *curves_drawn]
+        if len(curves_drawn) > 1
+        else [replace(total_curve, name=curve.name) for curve in curves_drawn] or [total_curve]
     )
 
 
-def _total_curve(courses: Sequence[SampledCurve], name: str) -> SampledCurve:
+def _total_curve(curves_drawn: Sequence[SampledCurve], name: str) -> SampledCurve:
     still = SampledCurve(name, np.zeros(1), np.zeros(1))
     return SampledCurve(
-        name, sum((c.values for c in courses), still.values), sum((c.points for c in courses), still.points)
+        name, sum((c.values for c in curves_drawn), still.values), sum((c.points for c in curves_drawn), still.points)
     )
 
 
@@ -263,8 +265,8 @@ def energy_mass_sheet(results: Results, running: SteadyRunning, travel: Real) ->
     factor, unit = units.factor(MOMENT_OF_INERTIA), typeset_unit(units.spelt(MOMENT_OF_INERTIA))
     title = _("Energy-mass diagram with tangents for the largest and the smallest speed; dots: computed positions")
     sheet = DrawingSheet(results.problem.title, title, paper=LANDSCAPE)
-    text_start = sheet.ground.low + 0.5 * TEXT_ROW * 1j
-    sheet.ground = OccupiedArea(sheet.ground.low + 2.4 * TEXT_ROW * 1j, sheet.ground.high)
+    text_start = sheet.canvas.low + 0.5 * TEXT_ROW * 1j
+    sheet.canvas = OccupiedArea(sheet.canvas.low + 2.4 * TEXT_ROW * 1j, sheet.canvas.high)
 
     def diagram(x: Real, colour: str = DARK_COLOUR, *, dots: bool = False) -> ChartCurve:
         return ChartCurve(steady.machine.inertia(x) / factor, steady.work(x), colour=colour, dots=dots)
@@ -284,7 +286,7 @@ def energy_mass_sheet(results: Results, running: SteadyRunning, travel: Real) ->
     )
     panel = draw_chart(sheet, [work], CommonAxis(axis, below))[0]
     for curve in (whole, *lines):
-        sheet.ground.path(panel.at(curve.xs, curve.ys).tolist())
+        sheet.canvas.path(panel.at(curve.xs, curve.ys).tolist())
     step = max(1, round(round_up(len(dotted.xs) / MOST_NUMBERED, TICK_STEPS)))
     for place, number in list(zip(panel.at(dotted.xs, dotted.ys).tolist(), results.numbers, strict=True))[::step]:
         sheet.label(str(number), place, 8, DARK_COLOUR)

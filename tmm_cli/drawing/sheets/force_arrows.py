@@ -36,11 +36,13 @@ class ForceArrows:
     whole: bool = False
     taken: list[tuple[complex, complex, bool]] = field(default_factory=list)
     coupled: list[complex] = field(default_factory=list)
-    ways: list[tuple[complex, complex]] = field(default_factory=list)
+    directions: list[tuple[complex, complex]] = field(default_factory=list)
 
     def draw(self, acting: Iterable[ForceOrCouple]) -> None:
         acting = list(acting)
-        self.ways += [(self.sheet.on(load.at), load.force / abs(load.force)) for load in acting if not load.couple]
+        self.directions += [
+            (self.sheet.on(load.at), load.force / abs(load.force)) for load in acting if not load.couple
+        ]
         for load in acting:
             at, colour = self.sheet.on(load.at), VECTOR_COLOURS[load.kind]
             if load.couple:
@@ -65,7 +67,9 @@ class ForceArrows:
             for place, direction, out in self.taken
             if abs(at - place) < 1 and abs(along - direction) < SAME_DIRECTION
         ]
-        against = any(abs(at - place) < 1 and abs(along + direction) < SAME_DIRECTION for place, direction in self.ways)
+        against = any(
+            abs(at - place) < 1 and abs(along + direction) < SAME_DIRECTION for place, direction in self.directions
+        )
         # with its head there, the arrow would cover an opposite one that begins there, or another that ends there
         free = not against and all(alike)
         out = self.whole or not free or self._covered(at, -along) + 3 >= self._covered(at, along)
@@ -81,7 +85,7 @@ class ForceArrows:
 
     def _covered(self, at: complex, direction: complex) -> int:
         """Count the drawn points along a direction from a point."""
-        crowd = self.sheet.ground.crowd - at
+        crowd = self.sheet.canvas.crowd - at
         run, off = dot(direction, crowd), np.abs(cross(direction, crowd))
         return int(np.count_nonzero((run > 2.5) & (run < LOAD_LENGTH + 3) & (off < SHAFT_REACH)))
 

@@ -33,8 +33,8 @@ class GroupExample:
     Attributes:
         points: Points in a square of side 1.
         links: Links, each by the letters of its points.
-        leads: External pairs: point, and direction of the stub (deg).
-        stones: Prismatic pairs: point, and direction of the guide (deg).
+        external: External pairs: point, and direction of the stub (deg).
+        prismatic: Prismatic pairs: point, and direction of the guide (deg).
     """
 
     group_class: int
@@ -42,8 +42,8 @@ class GroupExample:
     name: str
     points: Mapping[str, complex]
     links: tuple[str, ...]
-    leads: Mapping[str, float]
-    stones: Mapping[str, float] = field(default_factory=dict)
+    external: Mapping[str, float]
+    prismatic: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def pairs(self) -> list[tuple[str, tuple[str, ...]]]:
@@ -51,9 +51,9 @@ class GroupExample:
         return [(point, tuple(link for link in self.links if point in link)) for point in self.points]
 
 
-def _dyad(name: str, stones: Mapping[str, float]) -> GroupExample:
+def _dyad(name: str, prismatic: Mapping[str, float]) -> GroupExample:
     points = {"A": 0.12 + 0.25j, "B": 0.5 + 0.8j, "C": 0.88 + 0.25j}
-    return GroupExample(2, 2, name, points, ("AB", "BC"), {"A": 250, "C": 290}, stones)
+    return GroupExample(2, 2, name, points, ("AB", "BC"), {"A": 250, "C": 290}, prismatic)
 
 
 GROUP_EXAMPLES: tuple[GroupExample, ...] = (
@@ -158,7 +158,7 @@ def draw_group_table() -> Iterator[tuple[str, Drawing]]:
     sheet = DrawingSheet(
         _("Assur groups of classes II to VI"), _("By class and order; dotted: external pairs"), paper=LANDSCAPE
     )
-    size, corners = divide_into_cells(sheet.ground.low, sheet.ground.high, COLUMNS, ROWS, CELL_GAP)
+    size, corners = divide_into_cells(sheet.canvas.low, sheet.canvas.high, COLUMNS, ROWS, CELL_GAP)
     for example, (low, high) in zip(GROUP_EXAMPLES, corners, strict=False):
         side = min(size.real, size.imag - CAPTION_HEIGHT) - 2 * PAIR_STUB
         middle = (low + high + 1j * CAPTION_HEIGHT) / 2
@@ -171,7 +171,7 @@ def draw_group_table() -> Iterator[tuple[str, Drawing]]:
 
 def _draw_example(sheet: DrawingSheet, example: GroupExample, corner: complex, side: float) -> None:
     at = {name: corner + side * point for name, point in example.points.items()}
-    for name, turn in example.leads.items():
+    for name, turn in example.external.items():
         direction = _direction(turn)
         sheet.line([at[name], at[name] + PAIR_STUB * direction], DARK_COLOUR, 0.8, ":")
     with sheet.on_layer("links"):
@@ -182,8 +182,8 @@ def _draw_example(sheet: DrawingSheet, example: GroupExample, corner: complex, s
             else:
                 sheet.line(corners, DARK_COLOUR, 1.6)
         for name, place in at.items():
-            if name in example.stones:
-                along = _direction(example.stones[name])
+            if name in example.prismatic:
+                along = _direction(example.prismatic[name])
                 length, height = (
                     side_length / 2 * direction
                     for side_length, direction in zip(BLOCK_SIZE, (along, 1j * along), strict=True)

@@ -106,7 +106,7 @@ def draw_measured(
     moving, drawn_links, hue = linkage.moving_points, links or linkage.moving, dict.fromkeys(linkage.links, DARK_COLOUR)
     apart = [p for p in scene.structure.pairs if links and (p.i in links) != (p.j in links)]
     inner = [p for p in scene.structure.pairs if not links or {p.i, p.j} <= {*links}]
-    drawn = render_scene(sheet, scene, drawn_links, inner, MEASURED, hue, leads=apart)
+    drawn = render_scene(sheet, scene, drawn_links, inner, MEASURED, hue, external=apart)
     for pair in apart:
         if not pair.lower:
             draw_wheels(sheet, scene.higher(pair), dict.fromkeys(links, DARK_COLOUR))
@@ -246,7 +246,7 @@ def _clearness(scenes: Sequence[MechanismScene]) -> Real:
     # the position of a box along a guide on the frame is arbitrary
     pairs = [p for p in all_pairs if p.kind == "R" or (p.slide is not None and p.slide.carrier != FRAME)]
     spots = np.array([[s.at(p) for p in pairs] for s in scenes])
-    spines = [[[*s.joints(link), *(stone for stone, __ in s.guides(link))] for link in moving] for s in scenes]
+    spines = [[[*s.joints(link), *(block for block, __ in s.guides(link))] for link in moving] for s in scenes]
     bars = np.array([[bar for spine in spine_points for bar in pairwise(spine)] for spine_points in spines], complex)
     bars = bars.reshape(len(scenes), 1, bars.size // (2 * len(scenes)), 2)
     start, span = bars[..., 0], bars[..., 1] - bars[..., 0]

@@ -119,7 +119,7 @@ def scheme_sheet(title: str, place: str, scene: MechanismScene) -> DrawingSheet:
         # portrait only if the mechanism becomes much larger
         paper = LANDSCAPE if scale(LANDSCAPE) < 1.4 * scale(PORTRAIT) else PORTRAIT
         sheet = DrawingSheet(title, subject, paper=paper)
-    sheet.ground.low += 1j * legend.height(sheet.paper[0])
+    sheet.canvas.low += 1j * legend.height(sheet.paper[0])
     scene = fit_links(sheet, scene, links, SCHEME_PAD, most)
     look = STRUCTURAL.sized(symbol_scale(sheet, scene, links))
     drawn = render_scene(sheet, scene, links, pairs, look, hue)
@@ -284,7 +284,7 @@ def groups_sheet(
     sheet = DrawingSheet(title, subject, paper=LANDSCAPE)
     rows = math.ceil(len(sheet_parts) / GROUPS_PER_ROW)
     columns = math.ceil(len(sheet_parts) / rows)
-    size, corners = divide_into_cells(sheet.ground.low, sheet.ground.high, columns, rows, GROUP_GAP)
+    size, corners = divide_into_cells(sheet.canvas.low, sheet.canvas.high, columns, rows, GROUP_GAP)
     captions = [part_caption(part, scene.structure.pairs, roles, size.real) for part in sheet_parts]
     for index, (part, words, (low, high)) in enumerate(zip(sheet_parts, captions, corners, strict=False)):
         row, column = divmod(index, columns)
@@ -292,7 +292,7 @@ def groups_sheet(
         if column:
             x = low.real - GROUP_GAP / 2
             sheet.line([complex(x, low.imag), complex(x, high.imag)], THIN_COLOUR, 0.4, blocks=False)
-        sheet.ground = OccupiedArea(low + 1j * (GROUP_CAPTION_LINE * (lines + 0.5)), high)
+        sheet.canvas = OccupiedArea(low + 1j * (GROUP_CAPTION_LINE * (lines + 0.5)), high)
         top = low + 1j * GROUP_CAPTION_LINE * (lines - 0.5)
         sheet.text(top, words[0], 11, colour=part.colour, weight="bold")
         for line, text in enumerate(words[1:], 1):
@@ -358,7 +358,7 @@ def _draw_part(sheet: DrawingSheet, scene: MechanismScene, part: MechanismPart, 
     for pair in outer:
         if pair.slide is not None:
             draw_free_prismatic(sheet, scene, pair, part, look)
-    drawn = render_scene(sheet, scene, links, inner, look, {FRAME: DARK_COLOUR} | part_colours, leads=outer)
+    drawn = render_scene(sheet, scene, links, inner, look, {FRAME: DARK_COLOUR} | part_colours, external=outer)
     for pair in outer:
         if pair.kind == "R":
             _draw_stub(sheet, scene, pair, drawn.forms, look)
@@ -401,7 +401,7 @@ def _draw_stub(
     start, end = at + look.hinge * out, at + (look.hinge + STUB_LENGTH) * out
     sheet.line([start, end], FREE_COLOUR, 1.3, "--", 4.4)
     for side in look.sides:
-        sheet.ground.line(start + side * out, end + side * out)
+        sheet.canvas.line(start + side * out, end + side * out)
 
 
 def _mark_later_pairs(

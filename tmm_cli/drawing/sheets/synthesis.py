@@ -164,7 +164,7 @@ ARC_STEP = 1.0  # mm between points of an arc
 NAME_CLEARANCE = 12.0  # mm about a point of a curve that should be free for its name
 EDGE_TOLERANCE = 1e-6  # mm: tolerance for points on the edge of the field
 CUT_ARROW = 4.0  # mm: length of the arrow on a line that continues beyond the edge
-BOX_SIZES = {"slider": MEASURED.box, "stone": MEASURED.stone}
+BOX_SIZES = {"slider": MEASURED.box, "stone": MEASURED.block}
 
 
 def draw_construction(
@@ -185,7 +185,7 @@ def draw_construction(
     """
     drawn, letters = use_problem_names(drawn, linkage, names or {})
     sheet = DrawingSheet(title, translated(drawn.title).format(**letters), points_on_sheet(drawn), pad=CONSTRUCTION_PAD)
-    sheet.ground.rivals += [sheet.on(s.at) for s in drawn.spots if s.name]
+    sheet.canvas.rivals += [sheet.on(s.at) for s in drawn.spots if s.name]
     rods = [(sheet.on(s.start), sheet.on(s.end)) for s in drawn.segments if s.style.startswith("link")]
     for spot in drawn.spots:
         _draw_spot(sheet, spot, rods)
@@ -216,7 +216,7 @@ def draw_construction(
         if spot.name:
             sheet.label(spot.name, sheet.on(spot.at), 11)
     sheet.labels += lines
-    sheet.ground.lines += [label.line for label in lines if label.line]
+    sheet.canvas.lines += [label.line for label in lines if label.line]
     sheet.labels.sort(key=lambda label: label.size < 11)  # letters of points first
     return sheet
 
@@ -254,7 +254,7 @@ def _draw_curve(sheet: DrawingSheet, points: Sequence[complex], style: str) -> l
     low, high = sheet.field
     for piece in pieces:
         sheet.line(piece, colour, width, line, z=2.0 if style == "bold" else 1.2, blocks=False)
-        sheet.ground.path(piece)
+        sheet.canvas.path(piece)
         for from_end in (piece, piece[::-1]):
             tip = from_end[0]
             if (
@@ -275,7 +275,7 @@ def _label_curve(sheet: DrawingSheet, name: str, pieces: Sequence[Sequence[compl
         run = np.concatenate([[0], np.cumsum(np.abs(np.diff(piece)))])
         points += [complex(np.interp(share * run[-1], run, piece)) for share in np.linspace(0.1, 0.9, 17)]
     if name and points:
-        crowd = sheet.ground.crowd
+        crowd = sheet.canvas.crowd
         free = min(points, key=lambda z: (int(np.count_nonzero(np.abs(crowd - z) < NAME_CLEARANCE)), -abs(z)))
         sheet.label(name, free, 10, NAME_COLOUR, "italic")
 
@@ -283,7 +283,7 @@ def _label_curve(sheet: DrawingSheet, name: str, pieces: Sequence[Sequence[compl
 def _arc_points(sheet: DrawingSheet, arc: Arc) -> list[complex]:
     """Return closely spaced points (mm) of an arc; of a huge circle only the part near the sheet."""
     centre, radius = sheet.on(arc.centre), arc.radius / sheet.mu
-    middle, reach = (sheet.ground.low + sheet.ground.high) / 2, abs(sheet.ground.high - sheet.ground.low) / 2
+    middle, reach = (sheet.canvas.low + sheet.canvas.high) / 2, abs(sheet.canvas.high - sheet.canvas.low) / 2
     start, end = arc.start, arc.end
     if abs(middle - centre) > 1.01 * reach:  # the sheet subtends a small angle at the centre
         half = float(np.arcsin(reach / abs(middle - centre)))
@@ -306,7 +306,7 @@ def _draw_centre(sheet: DrawingSheet, centre: CircleCentre, units: UnitSystem) -
         for leg in legs:
             sheet.line([leg, at], THIN_COLOUR, 0.7, "--", 1.5)
         sheet.circle(at, 0.6, face=DARK_COLOUR)
-        sheet.ground.rivals.append(at)
+        sheet.canvas.rivals.append(at)
         sheet.label(centre.name, at, 11)
         sheet.labels.append(Label("R", (legs[0] + at) / 2, 10, NAME_COLOUR, "italic", (legs[0], at)))
         return
@@ -452,22 +452,22 @@ def extreme_positions_sheet(results: Results) -> DrawingSheet:
         ends.append(ends[0] + linkage.driver.sense * strokes.strokes[0].length)
     motion = motion_at_positions(results, np.array(ends), 2)
     scene = MechanismScene(linkage, results.structure, motion.poses)
-    ways = point_paths(results)
-    used = [*frame_pivots(linkage), *(place for path in ways for place in path)]
+    all_paths = point_paths(results)
+    used = [*frame_pivots(linkage), *(place for path in all_paths for place in path)]
     sheet = DrawingSheet(results.problem.title, _("Extreme positions of the output"), points_to_scale(scene, used))
-    draw_paths(sheet, ways)
+    draw_paths(sheet, all_paths)
     others = [replace(scene, k=k) for k in range(1, len(ends))]
     for other in others:
         draw_skeleton(sheet, other, INERTIA_COLOUR, 1.6, 2.9)
         for link in linkage.moving:
             for start, end in form_by_points(sheet, other, link, whole=False).edges:
-                sheet.ground.line(start, end)
+                sheet.canvas.line(start, end)
         for pair in results.structure.pairs:
             if pair.slide is not None and pair.name not in cylinder_drivers(linkage):
                 draw_slider(sheet, other, pair, MEASURED, INERTIA_COLOUR)
     draw_measured(sheet, scene, STROKE_MARKS[0])
     points = linkage.moving_points
-    sheet.ground.rivals += [
+    sheet.canvas.rivals += [
         sheet.on(extreme_scene.point(name)) for extreme_scene in (scene, *others) for name in points
     ]
     for other in others:

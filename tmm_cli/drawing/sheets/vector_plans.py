@@ -75,14 +75,14 @@ def draw_force_plans(position: Position) -> Iterable[tuple[str, Drawing]]:
 def _force_plan_sheet(position: Position, plan: ForcePlan, title: str) -> DrawingSheet:
     drawn = [*plan.plan.drawn(), *distinct_reactions(plan)]
     aside = lane_offsets(drawn, plan.plan.size)
-    ground = FigureExtent()
-    ground.spots([0j], PLAN_MARGIN)
+    figure_extent = FigureExtent()
+    figure_extent.spots([0j], PLAN_MARGIN)
     for vector, off in zip(drawn, aside, strict=True):
-        ground.line(vector.start, vector.end, PLAN_MARGIN, off)
+        figure_extent.line(vector.start, vector.end, PLAN_MARGIN, off)
     equation = list(wrap_symbols(_force_sum(plan), NOTE_SIZE * POINT, EQUATION_WIDTH)) if writes_equations() else []
     # the width of the table hardly depends on the scale
     notes = [*equation, "μ = 0.0000 N/mm"]
-    layout = choose_scale(ground, NoteBlock(notes, force_plan_rows(plan, plan.plan.size / 100 or 1.0), 3))
+    layout = choose_scale(figure_extent, NoteBlock(notes, force_plan_rows(plan, plan.plan.size / 100 or 1.0), 3))
     sheet = position.sheet(title, room=layout, links=", ".join(plan.links))
     _join_corners(sheet, drawn, aside)
     for vector, off in zip(drawn, aside, strict=True):

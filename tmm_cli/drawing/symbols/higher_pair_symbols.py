@@ -62,7 +62,7 @@ def draw_higher_pair(
 
 def _draw_in_field(sheet: DrawingSheet, points: Vector, colour: str, width: float, style: Style, z: float) -> None:
     """Draw a curve within the field of the sheet."""
-    low, high = sheet.ground.low, sheet.ground.high
+    low, high = sheet.canvas.low, sheet.canvas.high
     inside = (points.real > low.real) & (points.real < high.real) & (points.imag > low.imag) & (points.imag < high.imag)
     if bool(np.any(inside)):
         sheet.line(list(np.where(inside, points, complex(np.nan, np.nan))), colour, width, style, z)
@@ -72,10 +72,10 @@ def _draw_pitch_circle(sheet: DrawingSheet, disc: GearDisc, colour: str) -> None
     """Draw a pitch circle, and the rim of a gear with internal teeth."""
     centre, radius = sheet.on(disc.centre), disc.radius / sheet.mu
     number = int(np.clip(2 * np.pi * radius / 1.5, 48, 3000))
-    ways = unit(np.linspace(0, 2 * np.pi, number + 1))
-    _draw_in_field(sheet, centre + radius * ways, colour, 0.8, CHAIN_STYLE, GEAR_Z)
+    directions = unit(np.linspace(0, 2 * np.pi, number + 1))
+    _draw_in_field(sheet, centre + radius * directions, colour, 0.8, CHAIN_STYLE, GEAR_Z)
     if disc.ring:
-        _draw_in_field(sheet, centre + (radius + RIM_DEPTH) * ways, colour, 1.2, "-", GEAR_Z)
+        _draw_in_field(sheet, centre + (radius + RIM_DEPTH) * directions, colour, 1.2, "-", GEAR_Z)
 
 
 def _hatch_fixed_gear(sheet: DrawingSheet, disc: GearDisc, rods: Sequence[Segment]) -> None:

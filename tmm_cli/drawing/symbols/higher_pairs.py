@@ -169,10 +169,10 @@ def _flat_faced_cam(scene: MechanismScene, mesh: Mesh) -> CamOutline:
     if not true:  # no convex cam fits this face: use the smallest convex one that is not too slender
         height = 1.15 * float(np.max(-(rise + np.maximum(bend, -3 * np.ptp(rise))))) + 0.3 * float(np.ptp(rise))
         height = max(height, 0.8 * float(np.ptp(rise)) - float(np.min(rise)))
-    ways = forward * unit(angle - turn)
-    disk = (height + rise - 1j * slope) * ways
+    directions = forward * unit(angle - turn)
+    disk = (height + rise - 1j * slope) * directions
     # where no cam can follow the law, the envelope has tails beyond the face
-    tails = np.max(dot(ways[:, None], disk) - (height + rise)[:, None], axis=0) > 1e-6 * height
+    tails = np.max(dot(directions[:, None], disk) - (height + rise)[:, None], axis=0) > 1e-6 * height
     disk = centre + disk[~tails]
     foot = centre + (height + now) * forward
     reach = 1.15 * float(np.max(np.abs(slope))) * 1j * forward

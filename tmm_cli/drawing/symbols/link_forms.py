@@ -115,13 +115,13 @@ def form_by_points(sheet: DrawingSheet, scene: MechanismScene, link: str, *, who
     joints = drop_coincident(sheet.on(p) for p in (*scene.ends(link), *scene.joints(link)))
     bars: list[LinkBar] = []
     for slide in _carried_guides(scene, link):
-        stone, along = sheet.on(scene.place(slide.runner, slide.at)), scene.along(slide)
+        block, along = sheet.on(scene.place(slide.runner, slide.at)), scene.along(slide)
         (low, high), displacement = scene.travel(slide), scene.run(slide)
-        bar = _bar_through(bars, stone, along)
+        bar = _bar_through(bars, block, along)
         for end, side in ((low - displacement, -along), (high - displacement, along)) if whole else ():
-            tip = stone + end / sheet.mu * along
+            tip = block + end / sheet.mu * along
             if not any(bar.meets(j) and dot(side, j - tip) > BLOCK_HALF_LENGTH for j in joints):
-                bar.take(leave_field(stone, tip + GUIDE_OVERHANG * side, *sheet.field))
+                bar.take(leave_field(block, tip + GUIDE_OVERHANG * side, *sheet.field))
     return _join_parts(sheet, scene, link, joints, bars)
 
 
@@ -215,8 +215,8 @@ def _nearest_joint(bars: Sequence[LinkBar], loose: Sequence[complex]) -> tuple[L
     def foot(bar: LinkBar, place: complex) -> complex:
         return min(bar.holds, key=lambda hold: abs(hold - place)) if bar.holds else bar.foot(place)
 
-    ways = [(bar, place, foot(bar, place)) for bar in bars for place in loose]
-    return min(ways, key=lambda joint: abs(joint[1] - joint[2]))
+    joint_choices = [(bar, place, foot(bar, place)) for bar in bars for place in loose]
+    return min(joint_choices, key=lambda joint: abs(joint[1] - joint[2]))
 
 
 def _longer_arm(bar: LinkBar, foot: complex) -> complex:

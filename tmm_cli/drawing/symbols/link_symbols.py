@@ -28,7 +28,7 @@ class SymbolStyle:
     Attributes:
         measured: To scale: links by their points, guides as long as their travel.
         box: Length and width of a slider on the frame.
-        stone: Length and width of a block on a moving link.
+        block: Length and width of a block on a moving link.
         support: Height and half base of the triangle of a support.
         sides: Offsets (mm) from the middle line of a bar at which labels are kept off.
         moves: For animation: each body is drawn once and then moved.
@@ -37,7 +37,7 @@ class SymbolStyle:
     measured: bool
     hinge: float
     box: tuple[float, float]
-    stone: tuple[float, float]
+    block: tuple[float, float]
     support: tuple[float, float]  # height of the triangle, half its base
     bar: float
     sides: tuple[complex, ...]
@@ -48,12 +48,12 @@ class SymbolStyle:
         length, width = self.box
         height, half = self.support
         box = (size * length, size * width)
-        return replace(self, hinge=size * self.hinge, box=box, stone=box, support=(size * height, size * half))
+        return replace(self, hinge=size * self.hinge, box=box, block=box, support=(size * height, size * half))
 
     def raised(self) -> SymbolStyle:
         """Return the style with supports that extend beyond a block on their hinge."""
         height, half = self.support
-        return replace(self, support=(height + self.stone[1] / 2, half))
+        return replace(self, support=(height + self.block[1] / 2, half))
 
 
 MEASURED = SymbolStyle(True, 1.3, (9.0, 5.0), (7.5, 4.2), (5.6, 3.4), 2.4, (0j,))
@@ -88,7 +88,7 @@ def draw_body(sheet: DrawingSheet, form: LinkForm, colour: str, look: SymbolStyl
         if abs(end - start) > ON_LINE:
             for side in look.sides:  # a bar is wider than a line
                 shift = side * (end - start) / abs(end - start)
-                sheet.ground.line(start + shift, end + shift)
+                sheet.canvas.line(start + shift, end + shift)
     for at, first_leg, other in form.welds:
         hidden = look.hinge if any(abs(at - joint) < ON_LINE for joint in form.joints) else 0.0
         draw_weld(sheet, at, first_leg, other, colour, hidden)
@@ -117,7 +117,7 @@ def draw_box(
     corners = [at + along * complex(sx * length / 2, sy * width / 2) for sx, sy in BOX_CORNERS]
     for share in (0.25, -0.25):  # keeps labels out of the box
         shift = 1j * along * share * width
-        sheet.ground.line(at + shift - along * length / 2, at + shift + along * length / 2)
+        sheet.canvas.line(at + shift - along * length / 2, at + shift + along * length / 2)
     if style == "-":
         face = "white" if colour == DARK_COLOUR or look.measured else tint_colour(colour, 0.07)
         sheet.area(corners, face, colour, 1.3, 4)
@@ -138,7 +138,7 @@ def quiet_direction(
     sheet: DrawingSheet, at: complex, wish: complex, reach: float, choices: Iterable[complex] = (), from_: float = 1.8
 ) -> complex:
     """Return the direction from a point in which least is drawn, as near to `wish` as possible."""
-    crowd = sheet.ground.crowd
+    crowd = sheet.canvas.crowd
     crowd = crowd[np.abs(crowd - at) < 2 * reach] - at
 
     def cost(direction: complex) -> float:
@@ -154,7 +154,7 @@ def draw_rotation_arrow(
     sheet: DrawingSheet, pivot: complex, start: float, sense: int, name: Words, colour: str
 ) -> None:
     """Draw an arrow of rotation about a pivot, beginning beside the link or where there is more room."""
-    radius, crowd = 8.5, sheet.ground.crowd
+    radius, crowd = 8.5, sheet.canvas.crowd
 
     def arc(first: float) -> list[complex]:
         return [pivot + radius * complex(unit(first + sense * a)) for a in np.linspace(0, 1.5, 24)]
@@ -188,7 +188,7 @@ def symbol_scale(sheet: DrawingSheet, scene: MechanismScene, links: Iterable[str
 def draw_link_numbers(sheet: DrawingSheet, forms: Mapping[str, LinkForm], hue: Mapping[str, str]) -> None:
     """Write the numbers of links in the middle of empty plates, or beside the links."""
     for link, form in forms.items():
-        if len(form.hull) > 2 and np.all(np.abs(sheet.ground.crowd - form.middle) > NUMBER_CLEARANCE):
+        if len(form.hull) > 2 and np.all(np.abs(sheet.canvas.crowd - form.middle) > NUMBER_CLEARANCE):
             sheet.text(form.middle, link, 11, colour=hue[link], ha="center", style="italic")
         else:
             sheet.label(link, form.middle, 11, hue[link], "italic")
@@ -224,8 +224,8 @@ def support_side(sheet: DrawingSheet, at: complex, rods: Sequence[Segment], look
             )
         )
 
-    ways = [complex(unit(np.pi / 8 * n)) for n in (-4, 4, 0, 8, -2, -6, 2, 6, -3, -5, -1, -7, 3, 5, 1, 7)]
-    for among in (ways[:2], ways[2:4], ways):
+    directions = [complex(unit(np.pi / 8 * n)) for n in (-4, 4, 0, 8, -2, -6, 2, 6, -3, -5, -1, -7, 3, 5, 1, 7)]
+    for among in (directions[:2], directions[2:4], directions):
         losses = [lost(direction) for direction in among]
         if min(losses) < ROD_STEP:
             break

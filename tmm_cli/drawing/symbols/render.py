@@ -53,7 +53,7 @@ def render_scene(
     pairs: Sequence[Pair],
     look: SymbolStyle,
     hue: Mapping[str, str],
-    leads: Sequence[Pair] = (),
+    external: Sequence[Pair] = (),
 ) -> RenderedLinks:
     """Draw links with their pairs.
 
@@ -64,10 +64,10 @@ def render_scene(
         pairs: Pairs to draw.
         look: Style of the symbols.
         hue: Colours of links.
-        leads: Pairs with links that are not drawn.
+        external: Pairs with links that are not drawn.
     """
     with sheet.on_layer("links"):
-        return _render_links(sheet, scene, links, pairs, look, hue, leads)
+        return _render_links(sheet, scene, links, pairs, look, hue, external)
 
 
 def _render_links(
@@ -77,7 +77,7 @@ def _render_links(
     pairs: Sequence[Pair],
     look: SymbolStyle,
     hue: Mapping[str, str],
-    leads: Sequence[Pair],
+    external: Sequence[Pair],
 ) -> RenderedLinks:
     if look.measured and not look.moves:
         scene = spread_boxes(sheet, scene, links)
@@ -108,15 +108,15 @@ def _render_links(
             draw_slider(sheet, scene, pair, look, hue[pair.slide.runner], rods)
     if look.measured:
         draw_springs(sheet, scene)
-    hinges = gather_coincident((sheet.on(scene.at(p)), p) for p in (*pairs, *leads) if p.kind == "R")
+    hinges = gather_coincident((sheet.on(scene.at(p)), p) for p in (*pairs, *external) if p.kind == "R")
     for at, pairs_there in hinges:
         _draw_hinge(sheet, at, pairs_there, forms, look, hue)
     for at, pairs_there in hinges:
         joined = {link for pair in pairs_there if pair in pairs for link in (pair.i, pair.j)}
         if FRAME not in joined:
             continue
-        stones = [place for link in joined if link in forms for place in forms[link].boxes]
-        here_look = look.raised() if any(abs(at - place) < ON_LINE for place in stones) else look
+        blocks = [place for link in joined if link in forms for place in forms[link].boxes]
+        here_look = look.raised() if any(abs(at - place) < ON_LINE for place in blocks) else look
         with sheet.part(FRAME):
             end = draw_support(sheet, at, support_side(sheet, at, rods, here_look), here_look, rods)
         if not look.measured:
@@ -186,7 +186,7 @@ def draw_slider(
     at, along = sheet.on(scene.at(pair)), scene.along(slide)
     if not np.isfinite(at):
         return
-    size = look.box if FRAME in (slide.carrier, slide.runner) else look.stone
+    size = look.box if FRAME in (slide.carrier, slide.runner) else look.block
     with sheet.part(BOX_BODY.format(pair.name)):
         draw_box(sheet, at, along, colour, size, look)
         for side in (1j * along, -1j * along) if slide.runner == FRAME else ():

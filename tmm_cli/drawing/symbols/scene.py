@@ -114,8 +114,8 @@ class MechanismScene:
         points: list[complex] = []
         for link in links:
             points += self.joints(link)
-            for stone, along in self.guides(link):
-                points += [stone, *(e for e in self.ends(link) if abs(cross(along, e - stone)) < 1e-6 * abs(e - stone))]
+            for block, along in self.guides(link):
+                points += [block, *(e for e in self.ends(link) if abs(cross(along, e - block)) < 1e-6 * abs(e - block))]
         points = [p for p in points if np.isfinite(p)]
         size = max((abs(p - q) for p in points for q in points[:1]), default=0.0)
         outlines = [self.higher(p) for p in self.structure.pairs if not p.lower and {p.i, p.j} & set(links)]
@@ -167,13 +167,13 @@ def scale_to_fit(points: Sequence[complex], room: complex, most: float) -> float
 
 def fit_points(sheet: DrawingSheet, points: Sequence[complex], pad: float, most: float) -> None:
     """Centre points (m) on the sheet, as large as the pad and `most` (mm) allow."""
-    sheet.mu = scale_to_fit(points, sheet.ground.high - sheet.ground.low - 2 * pad * (1 + 1j), most)
+    sheet.mu = scale_to_fit(points, sheet.canvas.high - sheet.canvas.low - 2 * pad * (1 + 1j), most)
     centre_points(sheet, points)
 
 
 def centre_points(sheet: DrawingSheet, points: Sequence[complex]) -> None:
     """Centre points (m) on the sheet at its scale."""
-    sheet.origin = (sheet.ground.low + sheet.ground.high) / 2 - extent(points or [0j])[3] / sheet.mu
+    sheet.origin = (sheet.canvas.low + sheet.canvas.high) / 2 - extent(points or [0j])[3] / sheet.mu
 
 
 def drop_coincident(points: Iterable[complex]) -> list[complex]:
