@@ -52,11 +52,11 @@ _MANY_ARGUMENTS: Final = ("atan2", "hypot", "min", "max")
 FUNCTIONS: Final = (*_OF_ANGLE, *_TO_ANGLE, *_MANY_ARGUMENTS, "sqrt", "abs")
 
 
-def to_si(found: PhysicalValue, want: Dimension, units: UnitSystem) -> float | None:
+def to_si(quantity: PhysicalValue, want: Dimension, units: UnitSystem) -> float | None:
     """Return a value in SI, a bare number taken in the file's unit of `want`; None if the dimension does not fit."""
-    if found.dimension is None:
-        return units.si(found.value, want)
-    return found.value if found.dimension.fits(want) else None
+    if quantity.dimension is None:
+        return units.si(quantity.value, want)
+    return quantity.value if quantity.dimension.fits(want) else None
 
 
 class Parser:
@@ -73,7 +73,7 @@ class Parser:
         """Return the parameters that the text uses. A unit does not count, even if a parameter has its name: `L: 5 m,
         m: 2*L`.
         """
-        found = []
+        names = []
         while self.at < len(self.text):
             if number := _NUMBER.match(self.text, self.at):
                 self.at = number.end()
@@ -83,29 +83,29 @@ class Parser:
                     break  # evaluating says what is wrong
             elif name := _NAME.match(self.text, self.at):
                 self.at = name.end()
-                found.append(name[1])
+                names.append(name[1])
             else:
                 self.at += 1
-        return [name for name in found if name in self.parameters]
+        return [name for name in names if name in self.parameters]
 
     def whole(self) -> PhysicalValue:
-        found = self.sum()
+        quantity = self.sum()
         rest = self.text[self.at :].strip()
-        if rest and _UNIT.fullmatch(rest) and all(find_unit(one) for one in _SYMBOL.findall(rest)):
+        if rest and _UNIT.fullmatch(rest) and all(find_unit(symbol_text) for symbol_text in _SYMBOL.findall(rest)):
             raise self.fault(_("a unit may stand only after a number; write * 1 {unit} here").format(unit=rest))
         if rest:
             raise self.fault(_("this is not a valid arithmetic expression"))
-        return found
+        return quantity
 
     def fault(self, message: str) -> ProblemError:
         rest = self.text[self.at :].strip()
         whole = re.search(rf"(?:{_GROUPED}|[0-9]+)$", self.text[: self.at])
         if whole and (comma := _COMMA.match(rest)):
             return decimal_comma_error(whole[0], comma[1])
-        found = quote(self.text) + (
+        quoted = quote(self.text) + (
             _(", the error is at {rest}").format(rest=quote(rest)) if rest and rest != self.text.strip() else ""
         )
-        return ProblemError(message, found=found, allowed=_("numbers, units, parameters, + - * / ^ ( )"))
+        return ProblemError(message, found=quoted, allowed=_("numbers, units, parameters, + - * / ^ ( )"))
 
     def sign(self, *signs: str) -> str | None:
         match = _SIGN.match(self.text, self.at)
@@ -143,8 +143,8 @@ class Parser:
         minus = False
         while sign := self.sign("+", "-"):
             minus ^= sign == "-"
-        found = self.power()
-        return PhysicalValue(-found.value, found.dimension) if minus else found
+        quantity = self.power()
+        return PhysicalValue(-quantity.value, quantity.dimension) if minus else quantity
 
     def power(self) -> PhysicalValue:
         number = _NUMBER.match(self.text, self.at)
@@ -184,22 +184,22 @@ class Parser:
 
     def with_unit(self, number: float) -> PhysicalValue:
         """Return the number with the longest unit that follows it (in `10 mm * k` this is mm, as k is a parameter)."""
-        found = _UNIT.match(self.text, self.at)
+        unit_match = _UNIT.match(self.text, self.at)
         if dotted := _DOTTED.match(self.text, self.at):
             raise dotted_unit_error(dotted[1])
-        if found is None:
+        if unit_match is None:
             return PhysicalValue(number, None)
         name = _NAME.match(self.text, self.at)
         if name and find_unit(name[1]) is None and (name[1] in self.parameters or name[1] in (*FUNCTIONS, "pi")):
             raise self.fault(_("a * is missing before {second}").format(second=name[1]))
-        text = found[1]
+        text = unit_match[1]
         for end in [len(text), *sorted((m.start() for m in _JOINT.finditer(text)), reverse=True)]:
             head = text[:end]
             if head.endswith(("*", "·", "/")):
                 continue
             free = {factor[1] for factor in re.finditer(r"\s[*·/]?\s*([^\W\d_]+)", head)}  # set apart by spaces
             if all(find_unit(f) is not None for f in _SYMBOL.findall(head)) and not free & set(self.parameters):
-                self.at = found.start(1) + end
+                self.at = unit_match.start(1) + end
                 unit = parse_unit(head)
                 return self.finite(unit.si(number), unit.dimension)
         raise unknown_unit_error(_SYMBOL.findall(text)[0])
@@ -210,8 +210,8 @@ class Parser:
         if name in self.parameters:
             return self.parameters[name]
         if name == "pi":
-            found = self.with_unit(self.units.functions["pi"])
-            return found if found.dimension else PhysicalValue(found.value, self.pi)
+            quantity = self.with_unit(self.units.functions["pi"])
+            return quantity if quantity.dimension else PhysicalValue(quantity.value, self.pi)
         if name in FUNCTIONS:
             return self.call(name)
         called = self.text[self.at :].lstrip().startswith("(")
@@ -224,22 +224,22 @@ class Parser:
     def call(self, name: str) -> PhysicalValue:
         if not self.sign("("):
             raise self.fault(_("the argument of {name} must be in brackets").format(name=name))
-        given = [self.sum()]
+        arguments = [self.sum()]
         while self.sign(","):
-            given.append(self.sum())
+            arguments.append(self.sum())
         if not self.sign(")"):
             raise self.fault(_("a bracket is not closed"))
         least, most = {"atan2": (2, 2), "min": (1, 20), "max": (1, 20), "hypot": (2, 2)}.get(name, (1, 1))
-        if not least <= len(given) <= most:
+        if not least <= len(arguments) <= most:
             raise self.fault(_("wrong number of arguments of {name}").format(name=name))
-        return self.of_many(name, given) if name in _MANY_ARGUMENTS else self.of_one(name, given[0])
+        return self.of_many(name, arguments) if name in _MANY_ARGUMENTS else self.of_one(name, arguments[0])
 
-    def of_one(self, name: str, given: PhysicalValue) -> PhysicalValue:
-        compute, dimension = self.units.functions[name], given.dimension
+    def of_one(self, name: str, argument: PhysicalValue) -> PhysicalValue:
+        compute, dimension = self.units.functions[name], argument.dimension
         if name == "abs":
-            return PhysicalValue(abs(given.value), dimension)
+            return PhysicalValue(abs(argument.value), dimension)
         if name in _OF_ANGLE:
-            angle = to_si(given, ANGLE, self.units)
+            angle = to_si(argument, ANGLE, self.units)
             if angle is None:
                 raise self.fault(
                     _("the argument of {name} must be an angle; found: {dimension}").format(
@@ -260,14 +260,14 @@ class Parser:
         root = _square_root_dimension(dimension) if dimension else None
         if name == "sqrt" and dimension is not None and root is None:
             raise self.fault(_("no square root can be taken of this quantity: {dimension}").format(dimension=dimension))
-        value = self.real(f"{name} of {given.value:.6g}", lambda: compute(given.value))
+        value = self.real(f"{name} of {argument.value:.6g}", lambda: compute(argument.value))
         return PhysicalValue(value, root if name == "sqrt" else ANGLE)
 
-    def of_many(self, name: str, given: list[PhysicalValue]) -> PhysicalValue:
+    def of_many(self, name: str, arguments: list[PhysicalValue]) -> PhysicalValue:
         """Compute atan2, hypot, min or max of values of one dimension, or of bare numbers."""
         compute = self.units.functions[name]
-        dimension = next((one.dimension for one in given if one.dimension is not None), None)
-        values = [self.alike(PhysicalValue(0.0, dimension), one)[1] for one in given]
+        dimension = next((argument.dimension for argument in arguments if argument.dimension is not None), None)
+        values = [self.alike(PhysicalValue(0.0, dimension), argument)[1] for argument in arguments]
         value = compute(values) if name in ("min", "max") else compute(*values)
         return self.finite(value, ANGLE if name == "atan2" else dimension)
 
@@ -300,13 +300,13 @@ class Parser:
         joined = (left.dimension or NUMBER).times(right.dimension or NUMBER, power)
         return None if joined == NUMBER and None in (left.dimension, right.dimension) else joined
 
-    def real(self, what: str, compute: Callable[[], float | complex]) -> float:
+    def real(self, operation: str, compute: Callable[[], float | complex]) -> float:
         try:
             value = compute()
         except (ValueError, OverflowError, ZeroDivisionError):
             value = math.nan
         if isinstance(value, complex) or not math.isfinite(value):
-            raise self.fault(_("{what} is undefined").format(what=what))
+            raise self.fault(_("{what} is undefined").format(what=operation))
         return float(value) if isinstance(value, int) else value
 
 
@@ -382,16 +382,16 @@ def _missing_unit_error(
     return None
 
 
-def _checked_si(source: object, found: PhysicalValue, units: UnitSystem, want: Dimension) -> float:
-    value = to_si(found, want, units)
+def _checked_si(source: object, quantity: PhysicalValue, units: UnitSystem, want: Dimension) -> float:
+    value = to_si(quantity, want, units)
     if value is None:
-        given = f"{quote(source)}, {units.describe(found)}"
+        described = f"{quote(source)}, {units.describe(quantity)}"
         allowed = want.example
         if want == ANGLE and "pi" in str(source):
             allowed = _("{allowed}; pi is in radians already").format(allowed=allowed)
-        if found.dimension is not None and found.dimension.times(ACCELERATION).fits(want):
+        if quantity.dimension is not None and quantity.dimension.times(ACCELERATION).fits(want):
             allowed = _("{allowed}; kilogram-force is written kgf").format(allowed=allowed)
-        raise UnitError(_("expected here: {want}").format(want=want), found=given, allowed=allowed)
+        raise UnitError(_("expected here: {want}").format(want=want), found=described, allowed=allowed)
     return value
 
 
@@ -448,12 +448,12 @@ def resolve_parameters(
 
     Raises ProblemError with the name of the parameter as its path.
     """
-    found: dict[str, PhysicalValue] = dict(given or {})
+    parameters: dict[str, PhysicalValue] = dict(given or {})
     for name in raw:
         check_parameter(name, (name,))
-    known = dict.fromkeys(raw, PhysicalValue(0.0))
+    placeholders = dict.fromkeys(raw, PhysicalValue(0.0))
     needs = {
-        name: Parser(plain_text(source[:MAX_LENGTH]), known, units).names() if isinstance(source, str) else []
+        name: Parser(plain_text(source[:MAX_LENGTH]), placeholders, units).names() if isinstance(source, str) else []
         for name, source in raw.items()
     }
     try:
@@ -465,8 +465,8 @@ def resolve_parameters(
         ) from None
     for name in order:
         with prefix_errors(name):
-            found[name] = _evaluate_parameter(raw[name], found, units)
-    return {name: found[name] for name in raw}
+            parameters[name] = _evaluate_parameter(raw[name], parameters, units)
+    return {name: parameters[name] for name in raw}
 
 
 def _evaluate_parameter(source: object, parameters: Mapping[str, PhysicalValue], units: UnitSystem) -> PhysicalValue:

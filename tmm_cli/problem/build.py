@@ -42,8 +42,8 @@ Model = TypeVar("Model", bound=BaseModel)
 
 def is_chain(tree: Tree) -> bool:
     """Return True if the file gives a spatial chain by its pairs alone (structure.spatial) and no planar linkage."""
-    part = tree.data.get("structure")
-    named = isinstance(part, dict) and "spatial" in part
+    structure = tree.data.get("structure")
+    named = isinstance(structure, dict) and "spatial" in structure
     return named or ("structure" in tree.data and "links" not in tree.data)
 
 
@@ -86,11 +86,11 @@ def build_unit_system(names: Mapping[str, str], *, extended: bool = False) -> Un
 
 
 def build_parameters(
-    raw: Mapping[str, object], units: UnitSystem, given: Mapping[str, PhysicalValue] | None = None
+    raw: Mapping[str, object], units: UnitSystem, known: Mapping[str, PhysicalValue] | None = None
 ) -> dict[str, PhysicalValue]:
     """Evaluate the parameters of a file; they may depend on the already known ones in `given`. Raises ProblemError."""
     with prefix_errors("parameters"):
-        return resolve_parameters(raw, units, given)
+        return resolve_parameters(raw, units, known)
 
 
 def _refuse_frame_of_a_link(shape: schema.File, links: Mapping[str, Link]) -> None:
@@ -139,10 +139,10 @@ def build_from_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Pro
     checks = FileSection(shape.checks, ("checks",), values)
     _refuse_law_with_table(shape)
     limit = values.fraction(shape.checks.lever, checks.at("lever"), zero=True)
-    angles, said = list(Problem.pressure_limits), [False, False]
+    angles, limits_set = list(Problem.pressure_limits), [False, False]
     for number, key in enumerate(("pressure_sliding", "pressure_turning")):
         if getattr(shape.checks, key) is not None:
-            angles[number], said[number] = checks.positive(key, ANGLE), True
+            angles[number], limits_set[number] = checks.positive(key, ANGLE), True
     name = tree.name
     request = build_request(shape, first, values)
     refuse_work(linkage, request)
@@ -157,7 +157,7 @@ def build_from_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Pro
         shape.description,
         tree.file,
         (angles[0], angles[1]),
-        (said[0], said[1]),
+        (limits_set[0], limits_set[1]),
         has_bare_speed(first_driver, values),
         shape.sheet,
         shape.note,
@@ -226,10 +226,10 @@ def _build_wheel_tasks(shape: schema.File, tree: Tree, linkage: Linkage, values:
 
     def other(settings: Mapping[str, object]) -> Linkage:
         """Return the linkage with other values of parameters; the results of a synthesis task stay."""
-        given = {name: value for name, value in values.parameters.items() if name not in shape.parameters}
-        own = build_parameters({**shape.parameters, **settings}, values.units, given)
+        known = {name: value for name, value in values.parameters.items() if name not in shape.parameters}
+        parameters = build_parameters({**shape.parameters, **settings}, values.units, known)
         alone = shape.model_copy(update={"intermittent": {}})
-        return build_from_shape(alone, tree, ValueReader(own, values.units)).linkage
+        return build_from_shape(alone, tree, ValueReader(parameters, values.units)).linkage
 
     module = import_module("tmm_cli.problem.blocks.optional_blocks")  # few files have the block
     wheels: tuple[WheelTask, ...] = module.build_wheels(shape, linkage, values, other)
@@ -241,14 +241,14 @@ def _build_outputs(shape: schema.File, links: Mapping[str, Link], values: ValueR
     outputs = cast("list[schema.OutputKeys]", shape.output)  # as its validator left it
     paths: list[Path] = [("output", number) if len(outputs) > 1 else ("output",) for number in range(len(outputs))]
     points = [p for name in moving for p in links[name].points if p not in links[FRAME].points and p not in moving]
-    found: list[Output] = []
-    for given, path in zip(outputs, paths, strict=True):
-        if given.link in points:
-            found += [Output(f"{given.link}.{axis}", given.working) for axis in "xy"]
+    built: list[Output] = []
+    for output_keys, path in zip(outputs, paths, strict=True):
+        if output_keys.link in points:
+            built += [Output(f"{output_keys.link}.{axis}", output_keys.working) for axis in "xy"]
         else:
-            link = values.known_name(given.link, dict.fromkeys([*moving, *points]), path, "link or point")
-            found.append(Output(link, given.working))
-    return tuple(found)
+            link = values.known_name(output_keys.link, dict.fromkeys([*moving, *points]), path, "link or point")
+            built.append(Output(link, output_keys.working))
+    return tuple(built)
 
 
 def build_any_problem(tree: Tree) -> Problem | TaskProblem:
@@ -297,26 +297,26 @@ def _build_spatial_chain(spatial: schema.Spatial) -> SpatialChain:
     links = _chain_links(spatial)
     pairs = []
     for name, pair in spatial.pairs.items():
-        part = FileSection(pair, (*SPATIAL, "pairs", name), WITHOUT_PARAMETERS)
-        check_name(name, part.path, "pair")
-        i, j = part.two_links((FRAME, *links))
-        part.one_of("kind", "freedoms")
+        section = FileSection(pair, (*SPATIAL, "pairs", name), WITHOUT_PARAMETERS)
+        check_name(name, section.path, "pair")
+        i, j = section.two_links((FRAME, *links))
+        section.one_of("kind", "freedoms")
         pairs.append(
             SpatialPair(name, i, j, PAIR_FREEDOMS[pair.kind] if pair.kind else pair.freedoms or 0, pair.kind or "")
         )
     chain = SpatialChain(links, tuple(pairs))
-    there = links_joined_to_frame(chain.pairs)
-    if apart := [link for link in links if link not in there]:  # W would count a chain of its own
+    joined = links_joined_to_frame(chain.pairs)
+    if apart := [link for link in links if link not in joined]:  # W would count a chain of its own
         message = _("no chain of pairs joins link {link} to the frame").format(link=apart[0])
         raise ProblemError(message, path=(*SPATIAL, "pairs"), key=True)
     return chain
 
 
 def _chain_links(spatial: schema.Spatial) -> tuple[str, ...]:
-    given = spatial.links
-    if isinstance(given, int):
-        return tuple(str(number) for number in range(1, given + 1))
-    if given is None:
+    links = spatial.links
+    if isinstance(links, int):
+        return tuple(str(number) for number in range(1, links + 1))
+    if links is None:
         named = dict.fromkeys(link for pair in spatial.pairs.values() for link in pair.between if link != FRAME)
         for name, pair in spatial.pairs.items():
             for number, link in enumerate(pair.between):
@@ -329,9 +329,9 @@ def _chain_links(spatial: schema.Spatial) -> tuple[str, ...]:
                 allowed=_("at most {max_links}").format(max_links=MAX_LINKS),
             )
         return tuple(named)
-    for number, link in enumerate(given):
-        check_name(link, (*SPATIAL, "links", number), "link", (FRAME, *given[:number]))
-    return tuple(given)
+    for number, link in enumerate(links):
+        check_name(link, (*SPATIAL, "links", number), "link", (FRAME, *links[:number]))
+    return tuple(links)
 
 
 def _local_freedoms(spatial: schema.Spatial, chain: SpatialChain) -> int | None:

@@ -93,8 +93,10 @@ def _ambiguous(error: AmbiguousSketchError, problem: Problem) -> ProblemError:
             found=place,
             allowed=_("another driver coordinate"),
         )
-    told = list(error.choices.items())[:MAX_CHOICES]
-    ways = "; ".join(f"{name}: {format_coordinate(a, units)} or {format_coordinate(b, units)}" for name, (a, b) in told)
+    choices = list(error.choices.items())[:MAX_CHOICES]
+    ways = "; ".join(
+        f"{name}: {format_coordinate(a, units)} or {format_coordinate(b, units)}" for name, (a, b) in choices
+    )
     undecided = _(
         "the sketch does not determine which assembly of group {group} is meant; to see all of them, run "
         "tmm kinematics {file} --assemblies"
@@ -171,7 +173,7 @@ def mobility_error(structure: Structure, hints: Sequence[str] = ()) -> ProblemEr
     """Return the error for a wrong mobility: it names links that are loose, with hints, or links with redundant
     constraints.
     """
-    n, p2, wanted = len(structure.links), structure.higher, len(structure.drivers)
+    n, p2, required = len(structure.links), structure.higher, len(structure.drivers)
     higher = f" - {p2}" if p2 else ""
     count = f"W = 3*{n} - 2*{len(structure.pairs) - p2}{higher} = {structure.mobility}"
     loose, redundant = structure.under_constrained, structure.redundant_pairs
@@ -184,28 +186,28 @@ def mobility_error(structure: Structure, hints: Sequence[str] = ()) -> ProblemEr
             _("link {link} cannot be a driver: pairs or other drivers already determine its motion").format(
                 link=structure.drivers[number].link
             ),
-            path=("driver", number, "link") if wanted > 1 else ("driver", "link"),
+            path=("driver", number, "link") if required > 1 else ("driver", "link"),
             found=_("{count}; links with redundant constraints: {links}").format(count=count, links=", ".join(held)),
-            allowed=f"W = {wanted}",
+            allowed=f"W = {required}",
         )
     if loose:
         return ProblemError(
             _("the mobility is not {wanted}: these links are not sufficiently constrained: {links}").format(
-                wanted=wanted, links=", ".join(loose)
+                wanted=required, links=", ".join(loose)
             ),
             path=("links", loose[0]),
             found=count,
-            allowed="; ".join([_("W = {wanted}, the number of drivers").format(wanted=wanted), *hints]),
+            allowed="; ".join([_("W = {wanted}, the number of drivers").format(wanted=required), *hints]),
             key=True,
         )
     name, bodies = redundant[0]
     links = tuple(b for b in bodies if b in structure.links)
     return ProblemError(
-        _("the mobility is not {wanted}: pair {name} is a redundant constraint").format(wanted=wanted, name=name),
+        _("the mobility is not {wanted}: pair {name} is a redundant constraint").format(wanted=required, name=name),
         path=("links", links[0]) if links else ("links",),
         key=True,
         found=_("{count}; links with redundant constraints: {links}").format(count=count, links=", ".join(bodies)),
-        allowed=f"W = {wanted}",
+        allowed=f"W = {required}",
     )
 
 
@@ -233,11 +235,11 @@ def _no_strokes(error: MissingStrokesError, problem: Problem) -> ProblemError:
             found=_("the driver moves from {first} to {last}").format(first=first, last=last),
             allowed=_("against: crank angle"),
         )
-    found = _("no output link is joined to the frame")
+    missing = _("no output link is joined to the frame")
     if error.link is not None:
-        found = _("link {link} has no extreme positions").format(link=error.link)
+        missing = _("link {link} has no extreme positions").format(link=error.link)
     return ProblemError(
-        text, path=error.path, found=found, allowed=_("an output link with a stroke, see the key `output`")
+        text, path=error.path, found=missing, allowed=_("an output link with a stroke, see the key `output`")
     )
 
 
@@ -269,15 +271,15 @@ def _no_turn(error: NoTurnError, problem: Problem) -> ProblemError:
 
 @problem_error.register
 def _no_cycle(error: NoCycleError, problem: Problem) -> ProblemError:
-    wanted = _("the law of motion is computed only for a single crank that rotates fully")
+    message = _("the law of motion is computed only for a single crank that rotates fully")
     allowed = _("one driver that rotates fully")
     if error.path[0] == "balancing":
-        wanted = _("shaking force and moment are computed only for a single crank that rotates fully")
+        message = _("shaking force and moment are computed only for a single crank that rotates fully")
     if error.path[0] == "intermittent":
-        wanted = _("intermittent motion is computed over a cycle, but this driver has no cycle")
+        message = _("intermittent motion is computed over a cycle, but this driver has no cycle")
         fit = _("a crank that rotates fully, or a driver with a stroke that the mechanism can complete")
         allowed = f"{fit}; driver: {{stroke: [0, 100]}}"
-    return ProblemError(wanted, path=error.path, key=True, allowed=allowed)
+    return ProblemError(message, path=error.path, key=True, allowed=allowed)
 
 
 @problem_error.register
@@ -391,23 +393,23 @@ def _lost_digits(error: LostDigitsError, problem: Problem) -> ProblemError:
 @problem_error.register
 def _runaway(error: RunawayError, problem: Problem) -> ProblemError:
     units, unit = problem.units, problem.units.spelt(MOMENT)
-    found = _(
+    described = _(
         "mean moment with which the loads drive the crank: {moment} {unit}, largest at driver coordinate "
         "{place}; largest braking moment of the motor: {most} {unit}"
     )
-    wanted = _("a motor with a larger braking moment, a larger ratio, or smaller loads")
+    allowed = _("a motor with a larger braking moment, a larger ratio, or smaller loads")
     if not math.isnan(error.speed):
-        found = _(
+        described = _(
             "{speed} at driver coordinate {place} and still increasing, no-load speed {idle}; mean moment with "
             "which the loads drive the crank: {moment} {unit}, largest braking moment of the motor: {most} {unit}"
         )
-        wanted = _("a heavier flywheel, a stronger motor, or smaller loads")
+        allowed = _("a heavier flywheel, a stronger motor, or smaller loads")
     return ProblemError(
         _("the loads drive the machine and the motor cannot brake it: its speed increases without limit"),
         path=("dynamics", "motor"),
         key=True,
-        allowed=wanted,
-        found=found.format(
+        allowed=allowed,
+        found=described.format(
             moment=f"{units.from_si(error.pushing, MOMENT):.4g}",
             unit=unit,
             most=f"{units.from_si(error.most, MOMENT):.4g}",
@@ -461,20 +463,20 @@ def _position(error: UnknownPositionError, problem: Problem) -> ProblemError:
 
 @problem_error.register
 def _name(error: UnknownNameError, problem: Problem) -> ProblemError:
-    what = _("there is no point, link or centre of mass of that name")
-    return unknown_name_error(error.name, error.allowed, what, path=("links",), key=True)
+    message = _("there is no point, link or centre of mass of that name")
+    return unknown_name_error(error.name, error.allowed, message, path=("links",), key=True)
 
 
 @problem_error.register
 def _on_frame(error: NotOnFrameError, problem: Problem) -> ProblemError:
-    what = _("this link cannot be the driver: it is not joined to the frame")
-    return unknown_name_error(error.link, error.allowed, what, path=("links",), key=True)
+    message = _("this link cannot be the driver: it is not joined to the frame")
+    return unknown_name_error(error.link, error.allowed, message, path=("links",), key=True)
 
 
 @problem_error.register
 def _setting(error: SettingError, problem: Problem) -> ProblemError:
-    own = problem_error(error.error, problem)
-    return ProblemError(own.message, path=error.path, found=own.found, allowed=own.allowed)
+    inner = problem_error(error.error, problem)
+    return ProblemError(inner.message, path=error.path, found=inner.found, allowed=inner.allowed)
 
 
 @contextmanager
@@ -488,5 +490,5 @@ def translate_errors(problem: Problem) -> Iterator[None]:
 
 def located_problem_error(error: LinkageError, problem: Problem) -> ProblemError:
     """Convert an error of mechanics to a ProblemError located in the file."""
-    found = problem_error(error, problem)
-    return found.located(problem.file, problem.source) if problem.file else found
+    refusal = problem_error(error, problem)
+    return refusal.located(problem.file, problem.source) if problem.file else refusal

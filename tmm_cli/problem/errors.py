@@ -154,22 +154,22 @@ class ProblemError(Exception):
         where = "" if self.file is None else clean(self.file, 300)
         if self.mark is not None:
             where = f"{where or 'line'}:{self.mark.line}:{self.mark.column}"
-        head = ": ".join(part for part in (where, format_path(self.path), self.message) if part)
+        head = ": ".join(piece for piece in (where, format_path(self.path), self.message) if piece)
         lines = [head]
         if self.found is not None:
             lines.append(_("found:   {found}").format(found=self.found))
         if self.allowed is not None:
             lines.append(_("allowed: {allowed}").format(allowed=self.allowed))
         if self.near is not None:
-            told = _("did you mean '{near}'?")
+            question = _("did you mean '{near}'?")
             if (
                 self.found is not None
                 and self.found != quote(self.near)
                 and to_latin(self.found) == to_latin(quote(self.near))
             ):
                 latin_meant = _("did you mean '{near}' in Latin letters?")
-                told = latin_meant if self.near.isascii() else _("did you mean '{near}' in Cyrillic letters?")
-            lines.append(told.format(near=self.near))
+                question = latin_meant if self.near.isascii() else _("did you mean '{near}' in Cyrillic letters?")
+            lines.append(question.format(near=self.near))
         return "\n  ".join(lines)
 
 
@@ -193,7 +193,7 @@ def locate_errors_in(tree: Tree) -> Iterator[None]:
 
 def format_path(path: Path) -> str:
     """Format a path as `links.3.points[0]`, safe to print."""
-    text = "".join(f"[{part}]" if isinstance(part, int) else f".{clean(part, 40)}" for part in path)
+    text = "".join(f"[{key}]" if isinstance(key, int) else f".{clean(key, 40)}" for key in path)
     return text.removeprefix(".")
 
 
@@ -234,17 +234,17 @@ def quote(value: object) -> str:
 
 def nearest_name(name: str, names: Iterable[str]) -> str | None:
     """Return the name that was probably meant, or None if none is close; case and look-alike letters do not count."""
-    known = list(names)
-    if name in known:
+    candidates = list(names)
+    if name in candidates:
         return name
-    wanted = _folded(name[:60])
-    folded = {_folded(other[:60]): other for other in reversed(known)}
-    if wanted in folded:
-        return folded[wanted]
-    swapped = [other for other in folded if sorted(other) == sorted(wanted)]
-    if len(wanted) < 2:  # one letter is near to all names that have it
+    target = _folded(name[:60])
+    folded = {_folded(other[:60]): other for other in reversed(candidates)}
+    if target in folded:
+        return folded[target]
+    swapped = [other for other in folded if sorted(other) == sorted(target)]
+    if len(target) < 2:  # one letter is near to all names that have it
         return None
-    close = swapped or difflib.get_close_matches(wanted, folded, n=1, cutoff=CLOSE)
+    close = swapped or difflib.get_close_matches(target, folded, n=1, cutoff=CLOSE)
     return folded[close[0]] if close else None
 
 
@@ -283,11 +283,11 @@ def parse_names(text: str, known: Iterable[str], option: str, reason: str) -> li
     """Split a comma-separated list of names that an option accepts. Raises ProblemError with this reason for any other
     name.
     """
-    wanted, allowed = [part.strip().lower() for part in text.split(",") if part.strip()], list(known)
-    for name in wanted or [text]:
+    chosen, allowed = [word.strip().lower() for word in text.split(",") if word.strip()], list(known)
+    for name in chosen or [text]:
         if name not in allowed:
             raise unknown_name_error(name, allowed, reason, file=option)
-    return wanted
+    return chosen
 
 
 def to_latin(text: str) -> str:

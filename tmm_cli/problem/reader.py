@@ -38,52 +38,56 @@ def tab_error(file: str, mark: SourcePosition) -> ProblemError:
 
 def syntax_error(error: yaml.MarkedYAMLError, text: str, file: str) -> ProblemError:
     """Translate a syntax error of either of PyYAML's parsers into plain words, with its line and column in `text`."""
-    opened, shown = error.context_mark or error.problem_mark, error.problem_mark or error.context_mark
+    opened, position = error.context_mark or error.problem_mark, error.problem_mark or error.context_mark
     indent = _("keys and items of one level begin in the same column, indented by spaces")
     quoted = _("a quotation mark is not closed"), _("text between two equal quotation marks"), opened
     table = {  # PyYAML's words (of both its parsers): what is wrong, what is allowed, and where
         "mapping values are not": (
             _("a ':' is not allowed here"),
             _("one 'key: value' on a line; a text with ': ' in it needs quotation marks"),
-            shown,
+            position,
         ),
         "expected ',' or ']'": (_("'[' is not closed"), _("'[1, 2]', items separated by commas"), opened),
         "expected ',' or '}'": (_("'{' is not closed"), _("'{a: 1, b: 2}', items separated by commas"), opened),
         "end of stream": quoted,
         "found unexpected document": quoted,
         "could not find expected ':'": (_("a line without ':'"), _("'key: value', with a space after ':'"), opened),
-        "cannot start any token": (_("a value cannot begin with this character"), _("text in quotation marks"), shown),
+        "cannot start any token": (
+            _("a value cannot begin with this character"),
+            _("text in quotation marks"),
+            position,
+        ),
         "expected <block end>": (
             _("this line does not match the indentation or structure of the lines above"),
             indent,
-            shown,
+            position,
         ),
         "did not find expected key": (
             _("this line does not match the indentation or structure of the lines above"),
             indent,
-            shown,
+            position,
         ),
         "entries are not allowed": (
             _("a list item '-' is not allowed here"),
             _("each '- item' on its own line"),
-            shown,
+            position,
         ),
-        "node content": (_("a value is missing"), _("a value"), shown),
-        "nesting depth": (_("too many nested levels"), _("at most {most} levels").format(most=MAX_DEPTH), shown),
+        "node content": (_("a value is missing"), _("a value"), position),
+        "nesting depth": (_("too many nested levels"), _("at most {most} levels").format(most=MAX_DEPTH), position),
     }
     problem = f"{error.problem} {error.context}"
-    plain = _("this is not YAML: {problem}").format(problem=error.problem), None, shown
-    message, allowed, place = next((told for words, told in table.items() if words in problem), plain)
-    if opened and shown and "expected ',' or" in problem and _is_closed(text, opened.index):
-        start = _start_of_stray_text(text, opened.index, shown.index)
+    plain = _("this is not YAML: {problem}").format(problem=error.problem), None, position
+    message, allowed, place = next((entry for words, entry in table.items() if words in problem), plain)
+    if opened and position and "expected ',' or" in problem and _is_closed(text, opened.index):
+        start = _start_of_stray_text(text, opened.index, position.index)
         message, allowed = _("',' or the closing bracket is expected here"), _("[2 kN, 0] or {a: 1, b: 2}")
         return _refusal_at(start, text, file, message, allowed)
-    if shown and allowed == indent and text[: shown.index].rstrip(" ").endswith(("]", "}")):
+    if position and allowed == indent and text[: position.index].rstrip(" ").endswith(("]", "}")):
         message, allowed = (
             _("text after a closing bracket"),
             _("units inside the brackets: [2 kN, 0]; a comment begins with #"),
         )
-        return _refusal_at(shown.index, text, file, message, allowed)
+        return _refusal_at(position.index, text, file, message, allowed)
     if place is None:
         return ProblemError(message, allowed=allowed, file=file)
     mark = SourcePosition(place.line + 1, place.column + 1)
@@ -96,8 +100,8 @@ def syntax_error(error: yaml.MarkedYAMLError, text: str, file: str) -> ProblemEr
 
 def _refusal_at(index: int, text: str, file: str, message: str, allowed: str) -> ProblemError:
     mark = SourcePosition(text.count("\n", 0, index) + 1, index - text.rfind("\n", 0, index))
-    found = quote(text[index:].split("\n")[0].strip())
-    return ProblemError(message, found=found, allowed=allowed, file=file, mark=mark)
+    quoted = quote(text[index:].split("\n")[0].strip())
+    return ProblemError(message, found=quoted, allowed=allowed, file=file, mark=mark)
 
 
 def _is_closed(text: str, start: int) -> bool:
@@ -201,23 +205,23 @@ class Composer:
         return self.mapping(event, path) if isinstance(event, yaml.MappingStartEvent) else self.sequence(event, path)
 
     def mapping(self, start: Any, path: Path) -> dict[str, Any]:
-        found: dict[str, Any] = {}
+        entries: dict[str, Any] = {}
         before = None
         while not isinstance(key := next(self.events), yaml.MappingEndEvent):
             self.check(key, path)
-            name = self.key(key, path, found)
+            name = self.key(key, path, entries)
             value = next(self.events)
-            found[name] = self.node(value, (*path, name))
+            entries[name] = self.node(value, (*path, name))
             if start.flow_style and value.end_mark.index == value.start_mark.index:
                 self.key_alone(key, value, before, path)
             before = (*path, name), value
-        return found
+        return entries
 
     def sequence(self, start: Any, path: Path) -> list[Any]:
-        found: list[Any] = []
+        items: list[Any] = []
         while not isinstance(event := next(self.events), yaml.SequenceEndEvent):
-            its_path = *path, len(found)
-            found.append(self.node(event, its_path))
+            its_path = *path, len(items)
+            items.append(self.node(event, its_path))
             if start.flow_style and isinstance(event, yaml.ScalarEvent) and not event.style:
                 self.cut_by_comma(event, its_path)
         if start.flow_style:
@@ -226,7 +230,7 @@ class Composer:
             pointed = _COMMA.sub(r"\1.\2", written)
             if pointed != written:
                 self.commas[path] = pointed if "," in pointed else pointed[1:-1]
-        return found
+        return items
 
     def check(self, event: Any, path: Path) -> None:
         self.nodes += 1
@@ -354,11 +358,11 @@ def find_language(data: bytes) -> str | None:
 def read_bytes(file: str) -> bytes:
     """Return the content of a file of limited size. Raises ProblemError."""
     try:
-        found = os.stat(file)
-        if stat.S_ISDIR(found.st_mode):
+        status = os.stat(file)
+        if stat.S_ISDIR(status.st_mode):
             raise ProblemError(_("this is a folder, not a file"), allowed=_("a YAML file"), file=file)
-        if found.st_size > MAX_BYTES:
-            raise _too_large_error(file, f"{found.st_size} bytes")
+        if status.st_size > MAX_BYTES:
+            raise _too_large_error(file, f"{status.st_size} bytes")
         with open(file, "rb") as stream:
             # Pipes and devices have no size to look at beforehand.
             data = stream.read(MAX_BYTES + 1)
@@ -428,12 +432,12 @@ def apply_settings(tree: Tree, settings: Sequence[str]) -> Tree:
     """Return the file with other values of its parameters, from texts such as `OA=120` (option --set). Raises
     ProblemError.
     """
-    own = tree.data.get("parameters")
-    parameters = dict(own) if isinstance(own, dict) else {}
-    given: dict[Path, str] = {}
+    raw = tree.data.get("parameters")
+    parameters = dict(raw) if isinstance(raw, dict) else {}
+    settings_by_path: dict[Path, str] = {}
     for setting in settings:
         words = f"--set {setting}"
-        name, sign, text = (part.strip() for part in setting.partition("="))
+        name, sign, text = (word.strip() for word in setting.partition("="))
         path = ("parameters", name)
         if not sign or not name:
             raise ProblemError(_("expected a name and a value"), allowed="--set OA=120", file=words)
@@ -442,25 +446,31 @@ def apply_settings(tree: Tree, settings: Sequence[str]) -> Tree:
             raise unknown_name_error(
                 name, parameters, _("there is no parameter of that name"), none, path=path, file=words
             )
-        if path in given:
-            raise ProblemError(_("this parameter is set twice"), path=path, found=f"{given[path]}, {words}", file=words)
-        given[path] = words
+        if path in settings_by_path:
+            raise ProblemError(
+                _("this parameter is set twice"), path=path, found=f"{settings_by_path[path]}, {words}", file=words
+            )
+        settings_by_path[path] = words
         try:
             parameters[name] = plain_value(text)
         except ProblemError as error:
             raise error.at(*path).located(words) from None
-    return replace(tree, data={**tree.data, "parameters": parameters}, given=given) if given else tree
+    return (
+        replace(tree, data={**tree.data, "parameters": parameters}, given=settings_by_path)
+        if settings_by_path
+        else tree
+    )
 
 
 def unused_parameters(tree: Tree, names: Iterable[str]) -> list[str]:
     """Return those of these parameters that no value of the file uses, directly or through other parameters."""
-    own = tree.data.get("parameters", {})
+    parameters = tree.data.get("parameters", {})
     met: set[str] = set()
     left = [value for key, value in tree.data.items() if key not in ("parameters", "title", "description")]
     while left:
         new = {word for value in left for word in _find_names(value)} - met
         met |= new
-        left = [own[word] for word in new if word in own]
+        left = [parameters[word] for word in new if word in parameters]
     return [name for name in names if name not in met]
 
 
@@ -469,5 +479,5 @@ def _find_names(value: Any) -> Iterator[str]:
     if isinstance(value, str):
         yield from re.findall(r"[^\W\d]\w*", value)
     elif isinstance(value, dict | list):
-        for part in value.values() if isinstance(value, dict) else value:
-            yield from _find_names(part)
+        for child in value.values() if isinstance(value, dict) else value:
+            yield from _find_names(child)

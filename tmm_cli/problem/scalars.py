@@ -43,9 +43,9 @@ def plain_value(text: str) -> Scalar:
         return WrittenNumber(text)
     if _NOT_FINITE.fullmatch(text):
         raise ProblemError(_("the number is not finite"), found=quote(text), allowed=_("a finite number"))
-    whole, comma, part = text.partition(",")
-    if comma and is_split_number(whole, part):
-        raise decimal_comma_error(whole, part)
+    whole, comma, fraction = text.partition(",")
+    if comma and is_split_number(whole, fraction):
+        raise decimal_comma_error(whole, fraction)
     return text
 
 
@@ -61,9 +61,9 @@ def finite_float(text: str) -> float:
     return number
 
 
-def is_split_number(whole: str, part: str) -> bool:
+def is_split_number(whole: str, fraction: str) -> bool:
     """Return True if the texts on both sides of a comma may be one number, like `1,5` or `1,5 mm`."""
-    return bool(_WHOLE.fullmatch(whole) and _PART.fullmatch(part))
+    return bool(_WHOLE.fullmatch(whole) and _PART.fullmatch(fraction))
 
 
 def decimal_comma_error(whole: str, part: str) -> ProblemError:

@@ -34,13 +34,13 @@ from tmm_cli.problem.schema_types import (
 MAX_TEXT_LENGTH = 200
 
 
-def _checked_short_text(found: Any) -> str:
+def _checked_short_text(raw: Any) -> str:
     """Return a line of text; the number of a group may be written as a number."""
-    if isinstance(found, bool) or not isinstance(found, int | str):
+    if isinstance(raw, bool) or not isinstance(raw, int | str):
         raise PydanticCustomError("words", "expected a text")
-    if len(str(found)) > MAX_TEXT_LENGTH:
+    if len(str(raw)) > MAX_TEXT_LENGTH:
         raise PydanticCustomError("words", f"text is at most {MAX_TEXT_LENGTH} characters long")
-    return str(found)
+    return str(raw)
 
 
 ShortText = Annotated[str, BeforeValidator(_checked_short_text), WithJsonSchema({"anyOf": NAMES})]
@@ -236,8 +236,8 @@ class SlideKeys(Strict):
     unbounded: bool = Field(default=False, description="true if the guide extends beyond the points of `along`")
 
 
-def _expand_guide_name(found: Any) -> Any:
-    return {"on": found} if isinstance(found, str | int) and not isinstance(found, bool) else found
+def _expand_guide_name(raw: Any) -> Any:
+    return {"on": raw} if isinstance(raw, str | int) and not isinstance(raw, bool) else raw
 
 
 SlideOrGuide = Annotated[SlideKeys, BeforeValidator(_expand_guide_name, json_schema_input_type=SlideKeys | Name)]
@@ -288,8 +288,8 @@ class CompoundHinge(Strict):
     )
 
 
-def _checked_speed(found: Any) -> Any:
-    return Speeds.model_validate(found) if isinstance(found, dict) else checked_value(found)
+def _checked_speed(raw: Any) -> Any:
+    return Speeds.model_validate(raw) if isinstance(raw, dict) else checked_value(raw)
 
 
 class DriverKeys(Strict):
@@ -338,13 +338,16 @@ class OutputKeys(Strict):
     )
 
 
-def _list_outputs(found: Any) -> list[OutputKeys]:
-    several = found if isinstance(found, list) else [found]
-    return [OutputKeys.model_validate(one if isinstance(one, dict) else {"link": checked_name(one)}) for one in several]
+def _list_outputs(raw: Any) -> list[OutputKeys]:
+    several = raw if isinstance(raw, list) else [raw]
+    return [
+        OutputKeys.model_validate(output if isinstance(output, dict) else {"link": checked_name(output)})
+        for output in several
+    ]
 
 
-def _make_list(found: Any) -> Any:
-    return [found] if isinstance(found, str | int | float) else found
+def _make_list(raw: Any) -> Any:
+    return [raw] if isinstance(raw, str | int | float) else raw
 
 
 class Positions(Strict):

@@ -79,16 +79,16 @@ MESSAGES = {  # messages by pydantic's type of error
 }
 
 
-def shape_error(error: ValidationError, tree: Tree, model: type[BaseModel], part: Path = ()) -> ProblemError:
+def shape_error(error: ValidationError, tree: Tree, model: type[BaseModel], prefix: Path = ()) -> ProblemError:
     """Return the first validation error by its position in the file. model: the model of the value at the path
     `part`.
     """
     meant: list[tuple[str, ProblemError]] = []
     others: list[tuple[str, ProblemError]] = []
-    for kind, loc, context in _flatten_errors(error, part):
+    for kind, loc, context in _flatten_errors(error, prefix):
         path, value, fits = _find_value(tree.data, loc, kind)
-        inside = path[: len(part)] == part and len(path) > len(part)
-        fields = _find_fields(model, path[len(part) :]) if inside else _find_fields(schema.File, path)
+        inside = path[: len(prefix)] == prefix and len(path) > len(prefix)
+        fields = _find_fields(model, path[len(prefix) :]) if inside else _find_fields(schema.File, path)
         refusal = _make_error(kind, path, value, context, fields, decimal_comma_hint(tree, path))
         (meant if fits else others).append((kind, refusal))
     refusals = meant or others
@@ -123,28 +123,32 @@ def _find_value(data: Any, loc: Sequence[str | int], kind: str) -> tuple[Path, A
     return tuple(path), data, fits
 
 
-def _find_fields(here: type[BaseModel] | None, path: Path) -> tuple[dict[str, FieldInfo], FieldInfo | None]:
+def _find_fields(model: type[BaseModel] | None, path: Path) -> tuple[dict[str, FieldInfo], FieldInfo | None]:
     """Return the keys allowed where the path ends, and the field of its last key; an item counts as its list."""
     while path and isinstance(path[-1], int):
         path = path[:-1]
     named = False  # whether the next key is one of the user's own names
     for step in path[:-1]:
-        if isinstance(step, int) or here is None or named:
+        if isinstance(step, int) or model is None or named:
             named = False
             continue
-        field = here.model_fields.get(step)
-        here = None if field is None else _find_model([field.annotation])
+        field = model.model_fields.get(step)
+        model = None if field is None else _find_model([field.annotation])
         named = field is not None and get_origin(field.annotation) is dict
-    known = {field.alias or name: field for name, field in here.model_fields.items()} if here else {}
-    return known, known.get(str(path[-1])) if path else None
+    fields = {field.alias or name: field for name, field in model.model_fields.items()} if model else {}
+    return fields, fields.get(str(path[-1])) if path else None
 
 
 def _find_model(parts: Iterable[Any]) -> type[BaseModel] | None:
     """Return the first model in an annotation, or None."""
-    for part in parts:
-        found = part if isinstance(part, type) and issubclass(part, BaseModel) else _find_model(get_args(part))
-        if found:
-            return found
+    for annotation in parts:
+        model = (
+            annotation
+            if isinstance(annotation, type) and issubclass(annotation, BaseModel)
+            else _find_model(get_args(annotation))
+        )
+        if model:
+            return model
     return None
 
 
@@ -156,15 +160,13 @@ def _make_error(
     fields: tuple[dict[str, FieldInfo], FieldInfo | None],
     hint: str | None,
 ) -> ProblemError:
-    known, field = fields
+    keys, field = fields
     described = _(field.description) if field and field.description else None
     if kind == "extra_forbidden":
         key = str(path[-1])
-        foreign = nearest_name(key, [word for word, own in KEYS_IN_OTHER_LANGUAGES.items() if own in known])
-        near = KEYS_IN_OTHER_LANGUAGES[foreign] if foreign else nearest_name(key, known)
-        return ProblemError(
-            _("unknown key"), path=path, found=quote(key), allowed=", ".join(known), near=near, key=True
-        )
+        foreign = nearest_name(key, [word for word, latin_key in KEYS_IN_OTHER_LANGUAGES.items() if latin_key in keys])
+        near = KEYS_IN_OTHER_LANGUAGES[foreign] if foreign else nearest_name(key, keys)
+        return ProblemError(_("unknown key"), path=path, found=quote(key), allowed=", ".join(keys), near=near, key=True)
     if kind == "missing":
         named = get_args(field.annotation) if field and get_origin(field.annotation) is Literal else ()
         described = ", ".join(word for word in named if isinstance(word, str)) or described

@@ -11,29 +11,29 @@ MAX_LINKS = 100
 MAX_POSITIONS = 100_000
 
 
-def checked_value(found: Any) -> Any:
+def checked_value(raw: Any) -> Any:
     """Return a number, or a text that may be one."""
-    if isinstance(found, bool) or not isinstance(found, int | float | str):
+    if isinstance(raw, bool) or not isinstance(raw, int | float | str):
         raise PydanticCustomError("value", "expected a number, a number with a unit, or an expression with parameters")
-    return found
+    return raw
 
 
-def checked_name(found: Any) -> str:
+def checked_name(raw: Any) -> str:
     """Return a name as text; numbers may be names."""
-    if isinstance(found, int) and not isinstance(found, bool):
-        return str(found)
-    if not isinstance(found, str) or not found.strip():
+    if isinstance(raw, int) and not isinstance(raw, bool):
+        return str(raw)
+    if not isinstance(raw, str) or not raw.strip():
         raise PydanticCustomError("name", "expected a name")
-    if len(found) > 40:
+    if len(raw) > 40:
         raise PydanticCustomError("name", "a name can have at most 40 characters")
-    return found
+    return raw
 
 
-def checked_vector(found: Any) -> Any:
+def checked_vector(raw: Any) -> Any:
     """Return a list of two coordinates."""
-    if not isinstance(found, list) or len(found) != 2:
+    if not isinstance(raw, list) or len(raw) != 2:
         raise PydanticCustomError("vector", "expected two coordinates [x, y]")
-    return [checked_value(item) for item in found]
+    return [checked_value(item) for item in raw]
 
 
 VALUE = {"anyOf": [{"type": "number"}, {"type": "string"}]}
@@ -86,10 +86,10 @@ class OnLine(Strict):
     side: Value = Field(default=0, description="distance to the left of the line")
 
 
-def _checked_place(found: Any) -> Any:
-    if isinstance(found, str):
-        return checked_name(found)
-    return OnLine.model_validate(found) if isinstance(found, dict) else checked_vector(found)
+def _checked_place(raw: Any) -> Any:
+    if isinstance(raw, str):
+        return checked_name(raw)
+    return OnLine.model_validate(raw) if isinstance(raw, dict) else checked_vector(raw)
 
 
 Place = Annotated[str | list[Any] | OnLine, BeforeValidator(_checked_place)]

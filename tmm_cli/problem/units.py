@@ -137,7 +137,7 @@ _PER_TIME = re.compile(rf"(?<![^\W\d_]){PER_TIME}")
 
 def plain_text(text: str) -> str:
     """Replace superscripts by ^n, ** by ^, and typographic signs and spaces by those of a keyboard."""
-    text = _SUPERSCRIPT.sub(lambda found: "^" + found[0].translate(_FROM_SUPERSCRIPT), text)
+    text = _SUPERSCRIPT.sub(lambda match: "^" + match[0].translate(_FROM_SUPERSCRIPT), text)
     return text.translate(_TYPOGRAPHY).replace("**", "^")
 
 
@@ -154,7 +154,7 @@ def to_latin_unit(text: str) -> str:
 
 def _sign_powers(text: str) -> str:
     """Write `s^-1` for `s-1` in a unit."""
-    return _PER_TIME.sub(lambda found: found[0].replace("-", "^-"), text)
+    return _PER_TIME.sub(lambda match: match[0].replace("-", "^-"), text)
 
 
 def parse_unit(text: str) -> Unit:
@@ -177,10 +177,10 @@ def parse_unit(text: str) -> Unit:
                 _("this is not a valid unit: the power is too large"), found=quote(text), allowed=_("powers up to 4")
             )
         if name != "1":
-            found = find_unit(name)
-            if found is None:
+            factor = find_unit(name)
+            if factor is None:
                 raise unknown_unit_error(name)
-            unit = unit.times(found, exponent)
+            unit = unit.times(factor, exponent)
             names.append(name)
         position, factors = match.end(), factors + 1
     if not factors:
@@ -198,7 +198,10 @@ def unknown_unit_error(name: str) -> UnitError:
 def dotted_unit_error(text: str) -> UnitError:
     """Return the error for a unit with dots in it, such as `об.мин`, with the unit that is meant."""
     bare = text.replace("./", "/").rstrip(".")
-    meant = next((way for way in (bare.replace(".", sign) for sign in ("", "/", "*")) if _is_known_kind(way)), None)
+    meant = next(
+        (spelling for spelling in (bare.replace(".", sign) for sign in ("", "/", "*")) if _is_known_kind(spelling)),
+        None,
+    )
     return UnitError(_("a unit is written without dots"), found=quote(text), allowed=meant)
 
 
@@ -227,11 +230,13 @@ class UnitSystem:
                 raise unknown_name_error(key, keys, _("unknown key"), path=(key,), key=True)
             kind = DIMENSIONS[full]
             with prefix_errors(key):
-                found = parse_unit(name).dimension
-                if not found.fits(kind.dimension):
+                named_dimension = parse_unit(name).dimension
+                if not named_dimension.fits(kind.dimension):
                     allowed = _("a unit of {full}, e.g. {default}").format(full=full, default=kind.default)
                     raise UnitError(
-                        _("this unit measures another quantity"), found=f"{quote(name)}, {found}", allowed=allowed
+                        _("this unit measures another quantity"),
+                        found=f"{quote(name)}, {named_dimension}",
+                        allowed=allowed,
                     )
             self._names[kind.dimension] = to_latin_unit(name)
         self._units = {dimension: parse_unit(name) if name else Unit(NUMBER) for dimension, name in self._names.items()}
@@ -326,8 +331,8 @@ class ExtendedUnits(UnitSystem):
 
     def number(self, written: str | int | float) -> float:
         super().number(written)  # refuses what float64 has no place for
-        found: Any = DoubleDouble.decimal(written if isinstance(written, str) else repr(written))
-        return found  # type: ignore[no-any-return]
+        number: Any = DoubleDouble.decimal(written if isinstance(written, str) else repr(written))
+        return number  # type: ignore[no-any-return]
 
 
 class VariedUnits(UnitSystem):
@@ -335,5 +340,5 @@ class VariedUnits(UnitSystem):
 
     functions = {**FUNCTIONS, "pi": float(PI)}  # noqa: RUF012  a table
 
-    def __init__(self, own: UnitSystem) -> None:
-        vars(self).update(vars(own))
+    def __init__(self, units: UnitSystem) -> None:
+        vars(self).update(vars(units))

@@ -104,12 +104,12 @@ class ValueReader:
 
     def too_small(self, value: Any, least: float, want: Dimension, path: Path) -> ProblemError:
         """Return the error for a value below the least one (SI) that a mechanism can have."""
-        shown = f"{self.units.from_si(least, want):.6g} {self.units.symbol(want)}".rstrip()
+        least_text = f"{self.units.from_si(least, want):.6g} {self.units.symbol(want)}".rstrip()
         return ProblemError(
             _("this value is too small for a mechanism"),
             path=path,
             found=quote(value),
-            allowed=_("{least} or more").format(least=shown),
+            allowed=_("{least} or more").format(least=least_text),
         )
 
     def vector(self, value: Any, want: Dimension, path: Path) -> complex:
@@ -128,10 +128,10 @@ class ValueReader:
             ]
         if isinstance(value, OnLine):
             first, second = self.two_points(value.on, points, (*path, "on"))
-            way = points[second] - points[first]
-            share = self.share_of(abs(way), value.at, (first, second), (*path, "at"))
+            span = points[second] - points[first]
+            share = self.share_of(abs(span), value.at, (first, second), (*path, "at"))
             side = self.number(value.side, LENGTH, (*path, "side"))
-            return points[first] + share * way + (1j * side * way / abs(way) if side else 0)
+            return points[first] + share * span + (1j * side * span / abs(span) if side else 0)
         return self.vector(value, LENGTH, path)
 
     def share_of(self, length: Any, value: Any, points: tuple[str, str], path: Path) -> float:
@@ -158,13 +158,13 @@ class ValueReader:
         return share
 
     @staticmethod
-    def known_name(name: str, names: Iterable[str], path: Path, what: str, *, key: bool = False) -> str:
+    def known_name(name: str, names: Iterable[str], path: Path, kind: str, *, key: bool = False) -> str:
         """Return the name. Raises ProblemError if it is not one of the names; what: kind of thing that it names, for
         the message.
         """
         if name in names:
             return name
-        raise unknown_name_error(name, names, unknown_name_message(what), path=path, key=key)
+        raise unknown_name_error(name, names, unknown_name_message(kind), path=path, key=key)
 
     @staticmethod
     def refuse_same(links: Sequence[str], path: Path) -> None:
@@ -175,16 +175,16 @@ class ValueReader:
     def two_points(self, text: str, points: Mapping[str, complex], path: Path) -> tuple[str, str]:
         """Split two points of a link written together, CD or C-D."""
         written = re.split(r"\s*[-–, ]\s*", text.strip())
-        ways = [(text[:k], text[k:]) for k in range(1, len(text))]
+        splits = [(text[:k], text[k:]) for k in range(1, len(text))]
         if len(written) == 2:
-            ways = [(written[0], written[1])]
-        found = [(a, b) for a, b in ways if a in points and b in points and a != b]
-        if len(found) == 1 and points[found[0][0]] != points[found[0][1]]:
-            return found[0]
+            splits = [(written[0], written[1])]
+        pairs = [(a, b) for a, b in splits if a in points and b in points and a != b]
+        if len(pairs) == 1 and points[pairs[0][0]] != points[pairs[0][1]]:
+            return pairs[0]
         near = None
-        if len(found) > 1:
+        if len(pairs) > 1:
             message = _("this can be read in several ways; put a hyphen between the two points")
-        elif found:
+        elif pairs:
             message = _("these two points coincide")
         else:
             message = _("expected two points of the same link")
@@ -244,8 +244,8 @@ class FileSection:
             raise ProblemError(message, path=(*path, k, 0), found=str(rows[k][0]), allowed=allowed)
         return first, second
 
-    def known_name(self, key: str, names: Iterable[str], what: str) -> str:
-        return self.values.known_name(getattr(self.keys, key), names, (*self.path, key), what)
+    def known_name(self, key: str, names: Iterable[str], kind: str) -> str:
+        return self.values.known_name(getattr(self.keys, key), names, (*self.path, key), kind)
 
     def two_links(self, links: Iterable[str]) -> tuple[str, str]:
         """Return the two different links named in `between`."""
@@ -258,11 +258,11 @@ class FileSection:
 
     def one_of(self, *keys: str) -> str:
         """Return the one of these keys that is given. Raises ProblemError unless exactly one is."""
-        told = [key for key in keys if getattr(self.keys, key) is not None]
-        if len(told) != 1:
-            found, allowed = ", ".join(told) or None, ", ".join(keys)
-            raise self.refusal("", _("expected exactly one of these keys"), found, allowed)
-        return told[0]
+        given_keys = [key for key in keys if getattr(self.keys, key) is not None]
+        if len(given_keys) != 1:
+            quoted, allowed = ", ".join(given_keys) or None, ", ".join(keys)
+            raise self.refusal("", _("expected exactly one of these keys"), quoted, allowed)
+        return given_keys[0]
 
     def refusal(
         self, key: str, message: str, found: str | None = None, allowed: str | None = None, *, at_key: bool = False
@@ -278,16 +278,16 @@ def unknown_name_message(what: str) -> str:
     return translated(UNKNOWN_NAMES["point of link" if link else kind]).format(link=link)
 
 
-def check_name(name: str, path: Path, what: str, taken: Container[str] = ()) -> None:
+def check_name(name: str, path: Path, kind: str, taken: Container[str] = ()) -> None:
     """Refuse a name that is taken or unfit for tables, drawings and file names; only letters and digits are allowed."""
-    pattern = LINK_NAME if what == "link" else POINT_NAME
+    pattern = LINK_NAME if kind == "link" else POINT_NAME
     if not pattern.fullmatch(name):
         raise ProblemError(
-            translated(INVALID_NAMES[what]),
+            translated(INVALID_NAMES[kind]),
             path=path,
             found=quote(name),
             allowed=_("letters and digits, at most 16 characters")
-            if what == "link"
+            if kind == "link"
             else _("letters and digits, at most 16 characters, beginning with a letter"),
             key=True,
         )
@@ -310,4 +310,4 @@ def unit_vector(angle: float) -> complex:
     if not isinstance(angle, float):
         return make_complex(np.cos(angle), np.sin(angle))
     turned = cmath.exp(1j * angle)
-    return complex(*(0.0 if abs(part) < NO_COSINE else part for part in (turned.real, turned.imag)))
+    return complex(*(0.0 if abs(component) < NO_COSINE else component for component in (turned.real, turned.imag)))

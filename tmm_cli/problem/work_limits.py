@@ -30,8 +30,8 @@ def work_size(linkage: Linkage) -> int:
 
 def refuse_work(linkage: Linkage, request: Request) -> None:
     """Refuse a request that no stage could complete within the budget. Raises ProblemError, not yet located."""
-    size, count = work_size(linkage), len(request.places) or request.count
-    most = WORK_BUDGET // size - _search_positions(linkage)
+    elements, count = work_size(linkage), len(request.places) or request.count
+    most = WORK_BUDGET // elements - _search_positions(linkage)
     if most < 1:
         whole = WORK_BUDGET // (_search_positions(linkage) + 1)
         raise ProblemError(
@@ -76,10 +76,10 @@ def refuse_options(
     Raises:
         ProblemError: the work exceeds the budget; not yet located.
     """
-    size = work_size(linkage)
-    left = WORK_BUDGET / size - _search_positions(linkage) - count
+    elements = work_size(linkage)
+    left = WORK_BUDGET / elements - _search_positions(linkage) - count
     if digits:
-        each = DIGIT_POSITIONS * size
+        each = DIGIT_POSITIONS * elements
         left -= each * (MIN_JUDGED + min(count, MAX_JUDGED))
         if left < 0:
             few = (left + count + each * min(count, MAX_JUDGED)) / (1 + each)

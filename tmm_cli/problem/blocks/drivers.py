@@ -53,8 +53,8 @@ def _build_speed_table(section: FileSection, turns: int) -> SpeedTable:
     row, least = _find_least(squares)
     if least < -ROUNDING_OF_REST * float(to_float(max(speeds))) ** 2:
         below = _("the smooth curve through the squares of the speeds falls below zero between this row and the next")
-        found, allowed = quote(keys.speed.table[row][0]), _("between: linear, or more rows between these two")
-        raise ProblemError(below, path=(*path, row, 0), found=found, allowed=allowed)
+        angle, allowed = quote(keys.speed.table[row][0]), _("between: linear, or more rows between these two")
+        raise ProblemError(below, path=(*path, row, 0), found=angle, allowed=allowed)
     if not isinstance(keys.acceleration, schema.Speeds):
         return SpeedTable(squares)
     angles, gains = _columns(section, "acceleration", ANGULAR_ACCELERATION)
@@ -76,8 +76,8 @@ def _mean_speed(section: FileSection) -> float:
 
 
 def _columns(section: FileSection, key: str, want: Dimension) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-    own = FileSection(getattr(section.keys, key), (*section.path, key), section.values)
-    return own.columns("table", ANGLE, want, jumps=key == "acceleration")
+    table_section = FileSection(getattr(section.keys, key), (*section.path, key), section.values)
+    return table_section.columns("table", ANGLE, want, jumps=key == "acceleration")
 
 
 def _is_closed(section: FileSection, key: str, angles: tuple[Any, ...], values: tuple[Any, ...], turns: int) -> bool:
@@ -105,9 +105,9 @@ def _is_closed(section: FileSection, key: str, angles: tuple[Any, ...], values: 
 def _find_least(table: InterpolationTable) -> tuple[int, float]:
     """Return the row after which the interpolated table has its minimum, and the minimum."""
     rows = np.array([float(to_float(row)) for row in table.arguments])
-    found = to_float(table(rows[:-1, None] + np.diff(rows)[:, None] * np.linspace(0, 1, 33)))
-    row = int(np.argmin(np.min(found, axis=1)))
-    return row, float(np.min(found))
+    squares = to_float(table(rows[:-1, None] + np.diff(rows)[:, None] * np.linspace(0, 1, 33)))
+    row = int(np.argmin(np.min(squares, axis=1)))
+    return row, float(np.min(squares))
 
 
 # Drivers, sketch and requested positions.
@@ -130,24 +130,24 @@ def build_drivers(shape: schema.File, members: LinksAndPairs, values: ValueReade
     if not shape.driver:
         raise ProblemError(_("there is no driver"), path=("driver",), found="[]", allowed=_("{link: 1, speed: 60 rpm}"))
     sections = [FileSection(keys, ("driver", number), values) for number, keys in enumerate(shape.driver)]
-    found: list[Driver] = []
+    drivers: list[Driver] = []
     for section in sections:
         driver = _build_driver(section, members, section is sections[0])
-        if any({driver.link, driver.base} == {d.link, d.base} or driver.link == d.link for d in found):
+        if any({driver.link, driver.base} == {d.link, d.base} or driver.link == d.link for d in drivers):
             raise section.refusal("link", _("this link has a driver already"), quote(driver.link))
-        found.append(driver)
-    lead, size = found[0], _linkage_size(members.links)
-    for section, driver in zip(sections[1:], found[1:], strict=True):
-        first, own = (d.rate / (size if d.kind == "slide" else 1.0) for d in (lead, driver))
-        if first > 0 and own > MAX_SPEED_RATIO * first:
+        drivers.append(driver)
+    lead, length = drivers[0], _linkage_size(members.links)
+    for section, driver in zip(sections[1:], drivers[1:], strict=True):
+        first, rate = (d.rate / (length if d.kind == "slide" else 1.0) for d in (lead, driver))
+        if first > 0 and rate > MAX_SPEED_RATIO * first:
             faster = _("this driver is more than 100 times faster than the first one")
             raise section.refusal(
                 "speed", faster, str(section.keys.speed), _("the fastest driver as the first of the list")
             )
-    if len(found) > 1 and lead.rate == 0:
+    if len(drivers) > 1 and lead.rate == 0:
         still = _("the first driver numbers the positions, so its speed must not be zero")
         raise sections[0].refusal("speed", still, str(sections[0].keys.speed))
-    return tuple(found)
+    return tuple(drivers)
 
 
 def _linkage_size(links: dict[str, Link]) -> float:
@@ -247,16 +247,16 @@ def build_cycle(shape: schema.File, driver: Driver, values: ValueReader) -> int:
 def build_sketch(shape: schema.File, links: dict[str, Link], driver: Driver, values: ValueReader) -> Sketch:
     """Build the sketch of the file; if it has none, a sketch with a default driver coordinate. Raises ProblemError."""
     keys = dict(shape.sketch)
-    wanted = ANGLE if driver.kind == "turn" else LENGTH
+    dimension = ANGLE if driver.kind == "turn" else LENGTH
     if not keys:
         return Sketch(DEFAULT_SKETCH_ANGLE if driver.kind == "turn" else 0.0)
     if "at" not in keys:
         raise ProblemError(
             _("the driver coordinate of the sketch is missing"),
             path=("sketch", "at"),
-            allowed=_("at: {wanted}").format(wanted=wanted),
+            allowed=_("at: {wanted}").format(wanted=dimension),
         )
-    at = values.number(keys.pop("at"), wanted, ("sketch", "at"))
+    at = values.number(keys.pop("at"), dimension, ("sketch", "at"))
     if driver.stroke is not None and not driver.stroke[0] <= at <= driver.stroke[1]:
         beyond = _("in the sketch the driver is outside its stroke")
         raise ProblemError(beyond, path=("sketch", "at"), found=str(shape.sketch["at"]))
@@ -283,13 +283,13 @@ def build_request(shape: schema.File, driver: Driver, values: ValueReader) -> Re
     """Build the request for positions from the block `positions`. Raises ProblemError."""
     keys = shape.positions
     section = FileSection(keys, ("positions",), values)
-    wanted = ANGLE if driver.kind == "turn" else LENGTH
-    places = tuple(values.number(v, wanted, ("positions", "at", k)) for k, v in enumerate(keys.at or ()))
-    count = len(places) or keys.count
+    dimension = ANGLE if driver.kind == "turn" else LENGTH
+    coordinates = tuple(values.number(v, dimension, ("positions", "at", k)) for k, v in enumerate(keys.at or ()))
+    count = len(coordinates) or keys.count
     for k, number in enumerate(keys.detail):
         if not 0 <= number < count:
             raise unknown_position_error(number, count, "positions", "detail", k)
-    if keys.from_ is not None and driver.kind == "slide" and not places:
+    if keys.from_ is not None and driver.kind == "slide" and not coordinates:
         raise section.refusal(
             "from",
             _("`from` is for cranks: the positions of a driven slider run from one end of its stroke to the other"),
@@ -301,5 +301,5 @@ def build_request(shape: schema.File, driver: Driver, values: ValueReader) -> Re
     if keys.from_ == "working stroke":
         start = "working stroke"
     elif keys.from_ is not None:
-        start = values.number(keys.from_, wanted, ("positions", "from"))
-    return Request(count, start, places, tuple(keys.detail), keys.centres)
+        start = values.number(keys.from_, dimension, ("positions", "from"))
+    return Request(count, start, coordinates, tuple(keys.detail), keys.centres)

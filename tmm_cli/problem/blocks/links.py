@@ -171,20 +171,20 @@ class _LinkReader:
                 raise section.refusal("length", _("`length` is the distance between two points, and this link has one"))
             return dict.fromkeys(names, 0j)
         if section.keys.length is None:
-            wanted = _("length: the distance from {first} to {second}").format(first=names[0], second=names[1])
-            raise section.refusal("length", _("the length of this link is missing"), allowed=wanted)
+            allowed = _("length: the distance from {first} to {second}").format(first=names[0], second=names[1])
+            raise section.refusal("length", _("the length of this link is missing"), allowed=allowed)
         return {names[0]: 0j, names[1]: make_complex(section.positive("length", LENGTH), 0.0)}
 
     def slides(self) -> tuple[Slide, ...]:
         for name in self.shape.guides:
             check_name(name, ("guides", name), "guide")
-        found: list[Slide] = []
+        slides: list[Slide] = []
         for name, link in self.shape.links.items():
             many = isinstance(link.slides, list)
             for number, slide in enumerate(link.sliding):
                 path: Path = ("links", name, "slides", number) if many else ("links", name, "slides")
-                found.append(self.slide(FileSection(slide, path, self.values), name, {s.name for s in found}))
-        return tuple(found)
+                slides.append(self.slide(FileSection(slide, path, self.values), name, {s.name for s in slides}))
+        return tuple(slides)
 
     def slide(self, section: FileSection, runner: str, taken: set[str]) -> Slide:
         keys: schema.SlideKeys = section.keys
@@ -192,7 +192,7 @@ class _LinkReader:
         point = keys.point or next(iter(points))
         self.values.known_name(point, points, (*section.path, "point"), f"point of link {runner}")
         if keys.on in guides:
-            if any(told is not None for told in (keys.along, keys.through, keys.angle)):
+            if any(key is not None for key in (keys.along, keys.through, keys.angle)):
                 raise ProblemError(
                     _(
                         "the line of guide {on} is already given in `guides`; remove along, through and angle here"
@@ -207,9 +207,9 @@ class _LinkReader:
             among = _("guides: {guides}; links: {links}").format(
                 guides=", ".join(guides) or _("none"), links=", ".join(self.links)
             )
-            known = [*guides, *(n for n in self.links if n != runner)]
+            carriers = [*guides, *(n for n in self.links if n != runner)]
             raise unknown_name_error(
-                keys.on, known, _("there is no guide or link of that name"), among, path=(*section.path, "on")
+                keys.on, carriers, _("there is no guide or link of that name"), among, path=(*section.path, "on")
             )
         self.values.refuse_same((runner, carrier), (*section.path, "on"))
         through, angle, ends = self.guide(line, carrier)
@@ -314,16 +314,16 @@ def _points_used_elsewhere(
     shape: schema.File, data: dict[str, Any], links: dict[str, Link], everything: list[str]
 ) -> set[str]:
     """Return the points named outside the links' own lists of points, alone or as two together (CD, C-D)."""
-    known, found = set(everything), set[str]()
+    all_points, used = set(everything), set[str]()
     for word in _find_texts({**data, "parameters": {}, "title": "", "description": ""}):
-        found.add(word)
+        used.add(word)
         two = re.sub(r"[-–, ]", "", word)
         for k in range(1, len(two) if len(two) <= MAX_PAIR_LENGTH else 0):
-            found |= {two[:k], two[k:]} if known >= {two[:k], two[k:]} else set()
+            used |= {two[:k], two[k:]} if all_points >= {two[:k], two[k:]} else set()
     for slide in (s for link in shape.links.values() for s in link.sliding):
         if slide.on in links and slide.along is None and slide.through is None and slide.angle is None:
-            found |= set(links[slide.on].points)  # its two points are the guide
-    return found
+            used |= set(links[slide.on].points)  # its two points are the guide
+    return used
 
 
 def _find_texts(section: Any) -> Iterator[str]:

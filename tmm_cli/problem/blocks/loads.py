@@ -64,16 +64,16 @@ AGAINST = ("stroke", "share of stroke", "crank angle", "crank turn")
 WHEN = ("always", "working stroke")
 
 
-def _checked_word(found: Any, words: tuple[str, ...], pattern: str) -> str:
+def _checked_word(raw: Any, words: tuple[str, ...], pattern: str) -> str:
     """Return the text if it is one of these words or matches the pattern; raise pydantic's literal_error otherwise."""
-    if isinstance(found, str) and (found in words or re.fullmatch(pattern, found)):
-        return found
+    if isinstance(raw, str) and (raw in words or re.fullmatch(pattern, raw)):
+        return raw
     *first, last = (f"'{word}'" for word in words)
     raise PydanticKnownError("literal_error", {"expected": f"{', '.join(first)} or {last}"})
 
 
-def _checked_against(found: Any) -> str:
-    return _checked_word(found, AGAINST, STROKE_OF)
+def _checked_against(raw: Any) -> str:
+    return _checked_word(raw, AGAINST, STROKE_OF)
 
 
 Against = Annotated[
@@ -118,16 +118,16 @@ class TabulatedKeys(Strict):
     )
 
 
-def _checked_force(found: Any) -> Any:
-    return TabulatedKeys.model_validate(found) if isinstance(found, dict) else checked_vector(found)
+def _checked_force(raw: Any) -> Any:
+    return TabulatedKeys.model_validate(raw) if isinstance(raw, dict) else checked_vector(raw)
 
 
-def _checked_moment(found: Any) -> Any:
-    return TabulatedKeys.model_validate(found) if isinstance(found, dict) else checked_value(found)
+def _checked_moment(raw: Any) -> Any:
+    return TabulatedKeys.model_validate(raw) if isinstance(raw, dict) else checked_value(raw)
 
 
-def _checked_when(found: Any) -> Any:
-    return checked_vector(found) if isinstance(found, list) else _checked_word(found, WHEN, WORKING_STROKE_OF)
+def _checked_when(raw: Any) -> Any:
+    return checked_vector(raw) if isinstance(raw, list) else _checked_word(raw, WHEN, WORKING_STROKE_OF)
 
 
 When = Annotated[
@@ -221,8 +221,8 @@ def _add_point_masses(link: Link, section: FileSection) -> Link:
     """
     bodies = [(link.mass, link.centre)] if link.mass > 0 else []
     for k, keys in enumerate(section.keys.points):
-        own = FileSection(keys, (*section.path, "points", k), section.values)
-        bodies.append((own.positive("mass", MASS), own.place("at", link.points, link.name)))
+        mass_section = FileSection(keys, (*section.path, "points", k), section.values)
+        bodies.append((mass_section.positive("mass", MASS), mass_section.place("at", link.points, link.name)))
     if not section.keys.points:
         return link
     if len(bodies) == 1:  # exactly there, and with nothing about its centre, in every precision
@@ -238,9 +238,13 @@ def _refuse_ambiguous_centre(links: Mapping[str, Link], name: str, section: File
     """Refuse a point named S3 that is not the centre of mass of link 3: tables, plans and formulas call the centre
     S3.
     """
-    point, own = f"S{name}", links[name]
-    of = [link for link in links if point in links[link].points]
-    if own.mass and of and (of != [name] or abs(own.points[point] - own.centre) > SAME_DRIVER_POSITION):
+    point, massed = f"S{name}", links[name]
+    owners = [link for link in links if point in links[link].points]
+    if (
+        massed.mass
+        and owners
+        and (owners != [name] or abs(massed.points[point] - massed.centre) > SAME_DRIVER_POSITION)
+    ):
         raise section.refusal(
             "centre",
             _(
@@ -347,8 +351,8 @@ def _build_component(key: str, want: Dimension, linkage: Linkage, load: FileSect
         return _LoadComponent(load.values.vector(keys, want, section.path) if force else load.number(key, want))
     if keys.resists is not None:
         section.one_of("size", "table", "angle", "resists")
-        size = section.positive("resists", want)
-        return _LoadComponent(size + 0j if force else size, resists=True)
+        resistance = section.positive("resists", want)
+        return _LoadComponent(resistance + 0j if force else resistance, resists=True)
     return _build_sized(section, want, linkage, load.keys.on, angled=force)
 
 
@@ -371,10 +375,12 @@ def _build_pressure(load: FileSection, linkage: Linkage) -> _LoadComponent:
             allowed=_("angle: 180 deg"),
             at_key=True,
         )
-    found = _build_sized(section, PRESSURE, linkage, load.keys.on, angled=True)
-    if found.table is None:
-        return _LoadComponent(found.size * area)
-    return _LoadComponent(found.size, replace(found.table, values=tuple(value * area for value in found.table.values)))
+    component = _build_sized(section, PRESSURE, linkage, load.keys.on, angled=True)
+    if component.table is None:
+        return _LoadComponent(component.size * area)
+    return _LoadComponent(
+        component.size, replace(component.table, values=tuple(value * area for value in component.table.values))
+    )
 
 
 def _build_sized(
@@ -383,8 +389,8 @@ def _build_sized(
     """Build a component given by one size or by a table; `angled` for forces and pressures, which need an angle."""
     keys: TabulatedKeys = section.keys
     if angled == (keys.angle is None):
-        wanted = _("a force given by `size` or `table` needs `angle`; a moment has no `angle`")
-        raise section.refusal("angle", wanted, allowed=_("angle: 180 deg"))
+        message = _("a force given by `size` or `table` needs `angle`; a moment has no `angle`")
+        raise section.refusal("angle", message, allowed=_("angle: 180 deg"))
     if (keys.against is None) != (keys.table is None):
         raise section.refusal(
             "against",
@@ -480,7 +486,7 @@ def _refuse_beyond_stroke(section: FileSection, shares: Sequence[Any]) -> None:
             )
 
 
-def _is_whole_turns(way: float) -> bool:
+def _is_whole_turns(angle: float) -> bool:
     """Return True if an angle (rad) is a whole number of turns."""
-    turns = float(way) / (2 * np.pi)
+    turns = float(angle) / (2 * np.pi)
     return abs(turns - round(turns)) * 2 * np.pi < SAME_DRIVER_POSITION

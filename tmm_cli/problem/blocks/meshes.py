@@ -116,16 +116,16 @@ def build_meshes(shape: schema.File, members: LinksAndPairs, sense: int, values:
     ProblemError.
     """
     taken = {h.point for h in members.hinges} | {s.name for s in members.slides}
-    found: list[Mesh] = []
+    meshes: list[Mesh] = []
     for block, build in (("gears", _build_gear), ("racks", _build_rack), ("cams", partial(_build_cam, sense))):
         for name, keys in getattr(shape, block).items():
             check_name(name, (block, name), "pair", taken)
             taken.add(name)
-            found.append(build(name, FileSection(keys, (block, name), values), members))
+            meshes.append(build(name, FileSection(keys, (block, name), values), members))
         if block == "gears":
-            _refuse_locked_trains(found)
-    _refuse_shared_rollers(found)
-    return tuple(found)
+            _refuse_locked_trains(meshes)
+    _refuse_shared_rollers(meshes)
+    return tuple(meshes)
 
 
 def _refuse_shared_rollers(meshes: Sequence[Mesh]) -> None:
@@ -146,15 +146,21 @@ def _refuse_locked_trains(gears: list[Mesh]) -> None:
     # train of each carrier and gear; the angle of each gear is a slope times that of one of them, plus a phase
     trains: dict[tuple[str, str], dict[str, tuple[float, float]]] = {}
     for gear in gears:
-        one, other = (trains.setdefault((gear.carrier, n), {n: (1.0, 0.0)}) for n in (gear.i, gear.j))
-        slope, phase = one[gear.i]
-        wanted, angle = gear.ratio * slope, gear.ratio * phase + gear.offset
-        found, there = other[gear.j]
-        if one is not other:
-            for wheel, (own, place) in other.items():
-                one[wheel] = own * wanted / found, place + own * (angle - there) / found
-                trains[gear.carrier, wheel] = one
-        elif abs(wanted - found) > PITCHES_TOUCH * max(abs(wanted), abs(found)) or abs(angle - there) > IN_PHASE:
+        train, other_train = (trains.setdefault((gear.carrier, n), {n: (1.0, 0.0)}) for n in (gear.i, gear.j))
+        slope, phase = train[gear.i]
+        required_slope, angle = gear.ratio * slope, gear.ratio * phase + gear.offset
+        other_slope, other_phase = other_train[gear.j]
+        if train is not other_train:
+            for wheel, (gear_slope, gear_phase) in other_train.items():
+                train[wheel] = (
+                    gear_slope * required_slope / other_slope,
+                    gear_phase + gear_slope * (angle - other_phase) / other_slope,
+                )
+                trains[gear.carrier, wheel] = train
+        elif (
+            abs(required_slope - other_slope) > PITCHES_TOUCH * max(abs(required_slope), abs(other_slope))
+            or abs(angle - other_phase) > IN_PHASE
+        ):
             raise ProblemError(
                 _("gear pair {name} contradicts the ones before it: the gears lock each other").format(name=gear.name),
                 path=("gears", gear.name),
@@ -205,28 +211,28 @@ def _radius_ratio(section: FileSection, keys: GearKeys, distance: float) -> floa
     """Return the first radius divided by the second, negative for an external mesh; all given values must agree."""
     values, path = section.values, section.path
     teeth, radii = None, None
-    found: dict[str, float] = {}
+    ratios: dict[str, float] = {}
     if keys.teeth is not None:
         teeth = [_count_teeth(values, v, (*path, "teeth", k)) for k, v in enumerate(keys.teeth)]
-        found["teeth"] = teeth[0] / teeth[1]
+        ratios["teeth"] = teeth[0] / teeth[1]
     if keys.radii is not None:
         radii = [values.positive(v, LENGTH, (*path, "radii", k)) for k, v in enumerate(keys.radii)]
-        found["radii"] = radii[0] / radii[1]
+        ratios["radii"] = radii[0] / radii[1]
     if keys.ratio is not None:
-        found["ratio"] = section.positive("ratio", NUMBER)
-    if not found or (keys.module is not None and teeth is None):
-        wanted = _("expected `teeth`, `radii` or `ratio`; together with `module` it must be `teeth`")
-        raise section.refusal("", wanted, allowed=_("teeth: [20, 40]"))
-    size = next(iter(found.values()))
+        ratios["ratio"] = section.positive("ratio", NUMBER)
+    if not ratios or (keys.module is not None and teeth is None):
+        message = _("expected `teeth`, `radii` or `ratio`; together with `module` it must be `teeth`")
+        raise section.refusal("", message, allowed=_("teeth: [20, 40]"))
+    ratio = next(iter(ratios.values()))
     i, j = keys.between
-    if any(abs(other - size) > PITCHES_TOUCH * size for other in found.values()):
+    if any(abs(other - ratio) > PITCHES_TOUCH * ratio for other in ratios.values()):
         raise section.refusal(
             "",
             _("contradictory ratios of gears {i} and {j}").format(i=i, j=j),
-            ", ".join(f"by {key} {value:.6g}" for key, value in found.items()),
+            ", ".join(f"by {key} {value:.6g}" for key, value in ratios.items()),
         )
-    if not 1 / MAX_GEAR_RATIO <= size <= MAX_GEAR_RATIO or (keys.inner and size == 1):
-        raise section.refusal("", _("no pair of gears can have this ratio"), f"{size:.6g}")
+    if not 1 / MAX_GEAR_RATIO <= ratio <= MAX_GEAR_RATIO or (keys.inner and ratio == 1):
+        raise section.refusal("", _("no pair of gears can have this ratio"), f"{ratio:.6g}")
     if keys.module is not None and teeth is not None and radii is None:
         module = section.positive("module", LENGTH)
         radii = [module * number / 2 for number in teeth]
@@ -244,7 +250,7 @@ def _radius_ratio(section: FileSection, keys: GearKeys, distance: float) -> floa
                 ),
                 allowed=_("a distance of {wanted}").format(wanted=needed),
             )
-    return size if keys.inner else -size
+    return ratio if keys.inner else -ratio
 
 
 def _count_teeth(values: ValueReader, value: object, path: Path) -> float:
@@ -305,8 +311,8 @@ def _build_cam(sense: int, name: str, section: FileSection, members: LinksAndPai
         names = {"follower": follower, "carrier": carrier}
         raise section.refusal("follower", text.format(**names), allowed=allowed.format(**names))
     if keys.roller is not None and keys.roller in (FRAME, *members.links):
-        wanted = _("a number that no link has, e.g. {number}").format(number=len(members.links))
-        raise section.refusal("roller", _("a link already has this number"), keys.roller, wanted)
+        free_number = _("a number that no link has, e.g. {number}").format(number=len(members.links))
+        raise section.refusal("roller", _("a link already has this number"), keys.roller, free_number)
     if slide is None:
         _axis_on_carrier(follower, FRAME, members, (*section.path, "follower"))
     want = ANGLE if slide is None else LENGTH
@@ -314,9 +320,9 @@ def _build_cam(sense: int, name: str, section: FileSection, members: LinksAndPai
     pieces = tuple(CamLawPiece(p.positive("over", ANGLE), p.number("rise", want), p.keys.law) for p in sections)
     turn, rise = sum(p.over for p in pieces), sum(p.rise for p in pieces)
     if abs(turn - 2 * math.pi) > 1e-9:
-        found = f"{math.degrees(turn):.6g} deg"
+        total = f"{math.degrees(turn):.6g} deg"
         raise section.refusal(
-            "law", _("the parts of the law of motion do not add up to a full turn of the cam"), found, "360 deg"
+            "law", _("the parts of the law of motion do not add up to a full turn of the cam"), total, "360 deg"
         )
     if abs(rise) > 1e-9 * max(abs(p.rise) for p in pieces):
         allowed = _("values of `rise` that add up to 0")

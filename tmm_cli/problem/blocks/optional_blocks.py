@@ -68,10 +68,12 @@ def build_dynamics(shape: schema.File, linkage: Linkage, values: ValueReader) ->
         )
     wheel = FileSection(keys.flywheel, ("dynamics", "flywheel"), values)
     ratio = wheel.positive("ratio", NUMBER)
-    own = 0.0 if keys.flywheel.inertia is None else wheel.positive("inertia", INERTIA)
+    inertia = 0.0 if keys.flywheel.inertia is None else wheel.positive("inertia", INERTIA)
     form = DiskFlywheel if keys.flywheel.shape == "disk" else RimFlywheel
-    size = form(wheel.positive("density", DENSITY), wheel.positive("width", NUMBER), wheel.positive("height", NUMBER))
-    if form is RimFlywheel and size.height >= 1:
+    dimensions = form(
+        wheel.positive("density", DENSITY), wheel.positive("width", NUMBER), wheel.positive("height", NUMBER)
+    )
+    if form is RimFlywheel and dimensions.height >= 1:
         raise wheel.refusal(
             "height",
             _("a rim of this height leaves no hole in the middle"),
@@ -80,12 +82,14 @@ def build_dynamics(shape: schema.File, linkage: Linkage, values: ValueReader) ->
         )
     motor = None if keys.motor is None else _build_motor(FileSection(keys.motor, ("dynamics", "motor"), values))
     if keys.run is not None:
-        return _build_run(section, FileSection(keys.run, ("dynamics", "run"), values), driver, motor, own * ratio**2)
+        return _build_run(
+            section, FileSection(keys.run, ("dynamics", "run"), values), driver, motor, inertia * ratio**2
+        )
     if mean == 0:
         raise section.refusal(
             "", _("the speed of the driver is zero, so the law of motion cannot be computed"), allowed="mean speed"
         )
-    return SteadyTask(mean, delta, motor, own * ratio**2, ratio, size)
+    return SteadyTask(mean, delta, motor, inertia * ratio**2, ratio, dimensions)
 
 
 def _build_run(
@@ -103,7 +107,7 @@ def _build_run(
                 at_key=True,
             )
     turns = driver.kind == "turn"
-    place, size = (ANGLE, MOMENT) if turns else (LENGTH, FORCE)
+    place, effort = (ANGLE, MOMENT) if turns else (LENGTH, FORCE)
     first, last = (None if getattr(keys, key) is None else section.number(key, place) for key in ("from_", "to"))
     for key, end in (("from_", first), ("to", last)):
         if turns and end is not None and abs(end) > MAX_RUN_TURNS * 2 * math.pi:
@@ -117,17 +121,17 @@ def _build_run(
         raise section.refusal("to", _("the run begins and ends at the same position of the driver"), str(keys.to))
     drive = None
     if isinstance(keys.drive, optional_keys.ProfileKeys):
-        drive = _build_profile(FileSection(keys.drive, (*section.path, "drive"), section.values), place, size)
+        drive = _build_profile(FileSection(keys.drive, (*section.path, "drive"), section.values), place, effort)
     elif keys.drive is not None:
-        drive = DriveProfile("time", (0.0,), (section.number("drive", size),))
+        drive = DriveProfile("time", (0.0,), (section.number("drive", effort),))
     speed = section.positive("speed", ANGULAR_SPEED if turns else SPEED, zero=True)
-    return RunTask(speed, motor, drive, section.positive("brake", size, zero=True), flywheel, first, last)
+    return RunTask(speed, motor, drive, section.positive("brake", effort, zero=True), flywheel, first, last)
 
 
-def _build_profile(section: FileSection, place: Dimension, size: Dimension) -> DriveProfile:
+def _build_profile(section: FileSection, place: Dimension, effort: Dimension) -> DriveProfile:
     keys: optional_keys.ProfileKeys = section.keys
     area = 1.0
-    if keys.area is not None and size == MOMENT:
+    if keys.area is not None and effort == MOMENT:
         raise section.refusal(
             "area",
             _("a pressure acts on a piston, but this driver is a crank"),
@@ -136,9 +140,9 @@ def _build_profile(section: FileSection, place: Dimension, size: Dimension) -> D
             at_key=True,
         )
     if keys.area is not None:
-        size, area = PRESSURE, section.positive("area", AREA)
-    arguments, sizes = section.columns("table", NUMBER if keys.against == "time" else place, size)
-    return DriveProfile(keys.against, arguments, tuple(area * one for one in sizes))
+        effort, area = PRESSURE, section.positive("area", AREA)
+    arguments, sizes = section.columns("table", NUMBER if keys.against == "time" else place, effort)
+    return DriveProfile(keys.against, arguments, tuple(area * effort_value for effort_value in sizes))
 
 
 def _format_speed(speed: float) -> str:
@@ -150,13 +154,13 @@ def _build_motor(section: FileSection) -> MotorCharacteristic:
     """Build the motor characteristic, reduced to the driver."""
     keys: optional_keys.MotorKeys = section.keys
     ratio = section.positive("ratio", NUMBER)
-    wanted = MOTOR_KEYS[keys.kind]
-    for key in wanted:
+    required = MOTOR_KEYS[keys.kind]
+    for key in required:
         if getattr(keys, key) is None:
-            raise section.refusal("", _("a motor of this kind is specified by other keys"), allowed=", ".join(wanted))
-    for key in keys.model_fields_set - {"kind", "ratio", *wanted}:
+            raise section.refusal("", _("a motor of this kind is specified by other keys"), allowed=", ".join(required))
+    for key in keys.model_fields_set - {"kind", "ratio", *required}:
         raise section.refusal(
-            key, _("a motor of this kind is specified by other keys"), quote(key), ", ".join(wanted), at_key=True
+            key, _("a motor of this kind is specified by other keys"), quote(key), ", ".join(required), at_key=True
         )
     if keys.kind == "linear":
         return LinearMotor(ratio * section.positive("stall", MOMENT), section.positive("free", ANGULAR_SPEED) / ratio)
@@ -192,7 +196,10 @@ def build_balancing(shape: schema.File, linkage: Linkage, values: ValueReader) -
         raise section.refusal(
             "", _("there is nothing to balance: no link has a mass"), allowed=_("masses: {1: {mass: 2 kg, ...}}")
         )
-    places = tuple(_build_counterweight_place(name, own, linkage, values) for name, own in keys.counterweights.items())
+    counterweights = tuple(
+        _build_counterweight_place(name, counterweight, linkage, values)
+        for name, counterweight in keys.counterweights.items()
+    )
     share, along = 0.5, 1 + 0j
     if keys.share is not None:
         share = values.fraction(keys.share, section.at("share"), zero=True)
@@ -207,7 +214,7 @@ def build_balancing(shape: schema.File, linkage: Linkage, values: ValueReader) -
             )
         along = unit_vector((output if output in guides else guides[0]).direction)
     rotor = None if keys.rotor is None else _build_rotor(keys.rotor, values)
-    return BalancingTask(places, share, along, rotor)
+    return BalancingTask(counterweights, share, along, rotor)
 
 
 def _build_counterweight_place(
@@ -235,25 +242,25 @@ def _build_counterweight_place(
 
 def _build_rotor(keys: optional_keys.RotorKeys, values: ValueReader) -> UnbalancedShaft:
     path = ("balancing", "rotor")
-    sizes, at = [], []
-    for k, one in enumerate(keys.masses):
-        section = FileSection(one, (*path, "masses", k), values)
-        size = section.positive("mass", MASS) * section.positive("radius", LENGTH)
-        sizes.append(size * unit_vector(section.number("angle", ANGLE)))
+    products, at = [], []
+    for k, mass in enumerate(keys.masses):
+        section = FileSection(mass, (*path, "masses", k), values)
+        product = section.positive("mass", MASS) * section.positive("radius", LENGTH)
+        products.append(product * unit_vector(section.number("angle", ANGLE)))
         at.append(section.number("at", LENGTH))
     planes = []
-    for k, own in enumerate(keys.planes):
-        section = FileSection(own, (*path, "planes", k), values)
+    for k, plane in enumerate(keys.planes):
+        section = FileSection(plane, (*path, "planes", k), values)
         planes.append(
             CorrectionPlane(
-                section.number("at", LENGTH), 0.0 if own.radius is None else section.positive("radius", LENGTH)
+                section.number("at", LENGTH), 0.0 if plane.radius is None else section.positive("radius", LENGTH)
             )
         )
     if len(planes) > 1 and planes[0].at == planes[1].at:
         raise FileSection(keys, path, values).refusal(
             "planes", _("the two planes must be different"), str(keys.planes[1].at)
         )
-    return UnbalancedShaft(np.array(sizes), np.array(at), tuple(planes))
+    return UnbalancedShaft(np.array(products), np.array(at), tuple(planes))
 
 
 LinkageWith = Callable[[Mapping[str, object]], Linkage]  # the linkage with other values of parameters
@@ -277,7 +284,7 @@ def _build_wheel(
     section = FileSection(keys, ("intermittent", name), values)
     check_name(name, section.path, "link", linkage.links)
     link = section.known_name("moves_with", linkage.moving, "moving link")
-    turning = [own for own in linkage.moving if linkage.hinged_to_frame(own)]
+    turning = [moving for moving in linkage.moving if linkage.hinged_to_frame(moving)]
     if link not in turning:
         raise section.refusal(
             "moves_with",
@@ -286,30 +293,30 @@ def _build_wheel(
             ", ".join(turning),
         )
     settings = [
-        _build_setting(own, (*section.path, "settings", k), shape.parameters, other)
-        for k, own in enumerate(keys.settings)
+        _build_setting(moving, (*section.path, "settings", k), shape.parameters, other)
+        for k, moving in enumerate(keys.settings)
     ]
     return WheelTask(name, link, keys.when, tuple(settings))
 
 
 def _build_setting(
-    keys: Mapping[str, object], path: Path, known: Mapping[str, object], other: LinkageWith
+    keys: Mapping[str, object], path: Path, parameters: Mapping[str, object], other: LinkageWith
 ) -> WheelSetting:
     for name in keys:
-        if name not in known:
+        if name not in parameters:
             raise ProblemError(
                 _("there is no parameter of that name"),
                 path=(*path, name),
                 found=quote(name),
                 key=True,
-                allowed=", ".join(known) or _("none: the file has no block `parameters`"),
-                near=nearest_name(name, known),
+                allowed=", ".join(parameters) or _("none: the file has no block `parameters`"),
+                near=nearest_name(name, parameters),
             )
     if not keys:
         return WheelSetting()
     try:
         return WheelSetting({name: str(value) for name, value in keys.items()}, other(keys))
     except ProblemError as error:  # somewhere in the file, but it is this setting that does not fit there
-        own = [name for name in keys if error.path == ("parameters", name)]
-        path = (*path, *own)
+        wrong = [name for name in keys if error.path == ("parameters", name)]
+        path = (*path, *wrong)
         raise ProblemError(error.message, path=path, found=error.found, allowed=error.allowed) from None

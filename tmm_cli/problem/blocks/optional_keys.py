@@ -9,14 +9,8 @@ from pydantic import BeforeValidator, Field
 from tmm_cli.problem.schema_types import Name, Place, Strict, Value, Vector, checked_value
 
 
-def _checked_drive(found: Any) -> Any:
-    return (
-        ProfileKeys.model_validate(found)
-        if isinstance(found, dict)
-        else None
-        if found is None
-        else checked_value(found)
-    )
+def _checked_drive(raw: Any) -> Any:
+    return ProfileKeys.model_validate(raw) if isinstance(raw, dict) else None if raw is None else checked_value(raw)
 
 
 class MotorKeys(Strict):
@@ -142,8 +136,8 @@ class RotorPlaneKeys(Strict):
     )
 
 
-def _expand_plane(found: Any) -> Any:
-    return found if isinstance(found, dict) else {"at": checked_value(found)}
+def _expand_plane(raw: Any) -> Any:
+    return raw if isinstance(raw, dict) else {"at": checked_value(raw)}
 
 
 class RotorKeys(Strict):

@@ -75,11 +75,11 @@ def add_springs(linkage: Linkage, shape: schema.File, values: ValueReader) -> Li
 
 
 def _build_springs(linkage: Linkage, shape: schema.File, values: ValueReader) -> tuple[SpringRecord, ...]:
-    found = []
+    springs = []
     for name, keys in shape.springs.items():
         check_name(name, ("springs", name), "load", shape.loads)
-        found.append(_build_spring(name, keys, linkage, FileSection(keys, ("springs", name), values)))
-    return tuple(found)
+        springs.append(_build_spring(name, keys, linkage, FileSection(keys, ("springs", name), values)))
+    return tuple(springs)
 
 
 def _build_spring(name: str, keys: SpringKeys, linkage: Linkage, section: FileSection) -> SpringRecord:
@@ -132,18 +132,20 @@ def _build_friction(linkage: Linkage, shape: schema.File, values: ValueReader) -
         common.positive("radius", LENGTH, zero=True),
     )
     pairs = {p.name: p for p in analyse_structure(linkage).pairs if p.lower}
-    own = {name: FileSection(one, ("friction", "pairs", name), values) for name, one in keys.pairs.items()}
-    for name, section in own.items():
+    sections = {
+        name: FileSection(pair_keys, ("friction", "pairs", name), values) for name, pair_keys in keys.pairs.items()
+    }
+    for name, section in sections.items():
         values.known_name(name, pairs, section.path, "turning or sliding pair", key=True)
         if pairs[name].kind == "P" and section.keys.radius is not None:
             raise section.refusal("radius", _("a prismatic pair has no journal, so it has no `radius`"), at_key=True)
-    found = []
+    frictions = []
     for name, pair in pairs.items():
         rubs, journal = coefficient, radius
-        if name in own and own[name].keys.coefficient is not None:
-            rubs = own[name].positive("coefficient", NUMBER, zero=True)
-        if name in own and own[name].keys.radius is not None:
-            journal = own[name].positive("radius", LENGTH, zero=True)
+        if name in sections and sections[name].keys.coefficient is not None:
+            rubs = sections[name].positive("coefficient", NUMBER, zero=True)
+        if name in sections and sections[name].keys.radius is not None:
+            journal = sections[name].positive("radius", LENGTH, zero=True)
         if rubs and (pair.kind == "P" or journal):
-            found.append(FrictionRecord(name, rubs, journal if pair.kind == "R" else 0.0))
-    return tuple(found)
+            frictions.append(FrictionRecord(name, rubs, journal if pair.kind == "R" else 0.0))
+    return tuple(frictions)

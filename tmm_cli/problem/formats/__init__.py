@@ -26,7 +26,7 @@ FORMATS: Final[dict[str, FileFormat]] = {
 
 def read_mechanism(text: str, file: str) -> ImportedMechanism:
     """Read the mechanism of a file, whichever supported format it has. Raises ProblemError."""
-    for one in FORMATS.values():
-        if one.recognised(text):
-            return one.read(text, file)
+    for file_format in FORMATS.values():
+        if file_format.recognised(text):
+            return file_format.read(text, file)
     raise ProblemError(_("the format of this file is not supported"), allowed="; ".join(FORMATS), file=file)

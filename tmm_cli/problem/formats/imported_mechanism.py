@@ -117,21 +117,21 @@ class FileNode:
 
     def refused(self, message: str, allowed: str | None = None, near: str | None = None) -> ProblemError:
         """Return the error, located in the file."""
-        found = None if isinstance(self.data, dict | list) else quote(self.data)
-        error = ProblemError(message, path=self.path, found=found, allowed=allowed, near=near)
+        quoted = None if isinstance(self.data, dict | list) else quote(self.data)
+        error = ProblemError(message, path=self.path, found=quoted, allowed=allowed, near=near)
         return error.located(self.tree.file, self.tree)
 
     def get(self, key: str) -> FileNode | None:
         """Return the value of a key, or None."""
-        found = self.mapping().get(key)
-        return None if found is None else FileNode(self.tree, found, (*self.path, key))
+        child = self.mapping().get(key)
+        return None if child is None else FileNode(self.tree, child, (*self.path, key))
 
     def __getitem__(self, key: str) -> FileNode:
-        found = self.get(key)
-        if found is None:
+        child = self.get(key)
+        if child is None:
             error = ProblemError(_("key '{key}' is missing").format(key=key), path=self.path, key=True)
             raise error.located(self.tree.file, self.tree)
-        return found
+        return child
 
     def mapping(self) -> dict[str, Any]:
         """Return the value as a dict."""
@@ -164,10 +164,10 @@ class FileNode:
 
     def one_of(self, names: Iterable[str]) -> str:
         """Return the value, which must be one of the names."""
-        known, found = list(names), self.text()
-        if found not in known:
-            raise self.refused(_("this value is not allowed here"), ", ".join(known), nearest_name(found, known))
-        return found
+        allowed, name = list(names), self.text()
+        if name not in allowed:
+            raise self.refused(_("this value is not allowed here"), ", ".join(allowed), nearest_name(name, allowed))
+        return name
 
     def number(self) -> float:
         """Return the value as a number of a size that a mechanism can have."""
@@ -220,27 +220,29 @@ class _ProblemFileWriter:
         return cls(foreign, _choose_plain_names(foreign.places, _letter_names()), links, axes, _mechanism_size(foreign))
 
     def lines(self, source: str) -> Iterator[str]:
-        it = self.foreign
-        told = _("Imported from {program}: {file}.").format(program=it.program, file=clean(source, 200))
-        yield f"# {told}"
+        mechanism = self.foreign
+        heading = _("Imported from {program}: {file}.").format(program=mechanism.program, file=clean(source, 200))
+        yield f"# {heading}"
         for name, new in {**self.names, **self.links}.items():
             if name != new:
                 yield "# " + _("{name} is called {new} in this file.").format(name=clean(name, 60), new=new)
-        yield from (f"# {clean(note, 300)}" for note in it.notes)
-        if it.left:
+        yield from (f"# {clean(note, 300)}" for note in mechanism.notes)
+        if mechanism.left:
             yield "# " + _("Not imported:")
-            yield from (f"# - {clean(line, 300)}" for line in it.left)
+            yield from (f"# - {clean(line, 300)}" for line in mechanism.left)
         yield "tmm: 1"
-        yield f"title: {_quote_text(it.title or source)}"
-        yield f"units: {{length: {it.length}, angle: deg}}"
-        if it.frame:
-            yield "points: " + _flow_mapping((self.names[p], self._vector(it.places[p])) for p in it.frame)
-        fixed = [slide for slide in it.slides if slide.carrier == FRAME]
+        yield f"title: {_quote_text(mechanism.title or source)}"
+        yield f"units: {{length: {mechanism.length}, angle: deg}}"
+        if mechanism.frame:
+            yield "points: " + _flow_mapping(
+                (self.names[p], self._vector(mechanism.places[p])) for p in mechanism.frame
+            )
+        fixed = [slide for slide in mechanism.slides if slide.carrier == FRAME]
         if fixed:
             guides = [(f"g{k}", self._guide(slide)) for k, slide in enumerate(fixed, 1)]
             yield "guides: " + _flow_mapping(guides)
         yield "links:"
-        for body in it.bodies:
+        for body in mechanism.bodies:
             yield f"  {self._key(body.name)}: {self._link(body, fixed)}"
         yield from self._motion()
         yield from self._loads()
@@ -262,14 +264,14 @@ class _ProblemFileWriter:
         return f"{{through: {self._vector(through)}, angle: {_format_number(math.remainder(angle, 360))}}}"
 
     def _link(self, body: ImportedBody, fixed: list[ImportedSlide]) -> str:
-        places = {self.names[point]: self._local(body.name, self.foreign.places[point]) for point in body.points}
+        points = {self.names[point]: self._local(body.name, self.foreign.places[point]) for point in body.points}
         parts = [("name", _quote_text(body.label))] if body.label else []
-        if len(places) == 2 and _has_extent(self.foreign, body.name):
-            parts += [("points", f"[{', '.join(places)}]"), ("length", _format_number(abs(list(places.values())[1])))]
-        elif len(places) == 1:
-            parts.append(("points", f"[{next(iter(places))}]"))
+        if len(points) == 2 and _has_extent(self.foreign, body.name):
+            parts += [("points", f"[{', '.join(points)}]"), ("length", _format_number(abs(list(points.values())[1])))]
+        elif len(points) == 1:
+            parts.append(("points", f"[{next(iter(points))}]"))
         else:
-            parts.append(("points", _flow_mapping((name, self._vector(z)) for name, z in places.items())))
+            parts.append(("points", _flow_mapping((name, self._vector(z)) for name, z in points.items())))
         slides = [self._slide(slide, fixed) for slide in self.foreign.slides if slide.runner == body.name]
         if slides:
             parts.append(("slides", slides[0] if len(slides) == 1 else f"[{', '.join(slides)}]"))
@@ -291,46 +293,46 @@ class _ProblemFileWriter:
         )
 
     def _motion(self) -> Iterator[str]:
-        it, drive = self.foreign, self.foreign.drive
-        given = [("link", self._key(drive.body))]
+        mechanism, drive = self.foreign, self.foreign.drive
+        entries = [("link", self._key(drive.body))]
         if drive.on != FRAME:
-            given.append(("on", self._key(drive.on)))
+            entries.append(("on", self._key(drive.on)))
         if drive.at is None:
             speed = f"{_format_number(abs(drive.speed))} {drive.unit}"
-            given += [("speed", speed), ("turns", "cw" if drive.speed < 0 else "ccw")]
+            entries += [("speed", speed), ("turns", "cw" if drive.speed < 0 else "ccw")]
         else:
-            given.append(("speed", f"{_format_number(drive.speed)} {drive.unit.replace('length', it.length)}"))
+            entries.append(("speed", f"{_format_number(drive.speed)} {drive.unit.replace('length', mechanism.length)}"))
         if drive.acceleration:
             gain = drive.acceleration * (-1 if drive.speed < 0 else 1)
-            given.append(("acceleration", f"{_format_number(gain)} rad/s^2"))
-        yield "driver: " + _flow_mapping(given)
+            entries.append(("acceleration", f"{_format_number(gain)} rad/s^2"))
+        yield "driver: " + _flow_mapping(entries)
         angle = math.remainder(math.degrees(self.axes[drive.body][1]), 360)
         at = _format_number(angle if drive.at is None else drive.at)
-        moving = [(self.names[p], self._vector(z)) for p, z in it.places.items() if p not in it.frame]
+        moving = [(self.names[p], self._vector(z)) for p, z in mechanism.places.items() if p not in mechanism.frame]
         turned = [
             (self._key(body.name), _format_number(math.degrees(self.axes[body.name][1])))
-            for body in it.bodies
+            for body in mechanism.bodies
             if (body.name != drive.body or drive.at is not None)
-            and not _has_extent(it, body.name)
-            and self._key(body.name) not in it.places
+            and not _has_extent(mechanism, body.name)
+            and self._key(body.name) not in mechanism.places
         ]
         yield "sketch: " + _flow_mapping([("at", at), *moving, *turned])
-        if it.output:
-            yield f"output: {self._key(it.output)}"
-        yield f"positions: {{at: [{at}], detail: [0]}}" if it.one_place else "positions: {count: 12}"
+        if mechanism.output:
+            yield f"output: {self._key(mechanism.output)}"
+        yield f"positions: {{at: [{at}], detail: [0]}}" if mechanism.one_place else "positions: {count: 12}"
 
     def _loads(self) -> Iterator[str]:
-        it = self.foreign
-        masses = [(self._key(body.name), self._mass(body)) for body in it.bodies if body.mass or body.inertia]
+        mechanism = self.foreign
+        masses = [(self._key(body.name), self._mass(body)) for body in mechanism.bodies if body.mass or body.inertia]
         if masses:
             yield "masses:"
             yield from (f"  {name}: {mass}" for name, mass in masses)
-        if it.pushes:
+        if mechanism.pushes:
             yield "loads:"
-            names = _choose_plain_names([push.name for push in it.pushes], (f"F{k}" for k in count(1)))
-            yield from (f"  {names[push.name]}: {self._push(push)}" for push in it.pushes)
-        if it.gravity is not None:
-            yield f"gravity: {self._vector(it.gravity)}"
+            names = _choose_plain_names([push.name for push in mechanism.pushes], (f"F{k}" for k in count(1)))
+            yield from (f"  {names[push.name]}: {self._push(push)}" for push in mechanism.pushes)
+        if mechanism.gravity is not None:
+            yield f"gravity: {self._vector(mechanism.gravity)}"
 
     def _mass(self, body: ImportedBody) -> str:
         parts = [("mass", f"{_format_number(body.mass)} kg"), ("inertia", f"{_format_number(body.inertia)} kg*m^2")]
@@ -342,9 +344,9 @@ class _ProblemFileWriter:
         parts = [("on", self._key(push.body))]
         if push.force:
             parts.append(("at", self._vector(self._local(push.body, push.at))))
-            own = push.force * cmath.rect(1, -self.axes[push.body][1]) if push.turns else push.force
-            size = ", ".join(f"{_format_number(part)} N" for part in (own.real, own.imag))
-            parts.append(("force", f"[{size}]"))
+            force = push.force * cmath.rect(1, -self.axes[push.body][1]) if push.turns else push.force
+            components = ", ".join(f"{_format_number(component)} N" for component in (force.real, force.imag))
+            parts.append(("force", f"[{components}]"))
             if push.turns:
                 parts.append(("axes", "link"))
         if push.moment:
@@ -356,17 +358,17 @@ def _axes(foreign: ImportedMechanism, body: ImportedBody) -> tuple[complex, floa
     """Return the axes of a body: origin in its first point, x axis towards the next point that does not coincide with
     it.
     """
-    places = [foreign.places[point] for point in body.points]
-    origin = places[0] if places else body.centre or 0j
-    away = next((z for z in places if abs(z - origin) > SAME * _mechanism_size(foreign)), None)
+    positions = [foreign.places[point] for point in body.points]
+    origin = positions[0] if positions else body.centre or 0j
+    away = next((z for z in positions if abs(z - origin) > SAME * _mechanism_size(foreign)), None)
     return origin, 0.0 if away is None else cmath.phase(away - origin)
 
 
 def _has_extent(foreign: ImportedMechanism, name: str) -> bool:
     """Return True if a body has two points that do not coincide."""
     body = next(body for body in foreign.bodies if body.name == name)
-    places = [foreign.places[point] for point in body.points]
-    return any(abs(z - places[0]) > SAME * _mechanism_size(foreign) for z in places)
+    positions = [foreign.places[point] for point in body.points]
+    return any(abs(z - positions[0]) > SAME * _mechanism_size(foreign) for z in positions)
 
 
 def _mechanism_size(foreign: ImportedMechanism) -> float:
@@ -377,9 +379,9 @@ def _choose_plain_names(names: Iterable[str], others: Iterable[str], *, digits: 
     """Return a plain name for each: its own if it is plain, else the first free one of `others`. digits: numbers are
     plain too.
     """
-    own = list(dict.fromkeys(names))
-    free = (other for other in others if other not in own)
-    return {name: name if _is_plain_name(name, digits) else next(free) for name in own}
+    original = list(dict.fromkeys(names))
+    free = (other for other in others if other not in original)
+    return {name: name if _is_plain_name(name, digits) else next(free) for name in original}
 
 
 def _is_plain_name(name: str, digits: bool) -> bool:

@@ -36,8 +36,8 @@ class PointConstruction:
             self.known[name] = place.vector()
         for step in geometry["construct"].items() if geometry.get("construct") else ():
             self.known[step["point"].text()] = STEPS[step["type"].one_of(STEPS)](self, step)
-        for name, of in geometry["aliases"].pairs() if geometry.get("aliases") else ():
-            self.known[name] = self.place(of.one_of(self.known))
+        for name, original in geometry["aliases"].pairs() if geometry.get("aliases") else ():
+            self.known[name] = self.place(original.one_of(self.known))
 
     def place(self, name: str) -> complex:
         """Return the position of a known point."""
@@ -79,8 +79,8 @@ def _circle_line(across: complex) -> Callable[[PointConstruction, FileNode], com
 
     def found(points: PointConstruction, step: FileNode) -> complex:
         centre, radius = points.of(step, "center"), points.number(step["radius"])
-        key, own = ("y", centre.imag) if across == 1j else ("x", centre.real)
-        off = points.number(step[key]) - own
+        key, coordinate = ("y", centre.imag) if across == 1j else ("x", centre.real)
+        off = points.number(step[key]) - coordinate
         ends = _two_points(centre + off * across, across * -1j, radius * radius - off * off, step)
         return _choose_branch(step, ends, 1 + 0j)
 
@@ -101,8 +101,8 @@ def _circle_ray(points: PointConstruction, step: FileNode) -> complex:
         raise step.refused(_("the lines of this construction step do not intersect"))
     ends = foot.real - math.sqrt(square), foot.real + math.sqrt(square)
     ahead = [end for end in ends if end > 0] or list(ends)
-    wanted = {"positive": ahead[0], "far_positive": ahead[-1], "near": min(ends, key=abs), "far": max(ends, key=abs)}
-    return start + wanted[step["branch"].one_of(wanted)] * along
+    branches = {"positive": ahead[0], "far_positive": ahead[-1], "near": min(ends, key=abs), "far": max(ends, key=abs)}
+    return start + branches[step["branch"].one_of(branches)] * along
 
 
 def _two_points(foot: complex, along: complex, square: float, step: FileNode) -> tuple[complex, complex]:
@@ -152,8 +152,8 @@ def _offset(points: PointConstruction, step: FileNode) -> complex:
     start, length = points.of(step, "from"), points.number(step["length"])
     if step.get("angle_deg"):
         return start + length * _direction_of_step(points, step)
-    given = step["vector"] if step.get("vector") else step["direction"]
-    return start + length * _unit_vector(given.vector(), step)
+    vector = step["vector"] if step.get("vector") else step["direction"]
+    return start + length * _unit_vector(vector.vector(), step)
 
 
 def _unit_vector(along: complex, step: FileNode) -> complex:
@@ -219,7 +219,7 @@ class _LinkageV2Reader:
         bodies = tuple(
             ImportedBody(
                 name,
-                tuple(dict.fromkeys(found for (body, __), found in names.items() if body == name)),
+                tuple(dict.fromkeys(point_name for (body, __), point_name in names.items() if body == name)),
                 mass=self._value(body, "mass"),
                 inertia=self._value(body, "inertia"),
                 centre=self._centre(body),
@@ -227,7 +227,7 @@ class _LinkageV2Reader:
             for name, body in self.top["bodies"].pairs()
         )
         massed = [self._with_points(body) for body in bodies]
-        places = {found: self.points.place(point) for (__, point), found in names.items()}
+        positions = {point_name: self.points.place(point) for (__, point), point_name in names.items()}
         left = [_("Key `{key}` was ignored.").format(key=key) for key in self.top.mapping() if key not in KEYS]
         if self.top.get("dynamics"):
             left.append(_("Block `dynamics`: motor and flywheel have other keys here; write them by hand."))
@@ -238,14 +238,16 @@ class _LinkageV2Reader:
                     "q_ratio is {ratio}: the sign of omega was taken as the sense of rotation of the link itself."
                 ).format(ratio=f"{ratio:g}")
             )
-        output = said.one_of(self.top["bodies"].mapping()) if (said := self.top.get("output_body")) else ""
-        gravity = given.vector() if (given := self.top.get("gravity")) else None
+        output = (
+            output_node.one_of(self.top["bodies"].mapping()) if (output_node := self.top.get("output_body")) else ""
+        )
+        gravity = gravity_node.vector() if (gravity_node := self.top.get("gravity")) else None
         return ImportedMechanism(
             "linkage/v2",
             "",
             "m",
-            places,
-            tuple(found for (body, __), found in names.items() if body == FRAME),
+            positions,
+            tuple(point_name for (body, __), point_name in names.items() if body == FRAME),
             tuple(massed),
             self._drive(),
             tuple(ImportedSlide(s.runner, names[s.runner, s.point], s.carrier, s.through, s.angle) for s in slides),
@@ -258,8 +260,8 @@ class _LinkageV2Reader:
         )
 
     def _value(self, node: FileNode, key: str) -> float:
-        found = node.get(key)
-        return 0.0 if found is None else self.points.number(found)
+        child = node.get(key)
+        return 0.0 if child is None else self.points.number(child)
 
     def _body(self, node: FileNode) -> str:
         name = node.text()
@@ -267,17 +269,17 @@ class _LinkageV2Reader:
 
     def _hinges(self) -> list[list[tuple[str, str]]]:
         """Return for each revolute pair its bodies with their points."""
-        found = []
+        hinges = []
         for joint in self.top["joints"].items():
             if joint["type"].one_of((HINGE, GUIDE)) == HINGE:
                 ends = joint["endpoints"].items()
                 if len(ends) < 2:
                     raise joint["endpoints"].refused(_("a hinge must join at least two links"))
-                found.append([(self._body(end["body"]), end["point"].one_of(self.points.known)) for end in ends])
-        return found
+                hinges.append([(self._body(end["body"]), end["point"].one_of(self.points.known)) for end in ends])
+        return hinges
 
     def _slides(self) -> list[ImportedSlide]:
-        found = []
+        slides = []
         for joint in self.top["joints"].items():
             if joint["type"].data == GUIDE:
                 guide, slider = joint["guide"], joint["slider"]
@@ -286,8 +288,8 @@ class _LinkageV2Reader:
                 angle = math.radians(self.points.number(axis["angle_deg"]))
                 through = self._through(axis["origin"], origin, turn)
                 runner, point = self._body(slider["body"]), slider["point"].one_of(self.points.known)
-                found.append(ImportedSlide(runner, point, carrier, through, angle + turn))
-        return found
+                slides.append(ImportedSlide(runner, point, carrier, through, angle + turn))
+        return slides
 
     def _frame(self, body: str) -> tuple[complex, float]:
         """Return origin and direction of the axes of a body; those of a slider are parallel to the frame's."""
@@ -321,9 +323,12 @@ class _LinkageV2Reader:
     def _with_points(self, body: ImportedBody) -> ImportedBody:
         """Return the body with the masses attached to its points."""
         mass, inertia, centre = body.mass, body.inertia, body.centre or 0j
-        for own in self.top["attached_masses"].items() if self.top.get("attached_masses") else ():
-            if self._body(own["body"]) == body.name:
-                more, at = self.points.number(own["mass"]), self.points.place(own["point"].one_of(self.points.known))
+        for attached in self.top["attached_masses"].items() if self.top.get("attached_masses") else ():
+            if self._body(attached["body"]) == body.name:
+                more, at = (
+                    self.points.number(attached["mass"]),
+                    self.points.place(attached["point"].one_of(self.points.known)),
+                )
                 if more and mass + more:
                     inertia += mass * more / (mass + more) * abs(at - centre) ** 2
                     centre, mass = (mass * centre + more * at) / (mass + more), mass + more
@@ -342,49 +347,49 @@ class _LinkageV2Reader:
         )
 
     def _pushes(self) -> list[ImportedLoad]:
-        found = []
+        loads = []
         for k, load in enumerate(self.top["loads"].items() if self.top.get("loads") else (), 1):
             name = called.text() if (called := load.get("id")) else f"F{k}"
             body = self._body(load["body"])
             if moment := load.get("moment"):
-                found.append(ImportedLoad(name, body, moment=self.points.number(moment)))
+                loads.append(ImportedLoad(name, body, moment=self.points.number(moment)))
                 continue
             force = self._force(load)
             if force:
-                found.append(
+                loads.append(
                     ImportedLoad(name, body, self.points.place(load["point"].one_of(self.points.known)), force)
                 )
-        return found
+        return loads
 
     def _force(self, load: FileNode) -> complex:
         if vector := load.get("vector"):
             return vector.vector()
-        given = load["direction_points"] if load.get("direction_points") else load["direction"]
-        ends = given.items()
+        direction = load["direction_points"] if load.get("direction_points") else load["direction"]
+        ends = direction.items()
         if len(ends) == 2 and all(isinstance(end.data, str) for end in ends):
             a, b = (self.points.place(end.one_of(self.points.known)) for end in ends)
             along = b - a
         else:
-            along = given.vector()
+            along = direction.vector()
         if not along:
-            raise given.refused(_("this vector has no direction: its length is zero"))
+            raise direction.refused(_("this vector has no direction: its length is zero"))
         return self.points.number(load["magnitude"]) * along / abs(along)
 
 
 def _name_points(hinges: list[list[tuple[str, str]]], runners: list[tuple[str, str]]) -> dict[tuple[str, str], str]:
     """Return a name for each point of each body: the same for the points of a hinge, different otherwise."""
     joined: list[set[tuple[str, str]]] = []
-    for ends in [*hinges, *([one] for one in runners)]:
-        own = set(ends).union(*(other for other in joined if other & set(ends)))
-        joined = [other for other in joined if not other & own] + [own]
-    found: dict[tuple[str, str], str] = {}
+    for ends in [*hinges, *([runner] for runner in runners)]:
+        group = set(ends).union(*(other for other in joined if other & set(ends)))
+        joined = [other for other in joined if not other & group] + [group]
+    names: dict[tuple[str, str], str] = {}
     taken: set[str] = set()
-    for own in joined:
-        first = min(own)[1]
+    for group in joined:
+        first = min(group)[1]
         name, k = first, 1
         while name in taken:
             k += 1
             name = f"{first}{k}"
         taken.add(name)
-        found |= dict.fromkeys(sorted(own), name)
-    return found
+        names |= dict.fromkeys(sorted(group), name)
+    return names

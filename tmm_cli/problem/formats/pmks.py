@@ -111,20 +111,20 @@ def _refuse_wrong_names(saved: PmksFile, file: str) -> None:
         if len(records) > MAX_RECORDS:
             raise ProblemError(_("this is too long: at most {max_length}").format(max_length=MAX_RECORDS), file=file)
     joints, links = [joint.id for joint in saved.joints], [link.id for link in saved.links]
-    known = {*links, *(name for link in saved.links for name in link.parts)}
+    link_names = {*links, *(name for link in saved.links for name in link.parts)}
     for names in (joints, links):
         for k, name in enumerate(names):
             if name in names[:k]:
                 raise ProblemError(_("this name occurs twice"), found=quote(name), file=file)
-    wanted = [(("forces", force.id), force.link) for force in saved.forces]
-    wanted += [(("joints", joint.id), joint.carrier) for joint in saved.joints if joint.carrier]
-    for path, name in wanted:
-        if name not in known:
+    referenced = [(("forces", force.id), force.link) for force in saved.forces]
+    referenced += [(("joints", joint.id), joint.carrier) for joint in saved.joints if joint.carrier]
+    for path, name in referenced:
+        if name not in link_names:
             raise ProblemError(
                 _("there is no link of that name"),
                 path=path,
                 found=quote(name),
-                near=nearest_name(name, known),
+                near=nearest_name(name, link_names),
                 file=file,
             )
     on = [(("links", link.id), joint) for link in saved.links for joint in link.joints]
@@ -216,9 +216,11 @@ class _PmksMechanism:
         slides = [slide for slide in slides if slide.point in used]
         drive = self._drive(slides)
         pushes = list(self._pushes())
-        known = used.union(*(link.joints for link in self.saved.links if link.id in self.frame))
+        attached = used.union(*(link.joints for link in self.saved.links if link.id in self.frame))
         self.left.extend(
-            _("Joint {name} belongs to no moving link.").format(name=name) for name in self.joints if name not in known
+            _("Joint {name} belongs to no moving link.").format(name=name)
+            for name in self.joints
+            if name not in attached
         )
         notes = [
             *self.saved.notes,

@@ -58,9 +58,9 @@ def read(text: str, file: str) -> ImportedMechanism:
             allowed=_("a PMKS+ web link that begins with its settings, such as ?2v.Ay,1E8.5,..."),
             file=file,
         )
-    found = LINK_TEXT.fullmatch(text.strip())
-    assert found is not None
-    return import_pmks(_LinkRecords.of(_strip_checks(unquote(found[1]), file), file).saved(), file)
+    match = LINK_TEXT.fullmatch(text.strip())
+    assert match is not None
+    return import_pmks(_LinkRecords.of(_strip_checks(unquote(match[1]), file), file).saved(), file)
 
 
 def _strip_checks(content: str, file: str) -> str:
@@ -204,7 +204,7 @@ class _LinkRecords:
         mass, inertia, x, y = (self._number(path, "L", name, k, text) for k, text in enumerate(fields[2:6]))
         others = fields[7:]
         stop = others.index("") if "" in others else len(others)
-        parts = tuple(part for part in others[stop + 1 :] if part)
+        parts = tuple(part_name for part_name in others[stop + 1 :] if part_name)
         joints = tuple(others[:stop])
         return PmksLink(name, joints, form == "P", mass, inertia, complex(x, y), fields[1], parts), kind
 
@@ -215,7 +215,7 @@ class _LinkRecords:
         for name in parts:  # grows while it is read
             if name not in records:
                 raise self._refused(("links", link.id), _("there is no link of that name"), quote(name))
-            parts += [part for part in records[name].parts if part not in parts]
+            parts += [part_name for part_name in records[name].parts if part_name not in parts]
             joints += [joint for joint in records[name].joints if joint not in joints]
         return PmksLink(
             link.id, tuple(joints), link.piston, link.mass, link.inertia, link.centre, link.name, tuple(parts)
@@ -227,9 +227,9 @@ class _LinkRecords:
         if not name or len(fields) != 8:
             raise self._refused(path, _("expected a record of a force with eight fields"), quote(",".join(fields)))
         flags = self._integer(head[0], path, signed=False)
-        x0, y0, x1, y1, size = (self._number(path, "F", name, k, text) for k, text in enumerate(fields[3:]))
+        x0, y0, x1, y1, magnitude = (self._number(path, "F", name, k, text) for k, text in enumerate(fields[3:]))
         return PmksForce(
-            name, fields[1], complex(x0, y0), complex(x1, y1), bool(flags & LOCAL), bool(flags & OUTWARD), size
+            name, fields[1], complex(x0, y0), complex(x1, y1), bool(flags & LOCAL), bool(flags & OUTWARD), magnitude
         )
 
     def _number(
@@ -244,10 +244,10 @@ class _LinkRecords:
         negative = signed and text[:1] == "0"
         if not text or len(text) > MAX_NUMBER_LENGTH or any(char not in DIGITS for char in text):
             raise self._refused(path, _("this is not a base-64 number"), quote(text))
-        found = 0
+        number = 0
         for char in text[negative:]:
-            found = found * 64 + DIGITS.index(char)
-        return -found if negative else found
+            number = number * 64 + DIGITS.index(char)
+        return -number if negative else number
 
     def _refused(self, path: tuple[str, ...], message: str, found: str, allowed: str | None = None) -> ProblemError:
         return ProblemError(message, path=path, found=found, allowed=allowed, file=self.file)
@@ -257,11 +257,11 @@ def _split_records(rest: str) -> tuple[list[str], str]:
     """Return the records of joints, links or forces, and the rest; a full stop ends each record and one more ends them
     all.
     """
-    found = []
+    records = []
     while rest and rest[0] != ".":
         item, __, rest = rest.partition(".")
-        found.append(item)
-    return found, rest[1:]
+        records.append(item)
+    return records, rest[1:]
 
 
 def _read_entries(tail: str, file: str) -> tuple[dict[tuple[str, str, int], float], tuple[str, ...]]:
@@ -282,13 +282,13 @@ def _read_entries(tail: str, file: str) -> tuple[dict[tuple[str, str, int], floa
         elif tag == "G":
             raise ProblemError(_("gears of PMKS+ are not supported"), found=quote(entry), file=file)
         elif tag in "ST":
-            what = (
+            lost = (
                 _("Data of the synthesis in PMKS+.")
                 if tag == "S"
                 else _("Materials, cross-sections and their load cases.")
             )
-            if what not in left:
-                left.append(what)
+            if lost not in left:
+                left.append(lost)
         elif tag not in IGNORED_TAGS:
             raise _unknown_entry_error(entry, file)
     return exact, tuple(left)

@@ -35,7 +35,7 @@ def read(text: str, file: str) -> ImportedMechanism:
             raise joint["id"].refused(_("this name occurs twice"))
     links = top["links"].items()
     frame = _frame_joints(joints, links)
-    places = {name: _joint_place(joint) for name, joint in joints.items()}
+    positions = {name: _joint_place(joint) for name, joint in joints.items()}
     kinds = {name: _joint_type(joint) for name, joint in joints.items()}
     bodies: list[ImportedBody] = []
     drive, left = None, []
@@ -46,10 +46,10 @@ def read(text: str, file: str) -> ImportedMechanism:
             raise link["id"].refused(_("this name occurs twice"))
         if kind == "ground":
             continue
-        own = [one.one_of(joints) for one in link["joints"].items()]
-        followed = [j for j in joints if kinds[j] == "tracker" and _referenced_joints(joints[j]) <= set(own)]
-        own += [j for j in followed if j not in own]
-        bodies.append(ImportedBody(name, tuple(own), _link_label(link, name)))
+        names = [joint_node.one_of(joints) for joint_node in link["joints"].items()]
+        followed = [j for j in joints if kinds[j] == "tracker" and _referenced_joints(joints[j]) <= set(names)]
+        names += [j for j in followed if j not in names]
+        bodies.append(ImportedBody(name, tuple(names), _link_label(link, name)))
         if kind != "link":
             if drive is not None:
                 raise link.refused(_("expected exactly one driving link"))
@@ -93,7 +93,7 @@ def read(text: str, file: str) -> ImportedMechanism:
         "pylinkage",
         title,
         "mm",
-        {j: z for j, z in places.items() if j in used},
+        {j: z for j, z in positions.items() if j in used},
         tuple(j for j in frame if j in used),
         tuple(bodies),
         drive,
@@ -105,18 +105,18 @@ def read(text: str, file: str) -> ImportedMechanism:
 
 def _frame_joints(joints: dict[str, FileNode], links: list[FileNode]) -> tuple[str, ...]:
     """Return the joints of the frame: of type ground, of the ground link, and centres of rotation of drivers."""
-    found = [name for name, joint in joints.items() if _joint_type(joint) == "ground"]
+    names = [name for name, joint in joints.items() if _joint_type(joint) == "ground"]
     for link in links:
         if link["type"].data == "ground":
-            found += [one.one_of(joints) for one in link["joints"].items()]
+            names += [joint_node.one_of(joints) for joint_node in link["joints"].items()]
         if motor := link.get("motor_joint"):
-            found.append(motor.one_of(joints))
-    return tuple(dict.fromkeys(found))
+            names.append(motor.one_of(joints))
+    return tuple(dict.fromkeys(names))
 
 
 def _joint_type(joint: FileNode) -> str:
-    given = joint.get("type")
-    return given.one_of(JOINT_TYPES) if given else "revolute"
+    type_node = joint.get("type")
+    return type_node.one_of(JOINT_TYPES) if type_node else "revolute"
 
 
 def _joint_place(joint: FileNode) -> complex:
@@ -137,7 +137,7 @@ def _link_label(link: FileNode, name: str) -> str:
 
 
 def _block_name(joint: str, names: list[str]) -> str:
-    found = f"slider {joint}"
-    while found in names:
-        found += "'"
-    return found
+    name = f"slider {joint}"
+    while name in names:
+        name += "'"
+    return name

@@ -26,12 +26,12 @@ Translate = Callable[[str], str]
 
 def list_templates(language: str = ENGLISH) -> dict[str, str]:
     """Return the titles of the templates by name."""
-    translate, found = _translator(language), {}
+    translate, titles_by_name = _translator(language), {}
     for entry in sorted(files(__name__).iterdir(), key=lambda e: e.name):
         if entry.name.endswith(".yaml"):
             titles = [x for x in entry.read_text(encoding="utf-8").splitlines() if x.startswith("title:")]
-            found[entry.name.removesuffix(".yaml")] = translate(titles[0].removeprefix("title:").strip())
-    return found
+            titles_by_name[entry.name.removesuffix(".yaml")] = translate(titles[0].removeprefix("title:").strip())
+    return titles_by_name
 
 
 def template_text(name: str, language: str = ENGLISH, file: str | None = None) -> str:
@@ -52,22 +52,22 @@ def template_text(name: str, language: str = ENGLISH, file: str | None = None) -
 def load_translations() -> list[dict[str, str]]:
     """Return the texts of the templates, each in every language."""
     text = files(__name__).joinpath("translations/words.yaml").read_text(encoding="utf-8")
-    found: list[dict[str, str]] = yaml.safe_load(text)
-    return found
+    entries: list[dict[str, str]] = yaml.safe_load(text)
+    return entries
 
 
 def _translator(language: str) -> Translate:
     if language == ENGLISH:
         return lambda text: text
-    found = {entry["en"]: entry[language] for entry in load_translations()}
-    return found.__getitem__
+    texts = {entry["en"]: entry[language] for entry in load_translations()}
+    return texts.__getitem__
 
 
 def _translate_lines(lines: list[str], translate: Translate) -> list[str]:
     """Translate lines of a template: comments of several lines are paragraphs, wrapped anew; others follow their
     values.
     """
-    found: list[str] = []
+    translated_lines: list[str] = []
     paragraph: list[str] = []
     indent = ""
     for number, line in enumerate([*lines, ""]):
@@ -76,7 +76,7 @@ def _translate_lines(lines: list[str], translate: Translate) -> list[str]:
         if paragraph and (not prose or number == 1 or _HEADING.match(comment[2] if comment else "")):
             mark = f"{indent}# "
             text = translate(" ".join(paragraph))
-            found += textwrap.wrap(
+            translated_lines += textwrap.wrap(
                 text,
                 WIDTH,
                 initial_indent=mark,
@@ -90,5 +90,5 @@ def _translate_lines(lines: list[str], translate: Translate) -> list[str]:
             continue
         start = line.find(" # ", comment.end(1) + 2 if comment else 0)
         value, behind = (line, "") if start < 0 else (line[: start + 3], translate(line[start + 3 :]))
-        found.append(_WORDS.sub(lambda word: translate(word[0]), value) + behind)
-    return found[:-1]
+        translated_lines.append(_WORDS.sub(lambda word: translate(word[0]), value) + behind)
+    return translated_lines[:-1]
