@@ -53,7 +53,7 @@ UNDETERMINED: Final = N_("these keys do not determine a mechanism")
 
 
 def choose_key_set(
-    shape: TaskBlock, sets: Sequence[tuple[str, ...]], others: Sequence[str] = (), refusal: str = UNDETERMINED
+    block: TaskBlock, sets: Sequence[tuple[str, ...]], others: Sequence[str] = (), refusal: str = UNDETERMINED
 ) -> tuple[str, ...]:
     """Return the set of keys that the block gives, without any other key of `sets` or `others`.
 
@@ -61,7 +61,7 @@ def choose_key_set(
         ProblemError: no set fits; `refusal`, with the missing or surplus keys.
     """
     keys = dict.fromkeys([*(key for key_set in sets for key in key_set), *others])
-    present = tuple(key for key in keys if getattr(shape, key) is not None)
+    present = tuple(key for key in keys if getattr(block, key) is not None)
     for key_set in sets:
         if set(key_set) == set(present):
             return key_set
@@ -75,13 +75,13 @@ def choose_key_set(
         for key_set in sets
         if key_set and set(key_set) < set(present)
     ]
-    mend = ""
+    remedy = ""
     if missing:
-        mend = _("; missing: {keys}").format(keys=_alternatives(missing))
+        remedy = _("; missing: {keys}").format(keys=_alternatives(missing))
     elif surplus:
-        mend = _("; remove: {keys}").format(keys=_alternatives(surplus))
+        remedy = _("; remove: {keys}").format(keys=_alternatives(surplus))
     raise ProblemError(
-        translated(refusal) + mend,
+        translated(refusal) + remedy,
         found=", ".join(present) or _("none of these keys"),
         allowed=_("; or ").join(_(" and ").join(key_set) or _("nothing") for key_set in sets),
         key=True,
@@ -92,9 +92,9 @@ def _alternatives(sets: Sequence[tuple[str, ...]]) -> str:
     return _(" or ").join(dict.fromkeys(_(" and ").join(keys) for keys in sets))
 
 
-def read_numbers(shape: TaskBlock, values: ValueReader, quantities: Mapping[str, tuple[Kind, str]]) -> dict[str, Any]:
+def read_numbers(block: TaskBlock, values: ValueReader, quantities: Mapping[str, tuple[Kind, str]]) -> dict[str, Any]:
     """Read the given quantities of a block into SI, by key. Raises ProblemError."""
-    raw_values = {key: value for key in quantities if (value := getattr(shape, key)) is not None}
+    raw_values = {key: value for key in quantities if (value := getattr(block, key)) is not None}
     return {
         key: values.number(value, DIMENSIONS[quantities[key][0]].dimension, (key,)) for key, value in raw_values.items()
     }
@@ -124,7 +124,7 @@ class TaskName(BaseModel):
 
 def check_block(tree: Tree) -> TaskBlock:
     """Validate the block of a file against the keys of its task; only that task is imported. Raises ProblemError."""
-    block_data, shape = tree.data["synthesis"], TaskBlock
+    block_data, block_class = tree.data["synthesis"], TaskBlock
     try:
         if (
             not isinstance(block_data, dict)
@@ -132,10 +132,10 @@ def check_block(tree: Tree) -> TaskBlock:
             or block_data["task"] not in TASKS
         ):
             TaskName.model_validate(block_data)
-        shape = block_module(block_data["task"]).BLOCK
-        model: TaskBlock = shape.model_validate(block_data)
+        block_class = block_module(block_data["task"]).BLOCK
+        model: TaskBlock = block_class.model_validate(block_data)
     except ValidationError as error:
-        raise shape_error(error, tree, shape, ("synthesis",)) from None
+        raise shape_error(error, tree, block_class, ("synthesis",)) from None
     return model
 
 

@@ -407,8 +407,8 @@ class CrankSliderBlock(TaskBlock):
 BLOCK = CrankSliderBlock
 
 
-def read(shape: CrankSliderBlock, values: ValueReader) -> CrankSliderTask:
+def read(block: CrankSliderBlock, values: ValueReader) -> CrankSliderTask:
     """Read the task into SI; its keys must be one of the sets that determine a crank-slider. Raises ProblemError."""
     for sets in (STROKE_KEYS, KEY_PAIRS):
-        choose_key_set(shape, sets)
-    return CrankSliderTask(**read_numbers(shape, values, QUANTITIES))
+        choose_key_set(block, sets)
+    return CrankSliderTask(**read_numbers(block, values, QUANTITIES))

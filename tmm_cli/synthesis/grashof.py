@@ -213,10 +213,10 @@ class GrashofBlock(TaskBlock):
 BLOCK = GrashofBlock
 
 
-def read(shape: GrashofBlock, values: ValueReader) -> CrankConditionTask:
+def read(block: GrashofBlock, values: ValueReader) -> CrankConditionTask:
     """Read the lengths (m). Raises ProblemError."""
-    lengths = read_numbers(shape, values, LINKS)
-    given_keys = {*lengths, *(key for key in ("frame", "driver") if getattr(shape, key) is not None)}
+    lengths = read_numbers(block, values, LINKS)
+    given_keys = {*lengths, *(key for key in ("frame", "driver") if getattr(block, key) is not None)}
     fitting = [record_type for record_type, needed, more in KEY_SETS if set(needed) <= given_keys <= {*needed, *more}]
     if not fitting:
         raise ProblemError(
@@ -227,8 +227,8 @@ def read(shape: GrashofBlock, values: ValueReader) -> CrankConditionTask:
         )
     record = fitting[0]
     if record is FourBarLinks:
-        frame = int((shape.frame or "l4")[1])
-        driver = int(shape.driver[1]) if shape.driver else frame % 4 + 1
+        frame = int((block.frame or "l4")[1])
+        driver = int(block.driver[1]) if block.driver else frame % 4 + 1
         if (driver - frame) % 2 == 0:
             allowed = ", ".join(f"l{(frame - 1 + step) % 4 + 1}" for step in (1, -1))
             raise ProblemError(

@@ -211,8 +211,8 @@ class ShaperBlock(TaskBlock):
 BLOCK = ShaperBlock
 
 
-def read(shape: ShaperBlock, values: ValueReader) -> ShaperTask:
+def read(block: ShaperBlock, values: ValueReader) -> ShaperTask:
     """Read the task into SI. Raises ProblemError."""
     for ways in (FRAME_KEYS, ROD_KEYS):
-        choose_key_set(shape, [(key,) for key in ways])
-    return ShaperTask(**read_numbers(shape, values, QUANTITIES))
+        choose_key_set(block, [(key,) for key in ways])
+    return ShaperTask(**read_numbers(block, values, QUANTITIES))

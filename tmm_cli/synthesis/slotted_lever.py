@@ -356,27 +356,27 @@ class SlottedLeverBlock(TaskBlock):
 BLOCK = SlottedLeverBlock
 
 
-def read(shape: SlottedLeverBlock, values: ValueReader) -> SlottedLeverTask:
+def read(block: SlottedLeverBlock, values: ValueReader) -> SlottedLeverTask:
     """Read the task into SI. Raises ProblemError."""
-    ends, *__ = (choose_key_set(shape, sets) for sets in (END_KEYS, SWING_KEYS, FRAME_KEYS))
-    _check_companions(shape, {"C": ("B1", "B2"), "support": ("CB",), "axis": ("CB",), "choose": ("within",)})
-    fields = read_numbers(shape, values, QUANTITIES)
+    ends, *__ = (choose_key_set(block, sets) for sets in (END_KEYS, SWING_KEYS, FRAME_KEYS))
+    _check_companions(block, {"C": ("B1", "B2"), "support": ("CB",), "axis": ("CB",), "choose": ("within",)})
+    fields = read_numbers(block, values, QUANTITIES)
     if ends == ("CB",):
-        fields["c"] = values.vector(shape.support or [0, 0], LENGTH, ("support",))
-        fields["axis"] = values.number("90 deg" if shape.axis is None else shape.axis, ANGLE, ("axis",))
+        fields["c"] = values.vector(block.support or [0, 0], LENGTH, ("support",))
+        fields["axis"] = values.number("90 deg" if block.axis is None else block.axis, ANGLE, ("axis",))
     else:
-        fields |= {name.lower(): values.vector(getattr(shape, name), LENGTH, (name,)) for name in ends}
-    if shape.within is not None:
-        low, high = (values.number(v, LENGTH, ("within", n)) for n, v in enumerate(shape.within))
+        fields |= {name.lower(): values.vector(getattr(block, name), LENGTH, (name,)) for name in ends}
+    if block.within is not None:
+        low, high = (values.number(v, LENGTH, ("within", n)) for n, v in enumerate(block.within))
         fields["within"] = (low, high)
-    choose = "shortest" if shape.choose == "shortest" else "force"
-    return SlottedLeverTask(**fields, side=1 if shape.C == "left" else -1, choose=choose)
+    choose = "shortest" if block.choose == "shortest" else "force"
+    return SlottedLeverTask(**fields, side=1 if block.C == "left" else -1, choose=choose)
 
 
-def _check_companions(shape: SlottedLeverBlock, needs: dict[str, tuple[str, ...]]) -> None:
+def _check_companions(block: SlottedLeverBlock, needs: dict[str, tuple[str, ...]]) -> None:
     for key, others in needs.items():
-        lacking = [other for other in others if getattr(shape, other) is None]
-        if getattr(shape, key) is not None and lacking:
+        lacking = [other for other in others if getattr(block, other) is None]
+        if getattr(block, key) is not None and lacking:
             raise ProblemError(
                 _("{key} can only be given together with {others}").format(key=key, others=_(" and ").join(others)),
                 path=(key,),

@@ -124,9 +124,9 @@ def prepare(problems: Sequence[Problem | TaskProblem] | Problem | TaskProblem) -
     """
     from tmm_cli.batch import prepare_batch as every_variant  # and the tape under it
 
-    several = [one.whole for one in (problems if isinstance(problems, Sequence) else (problems,))]
-    for one in several:
-        refuse_variable_speed(one.linkage.driver.law is not None, one.dynamics is not None)
+    several = [member.whole for member in (problems if isinstance(problems, Sequence) else (problems,))]
+    for member in several:
+        refuse_variable_speed(member.linkage.driver.law is not None, member.dynamics is not None)
     with translate_errors(several[0]):
         strokes = pipeline.solve(inputs_of(several[0]), "kinematics").strokes if len(several) == 1 else None
         return every_variant([problem.linkage for problem in several], strokes=strokes)

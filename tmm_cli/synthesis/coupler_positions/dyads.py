@@ -181,14 +181,14 @@ def _climb(score: Any, x: Any, y: Any, first: CurveSamples, second: CurveSamples
 
 
 def _refine_best(
-    score: Any, x: Any, y: Any, value: Any, one: CurveSamples, other: CurveSamples
+    score: Any, x: Any, y: Any, value: Any, ab_samples: CurveSamples, dc_samples: CurveSamples
 ) -> tuple[Any, Any, Any]:
     """Refine the best distinct pairs: for every AB take the best DC."""
     kept: list[int] = []
     for k in np.argsort(-value, kind="stable").tolist():
         if len(kept) < LAST and all(abs(x[k] - x[m]) + abs(y[k] - y[m]) > APART for m in kept):
             kept.append(k)
-    (low, high), (first, last) = (_search_interval(rows, at[kept]) for rows, at in ((one, x), (other, y)))
+    (low, high), (first, last) = (_search_interval(rows, at[kept]) for rows, at in ((ab_samples, x), (dc_samples, y)))
 
     def of_best(x: Any) -> tuple[Any, Any]:
         """Return the best positions of DC for positions of AB (all starting points repeated), and their negative
@@ -235,10 +235,10 @@ def find_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads, GuidanceQualit
     first, second = solve_both_dyads(task)
     if not min(abs(first.pivot - second.pivot), abs(first.pin - second.pin)) > SAME_POINTS * task.size:
         raise Infeasible(_given_key(task, "DC"), _("AB and DC have a common pin or pivot: this is not a four-bar"))
-    mark = rate_guidance(task.poses, first, second)
-    if mark.defect and not task.keep:
-        raise Infeasible("positions", DEFECTS[int(mark.defect)], search=_search_is_quick(task))
-    return first, second, mark
+    rating = rate_guidance(task.poses, first, second)
+    if rating.defect and not task.keep:
+        raise Infeasible("positions", DEFECTS[int(rating.defect)], search=_search_is_quick(task))
+    return first, second, rating
 
 
 def _search_is_quick(task: CouplerPositionsTask) -> bool:

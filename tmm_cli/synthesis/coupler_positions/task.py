@@ -53,7 +53,7 @@ BY_PIVOT: Final = N_("dashed: bisectors of the pivot and its positions ′, rota
 
 
 def draw_construction(
-    poses: CouplerPoses, one: Dyads, other: Dyads, by_pivot: tuple[bool, bool] = (False, False)
+    poses: CouplerPoses, ab_dyad: Dyads, dc_dyad: Dyads, by_pivot: tuple[bool, bool] = (False, False)
 ) -> tuple[GeometricConstruction, ...]:
     """Draw the four-bar in position 1, the other positions thin, the arcs of the pins, and the construction of its
     dyads.
@@ -62,13 +62,13 @@ def draw_construction(
     1 lie on a circle about the pin (inversion); else the positions of the pin lie on a circle about the pivot. With
     four positions Burmester's curves are drawn near the mechanism, and as a whole on a second sheet.
     """
-    rows = [(np.asarray(poses.on_frame(x.pin), complex), complex(x.pivot)) for x in (one, other)]
+    rows = [(np.asarray(poses.on_frame(x.pin), complex), complex(x.pivot)) for x in (ab_dyad, dc_dyad)]
     count = len(poses.places)
     segments: list[Segment] = []
     spots: list[LetteredPoint] = []
     arcs: list[Arc] = []
     for k, (name, pin) in enumerate((("A", "B"), ("D", "C"))):
-        dyad, inverted = (one, other)[k], by_pivot[k]
+        dyad, inverted = (ab_dyad, dc_dyad)[k], by_pivot[k]
         pin_points, pivot = rows[k]
         first = complex(pin_points[0])
         arcs.append(swept_arc(pivot, pin_points))
@@ -207,15 +207,15 @@ def refuse(task: CouplerPositionsTask) -> None:
 
 def solve(task: CouplerPositionsTask) -> SynthesisOutcome:
     """Solve the task of one file. Raises Infeasible."""
-    first, second, mark = find_dyads(task)
+    first, second, rating = find_dyads(task)
     numbers = _parameter_values(task, first, second)
     values = [NamedValue(name, float(numbers[name]), kind, NAMES[name]) for name, kind in PARAMETERS.items()]
     values += [
         NamedValue(
-            "", float(mark.least), "angle", N_("smallest transmission angle between the first and last position")
+            "", float(rating.least), "angle", N_("smallest transmission angle between the first and last position")
         ),
-        NamedValue("", float(mark.turn), "angle", N_("rotation of AB from the first to the last position")),
-        NamedValue("", DEFECTS[int(mark.defect)], "word", N_("defects")),
+        NamedValue("", float(rating.turn), "angle", N_("rotation of AB from the first to the last position")),
+        NamedValue("", DEFECTS[int(rating.defect)], "word", N_("defects")),
     ]
     count = len(task.places)
     notes, listings = [], []
@@ -231,7 +231,7 @@ def solve(task: CouplerPositionsTask) -> SynthesisOutcome:
         listings.append(_tabulate_curve(task))
     by_pivot = [name in task.sides and task.sides[name].pivot is not None for name in ("AB", "DC")]
     drawn = draw_construction(task.poses, first, second, (by_pivot[0], by_pivot[1]))
-    source, demands = SOURCES[1 if task.still else count], tuple(_demands(task, first, second, mark))
+    source, demands = SOURCES[1 if task.still else count], tuple(_demands(task, first, second, rating))
     return SynthesisOutcome(
         tuple(_given_values(task)), tuple(values), source, demands, drawn, tuple(notes), tuple(listings)
     )
@@ -299,7 +299,7 @@ def _position_names(k: int) -> tuple[str, str, str]:
     )
 
 
-def _demands(task: CouplerPositionsTask, first: Dyads, second: Dyads, mark: GuidanceQuality) -> Iterator[Demand]:
+def _demands(task: CouplerPositionsTask, first: Dyads, second: Dyads, rating: GuidanceQuality) -> Iterator[Demand]:
     b = task.poses.on_frame(first.pin)
     phi = np.angle(np.asarray((b - first.pivot) / (second.pivot - first.pivot), complex))
     span = complex(second.pin - first.pin)
@@ -310,9 +310,9 @@ def _demands(task: CouplerPositionsTask, first: Dyads, second: Dyads, mark: Guid
         yield Demand(x, complex(place).real, "length", partial(_measured_pose, "x", at), at=task.size)
         yield Demand(y, complex(place).imag, "length", partial(_measured_pose, "y", at), at=task.size)
         yield Demand(turned, float(angle), "angle", partial(_measured_pose, "angle", at), at=1.0)
-    measure = partial(four_bar.transmission_angle, float(mark.worst))
+    measure = partial(four_bar.transmission_angle, float(rating.worst))
     name = N_("smallest transmission angle between the first and last position")
-    yield Demand(name, float(mark.least), "angle", measure, asked=False, at=1.0)
+    yield Demand(name, float(rating.least), "angle", measure, asked=False, at=1.0)
 
 
 def _measured_pose(coordinate: str, at: dict[str, Any], results: Any) -> float:
@@ -414,15 +414,15 @@ class CouplerPositionsBlock(TaskBlock):
 BLOCK = CouplerPositionsBlock
 
 
-def read(shape: CouplerPositionsBlock, values: ValueReader) -> CouplerPositionsTask:
+def read(block: CouplerPositionsBlock, values: ValueReader) -> CouplerPositionsTask:
     """Read the task into SI. Raises ProblemError."""
-    count = len(shape.positions)
+    count = len(block.positions)
     poses = [
         (
             make_complex(*(values.number(pose[i], LENGTH, ("positions", k, i)) for i in (0, 1))),
             values.number(pose[2], ANGLE, ("positions", k, 2)),
         )
-        for k, pose in enumerate(shape.positions)
+        for k, pose in enumerate(block.positions)
     ]
     for k, (place, angle) in enumerate(poses):
         same = [m for m in range(k) if poses[m][0] == place and abs(sin((poses[m][1] - angle) / 2)) < SAME_POSITION]
@@ -433,18 +433,18 @@ def read(shape: CouplerPositionsBlock, values: ValueReader) -> CouplerPositionsT
                 found=_("position {number}").format(number=same[0] + 1),
                 allowed=_("a different position, e.g. rotated by 20 deg"),
             )
-    sides = {name: side for name in DYADS if (side := _read_dyad(shape, values, name, count)) is not None}
+    sides = {name: side for name in DYADS if (side := _read_dyad(block, values, name, count)) is not None}
     origins, angles = zip(*poses, strict=True)
     return CouplerPositionsTask(
-        tuple(origins), tuple(angles), sides, shape.defects == "keep", _read_box(shape, values, count, sides)
+        tuple(origins), tuple(angles), sides, block.defects == "keep", _read_box(block, values, count, sides)
     )
 
 
 def _read_box(
-    shape: CouplerPositionsBlock, values: ValueReader, count: int, sides: dict[str, DyadData]
+    block: CouplerPositionsBlock, values: ValueReader, count: int, sides: dict[str, DyadData]
 ) -> tuple[complex, complex] | None:
     """Read the corners of the box for free pivots; None if none is given."""
-    if shape.pivots_within is None:
+    if block.pivots_within is None:
         return None
     if count != 4 or len(sides) == 2:
         why = _("number of positions: {count}").format(count=count) if count != 4 else _("both links are given")
@@ -455,24 +455,24 @@ def _read_box(
             allowed=_("four positions, with AB or DC not given"),
             key=True,
         )
-    corner, opposite = (values.vector(v, LENGTH, ("pivots_within", k)) for k, v in enumerate(shape.pivots_within))
+    corner, opposite = (values.vector(v, LENGTH, ("pivots_within", k)) for k, v in enumerate(block.pivots_within))
     return corner, opposite
 
 
-def _read_dyad(shape: CouplerPositionsBlock, values: ValueReader, name: str, count: int) -> DyadData | None:
+def _read_dyad(block: CouplerPositionsBlock, values: ValueReader, name: str, count: int) -> DyadData | None:
     """Read the data of a dyad, which must be exactly those that the number of positions requires."""
     pivot, pin, turn, near = name[0], name[1], f"{name}_turn", f"{name[0]}_near"
     sets = {2: ((pin, name), (pivot, name)), 3: ((pin,), (pivot,)), 4: ((turn,), (near,), ())}[count]
     refusal = _("these keys do not determine link {link}; number of positions: {count}").format(link=name, count=count)
-    keys = choose_key_set(shape, sets, (pivot, pin, name, turn, near), refusal)
+    keys = choose_key_set(block, sets, (pivot, pin, name, turn, near), refusal)
     if not keys:
         return None
     dyad_data: dict[str, Any] = {
-        field: values.vector(getattr(shape, key), LENGTH, (key,))
+        field: values.vector(getattr(block, key), LENGTH, (key,))
         for field, key in (("pivot", pivot), ("pin", pin), ("near", near))
         if key in keys
     }
     for field, key, want in (("length", name, LENGTH), ("turn", turn, ANGLE)):
         if key in keys:
-            dyad_data[field] = values.number(getattr(shape, key), want, (key,))
-    return DyadData(side=getattr(shape, f"{name}_side"), branch=getattr(shape, f"{name}_branch") - 1, **dyad_data)
+            dyad_data[field] = values.number(getattr(block, key), want, (key,))
+    return DyadData(side=getattr(block, f"{name}_side"), branch=getattr(block, f"{name}_branch") - 1, **dyad_data)

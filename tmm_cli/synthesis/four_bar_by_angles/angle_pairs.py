@@ -349,16 +349,16 @@ class FourBarByAnglesBlock(TaskBlock):
 BLOCK = FourBarByAnglesBlock
 
 
-def read(shape: FourBarByAnglesBlock, values: ValueReader) -> AnglePairsTask:
+def read(block: FourBarByAnglesBlock, values: ValueReader) -> AnglePairsTask:
     """Read the task into SI. Raises ProblemError."""
-    lengths = read_numbers(shape, values, LENGTHS)
+    lengths = read_numbers(block, values, LENGTHS)
     function = None
-    if shape.pairs is None:
-        function = _read_function(shape, values)
-        phi, psi = function.precision_points(shape.points or 3)
+    if block.pairs is None:
+        function = _read_function(block, values)
+        phi, psi = function.precision_points(block.points or 3)
         pairs = list(zip(phi.tolist(), psi.tolist(), strict=True))
     else:
-        if extra := [key for key in OF_FUNCTION if getattr(shape, key) is not None]:
+        if extra := [key for key in OF_FUNCTION if getattr(block, key) is not None]:
             raise ProblemError(
                 _("pairs and a function cannot be given together"),
                 path=(extra[0],),
@@ -367,14 +367,14 @@ def read(shape: FourBarByAnglesBlock, values: ValueReader) -> AnglePairsTask:
             )
         pairs = [
             (values.number(a, ANGLE, ("pairs", k, 0)), values.number(b, ANGLE, ("pairs", k, 1)))
-            for k, (a, b) in enumerate(shape.pairs)
+            for k, (a, b) in enumerate(block.pairs)
         ]
     count = len(pairs)
     _check_lengths(lengths, count)
-    zeros = {"phi0": None, "psi0": None} | read_numbers(shape, values, ZEROS)
+    zeros = {"phi0": None, "psi0": None} | read_numbers(block, values, ZEROS)
     _complete_zero_angles(zeros, count, lengths)
     phi, psi = zip(*pairs, strict=True)
-    choose, keep = str(shape.choose), shape.defects == "keep"
+    choose, keep = str(block.choose), block.defects == "keep"
     return AnglePairsTask(tuple(phi), tuple(psi), lengths, zeros["phi0"], zeros["psi0"], choose, keep, function)
 
 
@@ -421,38 +421,38 @@ def _complete_zero_angles(zeros: dict[str, Any], count: int, lengths: dict[str, 
         zeros["psi0"] = 0.0
 
 
-def _read_function(shape: FourBarByAnglesBlock, values: ValueReader) -> GeneratedFunction:
-    missing = [key for key in ("input", "output") if getattr(shape, key) is None]
-    if (shape.function is None) == (shape.table is None) or missing:
-        given_keys = [key for key in OF_FUNCTION if getattr(shape, key) is not None]
+def _read_function(block: FourBarByAnglesBlock, values: ValueReader) -> GeneratedFunction:
+    missing = [key for key in ("input", "output") if getattr(block, key) is None]
+    if (block.function is None) == (block.table is None) or missing:
+        given_keys = [key for key in OF_FUNCTION if getattr(block, key) is not None]
         raise ProblemError(
             translated(UNDETERMINED),
             found=", ".join(given_keys) or _("none"),
             allowed=_("pairs; or function (or table), x, input, output"),
             key=True,
         )
-    name = (shape.function or "").replace(" ", "")
-    if shape.function is not None and name not in FUNCTIONS:
+    name = (block.function or "").replace(" ", "")
+    if block.function is not None and name not in FUNCTIONS:
         raise ProblemError(
             _("unknown function"),
             path=("function",),
-            found=quote(shape.function),
+            found=quote(block.function),
             allowed=_("{functions}; or table: [[x, y], ...]").format(functions=", ".join(FUNCTIONS)),
             near=nearest_name(name, FUNCTIONS),
         )
     ends: dict[str, Any] = {
-        key: tuple(values.number(v, ANGLE, (key, k)) for k, v in enumerate(getattr(shape, key)))
+        key: tuple(values.number(v, ANGLE, (key, k)) for k, v in enumerate(getattr(block, key)))
         for key in ("input", "output")
     }
     of_x = ANGLE if name in ANGLES else NUMBER
     rows = tuple(
         (values.number(a, NUMBER, ("table", k, 0)), values.number(b, NUMBER, ("table", k, 1)))
-        for k, (a, b) in enumerate(shape.table or ())
+        for k, (a, b) in enumerate(block.table or ())
     )
     if rows and any(b[0] <= a[0] for a, b in pairwise(rows)):
         raise ProblemError(_("x must increase from row to row"), path=("table",), allowed=_("rows sorted by x"))
-    if shape.x is not None:
-        x = tuple(values.number(v, of_x, ("x", k)) for k, v in enumerate(shape.x))
+    if block.x is not None:
+        x = tuple(values.number(v, of_x, ("x", k)) for k, v in enumerate(block.x))
     elif rows:
         x = (rows[0][0], rows[-1][0])
     else:

@@ -126,10 +126,12 @@ def draw_structural_error(four_bar: FourBarRatios, task: AnglePairsTask) -> tupl
 # Construction of a four-bar by pairs of angles: all positions rotated back to the first input angle.
 
 
-def draw_construction(one: FourBarRatios, given_phi: Any, given_psi: Any, frame_length: float) -> GeometricConstruction:
+def draw_construction(
+    solution: FourBarRatios, given_phi: Any, given_psi: Any, frame_length: float
+) -> GeometricConstruction:
     """Draw all positions rotated back about A to the first input: C1, C2', C3' ... lie on a circle about B1."""
     phi, psi = np.asarray(given_phi, float), np.asarray(given_psi, float)
-    b, c = (np.asarray(x, dtype=complex) * frame_length for x in one.pins(phi, psi))
+    b, c = (np.asarray(x, dtype=complex) * frame_length for x in solution.pins(phi, psi))
     back = c * np.exp(-1j * (phi - phi[0]))
     a, d = 0j, complex(frame_length)
     segments = [
@@ -219,14 +221,14 @@ FAMILY: Final = 121  # tabulated four-bars through two pairs, for each direction
 def solve(task: AnglePairsTask) -> SynthesisOutcome:
     """Solve the task of one file. Raises Infeasible."""
     solutions, at = choose_solution(task)
-    one, mark = solutions.at(at), rate_four_bars(solutions.at(at), task)
+    solution, rating = solutions.at(at), rate_four_bars(solutions.at(at), task)
     is_parallelogram = find_parallelogram(task.phi, task.psi, task.phi0, task.psi0) is not None
-    values, demands = _found_values(task, one, mark), _demands(task, one, mark)
+    values, demands = _found_values(task, solution, rating), _demands(task, solution, rating)
     if not is_parallelogram:  # a parallelogram has change points
         demands.append(
             Demand(
                 N_("input link rotates fully (1: yes)"),
-                float(mark.crank),
+                float(rating.crank),
                 "number",
                 driver_completes_range,
                 asked=False,
@@ -234,29 +236,29 @@ def solve(task: AnglePairsTask) -> SynthesisOutcome:
         )
     drawings: list[Any] = []
     if not task.approximate:
-        drawings.append(draw_construction(one, task.phi, task.psi, float(_frame_length(task, one))))
+        drawings.append(draw_construction(solution, task.phi, task.psi, float(_frame_length(task, solution))))
     elif not task.function:
-        drawings.append(draw_reached(one, task))
-    listings = [_tabulate_pairs(task, one)] if task.approximate else []
+        drawings.append(draw_reached(solution, task))
+    listings = [_tabulate_pairs(task, solution)] if task.approximate else []
     if solutions.size > 1:
         values.append(
             NamedValue("", f"{at + 1} / {solutions.size}", "word", N_("number of the solution, of those below"))
         )
         listings.append(_tabulate_solutions(task, solutions, at))
     if task.free:
-        values.append(NamedValue("", 1 / float(one.l1), "number", N_("l4/l1, free with two pairs of angles")))
+        values.append(NamedValue("", 1 / float(solution.l1), "number", N_("l4/l1, free with two pairs of angles")))
         listings.append(_tabulate_family(task))
-    if task.function and not mark.defect:
-        curve, error = draw_structural_error(one, task)
+    if task.function and not rating.defect:
+        curve, error = draw_structural_error(solution, task)
         values.append(NamedValue("", error, "angle", N_("largest structural error")))
-        largest = partial(_measured_largest_error, one, task)
+        largest = partial(_measured_largest_error, solution, task)
         demands.append(Demand(N_("largest structural error"), error, "angle", largest, asked=False, at=1.0))
         drawings.append(curve)
     source = N_(
         "Freudenstein's equation (l4/l1) cos(psi) - (l4/l3) cos(phi) + (l1^2 + l3^2 + l4^2 - l2^2)/(2 l1 l3) = "
         "cos(phi - psi), angles from AD; Trans. ASME 76 (1954)"
     )
-    notes = _notes(task, one, mark, is_parallelogram)
+    notes = _notes(task, solution, rating, is_parallelogram)
     return SynthesisOutcome(
         _given_values(task), tuple(values), source, tuple(demands), tuple(drawings), tuple(notes), tuple(listings)
     )
@@ -296,45 +298,50 @@ def _refuse_inputs(task: AnglePairsTask) -> None:
         raise Infeasible(key, _("the input link completes a full revolution before the last pair of angles"))
 
 
-def _frame_length(task: AnglePairsTask, one: FourBarRatios) -> Any:
+def _frame_length(task: AnglePairsTask, solution: FourBarRatios) -> Any:
     """Return l4 (m) of a four-bar from the given length."""
     name = next(iter(task.lengths))
-    return task.lengths[name] / (1.0 if name == "l4" else getattr(one, name))
+    return task.lengths[name] / (1.0 if name == "l4" else getattr(solution, name))
 
 
-def _found_values(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality) -> list[NamedValue]:
-    frame_length = _frame_length(task, one)
+def _found_values(task: AnglePairsTask, solution: FourBarRatios, rating: FourBarQuality) -> list[NamedValue]:
+    frame_length = _frame_length(task, solution)
     numbers = {
-        "l1": one.l1 * frame_length,
-        "l2": one.l2 * frame_length,
-        "l3": one.l3 * frame_length,
+        "l1": solution.l1 * frame_length,
+        "l2": solution.l2 * frame_length,
+        "l3": solution.l3 * frame_length,
         "l4": frame_length,
     }
-    first = task.psi[0] + (output_errors(one, task)[0] if task.approximate else 0.0)
-    angles = {"phi0": one.phi0, "psi0": one.psi0, "phi1": one.phi0 + task.phi[0], "psi1": one.psi0 + first}
+    first = task.psi[0] + (output_errors(solution, task)[0] if task.approximate else 0.0)
+    angles = {
+        "phi0": solution.phi0,
+        "psi0": solution.psi0,
+        "phi1": solution.phi0 + task.phi[0],
+        "psi1": solution.psi0 + first,
+    }
     numbers |= {key: zero_within_rounding(angle, np.pi) for key, angle in angles.items()}
     return [
         *(NamedValue(key, float(numbers[key]), *description) for key, description in FOUND.items()),
-        NamedValue("", mark.least, "angle", N_("smallest transmission angle over the range")),
-        NamedValue("", DEFECTS[str(mark.defect)], "word", N_("defects")),
-        *([NamedValue("", _mean_error(one, task), "angle", MEAN)] if task.approximate else []),
+        NamedValue("", rating.least, "angle", N_("smallest transmission angle over the range")),
+        NamedValue("", DEFECTS[str(rating.defect)], "word", N_("defects")),
+        *([NamedValue("", _mean_error(solution, task), "angle", MEAN)] if task.approximate else []),
     ]
 
 
-def _demands(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality) -> list[Demand]:
+def _demands(task: AnglePairsTask, solution: FourBarRatios, rating: FourBarQuality) -> list[Demand]:
     if task.approximate:
-        mean = partial(_measured_mean, one, task)
-        demands = [Demand(MEAN, _mean_error(one, task), "angle", mean, asked=False, at=1.0)]
+        mean = partial(_measured_mean, solution, task)
+        demands = [Demand(MEAN, _mean_error(solution, task), "angle", mean, asked=False, at=1.0)]
     else:
         demands = [
-            Demand(_output_name(k), float(b), "angle", partial(_measured_output, one, a, b), at=1.0)
+            Demand(_output_name(k), float(b), "angle", partial(_measured_output, solution, a, b), at=1.0)
             for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True))
         ]
     name, measure = (
         N_("smallest transmission angle over the range"),
-        partial(four_bar.transmission_angle, float(mark.worst)),
+        partial(four_bar.transmission_angle, float(rating.worst)),
     )
-    return [*demands, Demand(name, float(mark.least), "angle", measure, asked=False, at=1.0)]
+    return [*demands, Demand(name, float(rating.least), "angle", measure, asked=False, at=1.0)]
 
 
 def _mean_error(four_bar: FourBarRatios, task: AnglePairsTask) -> float:
@@ -375,7 +382,9 @@ def _measured_largest_error(solution: FourBarRatios, task: AnglePairsTask, resul
     return error_extremes(error, function)[1]
 
 
-def _notes(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality, is_parallelogram: bool) -> Iterable[str]:
+def _notes(
+    task: AnglePairsTask, solution: FourBarRatios, rating: FourBarQuality, is_parallelogram: bool
+) -> Iterable[str]:
     if task.approximate and not is_parallelogram:
         yield N_(
             "there are more pairs than a four-bar can reach exactly: the sum of the squared errors of the "
@@ -386,11 +395,11 @@ def _notes(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality, is_pa
             "the angles stay equal: every parallelogram l1 = l3, l2 = l4 passes through the pairs, and its "
             "transmission angle is the angle between DC and AD; l1/l4 is free, 1/2 was taken"
         )
-    if mark.reversed:
+    if rating.reversed:
         yield N_("a zero angle differs from the given one by 180 deg: with the given direction no such link exists")
-    if task.choose == "crank" and not mark.crank:
+    if task.choose == "crank" and not rating.crank:
         yield N_("no solution without defects has an input link that rotates fully: another solution was taken")
-    if task.free and abs(abs(np.log(abs(float(one.l1)))) - np.log(LONGEST)) < 1e-9:
+    if task.free and abs(abs(np.log(abs(float(solution.l1)))) - np.log(LONGEST)) < 1e-9:
         yield N_(
             "two pairs leave l4/l1 free: of 0.1 to 10 one end of the range has the best transmission angle and "
             "was taken; for another value give two of l1, l3, l4"
@@ -413,10 +422,10 @@ def _tabulate_solutions(task: AnglePairsTask, four_bars: FourBarRatios, at: int)
     )
     rows = []
     for k in range(four_bars.size):
-        mark = rate_four_bars(four_bars.at(k), task)
-        taken, crank = N_("yes") if k == at else None, N_("yes") if mark.crank else N_("no")
+        rating = rate_four_bars(four_bars.at(k), task)
+        taken, crank = N_("yes") if k == at else None, N_("yes") if rating.crank else N_("no")
         rows.append(
-            (str(k + 1), taken, *_solution_row(task, four_bars.at(k), mark), crank, SHORT_DEFECTS[str(mark.defect)])
+            (str(k + 1), taken, *_solution_row(task, four_bars.at(k), rating), crank, SHORT_DEFECTS[str(rating.defect)])
         )
     return Listing(
         "solutions", N_("Solutions. To take another one, write choose: and its number"), columns, tuple(rows)
@@ -450,22 +459,22 @@ def _tabulate_family(task: AnglePairsTask) -> Listing:
     four_bars = four_bars_of_ratios(task, ratios)
     rows = []
     for k in np.flatnonzero(are_real(four_bars)):
-        mark = rate_four_bars(four_bars.at(k), task)
+        rating = rate_four_bars(four_bars.at(k), task)
         rows.append(
-            (abs(float(ratios[k])), *_solution_row(task, four_bars.at(k), mark), SHORT_DEFECTS[str(mark.defect)])
+            (abs(float(ratios[k])), *_solution_row(task, four_bars.at(k), rating), SHORT_DEFECTS[str(rating.defect)])
         )
     return Listing("family", N_("Four-bars through both pairs of angles"), columns, tuple(rows), long=True)
 
 
-def _solution_row(task: AnglePairsTask, one: FourBarRatios, mark: FourBarQuality) -> tuple[float, ...]:
+def _solution_row(task: AnglePairsTask, solution: FourBarRatios, rating: FourBarQuality) -> tuple[float, ...]:
     """Return lengths (m), zero angles and smallest transmission angle of a four-bar."""
-    frame_length = _frame_length(task, one)
+    frame_length = _frame_length(task, solution)
     return (
-        *(float(x * frame_length) for x in one[:3]),
+        *(float(x * frame_length) for x in solution[:3]),
         float(frame_length),
-        float(one.phi0),
-        float(one.psi0),
-        float(mark.least),
+        float(solution.phi0),
+        float(solution.psi0),
+        float(rating.least),
     )
 
 

@@ -344,9 +344,9 @@ class FourBarByKBlock(TaskBlock):
 BLOCK = FourBarByKBlock
 
 
-def read(shape: FourBarByKBlock, values: ValueReader) -> FourBarByKTask:
+def read(block: FourBarByKBlock, values: ValueReader) -> FourBarByKTask:
     """Read the task into SI. Raises ProblemError."""
-    conditions = [name for name in CHOICE_KEYS if getattr(shape, name) is not None]
+    conditions = [name for name in CHOICE_KEYS if getattr(block, name) is not None]
     if len(conditions) > 1:
         raise ProblemError(
             _("give only one condition for the pivot A"),
@@ -354,10 +354,10 @@ def read(shape: FourBarByKBlock, values: ValueReader) -> FourBarByKTask:
             allowed=_("one of {ways}").format(ways=", ".join(CHOICE_KEYS)),
             key=True,
         )
-    fields = read_numbers(shape, values, QUANTITIES)
+    fields = read_numbers(block, values, QUANTITIES)
     for key in ("support", "near"):
-        if getattr(shape, key) is not None:
-            fields[key] = values.vector(getattr(shape, key), LENGTH, (key,))
+        if getattr(block, key) is not None:
+            fields[key] = values.vector(getattr(block, key), LENGTH, (key,))
     condition = conditions[0] if conditions else "choose"
-    choice = CHOICES[shape.choose or "best transmission"] if condition == "choose" else condition
-    return FourBarByKTask(**fields, choose=choice, sense={"ccw": 1, "cw": -1, None: 0}[shape.turns])
+    choice = CHOICES[block.choose or "best transmission"] if condition == "choose" else condition
+    return FourBarByKTask(**fields, choose=choice, sense={"ccw": 1, "cw": -1, None: 0}[block.turns])

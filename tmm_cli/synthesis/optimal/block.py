@@ -134,40 +134,40 @@ class OptimalBlock(TaskBlock):
 BLOCK = OptimalBlock
 
 
-def parameters(shape: OptimalBlock) -> dict[str, str]:
+def parameters(block: OptimalBlock) -> dict[str, str]:
     """Return the names of the parameters to be found; their kinds follow from the bounds later."""
-    return dict.fromkeys(shape.vary, "length")
+    return dict.fromkeys(block.vary, "length")
 
 
-def read(shape: OptimalBlock, sense: ValueReader, file_with: FileWith) -> OptimalTask:
+def read(block: OptimalBlock, reader: ValueReader, file_with: FileWith) -> OptimalTask:
     """Read the task into SI. Raises ProblemError."""
-    parameters = read_ranges(shape.vary, sense, shape.names, file_with)
-    files = _FileVariants(parameters, shape, sense, file_with)
+    parameters = read_ranges(block.vary, reader, block.names, file_with)
+    files = _FileVariants(parameters, block, reader, file_with)
     middles = nearest_allowed([(p.low + p.high) / 2 for p in parameters], parameters).tolist()
-    files.over = read_over(shape.over, files.plain(middles).linkage.driver, sense)
+    files.over = read_over(block.over, files.plain(middles).linkage.driver, reader)
     middle = with_driver_range(files.plain(middles), files.over)
     _check_mobility(middle)
     for k, parameter in enumerate(parameters):
         for end in (parameter.low, parameter.high):
             files.variant([*middles[:k], end, *middles[k + 1 :]])
     constraints = tuple(
-        _read_constraint(keys, middle, sense, n, files.asked(keys, ("constraints", n), middles, middle))
-        for n, keys in enumerate(shape.constraints)
+        _read_constraint(keys, middle, reader, n, files.asked(keys, ("constraints", n), middles, middle))
+        for n, keys in enumerate(block.constraints)
     )
-    targets = files.asked(shape.objective, ("objective",), middles, middle)
-    objective, target = _read_quantity(shape.objective, middle, sense, ("objective",), targets), shape.objective.target
+    targets = files.asked(block.objective, ("objective",), middles, middle)
+    objective, target = _read_quantity(block.objective, middle, reader, ("objective",), targets), block.objective.target
     if target is not None:
-        target = sense.number(target, DIMENSIONS[_kind_of(objective, middle)].dimension, ("objective", "target"))
+        target = reader.number(target, DIMENSIONS[_kind_of(objective, middle)].dimension, ("objective", "target"))
     return OptimalTask(
         parameters,
         files.variant,
         objective,
         constraints,
         target,
-        shape.positions,
-        shape.population,
-        shape.generations,
-        shape.seed,
+        block.positions,
+        block.population,
+        block.generations,
+        block.seed,
         files.accepts,
         _progress_bar(),
     )
@@ -177,14 +177,14 @@ class _FileVariants:
     """Variants of the file with other values (SI, or TracedNumbers) of the varied parameters."""
 
     def __init__(
-        self, parameters: Sequence[Parameter], shape: OptimalBlock, sense: ValueReader, file_with: FileWith
+        self, parameters: Sequence[Parameter], block: OptimalBlock, reader: ValueReader, file_with: FileWith
     ) -> None:
-        self.parameters, self.names, self.file_with = parameters, shape.names, file_with
-        self.units, self.varied = sense.units, VariedUnits(sense.units)
-        self.own = sense.parameters
+        self.parameters, self.names, self.file_with = parameters, block.names, file_with
+        self.units, self.varied = reader.units, VariedUnits(reader.units)
+        self.own = reader.parameters
         self.over: Any = None
-        self.goals: list[tuple[Path, QuantityKeys]] = [(("objective",), shape.objective)]
-        self.goals += [(("constraints", n), keys) for n, keys in enumerate(shape.constraints)]
+        self.goals: list[tuple[Path, QuantityKeys]] = [(("objective",), block.objective)]
+        self.goals += [(("constraints", n), keys) for n, keys in enumerate(block.constraints)]
 
     def plain(self, numbers: Sequence[Any]) -> Problem:
         """Build the problem with these values. Raises TriedFileError."""
@@ -204,12 +204,12 @@ class _FileVariants:
         Raises ProblemError.
         """
         parameters, units = self._given(numbers)
-        sense, linkage = ValueReader({**self.own, **parameters}, units), variant.linkage
-        coordinates = tuple(read_position(v, variant, sense, (*path, "at", n)) for n, v in enumerate(keys.at))
+        reader, linkage = ValueReader({**self.own, **parameters}, units), variant.linkage
+        coordinates = tuple(read_position(v, variant, reader, (*path, "at", n)) for n, v in enumerate(keys.at))
         if not keys.values or keys.link not in linkage.moving:
             return coordinates, (0.0,) * len(coordinates)
         dimension = ANGLE if linkage.output_swings(keys.link) else LENGTH
-        return coordinates, tuple(sense.number(v, dimension, (*path, "values", n)) for n, v in enumerate(keys.values))
+        return coordinates, tuple(reader.number(v, dimension, (*path, "values", n)) for n, v in enumerate(keys.values))
 
     def variant(self, numbers: Sequence[Any]) -> Variant:
         """Build the variant with these values.
@@ -221,7 +221,7 @@ class _FileVariants:
         try:
             variant = with_driver_range(self.plain(numbers), self.over)
             targets = [self.asked(keys, path, numbers, variant) for path, keys in self.goals]
-            coordinates, required = (tuple(chain.from_iterable(part)) for part in zip(*targets, strict=True))
+            coordinates, required = (tuple(chain.from_iterable(column)) for column in zip(*targets, strict=True))
             return replace(variant, asked=coordinates, wanted=required)
         except TriedFileError as error:
             refused, texts = copy(error.error), []
@@ -250,23 +250,23 @@ def _check_mobility(variant: Variant) -> None:
     try:
         analyse_mobile_structure(variant.linkage)
     except MobilityError as refusal:
-        told = mobility_error(refusal.structure)
+        described = mobility_error(refusal.structure)
         raise ProblemError(
-            _("with every parameter in the middle of its bounds, {reason}").format(reason=told.message),
+            _("with every parameter in the middle of its bounds, {reason}").format(reason=described.message),
             path=("vary",),
-            found=told.found,
-            allowed=told.allowed,
+            found=described.found,
+            allowed=described.allowed,
         ) from None
 
 
 def _read_constraint(
-    keys: ConstraintKeys, variant: Variant, sense: ValueReader, n: int, targets: DriverTargets
+    keys: ConstraintKeys, variant: Variant, reader: ValueReader, n: int, targets: DriverTargets
 ) -> task.QuantityConstraint:
     path: Path = ("constraints", n)
-    quantity = _read_quantity(keys, variant, sense, path, targets)
+    quantity = _read_quantity(keys, variant, reader, path, targets)
     dimension = DIMENSIONS[_kind_of(quantity, variant)].dimension
     sides = {
-        key: sense.number(value, dimension, (*path, key))
+        key: reader.number(value, dimension, (*path, key))
         for key in ("least", "most", "equal")
         if (value := getattr(keys, key)) is not None
     }
@@ -287,7 +287,7 @@ def _kind_of(quantity: MechanismQuantity, variant: Variant) -> str:
 
 
 def _read_quantity(
-    keys: QuantityKeys, variant: Variant, sense: ValueReader, path: Path, targets: DriverTargets
+    keys: QuantityKeys, variant: Variant, reader: ValueReader, path: Path, targets: DriverTargets
 ) -> MechanismQuantity:
     linkage, kind, name = variant.linkage, QUANTITIES[keys.of], ""
     coordinates, values = targets
@@ -309,10 +309,10 @@ def _read_quantity(
             "link": list(linkage.moving),
             "point": [point for link in linkage.moving for point in linkage.links[link].points],
         }
-        sense.known_name(name, dict.fromkeys(names[kind.named]), (*path, kind.named), kind.named)
+        reader.known_name(name, dict.fromkeys(names[kind.named]), (*path, kind.named), kind.named)
     for n, link in enumerate(keys.links):
-        sense.known_name(link, linkage.links, (*path, "links", n), "link")
-    required: list[Any] = [sense.vector(v, LENGTH, (*path, "through", n)) for n, v in enumerate(keys.through)]
+        reader.known_name(link, linkage.links, (*path, "links", n), "link")
+    required: list[Any] = [reader.vector(v, LENGTH, (*path, "through", n)) for n, v in enumerate(keys.through)]
     required = list(values) if keys.values else required
     if len(coordinates) != len(required) and (coordinates or keys.values):
         raise ProblemError(
@@ -327,18 +327,18 @@ def _read_quantity(
 def _progress_bar() -> Callable[[int, int], None]:
     """Return a function that shows the progress on a terminal."""
     if not sys.stderr.isatty():
-        return lambda at, of: None
+        return lambda at, total: None
     from rich.console import Console
     from rich.progress import Progress
 
     bar = Progress(console=Console(stderr=True), transient=True)
     task = bar.add_task(_("generations"))
 
-    def show(at: int, of: int) -> None:
+    def show(at: int, total: int) -> None:
         if at == 0:
             bar.start()
-        bar.update(task, completed=at, total=of)
-        if at == of:
+        bar.update(task, completed=at, total=total)
+        if at == total:
             bar.stop()
 
     return show

@@ -157,18 +157,22 @@ class Candidates:
 
     def quantity(self, n: int, numbers: Real) -> MechanismQuantity:
         """Return quantity `n` with its driver coordinates and required values in the candidate `numbers` (SI)."""
-        first, own = sum(len(quantity.places) for quantity in self.quantities[:n]), self.quantities[n]
-        variant, last = self.task.make(numbers.tolist()), first + len(own.places)
-        own = replace(own, places=tuple(map(float, variant.asked[first:last])))
-        return replace(own, wanted=tuple(map(float, variant.wanted[first:last]))) if own.given == "values" else own
+        first, template = sum(len(quantity.places) for quantity in self.quantities[:n]), self.quantities[n]
+        variant, last = self.task.make(numbers.tolist()), first + len(template.places)
+        template = replace(template, places=tuple(map(float, variant.asked[first:last])))
+        return (
+            replace(template, wanted=tuple(map(float, variant.wanted[first:last])))
+            if template.given == "values"
+            else template
+        )
 
     def with_sketch(self, driver: Real) -> Real:
         """Append the driver coordinate of the sketch, if the sign of a determinant there matters."""
         return np.append(driver, self.linkage.sketch.at) if self.single else driver
 
-    def run(self, x: Real, places: DriverSamples) -> Mapping[str, Real]:
+    def run(self, x: Real, positions: DriverSamples) -> Mapping[str, Real]:
         """Compute all outputs."""
-        return self.program(self.numbers(x), places)
+        return self.program(self.numbers(x), positions)
 
     def evaluate(self, x: Real) -> tuple[Real, Real]:
         """Return objective and constraint violation of candidates, computed in blocks that fit the cache."""

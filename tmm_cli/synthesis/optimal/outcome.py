@@ -77,8 +77,8 @@ def compare_reached(candidates: Candidates, x: Real, n: int) -> tuple[Listing, D
     """Tabulate and draw required and reached values of quantity `n`, for fractions x of the ranges."""
     two = x[None]
 
-    def read(places: DriverSamples, key: str) -> Real:
-        outputs: Real = candidates.run(two, places)[f"{n}.{key}"][0]
+    def read(positions: DriverSamples, key: str) -> Real:
+        outputs: Real = candidates.run(two, positions)[f"{n}.{key}"][0]
         return outputs
 
     quantity = candidates.quantity(n, candidates.numbers(x))
@@ -128,8 +128,8 @@ def _compare_law(candidates: Candidates, n: int, quantity: MechanismQuantity, re
 def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, read: Read) -> tuple[Listing, Diagram]:
     required = np.array(quantity.wanted)
 
-    def spots(places: DriverSamples) -> Vector:
-        return read(places, "px") + 1j * read(places, "py")
+    def spots(positions: DriverSamples) -> Vector:
+        return read(positions, "px") + 1j * read(positions, "py")
 
     path = spots(DriverSamples(np.linspace(0, 1, CURVE), NONE))
     if quantity.places:

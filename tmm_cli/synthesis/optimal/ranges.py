@@ -30,11 +30,11 @@ FileWith = Callable[[dict[str, PhysicalValue], UnitSystem], Problem]
 
 
 def read_ranges(
-    vary: Mapping[str, Range], sense: ValueReader, names: Mapping[str, str], file_with: FileWith
+    vary: Mapping[str, Range], reader: ValueReader, names: Mapping[str, str], file_with: FileWith
 ) -> tuple[Parameter, ...]:
     """Read the ranges of the varied parameters. names: their names in the file. Raises ProblemError."""
-    kinds = _find_kinds({name: _range_values(bounds) for name, bounds in vary.items()}, sense, names, file_with)
-    return tuple(_read_parameter(name, bounds, kinds[name], sense) for name, bounds in vary.items())
+    kinds = _find_kinds({name: _range_values(bounds) for name, bounds in vary.items()}, reader, names, file_with)
+    return tuple(_read_parameter(name, bounds, kinds[name], reader) for name, bounds in vary.items())
 
 
 def _range_values(bounds: Range) -> list[Any]:
@@ -42,12 +42,12 @@ def _range_values(bounds: Range) -> list[Any]:
     return (bounds.among or [bounds.from_, bounds.to, bounds.step]) if isinstance(bounds, Chosen) else bounds
 
 
-def _read_parameter(name: str, bounds: Range, kind: str, sense: ValueReader) -> Parameter:
+def _read_parameter(name: str, bounds: Range, kind: str, reader: ValueReader) -> Parameter:
     at: Path = ("vary", name)
     dimension = DIMENSIONS[kind].dimension
 
     def si(value: Any, *inside: str | int) -> float:
-        return float(sense.number(value, dimension, (*at, *inside)))
+        return float(reader.number(value, dimension, (*at, *inside)))
 
     if isinstance(bounds, Chosen) and bounds.among:
         values = sorted({si(value, "among", n) for n, value in enumerate(bounds.among)})
@@ -70,7 +70,7 @@ def _read_parameter(name: str, bounds: Range, kind: str, sense: ValueReader) -> 
         )
     if not isinstance(bounds, Chosen):
         return Parameter(name, low, high, kind)
-    step = float(sense.positive(bounds.step, dimension, (*at, "step")))
+    step = float(reader.positive(bounds.step, dimension, (*at, "step")))
     count = (high - low) / step + STEP_TOLERANCE
     if not 1 <= count < MOST_VALUES:
         raise ProblemError(
@@ -84,7 +84,7 @@ def _read_parameter(name: str, bounds: Range, kind: str, sense: ValueReader) -> 
 
 
 def _find_kinds(
-    raw_values: Mapping[str, list[Any]], sense: ValueReader, names: Mapping[str, str], file_with: FileWith
+    raw_values: Mapping[str, list[Any]], reader: ValueReader, names: Mapping[str, str], file_with: FileWith
 ) -> dict[str, str]:
     """Return the dimension of each parameter: that of its values, or else the first that the file accepts, length
     first.
@@ -93,21 +93,21 @@ def _find_kinds(
     file is invalid in any case, the first kind whose dimension is not the reason is taken.
     """
     dimensions = {
-        name: next((k for v in raw if (k := _dimension_name(v, sense))), "") for name, raw in raw_values.items()
+        name: next((k for v in raw if (k := _dimension_name(v, reader))), "") for name, raw in raw_values.items()
     }
 
     def value(name: str, kind: str) -> PhysicalValue:
         if not kind:  # as a bare number
-            return evaluate_quantity(raw_values[name][0], sense.parameters, sense.units)
+            return evaluate_quantity(raw_values[name][0], reader.parameters, reader.units)
         dimension = DIMENSIONS[kind].dimension
-        return PhysicalValue(float(sense.number(raw_values[name][0], dimension, ())), dimension)
+        return PhysicalValue(float(reader.number(raw_values[name][0], dimension, ())), dimension)
 
     def minded(kinds: Mapping[str, str]) -> int:
         """Return 2 if the file refuses the dimensions of the first values, 1 if it refuses the values otherwise, 0 if
         it accepts.
         """
         try:
-            file_with({names.get(name, name): value(name, kind) for name, kind in kinds.items()}, sense.units)
+            file_with({names.get(name, name): value(name, kind) for name, kind in kinds.items()}, reader.units)
         except TriedFileError as error:
             return 2 if isinstance(error.error, UnitError) else 1
         except ProblemError:
@@ -131,9 +131,9 @@ def _find_kinds(
     return dimensions
 
 
-def _dimension_name(source: Any, sense: ValueReader) -> str | None:
+def _dimension_name(source: Any, reader: ValueReader) -> str | None:
     try:
-        dimension = evaluate_quantity(source, sense.parameters, sense.units).dimension
+        dimension = evaluate_quantity(source, reader.parameters, reader.units).dimension
     except ProblemError:
         return None  # reported when it is evaluated
     return None if dimension is None else dimension.name
@@ -147,7 +147,7 @@ Ends = tuple[Any, Any] | None
 RangeChoice = str | tuple[float, float]
 
 
-def read_over(over: Any, driver: Driver, sense: ValueReader) -> RangeChoice:
+def read_over(over: Any, driver: Driver, reader: ValueReader) -> RangeChoice:
     """Read the key `over`, with driver coordinates in SI; the default if it is omitted. Raises ProblemError."""
     turns, stroked = driver.kind == "turn", driver.stroke is not None
     available = {"cycle": turns and not stroked, "stroke": stroked, "positions": True}
@@ -163,7 +163,7 @@ def read_over(over: Any, driver: Driver, sense: ValueReader) -> RangeChoice:
                 allowed=", ".join([*possible, "[from, to]"]),
             )
         return over
-    low, high = (float(sense.number(value, _driver_dimension(driver), ("over", n))) for n, value in enumerate(over))
+    low, high = (float(reader.number(value, _driver_dimension(driver), ("over", n))) for n, value in enumerate(over))
     if not low < high or (turns and high - low > 2 * np.pi * (1 + 1e-12)):
         raise ProblemError(
             _("the first value must be smaller than the second, and by at most one revolution"),
@@ -203,10 +203,10 @@ def _driver_ends(problem: Problem, over: RangeChoice) -> Ends:
     return over[0] + 2 * np.pi * turns, over[1] + 2 * np.pi * turns  # around the sketch, whose assembly it has
 
 
-def read_position(value: Any, variant: Variant, sense: ValueReader, path: Path) -> Any:
+def read_position(value: Any, variant: Variant, reader: ValueReader, path: Path) -> Any:
     """Read a driver coordinate; whole turns are added if that brings it into the range. Raises ProblemError."""
     driver = variant.linkage.driver
-    place: Any = sense.number(value, _driver_dimension(driver), path)
+    place: Any = reader.number(value, _driver_dimension(driver), path)
     if variant.ends is None:
         return place
     low, high = (float(end) for end in variant.ends)
@@ -214,7 +214,7 @@ def read_position(value: Any, variant: Variant, sense: ValueReader, path: Path) 
     if driver.kind == "turn" and not low - slack <= place <= high + slack:
         place = place + 2 * np.pi * np.ceil(float(low - slack - place) / (2 * np.pi))
     if not low - slack <= place <= high + slack:
-        raise _out_of_range(path, value, driver, (low, high), sense.units)
+        raise _out_of_range(path, value, driver, (low, high), reader.units)
     return place
 
 

@@ -59,7 +59,7 @@ class _Differences:
             run = np.diag(ends[1 : n + 1] - ends[n + 1 :])[:, None]
             parts = (local.pieces, local.least, local.equal)
             parts_found = tuple((y[0], ((y[1 : n + 1] - y[n + 1 :]) / run).T) for y in parts)
-            if not all(np.all(np.isfinite(part)) for both in parts_found for part in both):
+            if not all(np.all(np.isfinite(values)) for both in parts_found for values in both):
                 if not self.found:
                     raise _End
                 (pieces, slopes), *others = self.found
@@ -232,11 +232,11 @@ def _exact_pieces(candidates: Candidates, x: Real, narrow: float = 0.0) -> Calla
             windows.append((subject, float(first), slice(at, at + WINDOW)))
             at += WINDOW
         parts.append(windows)
-    places = replace(candidates.places, shares=np.concatenate([*blocks, np.zeros(1)]))
+    positions = replace(candidates.places, shares=np.concatenate([*blocks, np.zeros(1)]))
     exact = [windows or slice(at, at + 1) for windows in candidates.own_places(at + 1)]
 
     def pieces(some: Real) -> list[Real]:
-        out = candidates.program(candidates.numbers(np.atleast_2d(some)), places)
+        out = candidates.program(candidates.numbers(np.atleast_2d(some)), positions)
         return [
             quantity.fine(
                 [(subject, first, quantity_reader(out, n, where)) for subject, first, where in parts[n]],

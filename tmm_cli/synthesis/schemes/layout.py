@@ -357,7 +357,7 @@ class _GroupPlacer(LayoutDraft):
         self.add_transmission_penalty(_determinant(rows))
 
     def iv(self, group: PlacedGroup) -> None:
-        one, left, other, right = group.links
+        first, left, second, right = group.links
         X, Y = _supporting_links(group)
         P, Q = self.new_hinges(X, Y, 300, 380)
         along = math.degrees(cmath.phase(Q - P))
@@ -370,9 +370,9 @@ class _GroupPlacer(LayoutDraft):
             Q + self.random_vector(80, 150, along + 190, along + 250),
         )
         nP, nA, nB, nC, nD, nQ = self.name_hinge(X, P), *(next(self.names) for _ in range(4)), self.name_hinge(Y, Q)
-        self.place_link(one, cmath.phase(A - P), **{nP: P, nA: A, nD: D})
+        self.place_link(first, cmath.phase(A - P), **{nP: P, nA: A, nD: D})
         self.place_bar(left, nA, A, nB, B)
-        self.place_link(other, cmath.phase(B - Q), **{nQ: Q, nB: B, nC: C})
+        self.place_link(second, cmath.phase(B - Q), **{nQ: Q, nB: B, nC: C})
         self.place_bar(right, nD, D, nC, C)
 
 

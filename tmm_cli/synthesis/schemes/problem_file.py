@@ -93,7 +93,7 @@ def _load(scheme: Scheme, layout: SchemeLayout) -> tuple[int, str]:
     """Return the output, the last link joined to the frame (sliders first), or 0; and the load on it."""
     guided = {slide.runner: slide.angle for slide in layout.slides if slide.carrier == 0}
     for group in reversed(scheme.groups):
-        held = [own for support, own, __ in group.outer if support == 0]
+        held = [moving for support, moving, __ in group.outer if support == 0]
         for link in held:
             if link in guided:
                 return link, f"F: {{on: {link}, force: {{size: 100 N, angle: {guided[link]}}}}}"
