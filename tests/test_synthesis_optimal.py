@@ -237,7 +237,7 @@ REFUSED = {
     "  objective: {of: mass, pair: A}": "the quantity mass has no key pair",
     "  objective: mass\n  constraints: [{of: k}]": "a constraint needs a bound",
     "  objective: mass\n  constraints: [{of: k, least: 2, most: 1}]": "the lower bound exceeds the upper bound",
-    "  objective: mass\n  constraints: [{of: k, least: 2 mm}]": "expected a number here",
+    "  objective: mass\n  constraints: [{of: k, least: 2 mm}]": "expected here: a number",
 }
 
 
@@ -253,7 +253,7 @@ def test_what_cannot_be_asked_is_refused(options):
     [
         ("{OA: [90, 30]}", "the first bound must be smaller than the second"),
         ("{OA: [-90, 30]}", "a length cannot be negative"),
-        ("{OA: [30]}", "2 are wanted here"),
+        ("{OA: [30]}", "at least 2 expected here"),
         ("{n1: [30, 40]}", "is given, although"),
     ],
 )

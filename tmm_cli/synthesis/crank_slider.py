@@ -242,7 +242,10 @@ def crank_of_offset(height: Any, e: Any, length: Any) -> Any:
 
 
 def find_crank_slider(task: CrankSliderTask) -> CrankSliderSolution:
-    """Solve the task. If no such mechanism exists (`refuse` gives the reason), the values are meaningless."""
+    """Solve the task. If no such mechanism exists (`refuse` gives the reason), the values are meaningless.
+
+    Formulas: see the triangle of the extreme positions above; theta = pi (k - 1)/(k + 1).
+    """
     height = _stroke_length(task)
     theta = None if task.k is None else theta_of(task.k)
     if task.ratio is not None:

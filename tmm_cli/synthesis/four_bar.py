@@ -81,7 +81,16 @@ class FourBarType:
 
 
 def classify_four_bar(links: FourBarLinks) -> FourBarType:
-    """Return the type of four-bars and which of their links rotate fully."""
+    """Return the type of four-bars and which of their links rotate fully.
+
+    Args:
+        links: lengths (m), numbers or arrays of one shape.
+
+    Returns:
+        Type (C. R. Barker 1985), excess of Grashof's condition, joints and links that rotate fully. Lengths that differ
+            only
+        by rounding count as equal.
+    """
     lengths = np.stack(np.broadcast_arrays(*links.ordered), axis=-1)
     total = lengths.sum(-1)
     same = SAME_RATIO * total

@@ -122,11 +122,11 @@ def prepare(problems: Sequence[Problem | TaskProblem] | Problem | TaskProblem) -
 
     Loads of a working stroke act always, unless there is only one problem. Raises ProblemError.
     """
-    from tmm_cli.batch import prepare_batch as every_variant  # and the tape under it
+    from tmm_cli.batch import prepare_batch  # late: loads the traced calculation
 
     several = [member.whole for member in (problems if isinstance(problems, Sequence) else (problems,))]
     for member in several:
         refuse_variable_speed(member.linkage.driver.law is not None, member.dynamics is not None)
     with translate_errors(several[0]):
         strokes = pipeline.solve(inputs_of(several[0]), "kinematics").strokes if len(several) == 1 else None
-        return every_variant([problem.linkage for problem in several], strokes=strokes)
+        return prepare_batch([problem.linkage for problem in several], strokes=strokes)

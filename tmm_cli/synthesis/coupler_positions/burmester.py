@@ -89,8 +89,15 @@ def circle_centre(points: Any) -> Any:
 
 
 def point_at_distance(points: Any, radius: Any, side: float) -> Any:
-    """Return the point at distance `radius` from two points (last axis), on the left (1) or right (-1) of the line from
-    the first to the second.
+    """Return the point at equal distance from two points, as for a link of given length with two positions.
+
+    Args:
+        points: two points (m, complex) on the last axis.
+        radius: distance from both (m).
+        side: 1: left of the line from the first to the second point, -1: right of it.
+
+    Returns:
+        The point (m, complex); nan if the radius is too small.
     """
     segment = points[..., 1] - points[..., 0]
     half = np.abs(segment) / 2

@@ -223,10 +223,16 @@ def lengths_from_pqs(values: Any, phi: Any, psi: Any) -> FourBarRatios:
 
 
 def solve_exact_pairs(phi: Any, psi: Any, phi0: Any = 0.0, psi0: Any = 0.0) -> FourBarRatios:
-    """Find all real four-bars (tasks, roots) through 3, 4 or 5 pairs (tasks, pairs); nan where a root is not real.
+    """Find all real four-bars through 3, 4 or 5 pairs of angles (F. Freudenstein 1954).
 
-    phi0, psi0: zero angles, one value or one for each task; None: to be found (none for 3 pairs, one for 4, both for
-    5).
+    Args:
+        phi, psi: angles (rad), (tasks, pairs).
+        phi0, psi0: zero angles (rad), one value or one for each task; None: to be found (none for 3 pairs, one for 4,
+            both
+            for 5).
+
+    Returns:
+        Four-bars (tasks, roots); nan where a root is not real.
     """
     phi, psi = np.atleast_2d(np.asarray(phi, EXACT)), np.atleast_2d(np.asarray(psi, EXACT))
     free = tuple(name for name, value in (("phi0", phi0), ("psi0", psi0)) if value is None)
@@ -267,10 +273,16 @@ SHARE: Final = 0.5  # l1/l4 of the parallelogram
 
 
 def find_parallelogram(phi: Any, psi: Any, phi0: Any, psi0: Any) -> FourBarRatios | None:
-    """Return the parallelogram for three to five pairs of equal angles (rad); None if the angles do not stay equal.
+    """Return the parallelogram for three to five pairs of equal angles.
 
-    A zero angle of None is to be found. Angles that stay half a turn apart are equal ones of a link drawn in the
-    opposite direction.
+    Args:
+        phi, psi: angles (rad), (pairs,).
+        phi0, psi0: zero angles (rad); None: to be found.
+
+    Returns:
+        The parallelogram; None if the angles do not stay equal. Angles that stay half a turn apart are equal ones of a
+            link
+        drawn in the opposite direction.
     """
     phi, psi = np.asarray(phi, dtype=float), np.asarray(psi, dtype=float)
     if len(phi) < 3 or np.max(np.abs(np.sin((psi - phi - psi[0] + phi[0]) / 2))) > SAME:
@@ -306,9 +318,14 @@ GAIN: Final = 1e-15  # relative decrease of the sum of squares that a step must 
 
 
 def fit_least_squares(phi: Any, psi: Any, phi0: Any, psi0: Any) -> tuple[FourBarRatios, Any]:
-    """Find four-bars (n,) with least squares of the output error, best first, and their root mean square errors (rad).
+    """Find four-bars with least squares of the error of the output angle.
 
-    A zero angle of None is to be found.
+    Args:
+        phi, psi: angles (rad), (pairs,).
+        phi0, psi0: zero angles (rad); None: to be found.
+
+    Returns:
+        Four-bars (n,), best first, and their root mean square errors (rad).
     """
     phi, psi = np.asarray(phi, dtype=float), np.asarray(psi, dtype=float)
     count = round(GRID ** (0.5 if phi0 is None and psi0 is None else 1))

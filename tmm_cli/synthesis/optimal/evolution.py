@@ -95,9 +95,21 @@ def evolve(
     equalities: bool = False,
     progress: Callable[[int, int], None] = lambda at, of: None,
 ) -> EvolutionResult:
-    """Search the unit cube of `size` dimensions; the same seed gives the same result.
+    """Search the unit cube by differential evolution; the same seed gives the same result.
 
     A population that converges early is replaced by a new one.
+
+    Args:
+        evaluate: returns objective and violation of candidates (variants, n) in 0..1.
+        size: number of dimensions n.
+        population: candidates in a generation.
+        generations: number of generations, over all populations.
+        seed: seed of the random numbers.
+        equalities: True if there are equality constraints; their tolerance then shrinks step by step.
+        progress: called with the generation and the number of generations.
+
+    Raises:
+        KeyboardInterrupt: stopped by the user before the first generation; later the result so far is returned.
     """
     from scipy.optimize import differential_evolution
 

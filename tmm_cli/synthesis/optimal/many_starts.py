@@ -44,7 +44,16 @@ Evaluate = Callable[[Real, int], ResidualRows]  # variants (v, n) in 0..1, and v
 
 
 def minimize_squares(evaluate: Evaluate, x: Real, steps: int) -> tuple[Real, Real]:
-    """Return the end points (starts, n) of a descent from each starting point, and their sums of squares."""
+    """Descend from many starting points by Levenberg-Marquardt steps.
+
+    Args:
+        evaluate: computes residuals of variants.
+        x: starting points in 0..1, (starts, n).
+        steps: largest number of steps.
+
+    Returns:
+        End points (starts, n) and their sums of squares (starts,); inf if a starting point cannot be assembled.
+    """
     n = x.shape[1]
     x, damping = x.copy(), np.full(len(x), FIRST)
     cost = evaluate(x, 1).cost()
@@ -97,7 +106,17 @@ def _difference_slopes(evaluate: Evaluate, x: Real) -> tuple[ResidualRows, Resid
 
 
 def damped_step(rows: ResidualRows, slopes: ResidualRows, x: Real, damping: Any) -> Real:
-    """Return the damped step of each starting point, (..., n), within the bounds 0..1."""
+    """Return the damped step of each starting point, within the bounds 0..1.
+
+    Args:
+        rows: residuals and inequalities at the points.
+        slopes: their derivatives, (..., rows, n).
+        x: points, (..., n).
+        damping: Levenberg-Marquardt damping of each point.
+
+    Returns:
+        Steps (..., n).
+    """
     n = x.shape[-1]
     square = slopes.off.mT @ slopes.off
     steep = np.einsum("...ii->...i", square)

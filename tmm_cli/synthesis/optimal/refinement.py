@@ -69,7 +69,15 @@ class _Differences:
 
 
 def minimize_locally(evaluate: Callable[[Real], LocalValues], x: Real) -> Real:
-    """Return the nearest local minimum in 0..1 from x (n,)."""
+    """Find the nearest local minimum of the largest piece of an objective, under constraints.
+
+    Args:
+        evaluate: computes the problem for variants (v, n) in 0..1.
+        x: starting point in 0..1, (n,).
+
+    Returns:
+        The best point reached, (n,); x itself if it cannot be assembled.
+    """
     from scipy.optimize import minimize
 
     n, differences = len(x), _Differences(evaluate, len(x))
@@ -132,7 +140,7 @@ def minimize_locally(evaluate: Callable[[Real], LocalValues], x: Real) -> Real:
     return min(steps, key=lambda step: step[0])[1] if steps else x
 
 
-# One candidate of an optimal synthesis, closely: quantities from windows about their peaks, and the polish on them.
+# One candidate of an optimal synthesis, closely: quantities from windows about their peaks, and their refinement.
 
 
 NARROWER = (1.0, 0.3, 0.0, 0.0, 0.0)  # relative widths of the windows: peaks move less and less

@@ -127,8 +127,17 @@ def independent_contours(links: int, mobility: int) -> int | None:
 
 
 def enumerate_chains(links: int, mobility: int = 1) -> tuple[KinematicChain, ...]:
-    """Enumerate all non-isomorphic chains with so many links (at most MOST_LINKS_OF_CHAIN), ordered by assortment of
-    links.
+    """Enumerate all non-isomorphic chains with so many links.
+
+    Args:
+        links: number of links, at most MOST_LINKS_OF_CHAIN.
+        mobility: mobility W of the chain with one link fixed.
+
+    Returns:
+        The chains, ordered by assortment of links; () if there is none.
+
+    Raises:
+        ValueError: too many links.
     """
     if links > MOST_LINKS_OF_CHAIN:
         raise ValueError(f"chains of at most {MOST_LINKS_OF_CHAIN} links are listed")

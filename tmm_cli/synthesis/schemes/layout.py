@@ -219,7 +219,7 @@ TRIALS = 250
 
 
 def find_layouts(scheme: Scheme, seed: int = 1) -> tuple[SchemeLayout, ...]:
-    """Return layouts of a scheme, best first."""
+    """Return layouts of a scheme, best first; the same seed gives the same layouts."""
     random = Random(seed)
     layouts = (_GroupPlacer(scheme, random).place_groups() for _ in range(TRIALS))
     return tuple(sorted((x for x in layouts if x is not None), key=lambda layout: layout.cost))
