@@ -123,7 +123,7 @@ def known_scenes(family: str, chosen: int | None = None, stride: int = 1) -> Ite
 
     Args:
         chosen: number of members, the first ones; all if None.
-        every: step through the distances; the last one is always included.
+        stride: step through the distances; the last one is always included.
     """
     linkage_family = FAMILIES_BY_NAME[family]
     for number, seed in enumerate(family_members(family)[:chosen]):

@@ -46,7 +46,7 @@ class Dimension:
         return NUMBER.times(self, exponent)
 
     def fits(self, required: Dimension) -> bool:
-        """Return True if a value of this dimension is accepted where `wanted` is required.
+        """Return True if a value of this dimension is accepted where `required` is expected.
 
         Radians are ignored beside other dimensions (1/s for rad/s, rad/s * m for m/s), but a pure number is not
         accepted as an angle.

@@ -96,7 +96,8 @@ def _change_points_before(upto: tuple[GroupSolver, ...], low: float, high: float
 def _refine_change_points(
     linkage: Linkage, upto: tuple[GroupSolver, ...], candidates: Real, step: float, earlier: Real
 ) -> Real:
-    """Refine the change points near `places` (places,) to the last bit; points that the group cannot pass are dropped.
+    """Refine the change points near `candidates` (candidates,) to the last bit; points that the group cannot pass are
+    dropped.
 
     Beside a change point of its own, an earlier group (`earlier`, increasing) is accurate to half the digits only. A
     result next to such a point is that point itself: otherwise, in a chain of parallelograms, the points would drift
@@ -131,7 +132,7 @@ def _refine_change_points(
 
 
 def _values_at_steps(function: Callable[[Real], Real], centres: Real, steps: Real) -> Real:
-    """Return the values of a function at steps from each place, shape (places, steps)."""
+    """Return the values of a function at steps from each centre, shape (centres, steps)."""
     q = centres[:, None] + steps
     return np.broadcast_to(function(q.ravel()), q.size).reshape(q.shape)
 

@@ -155,7 +155,7 @@ class Corrector:
         return state, first, second, det, sound
 
     def step(self, smooth: list[BranchNode], targets: list[float]) -> tuple[BranchNode, float] | None:
-        """Return the group at the first of `places`, as `node` finds it from the last of the nodes on a smooth branch.
+        """Return the group at the first of `targets`, as `node` finds it from the last of the nodes on a smooth branch.
 
         Many coordinates are solved at once: those of halved steps and, from a polynomial through the smooth nodes, as
         many of the others as it has predicted correctly so far. Results are kept for the next steps; one from the

@@ -81,7 +81,7 @@ class SliderEnd:
 
 
 def slider_end(pair: Pair, link: str) -> SliderEnd:
-    """Return a prismatic pair as seen from its link `own`."""
+    """Return a prismatic pair as seen from one of its links."""
     slide = pair.slide
     assert slide is not None
     if link == slide.runner:
@@ -90,7 +90,7 @@ def slider_end(pair: Pair, link: str) -> SliderEnd:
 
 
 def pair_end(pair: Pair, link: str, linkage: Linkage) -> HingeEnd | SliderEnd:
-    """Return a lower pair as seen from its link `own`."""
+    """Return a lower pair as seen from one of its links."""
     if pair.kind == "P":
         return slider_end(pair, link)
     known = pair.other(link)

@@ -370,7 +370,7 @@ def find_slot_excess(
 ) -> tuple[SlotExcess, ...]:
     """Return the result for both ends of every bounded guide, over the range of the driver.
 
-    asked: individually requested driver coordinates; if the driver cannot make a full turn, the range is that between
+    requested: individual driver coordinates; if the driver cannot make a full turn, the range is that between
     the first and the last of them.
     """
     driven = {driver.joint for driver in linkage.drivers if driver.kind == "slide"}

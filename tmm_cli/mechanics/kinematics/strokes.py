@@ -130,7 +130,7 @@ def measure_runs(curve: StrokeCurve, starts: Real, lengths: Real) -> tuple[Real,
 
     Args:
         starts: driver coordinates, shape (..., intervals).
-        ways: signed lengths of the intervals, same shape.
+        lengths: signed lengths of the intervals, same shape.
     """
     shares = np.linspace(0, 1, PARTS + 1 if curve.swings else 2)
     samples = starts[..., None] + lengths[..., None] * shares

@@ -321,7 +321,7 @@ def divide(x: Any, y: Any) -> DoubleDouble:
 
 
 def _keep_nonfinite(refined: DoubleDouble, plain: Any) -> DoubleDouble:
-    """Return `found`, but the float64 result `plain` where that is infinite or nan."""
+    """Return `refined`, but the float64 result `plain` where that is infinite or nan."""
     sound = np.isfinite(plain)
     if sound.all():
         return refined
