@@ -11,6 +11,7 @@ import os
 import re
 from collections.abc import Iterator, Mapping
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -45,8 +46,7 @@ the bank; tasks are explained in the [how-to pages](README.md).
 | list of ... | entries one after another | `[3, 6]` |
 
 - A bare number has the unit that the block `units` gives to its kind, or else the default unit of the table *Units*.
-- Functions: `sin`, `cos`, `tan`, `asin`, `acos`, `atan`, `sqrt`, `abs`, `log10` and the like, as in a calculator;
-  `pi` is known. A bare `sin(30)` takes the unit of angles of the file.
+- Functions: FUNCTIONS; and `pi`. A bare `sin(30)` takes the unit of angles of the file.
 - A decimal point is a point: `0.5`, not `0,5`.
 - An unknown key is refused, with the nearest known key.
 - A default of the type *value* is written as in a file. "-" in the column *default*: the key has no value unless the
@@ -339,7 +339,8 @@ def unit_rows() -> Iterator[str]:
 def lines() -> Iterator[str]:
     """The page."""
     page = Page()
-    yield HEAD
+    functions = import_module("tmm_cli.problem.arithmetic").FUNCTIONS
+    yield HEAD.replace("FUNCTIONS", ", ".join(f"`{name}`" for name in functions))
     yield "## Units\n\n| what is measured | unit of a bare number | examples | symbols |\n| --- | --- | --- | --- |\n"
     yield from unit_rows()
     yield "\nUnits are products, quotients and powers: `kg*m^2`, `кг·м²`, `m/s^2`, `1/s`, `об/мин`.\n"
