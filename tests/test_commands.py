@@ -170,7 +170,7 @@ def test_two_files_of_one_name_do_not_take_each_others_folder(tmp_path):
         (tmp_path / student / "task.yaml").write_text(text, encoding="utf-8")
     files = [tmp_path / student / "task.yaml" for student in ("ivan", "petr")]
     done = tmm("kinematics", *files, "-o", tmp_path / "out")
-    assert done.returncode == 2 and "have one name" in done.stderr and not (tmp_path / "out").exists()
+    assert done.returncode == 2 and "have the same name" in done.stderr and not (tmp_path / "out").exists()
     assert tmm("kinematics", *files).returncode == 0
 
 
@@ -285,7 +285,7 @@ def test_check_finds_what_differs_and_update_takes_it_over(tmp_path):
     done = tmm("check", tmp_path, "--junit", report)
     assert done.returncode == 1
     assert "kinematics.points.E.x.x" in done.stdout
-    assert "2 problems, 1 differ" in done.stderr
+    assert "problems: 2, different: 1" in done.stderr
     suite = ElementTree.parse(report).getroot()
     assert (suite.get("tests"), suite.get("failures"), suite.get("errors")) == ("2", "1", "0")
     assert [len(case) for case in suite] == [0, 1]
@@ -302,8 +302,8 @@ def test_a_table_that_is_cut_advises_only_options_that_its_command_has():
 def test_a_table_of_differences_that_is_cut_says_how_many_are_left_out():
     table = difference_table({"shaper": [ResultDifference(f"q{k}", None, 0.0, 1.0, 1.0) for k in range(MOST_ROWS + 7)]})
     console = Console(file=io.StringIO(), record=True)
-    print_on_terminal(table, UnitSystem(), console, more="... and {rows} rows more")
-    assert "... and 7 rows more\n" in console.export_text()
+    print_on_terminal(table, UnitSystem(), console, more="... further rows: {rows}")
+    assert "... further rows: 7\n" in console.export_text()
 
 
 def test_templates_run_as_they_are(tmp_path):
@@ -317,7 +317,7 @@ def test_templates_run_as_they_are(tmp_path):
     assert "warning" not in done.stderr and "error" not in done.stderr
     again = tmm("new", "sine", cwd=tmp_path)
     assert again.returncode == 2
-    assert "error: sine.yaml is there already" in again.stderr
+    assert "error: sine.yaml already exists" in again.stderr
     assert "did you mean 'sine'?" in tmm("new", "sin").stderr
 
 

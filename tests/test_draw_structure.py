@@ -281,7 +281,7 @@ def test_what_cannot_be_assembled_is_not_drawn(tmp_path):
     assert list(all_sheets(results)) == []
     done = tmm("structure", problem, "--drawings", cwd=tmp_path)
     assert done.returncode == 0
-    assert "not drawn: the groups of apart cannot be assembled at the sketch" in done.stderr
+    assert "not drawn: the groups of apart cannot be assembled in the sketched position" in done.stderr
     assert not (tmp_path / "outputs").exists()
 
 

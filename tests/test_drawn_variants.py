@@ -102,7 +102,7 @@ def test_ranges_of_the_command_take_the_place_of_those_of_the_file(vary, texts):
 @pytest.mark.parametrize(
     ("vary", "message"),
     [
-        ("OA", "--vary OA: a name, two bounds and perhaps a step are wanted\n  allowed: --vary OA=80..140:5"),
+        ("OA", ("--vary OA: expected a name, two bounds and optionally a step\n  allowed: --vary OA=80..140:5")),
         (
             "OA=90..80:5",
             (
@@ -121,8 +121,12 @@ def test_ranges_of_the_command_take_the_place_of_those_of_the_file(vary, texts):
         ),
         (
             "oa=80..90",
-            "--vary oa=80..90: variants.oa: there is no parameter of that name\n  found:   'oa'\n"
-            "  allowed: OA, OC, CD, DE, n1\n  did you mean 'OA'?",
+            (
+                "--vary oa=80..90: variants.oa: no parameter has this name\n"
+                "  found:   'oa'\n"
+                "  allowed: OA, OC, CD, DE, n1\n"
+                "  did you mean 'OA'?"
+            ),
         ),
     ],
 )

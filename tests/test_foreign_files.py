@@ -461,7 +461,10 @@ def test_no_file_is_overwritten_and_what_pylinkage_does_not_know_is_refused(tmp_
     (tmp_path / "it.pmks").write_text(SLIDER, encoding="utf-8")
     (tmp_path / "it.yaml").write_text("mine\n", encoding="utf-8")
     done = tmm("import", "it.pmks", cwd=tmp_path)
-    assert (done.returncode, done.stderr) == (2, "error: it.yaml is there already\n  allowed: another file, with -o\n")
+    assert (done.returncode, done.stderr) == (
+        2,
+        ("error: it.yaml already exists\n  allowed: another file, with -o FILE\n"),
+    )
     assert (tmp_path / "it.yaml").read_text(encoding="utf-8") == "mine\n"
     done = tmm("export", str(ROOT / "problems" / "shaper.yaml"), "--to", "pylinkage", "-o", "-", cwd=tmp_path)
     assert done.returncode == 2 and done.stdout == ""
@@ -475,7 +478,7 @@ def test_what_cannot_be_a_problem_file_is_said_of_the_file_that_was_read(tmp_pat
     done = tmm("import", "it.json", cwd=tmp_path)
     assert done.returncode == 2 and not (tmp_path / "it.yaml").exists()
     assert done.stderr.startswith(
-        "error: it.json: the problem file of it would be refused: links.rod.points: a link must "
+        "error: it.json: the resulting problem file would be invalid: links.rod.points: a link must "
         "have at least one point\n"
     )
 
@@ -484,4 +487,4 @@ def test_a_key_with_control_characters_does_not_reach_the_terminal(tmp_path):
     text = (FILES / "slotted-lever.yaml").read_text(encoding="utf-8") + '"\\x1b[31mred": 1\n'
     (tmp_path / "it.yml").write_text(text, encoding="utf-8")
     done = tmm("import", "it.yml", cwd=tmp_path)
-    assert "not taken over: Key `\\x1b[31mred` was ignored.\n" in done.stderr
+    assert "not converted: Key `\\x1b[31mred` was ignored.\n" in done.stderr

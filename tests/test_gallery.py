@@ -61,7 +61,7 @@ def test_a_card_says_class_groups_purposes_and_properties():
     assert (lever.number, lever.groups, lever.formula) == ("II", ("II RPR",), "I(0,1) → II(2,3)")
     assert lever.purposes == ("swings", "quick")
     facts = {fact.name: fact.number for fact in lever.facts}
-    assert facts["coefficient of change of mean speed k"] == 1.552
+    assert facts["time ratio k"] == 1.552
     assert card_of("double-crank").purposes == ("turns",)
     assert {"slides", "dwell"} <= set(card_of("cam-lever").purposes)
 
@@ -154,7 +154,7 @@ def test_a_broken_file_is_said_and_left_out(tmp_path):
         f"error: {tmp_path / 'broken.yaml'}:3:1: a value is missing",
         "  allowed: a value",
         f"written: {index}",
-        "left out: 1",
+        "omitted: 1",
     ]
     assert len(data_of(index.read_text(encoding="utf-8"))["cards"]) == 1
     (tmp_path / "deep/sine.yaml").unlink()

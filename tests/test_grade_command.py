@@ -77,8 +77,8 @@ def test_a_run_that_is_stopped_keeps_what_is_graded(course, monkeypatch):
     done = graded(course, "--jobs", 1)
     assert done.returncode == 1
     assert after_the_echo(done.stderr).splitlines() == [
-        "stopping after the students who are in work",
-        "stopped: 5 of 12 are graded; the next run takes them over, and grades the others",
+        "stopping when the submissions being graded are finished",
+        "stopped: 5 of 12 graded; the next run keeps them and grades the others",
     ]
     assert not (course / "marks" / "marks.csv").exists()
     monkeypatch.undo()
@@ -116,11 +116,15 @@ def test_an_empty_sheet_is_written_and_no_more(name, course):
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        (["--submissions", "handed"], "error: --variants and --submissions are wanted, or --template\n"),
+        (["--submissions", "handed"], "error: give --variants and --submissions, or --template\n"),
         (
             ["--variants", "variants.csv", "--submissions", "handed", "--formats", "csv,moodel"],
-            "error: --formats: there is no such format of the gradebook\n  found:   'moodel'\n"
-            "  allowed: csv, xlsx, feedback, gradescope, moodle, junit, drawing\n  did you mean 'moodle'?\n",
+            (
+                "error: --formats: no such format of the gradebook\n"
+                "  found:   'moodel'\n"
+                "  allowed: csv, xlsx, feedback, gradescope, moodle, junit, drawing\n"
+                "  did you mean 'moodle'?\n"
+            ),
         ),
         (
             ["--template", "sheet.odt"],

@@ -145,13 +145,13 @@ def test_what_fails_is_told_of_its_student_and_stops_nothing():
 
 
 def test_a_table_of_other_parameters_is_refused_before_the_work():
-    with pytest.raises(ProblemError, match="there is no parameter of that name"):
+    with pytest.raises(ProblemError, match="no parameter has this name"):
         graded(task(), replace(TABLE, names=("R",)), GROUP)
 
 
 def test_no_scheduler_is_one_line(monkeypatch):
     monkeypatch.setattr(workers, "ANSWER_TIMEOUT", 0.2)
-    with pytest.raises(ProblemError, match="no scheduler answers there"):
+    with pytest.raises(ProblemError, match="no scheduler answers at this address"):
         graded(task(), TABLE, GROUP, on_cluster("tcp://127.0.0.1:9"))
 
 
@@ -162,7 +162,7 @@ def test_an_address_that_is_none_is_one_line(address):
     pytest.importorskip("distributed")
     with pytest.raises(ProblemError) as refused:
         graded(task(), TABLE, GROUP, on_cluster(address))
-    told = f"this is no address of a scheduler\n  found:   '{address}'\n  allowed: tcp://host:8786"
+    told = f"not an address of a scheduler\n  found:   '{address}'\n  allowed: tcp://host:8786"
     assert str(refused.value) == told
 
 
@@ -205,7 +205,7 @@ def test_a_scheduler_without_workers_and_a_worker_with_another_program_are_one_l
         (tmp_path / "old" / "tmm_cli" / "__init__.py").write_text('__version__ = "0.0.1"\n', encoding="utf-8")
         worker = started(tmp_path, "worker", "--no-nanny", "--nthreads", "1", path=tmp_path / "old")
         processes_of_dask.append(worker)
-        with pytest.raises(ProblemError, match="a worker has another version of tmm than this one"):
+        with pytest.raises(ProblemError, match="a worker of the cluster has a different version of tmm"):
             graded(task(), TABLE, GROUP, on_cluster(address))
     finally:
         for process in processes_of_dask:
@@ -214,7 +214,7 @@ def test_a_scheduler_without_workers_and_a_worker_with_another_program_are_one_l
 
 
 def test_a_job_that_reaches_a_worker_with_another_program_is_not_done():
-    with pytest.raises(ProblemError, match="another version of tmm"):
+    with pytest.raises(ProblemError, match="a different version of tmm"):
         workers._run_with_same_program("another", "en", lambda: 1)
     assert workers._run_with_same_program(workers.program_digest(), "en", lambda: 1) == 1
 

@@ -260,8 +260,12 @@ CASES = {
         "R: 125}]}",
         "RR: 125}]}",
         "RR: 125",
-        "intermittent.shaft.settings[1].RR: there is no parameter of that name\n  found:   'RR'\n"
-        "  allowed: R, l, h, xA, xB, v\n  did you mean 'R'?",
+        (
+            "intermittent.shaft.settings[1].RR: no parameter has this name\n"
+            "  found:   'RR'\n"
+            "  allowed: R, l, h, xA, xB, v\n"
+            "  did you mean 'R'?"
+        ),
     ),
     "a setting that does not fit": (
         "R: 125}]}",

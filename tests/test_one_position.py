@@ -53,7 +53,7 @@ def test_every_command_works_on_one_position(name, tmp_path):
             assert re.search(NOTHING_TO_DO.get(command, "$^"), done.stderr), done.stderr
 
 
-NOTHING_TO_DO = {"dynamics": "dynamics: nothing is asked of the law of motion or of balancing"}
+NOTHING_TO_DO = {"dynamics": "dynamics: the file has neither a block `dynamics` nor a block `balancing`"}
 
 
 @pytest.mark.parametrize("command", ["run", "note", "sheets"])

@@ -76,7 +76,7 @@ def test_tables_and_result_json_say_them(tmp_path):
     file = tmp_path / "six.yaml"
     file.write_text(with_outputs(SIX_BAR, "2", "K"), encoding="utf-8")
     ran = tmm("run", file, "--no-drawings", "--digits", "-o", tmp_path / "out")
-    assert ran.returncode == 0 and "travel of K.x" in ran.stdout and "swing psi of link 2" in ran.stdout
+    assert ran.returncode == 0 and "travel of K.x" in ran.stdout and "swing angle ψ of link 2" in ran.stdout
     folder = next((tmp_path / "out").rglob("result.json")).parent
     written = json.loads((folder / "result.json").read_text(encoding="utf-8"))
     assert [written["output"]["link"], *(s["link"] for s in written["further_outputs"])] == ["2", "K.x", "K.y"]

@@ -315,7 +315,7 @@ def test_the_command_counts_chains_by_assortment():
         (("--links", 7, "--groups", "RRR,RRP", "--out", "out"), "at most 300"),
         (("--chains", 12), "for W = 1: 4, 6, 8, 10"),
         (("--chains", 8, "--mobility", -1), "1 to 8"),
-        (("--chains", 8, "--out", "out"), "kinematic chains have no files"),
+        (("--chains", 8, "--out", "out"), "no problem files can be written for kinematic chains"),
     ],
 )
 def test_what_cannot_be_built_is_refused_in_one_message(arguments, words, tmp_path):

@@ -113,7 +113,7 @@ def test_check_names_what_cannot_be_written(tmp_path):
     (tmp_path / "expected").write_text("a file", encoding="utf-8")
     done = tmm("check", tmp_path, "--update")
     assert done.returncode == 2
-    assert done.stderr == f"error: sine: {tmp_path / 'expected'}: File exists\n1 problems, 1 differ\n"
+    assert done.stderr == f"error: sine: {tmp_path / 'expected'}: File exists\nproblems: 1, different: 1\n"
     done = tmm("check", tmp_path, "--junit", tmp_path)
     assert done.returncode == 2
     assert done.stderr.splitlines()[-1] == f"error: {tmp_path}: Is a directory"
@@ -127,8 +127,8 @@ def test_expected_values_nested_without_end_are_none(tmp_path):
     (tmp_path / "expected" / "sine.json").write_text("[" * 100_000, encoding="utf-8")
     done = tmm("check", tmp_path)
     assert done.returncode == 1
-    wrong = "this is not a file of expected values (its brackets are nested without end)"
-    assert done.stderr == f"error: sine: {tmp_path / 'expected' / 'sine.json'}: {wrong}\n1 problems, 1 differ\n"
+    wrong = "not a file of expected values (its brackets are nested too deeply)"
+    assert done.stderr == f"error: sine: {tmp_path / 'expected' / 'sine.json'}: {wrong}\nproblems: 1, different: 1\n"
 
 
 @pytest.mark.parametrize(
@@ -252,9 +252,7 @@ def test_an_address_of_a_network_is_no_place_of_results(words, tmp_path):
         done = tmm(*words, "-o", address, cwd=tmp_path)
         assert done.returncode == 2 and done.stdout == ""
         said = address.replace(":///", "://")
-        assert done.stderr == (
-            f"error: {said} is an address of a network: results are written to a local folder or file\n"
-        )
+        assert done.stderr == (f"error: {said} is a network address; give a local folder or file for the results\n")
     assert not list(tmp_path.iterdir())
 
 
@@ -266,7 +264,7 @@ def test_an_internal_fault_is_one_line_with_what_to_report_and_has_an_exit_code_
     done = tmm("forces", SINE)
     assert done.returncode == 3 and done.stdout == ""
     assert re.fullmatch(
-        r"internal fault: ZeroDivisionError at tmm_cli/cli/opening\.py:\d+ \(tmm 0\.1\.0, command forces\): "
+        r"internal error: ZeroDivisionError at tmm_cli/cli/opening\.py:\d+ \(tmm 0\.1\.0, command forces\): "
         r"please report this line and the file; TMM_TRACEBACK=1 prints the traceback\n",
         done.stderr,
     )
@@ -281,7 +279,7 @@ def test_a_fault_in_another_process_is_placed_where_it_was_raised(capsys):
     except Exception as error:
         assert report_fault(error, ["grade"]) == 3
     assert re.match(
-        r"internal fault: AttributeError at tmm_cli/mechanics/quantities\.py:\d+ \(", capsys.readouterr().err
+        r"internal error: AttributeError at tmm_cli/mechanics/quantities\.py:\d+ \(", capsys.readouterr().err
     )
 
 
@@ -291,7 +289,7 @@ def test_a_fault_of_one_file_does_not_keep_the_others_from_being_worked_on(monke
 
     monkeypatch.setattr("tmm_cli.cli.opening.build_any_problem", broken)
     done = tmm("forces", SINE, SHAPER_FILE)
-    assert done.returncode == 3 and done.stderr.count("internal fault") == 1
+    assert done.returncode == 3 and done.stderr.count("internal error") == 1
     assert f"== {SHAPER_FILE} ==" in done.stdout and "M_b" in done.stdout
 
 
@@ -302,7 +300,7 @@ def test_want_of_memory_is_one_line(monkeypatch):
     monkeypatch.setattr("tmm_cli.cli.opening.build_any_problem", greedy)
     done = tmm("forces", SINE)
     assert (done.returncode, done.stdout) == (3, "")
-    assert done.stderr == "error: there is not enough memory; fewer positions, variants or drawings take less\n"
+    assert done.stderr == "error: not enough memory; reduce the number of positions, variants or drawings\n"
 
 
 def test_a_wrong_backend_of_matplotlib_does_not_matter(tmp_path):

@@ -217,7 +217,7 @@ def test_a_file_without_a_linkage_is_for_the_synthesis_alone(tmp_path):
     done = tmm("run", file)
     assert done.returncode == 2 and "the file has no linkage that could use the synthesised dimensions" in done.stderr
     done = tmm("synthesis", ROOT / "problems" / "shaper.yaml")
-    assert done.returncode == 2 and "this file has no synthesis" in done.stderr
+    assert done.returncode == 2 and "the file has no block `synthesis`" in done.stderr
 
 
 def test_numbers_of_what_is_found_are_numbers_in_the_table_and_texts_are_no_formulas(tmp_path):

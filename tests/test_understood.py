@@ -128,11 +128,15 @@ def test_a_parameter_may_be_set_beside_the_file():
 @pytest.mark.parametrize(
     ("setting", "message"),
     [
-        ("CB=1", "parameters.CB: there is no parameter of that name\n  found:   'CB'\n  allowed: OA, OC, CD, DE, n1"),
+        ("CB=1", ("parameters.CB: no parameter has this name\n  found:   'CB'\n  allowed: OA, OC, CD, DE, n1")),
         (
             "oa=1",
-            "parameters.oa: there is no parameter of that name\n  found:   'oa'\n  allowed: OA, OC, CD, DE, n1\n"
-            "  did you mean 'OA'?",
+            (
+                "parameters.oa: no parameter has this name\n"
+                "  found:   'oa'\n"
+                "  allowed: OA, OC, CD, DE, n1\n"
+                "  did you mean 'OA'?"
+            ),
         ),
         (
             "OA=12 mmm",

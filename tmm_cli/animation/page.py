@@ -151,7 +151,7 @@ def results_in_frames(results: Results, count: int) -> Results:
     assert moved.motion is not None
     moves = moved.motion.moving
     if np.count_nonzero(moves) < 2 or np.ptp(q) == 0:
-        raise ProblemError(_("nothing moves in what is asked for"), path=("positions",))
+        raise ProblemError(_("the mechanism does not move over the requested positions"), path=("positions",))
     return moved if moves.all() else results_at(results, q[moves])
 
 
@@ -251,8 +251,12 @@ def _build_page(results: Results, count: int) -> str:
         paths="".join(_path_html(way) for way in point_paths(picture)),
         bodies=bodies,
         data=data_text(page_data(results, whole, picture)),
-        hint=escape(_("Space: play or stop. Left and right: step. Up and down: speed. Drag in a diagram to go there.")),
-        back="" if results.turns else escape(_("The way back is played backwards: all is shown as on the way there.")),
+        hint=escape(
+            _("Space: play or stop. Left, right: step. Up, down: speed. Drag in a diagram to move to a position.")
+        ),
+        back=""
+        if results.turns
+        else escape(_("The return is the forward motion played backwards, with the same values.")),
         play=escape(_("play or stop")),
         position=escape(_("position")),
         speed=escape(_("speed")),

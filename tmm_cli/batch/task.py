@@ -58,11 +58,11 @@ Two = Annotated[list[Value], Field(min_length=2, max_length=2)]
 class Chosen(Strict):
     """Parameter with a finite set of values, such as numbers of teeth or a standard series of lengths."""
 
-    from_: Value | None = Field(default=None, alias="from", description="the first of equal steps")
-    to: Value | None = Field(default=None, description="which they do not go beyond")
-    step: Value | None = Field(default=None, description="from one value to the next")
+    from_: Value | None = Field(default=None, alias="from", description="lower bound of the range of values")
+    to: Value | None = Field(default=None, description="upper bound of the range of values")
+    step: Value | None = Field(default=None, description="step between neighbouring values")
     among: list[Value] | None = Field(
-        default=None, min_length=1, max_length=MOST_VALUES, description="the values themselves, in the place of steps"
+        default=None, min_length=1, max_length=MOST_VALUES, description="list of values, instead of a range with a step"
     )
 
     @model_validator(mode="after")
@@ -74,14 +74,14 @@ class Chosen(Strict):
 
 
 def _unreadable() -> PydanticCustomError:
-    return PydanticCustomError("range", _("[low, high], {from, to, step} or {among: [...]} is wanted"))
+    return PydanticCustomError("range", _("expected [low, high], {from, to, step} or {among: [...]}"))
 
 
 def _bounds_or_choices(found: Any) -> Any:
     if not isinstance(found, list | dict):
         raise _unreadable()
     if isinstance(found, list) and len(found) > 2:
-        raise PydanticCustomError("range", _("these are not two bounds; values to choose from: {among: [...]}"))
+        raise PydanticCustomError("range", _("expected two bounds; for a list of values write {among: [...]}"))
     return found
 
 
@@ -103,15 +103,21 @@ def _as_list(found: object) -> object:
 class AnswerRule(Strict):
     """Quantity that students are asked for, at one position or several."""
 
-    of: str = Field(max_length=40, description="v of E, a of S3, omega of 3, R_34, M_b, W, class, H, k")
+    of: str = Field(
+        max_length=40, description="name of the quantity, e.g. v of E, a of S3, omega of 3, R_34, M_b, W, class, H, k"
+    )
     at: Annotated[list[int], BeforeValidator(_as_list)] = Field(
         default_factory=list,
         max_length=120,
-        description="positions, as the students count them; none for H, k, W, class",
+        description="numbers of positions, as the students count them; omit for H, k, W, class",
     )
-    points: Value = Field(default=1, description="for each position")
-    tolerance: Value | None = Field(default=None, description="share of the largest value in the cycle, e.g. 3 %")
-    drawn: bool | None = Field(default=None, description="measured off a drawing; else computed")
+    points: Value = Field(default=1, description="points for each position")
+    tolerance: Value | None = Field(
+        default=None, description="tolerance, as a fraction of the largest value in the cycle, e.g. 3 %"
+    )
+    drawn: bool | None = Field(
+        default=None, description="true: the answer is measured on a drawing; false: it is computed"
+    )
 
 
 class Grading(Strict):
@@ -122,10 +128,10 @@ class Grading(Strict):
     from_: Literal["task", "either"] = Field(
         default="task",
         alias="from",
-        description="positions are counted as in the task, or from either extreme position of the output",
+        description="counting of positions: as in the task, or from either extreme position of the output",
     )
-    drawn: bool = Field(default=True, description="answers are measured off drawings; false: computed")
-    reveal: bool = Field(default=False, description="whether students are told the right values")
+    drawn: bool = Field(default=True, description="true: answers are measured on drawings; false: they are computed")
+    reveal: bool = Field(default=False, description="true: the feedback shows the right values")
 
 
 class Blocks(Strict):
@@ -191,7 +197,9 @@ class Task:
         """Block `grading` of the file."""
         if self.blocks.grading is None:
             raise ProblemError(
-                _("there is nothing to grade"), path=("grading",), allowed="grading: {answers: [{of: H}]}"
+                _("the file has no block `grading`, so there is nothing to grade"),
+                path=("grading",),
+                allowed="grading: {answers: [{of: H}]}",
             ).located(self.tree.file, self.tree)
         return self.blocks.grading
 
@@ -243,7 +251,7 @@ class Task:
         if quantity is None:
             one_of_each = {_quantity_kind(name): name for name in reversed(self.quantities)}.values()
             some = _("e.g. {names}").format(names=", ".join(reversed(one_of_each)))
-            raise unknown_name_error(rule.of, self.quantities, _("there is no such quantity"), some, path=(*path, "of"))
+            raise unknown_name_error(rule.of, self.quantities, _("no such quantity"), some, path=(*path, "of"))
         drawn = rules.drawn if rule.drawn is None else rule.drawn
         drawn = drawn and quantity.against != "exact"
         usual = DRAWN_FORCES_TOLERANCE if quantity.order >= 4 else DRAWN_KINEMATICS_TOLERANCE
@@ -252,7 +260,11 @@ class Task:
             tolerance = values.fraction(rule.tolerance, (*path, "tolerance"))
         points = float(values.positive(rule.points, NUMBER, (*path, "points"), zero=True))
         if quantity.whole == bool(rule.at):
-            why = _("{quantity} has no position") if quantity.whole else _("{quantity} is asked at a position")
+            why = (
+                _("{quantity} describes the whole mechanism and has no position; omit `at`")
+                if quantity.whole
+                else _("{quantity} depends on the position; give its number in `at`")
+            )
             raise ProblemError(
                 why.format(quantity=rule.of),
                 path=(*path, "at"),
@@ -262,7 +274,7 @@ class Task:
         for k, number in enumerate(rule.at):
             if not rules.count <= number < last + rules.count:
                 raise ProblemError(
-                    _("there is no such position"),
+                    _("no such position"),
                     path=(*path, "at", k),
                     found=str(number),
                     allowed=_("{first} to {last}").format(first=rules.count, last=last - 1 + rules.count),
@@ -291,7 +303,7 @@ class Task:
         for name in names:
             if name not in found:
                 none = None if found else _("none: the file has no block `parameters`")
-                raise unknown_name_error(name, found, _("there is no parameter of that name"), none)
+                raise unknown_name_error(name, found, _("no parameter has this name"), none)
         return tuple(found[name] for name in names)
 
     def dimensions(self, names: Sequence[str]) -> tuple[Dimension | None, ...]:
@@ -363,7 +375,7 @@ def with_vary(tree: Tree, vary: Sequence[str]) -> Tree:
         found = VARY_OPTION.fullmatch(text)
         if found is None:
             raise ProblemError(
-                _("a name, two bounds and perhaps a step are wanted"), allowed="--vary OA=80..140:5", file=words
+                _("expected a name, two bounds and optionally a step"), allowed="--vary OA=80..140:5", file=words
             )
         name, *ends = found.groups()
         given["variants", name] = words
@@ -385,7 +397,7 @@ def _free_parameters(task: Task, blocks: Blocks) -> tuple[FreeParameter, ...]:
     ranges = blocks.variants
     if not ranges:
         raise ProblemError(
-            _("nothing is free"),
+            _("the task has no free parameters"),
             path=("variants",),
             allowed=_("variants: {OA: {from: 80, to: 140, step: 5}}; or --vary OA=80..140:5"),
         )

@@ -61,7 +61,9 @@ def _processes(count: int, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
                 try:
                     yield futures[future], future.result()
                 except BrokenProcessPool:
-                    raise ProblemError(_("a process of the work was ended"), allowed="--jobs 1") from None
+                    raise ProblemError(
+                        _("a worker process was killed, perhaps for lack of memory"), allowed="--jobs 1"
+                    ) from None
             if stopped():
                 pool.shutdown(wait=False, cancel_futures=True)
 
@@ -81,16 +83,20 @@ def _cluster(address: str, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
     try:
         distributed: Any = import_module("distributed")  # typed in part alone
     except ImportError:
-        raise ProblemError(_("a cluster needs distributed"), allowed="pip install 'tmm-cli[cluster]'") from None
+        raise ProblemError(
+            _("a cluster requires the package distributed"), allowed="pip install 'tmm-cli[cluster]'"
+        ) from None
     for library in ("distributed", "asyncio"):
         logging.getLogger(library).setLevel(logging.CRITICAL)  # what fails is reported here
     if not SCHEDULER.fullmatch(address):  # distributed would wait, and complain at the end of the program
-        raise ProblemError(_("this is no address of a scheduler"), found=quote(address), allowed="tcp://host:8786")
+        raise ProblemError(_("not an address of a scheduler"), found=quote(address), allowed="tcp://host:8786")
     try:
         _wait_for_greeting(address)
         client = distributed.Client(address, timeout=ANSWER_TIMEOUT, set_as_default=False)
     except (OSError, ValueError, OverflowError):
-        raise ProblemError(_("no scheduler answers there"), found=quote(address), allowed="tcp://host:8786") from None
+        raise ProblemError(
+            _("no scheduler answers at this address"), found=quote(address), allowed="tcp://host:8786"
+        ) from None
     with client:
         _refuse_other_programs(client, address)
         futures = {
@@ -161,9 +167,9 @@ def _refuse_other_programs(client: Any, address: str) -> None:
     other = next(((worker, there) for worker, there in versions.items() if there != here), None)
     if other is not None:
         worker, (version, digest) = other
-        found = f"tmm {version} ({digest[:8]})" if version else _("no tmm, or one from before this check")
+        found = f"tmm {version} ({digest[:8]})" if version else _("no tmm, or a version older than this check")
         raise ProblemError(
-            _("a worker has another version of tmm than this one"),
+            _("a worker of the cluster has a different version of tmm"),
             found=f"{worker}: {found}",
             allowed=_("{version} on each worker").format(version=f"tmm {here[0]} ({here[1][:8]})"),
         )
@@ -176,7 +182,7 @@ def _no_workers_error(address: str) -> ProblemError:
 def _run_with_same_program(program: str, spoken: CourseNotation, job: Job) -> Any:
     """Run a job on a worker that has the same program; workers may join later. Raises ProblemError."""
     if program_digest() != program:
-        raise ProblemError(_("a worker has another version of tmm than this one"))
+        raise ProblemError(_("a worker of the cluster has a different version of tmm"))
     return speaking(spoken, job)
 
 

@@ -51,26 +51,26 @@ def _list_only() -> None:
 
 
 COMMANDS = {
-    "run": "Compute a problem whole; write tables, drawings, result.json.",
-    "structure": "Mobility, pairs, Assur groups, names of links, contours.",
-    "kinematics": "Positions, velocities, accelerations, transfer functions.",
-    "forces": "Loads, reactions, what balances the driver, Zhukovsky lever.",
-    "dynamics": "Law of motion: driving moment or motor, flywheel, speed.",
-    "check": "Compute problems again, compare them with what is expected.",
-    "explain": "Say what a file was understood to mean, what is computed.",
+    "run": "Compute a problem; write tables, drawings, result.json.",
+    "structure": "Show mobility, pairs, Assur groups, link names, contours.",
+    "kinematics": "Show positions, velocities, accelerations.",
+    "forces": "Show loads, reactions, balancing moment, Zhukovsky lever.",
+    "dynamics": "Show the law of motion, motor, flywheel, balancing.",
+    "check": "Recompute problems and compare with expected values.",
+    "explain": "Explain how a file is understood and what is computed.",
     "new": "Start a problem file from a commented template.",
     "schema": "Print the JSON Schema of problem files, for editors.",
-    "schemes": "Structural synthesis: all schemes built of Assur groups.",
-    "synthesis": "Find lengths from what a mechanism must do.",
-    "sweep": "Show quantities over parameters, and where it fails.",
-    "variants": "Draw variants of a task for a group of students.",
-    "grade": "Mark what the students of a group handed in.",
-    "import": "Write a problem file from a file of another program.",
+    "schemes": "Enumerate all schemes built of Assur groups.",
+    "synthesis": "Find the lengths of a mechanism from its requirements.",
+    "sweep": "Show quantities over parameters and feasible regions.",
+    "variants": "Generate variants of a task for a group of students.",
+    "grade": "Mark the submissions of a group of students.",
+    "import": "Convert a file of another program to a problem file.",
     "export": "Write the linkage of a problem for another program.",
-    "sheets": "Draw sheets to hand in, framed and to scale, as PDF or DXF.",
-    "note": "Write the explanatory note, formulas with numbers put in.",
-    "animate": "Let the mechanism turn on a page for the browser.",
-    "gallery": "Write a page of many mechanisms, each turning.",
+    "sheets": "Draw framed sheets to scale, as PDF or DXF.",
+    "note": "Write the explanatory note with formulas and numbers.",
+    "animate": "Write a web page with the moving mechanism.",
+    "gallery": "Write a web page with many moving mechanisms.",
     "bench": "Measure speed, accuracy, stability, savings, synthesis.",
 }
 
@@ -85,7 +85,7 @@ def application(words: Sequence[str]) -> typer.Typer:
     """Return the application with the command that a command line requests, or with the names of all commands."""
     app = typer.Typer(
         name="tmm",
-        help="Course-project calculator for the theory of mechanisms and machines: planar lever mechanisms.",
+        help="Calculator for course projects on planar linkages (theory of mechanisms and machines).",
         no_args_is_help=True,
         context_settings={"help_option_names": ["-h", "--help"]},
         add_completion=False,
@@ -104,7 +104,9 @@ def _version(asked: bool) -> None:
 
 
 def _options(
-    version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="Print it.")] = False,
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and exit.")
+    ] = False,
 ) -> None:
     pass
 

@@ -35,12 +35,12 @@ from tmm_cli.problem import UnitSystem
 from tmm_cli.reports import csv_text, json_bytes, print_on_terminal, write_atomically
 
 MEASUREMENTS = {
-    "accuracy": "Time of a position against its error, of many methods.",
-    "grading": "Time and memory of grading a group, mistakes named rightly.",
-    "savings": "What is saved by computing no more than what is asked.",
-    "speed": "Time of a position, beside code by hand and other programs.",
-    "stability": "Every method as it comes near what kills it.",
-    "synthesis": "Candidates a second, how near seeds come to the best known.",
+    "accuracy": "Time per position and error of many methods.",
+    "grading": "Time and memory of grading, correctly named mistakes.",
+    "savings": "Savings by computing only what is requested.",
+    "speed": "Time per position, compared with other programs.",
+    "stability": "Errors of every method near singular positions.",
+    "synthesis": "Candidates per second and quality of the optimum.",
 }
 
 
@@ -64,10 +64,10 @@ def _keep_group() -> None:
 Charts = Mapping[str, Figure]  # by the names of their files
 M = TypeVar("M", bound=Measurement)
 
-Reduced = Annotated[bool, typer.Option("--reduced", help="A shorter measurement; its targets are twice as wide.")]
+Reduced = Annotated[bool, typer.Option("--reduced", help="Measure less; targets are twice as wide.")]
 Out = Annotated[
     Path | None,
-    typer.Option("--out", "-o", metavar="DIR", help="Write JSON, CSV, charts there.", show_default=False),
+    typer.Option("--out", "-o", metavar="DIR", help="Write JSON, CSV and charts to this folder.", show_default=False),
 ]
 
 
@@ -123,14 +123,14 @@ def _write(name: str, measured: Measurement, charts: Charts, folder: Path) -> st
 
 Linkages = Annotated[
     list[str] | None,
-    typer.Option("--linkage", metavar="NAME", help="This linkage only (may be repeated).", show_default=False),
+    typer.Option("--linkage", metavar="NAME", help="Measure only this linkage (may be repeated).", show_default=False),
 ]
 
 
 def accuracy(linkage: Linkages = None, reduced: Reduced = False, out: Out = None, as_json: Json = False) -> None:
-    """Time a position against largest relative error of many methods, on five linkages known to 50 digits.
+    """Measure time per position and largest relative error of many methods on five linkages known to 50 digits.
 
-    Exit code 1 when the product itself misses its targets: 1e-14 for positions, 1e-13 for all else.
+    Exit code 1 if tmm misses its targets: 1e-14 for positions, 1e-13 for everything else.
     """
     names = requested_names(linkage, REFERENCE_NAMES, "there is no reference linkage {name}; there are {names}")
     show_and_write("accuracy", measure_accuracy(names, reduced=reduced, progress=say), accuracy_charts, out, as_json)
@@ -138,49 +138,49 @@ def accuracy(linkage: Linkages = None, reduced: Reduced = False, out: Out = None
 
 def grading(
     reduced: Reduced = False,
-    full: Annotated[bool, typer.Option("--full", help="A group of 100 000 students too.")] = False,
+    full: Annotated[bool, typer.Option("--full", help="Also measure a group of 100 000 students.")] = False,
     out: Out = None,
     as_json: Json = False,
 ) -> None:
-    """Time and memory of grading a group, how they grow, and how often mistakes are named rightly.
+    """Measure time and memory of grading a group, their growth, and how often mistakes are named correctly.
 
-    Exit code 1 when a target is missed, of a reduced run by more than twice.
+    Exit code 1 if a target is missed, in a reduced run by more than a factor of two.
     """
     show_and_write("grading", measure_grading(reduced=reduced, full=full, progress=say), lambda _: {}, out, as_json)
 
 
 def savings(reduced: Reduced = False, as_json: Json = False, out: Out = None) -> None:
-    """Count and time what is saved by computing no more than what is asked; exit code 1 when something is not."""
+    """Count and time the savings by computing only what is requested; exit code 1 if something is not saved."""
     show_and_write("savings", measure_savings(reduced=reduced, progress=say), savings_charts, out, as_json)
 
 
 def speed(reduced: Reduced = False, out: Out = None, as_json: Json = False) -> None:
-    """Time a position against code written by hand for one mechanism, other programs, and growing problems.
+    """Measure time per position against hand-written code, other programs, and problems of growing size.
 
-    Exit code 1 when a target is missed, of a reduced run by more than twice.
+    Exit code 1 if a target is missed, in a reduced run by more than a factor of two.
     """
     show_and_write("speed", measure_speed(reduced=reduced, progress=say), speed_charts, out, as_json)
 
 
 Families = Annotated[
     list[str] | None,
-    typer.Option("--family", metavar="NAME", help="This family only (may be repeated).", show_default=False),
+    typer.Option("--family", metavar="NAME", help="Measure only this family (may be repeated).", show_default=False),
 ]
 
 
 def stability(family: Families = None, reduced: Reduced = False, out: Out = None, as_json: Json = False) -> None:
-    """Every method as it comes near what kills it, and the distance at which it first lies, against 50 digits.
+    """Compare every method near singular positions with 50 digits; find the distance at which it first fails.
 
-    Exit code 1 when a value of the product is off by more than its bound, or when fewer than nine of ten of its bounds
-    are within 100 times the true error.
+    Exit code 1 if an error of tmm exceeds its bound, or if fewer than nine of ten bounds are within 100 times the
+    true error.
     """
     names = requested_names(family, FAMILIES_BY_NAME, "there is no family {name}; there are {names}")
     show_and_write("stability", measure_stability(names, reduced=reduced, progress=say), stability_charts, out, as_json)
 
 
 def synthesis(reduced: Reduced = False, out: Out = None, as_json: Json = False) -> None:
-    """Count candidates a second of the optimal synthesis, and how near 10 seeds come to the best known.
+    """Measure candidates per second of the optimal synthesis, and how near 10 seeds come to the best known.
 
-    Exit code 1 when a target is missed, of a reduced run by more than twice.
+    Exit code 1 if a target is missed, in a reduced run by more than a factor of two.
     """
     show_and_write("synthesis", measure_searches(reduced=reduced, progress=say), search_charts, out, as_json)

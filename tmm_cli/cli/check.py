@@ -89,11 +89,11 @@ def _read_expected(file: Path) -> Any:
         float(content["tolerance"])
         content["result"].items()
     except FileNotFoundError:
-        return _("there are no expected values; tmm check --update writes them")
+        return _("no expected values; `tmm check --update` writes them")
     except RecursionError:
-        return _("this is not a file of expected values (its brackets are nested without end)")
+        return _("not a file of expected values (its brackets are nested too deeply)")
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        return _("this is not a file of expected values ({error})").format(error=error)
+        return _("not a file of expected values ({error})").format(error=error)
     return content
 
 
@@ -101,7 +101,7 @@ def show_outcomes(outcomes: Sequence[CheckOutcome]) -> None:
     """Show differences as a table, and errors of whole problems."""
     table = difference_table({outcome.name: outcome.different for outcome in outcomes})
     if table.rows:
-        print_on_terminal(table, UnitSystem(), console(), more=_("... and {rows} rows more"))
+        print_on_terminal(table, UnitSystem(), console(), more=_("... further rows: {rows}"))
     for outcome in outcomes:
         if outcome.wrong:
             say(_("error: {name}: {wrong}").format(name=printable(outcome.name), wrong=outcome.wrong))
@@ -134,17 +134,19 @@ GRADED_EXAMPLES = ("variants.csv", "*/variants.csv", "grading/*/variants.csv")  
 
 
 def check(
-    paths: Annotated[list[Path], typer.Argument(metavar="DIR|FILE...", help="A bank of problems.", show_default=False)],
-    update: Annotated[bool, typer.Option("--update", help="Rewrite the expected values.")] = False,
+    paths: Annotated[
+        list[Path], typer.Argument(metavar="DIR|FILE...", help="Problem files, or folders of them.", show_default=False)
+    ],
+    update: Annotated[bool, typer.Option("--update", help="Write the expected values anew.")] = False,
     junit: Annotated[
-        Path | None, typer.Option("--junit", metavar="FILE", help="Write a JUnit report too.", show_default=False)
+        Path | None, typer.Option("--junit", metavar="FILE", help="Also write a JUnit report.", show_default=False)
     ] = None,
 ) -> None:
-    """Compute every problem again, also in folders of DIR, and compare it with expected/<problem>.json beside it.
+    """Compute every problem again and compare it with expected/<problem>.json beside it; subfolders are included.
 
-    Graded examples are graded again too. What is expected is a golden run: what an earlier version computed. Every
-    quantity of result.json is compared, relative to its largest value in the cycle; the tolerance is in the expected
-    file. Exit code 1 when something differs.
+    Graded examples are graded again. Expected values are a golden run: results of an earlier version. Every quantity
+    of result.json is compared relative to its largest value in the cycle; the tolerance is in the expected file.
+    Exit code 1 if something differs.
     """
     tables = [
         table for path in paths if path.is_dir() for depth in GRADED_EXAMPLES for table in sorted(path.glob(depth))
@@ -160,5 +162,5 @@ def check(
         with reporting_errors():
             write_junit(junit, outcomes)
     differing = sum(bool(outcome.wrong or outcome.different) for outcome in outcomes)
-    say(_("{count} problems, {differing} differ").format(count=len(outcomes), differing=differing))
+    say(_("problems: {count}, different: {differing}").format(count=len(outcomes), differing=differing))
     raise typer.Exit(max(outcome.code for outcome in outcomes))

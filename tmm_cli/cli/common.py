@@ -24,37 +24,42 @@ Files = Annotated[list[str], typer.Argument(metavar="FILE...", help="Problem fil
 Json = Annotated[bool, typer.Option("--json", help="Print result.json instead of tables.")]
 Position = Annotated[
     list[int] | None,
-    typer.Option("--position", "-p", min=0, help="Compute this position only (may be repeated).", show_default=False),
+    typer.Option("--position", "-p", min=0, help="Compute only this position (may be repeated).", show_default=False),
 ]
 WithDigits = Annotated[
     bool,
-    typer.Option("--digits", help="Show beside each value its bound by rounding and its sensitivity to the data."),
+    typer.Option("--digits", help="Show the rounding error bound of each value and its sensitivity to the data."),
 ]
 Settings = Annotated[
     list[str] | None,
     typer.Option(
-        "--set", metavar="NAME=VALUE", help="Another value of a parameter (may be repeated).", show_default=False
+        "--set", metavar="NAME=VALUE", help="Set a parameter to another value (may be repeated).", show_default=False
     ),
 ]
 Variants = Annotated[
     str | None,
-    typer.Option(metavar="FILE", help="A table of variants of the task, CSV or XLSX.", show_default=False),
+    typer.Option(metavar="FILE", help="Table of variants of the task, CSV or XLSX.", show_default=False),
 ]
 Variant = Annotated[
     str | None,
-    typer.Option(metavar="N", help="This one of the table: its number, or the student's name.", show_default=False),
+    typer.Option(metavar="N", help="Variant in the table: its number, or the student's name.", show_default=False),
 ]
 Out = Annotated[
-    Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write tables there too.", show_default=False)
+    Path | None,
+    typer.Option("--out", "-o", metavar="DIR", help="Also write tables to this folder.", show_default=False),
 ]
-Folder = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results.")]
-Jobs = Annotated[int | None, typer.Option(min=1, help="Processes; else as many as cores.", show_default=False)]
+Folder = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder for the results.")]
+Jobs = Annotated[
+    int | None, typer.Option(min=1, help="Number of processes; default: one per core.", show_default=False)
+]
 Scheduler = Annotated[
-    str | None, typer.Option(metavar="ADDRESS", help="Scheduler of a Dask cluster that does it.", show_default=False)
+    str | None, typer.Option(metavar="ADDRESS", help="Use a Dask cluster with this scheduler.", show_default=False)
 ]
 Tables = Annotated[
     SpreadsheetKind | None,
-    typer.Option("--tables", help="Tables for a spreadsheet too: rounded, in your language.", show_default=False),
+    typer.Option(
+        "--tables", help="Also write tables for a spreadsheet: rounded, in your language.", show_default=False
+    ),
 ]
 
 Pictures = Iterable[tuple[str, bytes]]
@@ -151,7 +156,7 @@ def _refuse_same_folder(files: Sequence[str]) -> None:
         other = first.setdefault(folder_name(Path(file).stem).casefold(), file)
         if Path(other).resolve() != Path(file).resolve():
             say(
-                _("error: {first} and {second} have one name, and so one folder").format(
+                _("error: {first} and {second} have the same name and would share a folder").format(
                     first=printable(other), second=printable(file)
                 )
             )
@@ -167,7 +172,7 @@ def write_new_file(file: Path, text: str) -> bool:
         return False
     if file.exists():
         raise ProblemError(
-            _("{file} is there already").format(file=printable(file)), allowed=_("another file, with -o")
+            _("{file} already exists").format(file=printable(file)), allowed=_("another file, with -o FILE")
         )
     with file.open("x", encoding="utf-8") as stream:
         stream.write(text)

@@ -13,13 +13,13 @@ from tmm_cli.language import typeset
 from tmm_cli.reports import explain_tables as tables, narrate_structure, print_on_terminal
 from tmm_cli.synthesis import solve
 
-Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Say too at how many places each stage computes.")]
+Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Also show at how many positions each stage computes.")]
 
 
 def explain(files: Files, settings: Settings = None, verbose: Verbose = False) -> None:
-    """Say what a file was understood to mean, what will be computed, by which group, what is skipped and why.
+    """Explain how a file is understood, what will be computed for which group, what is skipped and why.
 
-    The structure comes in sentences that may stand in a note.
+    The structure is described in sentences that can be used in an explanatory note.
     """
 
     def work(file: str) -> int:

@@ -40,12 +40,12 @@ Variants = Annotated[
     str | None, typer.Option(metavar="FILE", help="Table of the students' variants, CSV or XLSX.", show_default=False)
 ]
 Submissions = Annotated[
-    str | None, typer.Option(metavar="PATH", help="A folder with a file of each, or one table.", show_default=False)
+    str | None, typer.Option(metavar="PATH", help="Folder with one file per student, or one table.", show_default=False)
 ]
-Folder = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Write marks and feedback there.")]
-Reveal = Annotated[bool, typer.Option("--reveal", help="Tell the students what would have been right.")]
+Folder = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder for marks and feedback.")]
+Reveal = Annotated[bool, typer.Option("--reveal", help="Show the right values in the feedback.")]
 Formats = Annotated[
-    str | None, typer.Option(metavar="NAMES", help="Write these alone, e.g. csv,moodle.", show_default=False)
+    str | None, typer.Option(metavar="NAMES", help="Write only these formats, e.g. csv,moodle.", show_default=False)
 ]
 Template = Annotated[
     Path | None,
@@ -64,9 +64,9 @@ def grade(
     scheduler: Scheduler = None,
     template: Template = None,
 ) -> None:
-    """Mark what the students of a group handed in; a second run marks only what has changed.
+    """Mark the submissions of a group; a second run marks only what has changed.
 
-    Exit code 1 when not all could be marked. With --template an empty answer sheet is written, and nothing marked.
+    Exit code 1 if some could not be marked. With --template only an empty answer sheet is written.
     """
     with reporting_errors():
         task = read_task(read_in_file_language(file))
@@ -75,7 +75,7 @@ def grade(
             say(_("written: {files}").format(files=printable(template)))
             raise typer.Exit(OK)
         if variants is None or submissions is None:
-            say(_("error: --variants and --submissions are wanted, or --template"))
+            say(_("error: give --variants and --submissions, or --template"))
             raise typer.Exit(BAD_INPUT)
         refuse_unwritable(out, folder=True)
         raise typer.Exit(_grade_group(task, variants, submissions, out, reveal, formats, jobs, scheduler))
@@ -92,7 +92,7 @@ def _grade_group(
     scheduler: str | None,
 ) -> int:
     """Grade, write and show; returns the exit code. Raises ProblemError, OSError."""
-    reason = _("there is no such format of the gradebook")
+    reason = _("no such format of the gradebook")
     names = list(EXPORTS) if formats is None else parse_names(formats, EXPORTS, "--formats", reason)
     print_file_summary(task.problem)
     table = read_table(variants, task)
@@ -114,7 +114,7 @@ def _grade_group(
             task, table, handed, way, out / CACHE_FOLDER, lambda count: shown.advance(grading, count), stopped
         )
     if len(marks) < len(handed):
-        told = _("stopped: {done} of {count} are graded; the next run takes them over, and grades the others")
+        told = _("stopped: {done} of {count} graded; the next run keeps them and grades the others")
         say(told.format(done=len(marks), count=len(handed)))
         return CHECK_FAILED
     written(out, Gradebook(task.revealing() if reveal else task, marks, users=table.rows), names, jobs)
@@ -133,7 +133,7 @@ def _stop_on_interrupt() -> Iterator[Callable[[], bool]]:
     def note(number: int, frame: FrameType | None) -> None:
         pressed.append(number)
         signal.signal(signal.SIGINT, before)
-        say(_("stopping after the students who are in work"))
+        say(_("stopping when the submissions being graded are finished"))
 
     before = signal.signal(signal.SIGINT, note)
     try:

@@ -14,9 +14,11 @@ from tmm_cli.problem import ProblemError, list_templates, nearest_name, template
 
 
 def new(
-    template: Annotated[str | None, typer.Argument(help="Which one; none: list them.", show_default=False)] = None,
+    template: Annotated[
+        str | None, typer.Argument(help="Name of the template; without it all are listed.", show_default=False)
+    ] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", metavar="FILE", help="Where to; - prints it.", show_default=False)
+        Path | None, typer.Option("--out", "-o", metavar="FILE", help="File to write; - prints it.", show_default=False)
     ] = None,
 ) -> None:
     """Start a problem file from a commented template."""
@@ -28,7 +30,7 @@ def new(
     with reporting_errors():
         if template not in known:
             raise ProblemError(
-                _("there is no template '{template}'").format(template=template),
+                _("no template is called '{template}'").format(template=template),
                 allowed=", ".join(known),
                 near=nearest_name(template, known),
             )

@@ -19,13 +19,15 @@ from tmm_cli.reports import collect_warnings, folder_name, write_atomically
 
 def note(
     files: Files,
-    formats: Annotated[str, typer.Option("--as", metavar="KINDS", help=f"{', '.join(FORMATS)}: with commas.")] = "html",
+    formats: Annotated[
+        str, typer.Option("--as", metavar="KINDS", help=f"Formats, separated by commas: {', '.join(FORMATS)}.")
+    ] = "html",
     out: Folder = Path("outputs"),
     settings: Settings = None,
     variants: Variants = None,
     variant: Variant = None,
 ) -> None:
-    """Write the explanatory note of a course project, DIR/<problem>/note.html: formulas, numbers put in, results."""
+    """Write the explanatory note of a course project, DIR/<problem>/note.html: formulas, numbers, results."""
 
     def work(file: str) -> int:
         wanted = formats_of(formats)

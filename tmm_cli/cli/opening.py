@@ -57,7 +57,7 @@ def variant_settings(file: str, variants: str | None, variant: str | None, setti
     if variants is None and variant is None:
         return given
     if variants is None or variant is None:
-        raise ProblemError(_("a table and which of its variants are wanted"), allowed="--variants FILE --variant 7")
+        raise ProblemError(_("give both the table of variants and the variant"), allowed="--variants FILE --variant 7")
     from tmm_cli.batch import read_task
     from tmm_cli.grading import read_table, variant_in  # few runs have a table
 

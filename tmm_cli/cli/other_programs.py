@@ -27,13 +27,15 @@ from tmm_cli.synthesis import solve
 
 
 def import_(
-    file: Annotated[str, typer.Argument(metavar="FILE", help="Of pylinkage, PMKS+ or linkage/v2.")],
+    file: Annotated[str, typer.Argument(metavar="FILE", help="File of pylinkage, PMKS+ or linkage/v2.")],
     out: Annotated[
         Path | None,
-        typer.Option("--out", "-o", metavar="FILE", help="Where to; - prints it; NAME.yaml here.", show_default=False),
+        typer.Option(
+            "--out", "-o", metavar="FILE", help="File to write; default: NAME.yaml; - prints it.", show_default=False
+        ),
     ] = None,
 ) -> None:
-    """Write a problem file from another program's file."""
+    """Convert a file of another program to a problem file."""
     with reporting_errors():
         foreign = read_mechanism(read_file_text(file), file)
         target = out or Path(f"{Path(file).stem}.yaml")
@@ -41,7 +43,7 @@ def import_(
         try:
             build_any_problem(read_text(text, str(target)))  # what is written can be read
         except ProblemError as error:  # its lines are of a file that nobody sees
-            told = _("the problem file of it would be refused: {reason}")
+            told = _("the resulting problem file would be invalid: {reason}")
             reason = ": ".join(part for part in (format_path(error.path), error.message) if part)
             raise ProblemError(
                 told.format(reason=reason), found=error.found, allowed=error.allowed, file=file
@@ -49,23 +51,25 @@ def import_(
         if write_new_file(target, text):
             say(_("written: {file}; next: tmm run {file}").format(file=printable(target)))
         for line in foreign.left:
-            say(_("not taken over: {line}").format(line=clean(line, 300)))
+            say(_("not converted: {line}").format(line=clean(line, 300)))
 
 
 def export(
-    file: Annotated[str, typer.Argument(metavar="FILE", help="A problem file.")],
-    to: Annotated[str, typer.Option("--to", help="The program: pylinkage.")],
+    file: Annotated[str, typer.Argument(metavar="FILE", help="Problem file (YAML).")],
+    to: Annotated[str, typer.Option("--to", help="Name of the program: pylinkage.")],
     out: Annotated[
         Path | None,
-        typer.Option("--out", "-o", metavar="FILE", help="Where to; - prints it; NAME.json here.", show_default=False),
+        typer.Option(
+            "--out", "-o", metavar="FILE", help="File to write; default: NAME.json; - prints it.", show_default=False
+        ),
     ] = None,
 ) -> None:
-    """Write the linkage for another program."""
+    """Write the linkage of a problem for another program."""
     with reporting_errors():
-        name, *__ = parse_names(to, EXPORTS, "--to", _("there is no such program to export to"))
+        name, *__ = parse_names(to, EXPORTS, "--to", _("export to this program is not available"))
         text, left = EXPORTS[name](solve(open_problem(file), "kinematics"))
         target = out or Path(f"{Path(file).stem}.json")
         if write_new_file(target, text):
             say(_("written: {file}").format(file=printable(target)))
         for line in left:
-            say(_("not taken over: {line}").format(line=line))
+            say(_("not converted: {line}").format(line=line))

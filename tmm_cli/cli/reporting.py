@@ -165,12 +165,12 @@ def print_written(written: WrittenFolder) -> None:
         say(_("written: {folder}").format(folder=printable(folder)))
     else:
         say(
-            _("written: {folder}; {kept} keeps the results of another run").format(
+            _("written: {folder}; {kept} with the results of another run is unchanged").format(
                 folder=printable(folder), kept=printable(kept)
             )
         )
     if removed:
-        text = _("removed from {folder}, written by an earlier run and not by this one: {files}")
+        text = _("removed from {folder}, as only an earlier run had written them: {files}")
         say(text.format(folder=printable(folder), files=", ".join(removed)))
 
 

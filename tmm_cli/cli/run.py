@@ -54,7 +54,7 @@ def run(
     tables: Tables = None,
     drawings: Annotated[bool, typer.Option(help="Draw the mechanism, plans, lever and diagrams.")] = True,
 ) -> None:
-    """Compute a problem whole and write its tables, drawings and result.json to DIR/<problem>/."""
+    """Compute a problem and write tables, drawings and result.json to DIR/<problem>/."""
 
     def work(file: str) -> int:
         own = variant_settings(file, variants, variant, settings)

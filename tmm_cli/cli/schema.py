@@ -14,7 +14,7 @@ from tmm_cli.synthesis import TASKS, block_module
 
 
 def schema(
-    result: Annotated[bool, typer.Option("--result", help="Of result.json instead of problem files.")] = False,
+    result: Annotated[bool, typer.Option("--result", help="Print the schema of result.json instead.")] = False,
 ) -> None:
     """Print the JSON Schema of problem files, for editors."""
     if result:

@@ -98,10 +98,10 @@ def write_scheme_files(found: Sequence[Scheme], folder: Path, each: Iterable[Sch
     """
     if len(found) > MOST_FILES:
         raise ProblemError(
-            _("these are too many files"),
+            _("too many files"),
             path=("--out",),
             found=_("{count} schemes").format(count=len(found)),
-            allowed=_("at most {most}: fewer links, or fewer types of groups (--groups)").format(most=MOST_FILES),
+            allowed=_("at most {most}; choose fewer links or fewer types of groups (--groups)").format(most=MOST_FILES),
         )
     digits = max(2, len(str(len(found))))
     texts: dict[Path, str] = {}
@@ -115,7 +115,7 @@ def write_scheme_files(found: Sequence[Scheme], folder: Path, each: Iterable[Sch
     for path, text in texts.items():
         if path.exists() and path.read_bytes() != text.encode():
             raise ProblemError(
-                _("there is another file of that name, perhaps your own work"),
+                _("a different file of this name exists, perhaps with your own changes"),
                 path=("--out",),
                 found=str(path),
                 allowed=_("another folder"),
@@ -132,7 +132,7 @@ def read_group_types(text: str) -> tuple[str, ...]:
         name = word.strip().upper()
         if name not in GROUP_TYPES and name not in GROUP_CLASSES:
             known = [*GROUP_CLASSES, *(name for name in GROUP_TYPES if name not in GROUP_CLASSES)]
-            raise unknown_name_error(word.strip(), known, _("there is no such group"), path=("--groups",))
+            raise unknown_name_error(word.strip(), known, _("no such group"), path=("--groups",))
         found += GROUP_CLASSES.get(name, (name,))
     return tuple(dict.fromkeys(found))
 
@@ -144,7 +144,7 @@ def find_schemes(links: int, mobility: int, types: tuple[str, ...]) -> tuple[Sch
         return all_schemes(links, mobility, types)
     except TooManySchemes:
         raise ProblemError(
-            _("these are too many schemes: more than {most}").format(most=MOST_SCHEMES),
+            _("too many schemes: more than {most}").format(most=MOST_SCHEMES),
             path=("--links",),
             found=str(links),
             allowed=_("fewer links, or fewer types of groups (--groups)"),
@@ -161,14 +161,14 @@ def _refuse_numbers(links: int, option: str, mobility: int, most: int, allowed: 
     """Refuse a mobility above the largest, and numbers of links that are impossible for this mobility."""
     if not 1 <= mobility <= most:
         raise ProblemError(
-            _("structures of this mobility are not built"),
+            _("structures of this mobility are not supported"),
             path=("--mobility",),
             found=str(mobility),
             allowed=_("1 to {most}").format(most=most),
         )
     if links not in allowed:
         raise ProblemError(
-            _("no structure of mobility {mobility} has so many links").format(mobility=mobility),
+            _("no structure of mobility {mobility} has this number of links").format(mobility=mobility),
             path=(option,),
             found=str(links),
             allowed=_("for W = {mobility}: {links}").format(mobility=mobility, links=", ".join(map(str, allowed))),
@@ -183,25 +183,28 @@ DEFAULT_GROUPS = "II"
 
 def schemes(
     links: Annotated[
-        int | None, typer.Option("--links", "-n", help="Schemes with so many moving links.", show_default=False)
+        int | None, typer.Option("--links", "-n", help="Number of moving links of the schemes.", show_default=False)
     ] = None,
     chains: Annotated[
-        int | None, typer.Option("--chains", help="Instead: kinematic chains of so many links.", show_default=False)
+        int | None,
+        typer.Option("--chains", help="Enumerate kinematic chains with this number of links.", show_default=False),
     ] = None,
-    mobility: Annotated[int, typer.Option("--mobility", "-W", help="Mobility: the number of driving cranks.")] = 1,
+    mobility: Annotated[int, typer.Option("--mobility", "-W", help="Mobility: number of driving cranks.")] = 1,
     groups: Annotated[
         str, typer.Option("--groups", metavar="LIST", help="Assur groups: RRR, RRP, RPR, PRP, RPP; or II, III, IV.")
     ] = DEFAULT_GROUPS,
     out: Annotated[
         Path | None,
-        typer.Option("--out", "-o", metavar="DIR", help="Write a problem file a scheme there.", show_default=False),
+        typer.Option(
+            "--out", "-o", metavar="DIR", help="Write one problem file per scheme to this folder.", show_default=False
+        ),
     ] = None,
     table: Annotated[
-        bool, typer.Option("--table", help="Instead: draw the table of Assur groups of classes II to VI by order.")
+        bool, typer.Option("--table", help="Draw the table of Assur groups of classes II to VI by order.")
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """Structural synthesis: all schemes built of Assur groups, or the number of kinematic chains."""
+    """Enumerate all schemes built of Assur groups, or kinematic chains (structural synthesis)."""
     written = None
     with reporting_errors(as_json, str(out or "")):
         if table and (links, chains) == (None, None):
@@ -220,7 +223,11 @@ def schemes(
                 print_on_terminal(rows, UnitSystem(), console(), more=MORE_ROWS_AS_JSON)
         elif chains is not None and links is None:
             if out is not None:
-                raise ProblemError(_("kinematic chains have no files"), path=("--out",), allowed="--links N, --json")
+                raise ProblemError(
+                    _("no problem files can be written for kinematic chains"),
+                    path=("--out",),
+                    allowed="--links N, --json",
+                )
             all_chains = find_chains(chains, mobility)
             if as_json:
                 emit_json(chains_json(all_chains, chains, mobility))
@@ -230,7 +237,10 @@ def schemes(
                 )
         else:
             wanted = _("--links N for schemes, --chains N for kinematic chains, or --table for the table of groups")
-            raise ProblemError(_("what is wanted?"), allowed=wanted)
+            raise ProblemError(
+                _("neither schemes nor chains nor the table of groups were requested, or several of them"),
+                allowed=wanted,
+            )
     if out is not None and written:
         count = sum(x is not None for x in written)
-        say(_("written: {count} files in {out}; next: tmm run {out}/FILE").format(count=count, out=printable(out)))
+        say(_("files written to {out}: {count}; next: tmm run {out}/FILE").format(count=count, out=printable(out)))

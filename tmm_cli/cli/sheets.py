@@ -22,17 +22,19 @@ from tmm_cli.reports import collect_warnings
 
 def sheets(
     files: Files,
-    paper: Annotated[Literal["A1", "A2", "A3"], typer.Option("--format", help="Of the paper.")] = "A1",
-    formats: Annotated[str, typer.Option("--as", metavar="KINDS", help=f"{', '.join(FORMATS)}: with commas.")] = "pdf",
+    paper: Annotated[Literal["A1", "A2", "A3"], typer.Option("--format", help="Paper size.")] = "A1",
+    formats: Annotated[
+        str, typer.Option("--as", metavar="KINDS", help=f"Formats, separated by commas: {', '.join(FORMATS)}.")
+    ] = "pdf",
     out: Folder = Path("outputs"),
     positions: Annotated[
-        Literal["all", "detail"], typer.Option(help="Of which positions plans of motion are drawn.")
+        Literal["all", "detail"], typer.Option(help="Positions for which velocity and acceleration plans are drawn.")
     ] = "detail",
     settings: Settings = None,
     variants: Variants = None,
     variant: Variant = None,
 ) -> None:
-    """Draw the sheets to hand in, framed and to scale, into DIR/<problem>/."""
+    """Draw framed sheets to scale and write them to DIR/<problem>/."""
 
     def work(file: str) -> int:
         wanted = parse_formats(formats)

@@ -32,11 +32,13 @@ from tmm_cli.problem import ProblemError, translate_errors
 from tmm_cli.synthesis import inputs_of, solve
 
 Drawings = Annotated[
-    bool, typer.Option("--drawings", help="Draw the structural scheme and the groups apart: PNG, SVG in outputs/.")
+    bool, typer.Option("--drawings", help="Draw the structural scheme and the separate groups: PNG, SVG in outputs/.")
 ]
 Driver = Annotated[
     str | None,
-    typer.Option("--driver", metavar="LINK", help="Drive this link instead: other groups.", show_default=False),
+    typer.Option(
+        "--driver", metavar="LINK", help="Use this link as input link; the groups may change.", show_default=False
+    ),
 ]
 
 
@@ -51,7 +53,7 @@ def structure(
     variant: Variant = None,
     tables: Tables = None,
 ) -> None:
-    """Mobility, pairs, Assur groups, names of links; contours and redundant constraints in space; chains by pairs."""
+    """Show mobility, pairs, Assur groups, link names, contours, redundant constraints in space; also for chains."""
     names = ("structure", "properties", "links", "pairs", "groups", "contours", "space", "replacements")
 
     def work(file: str) -> int:
@@ -62,7 +64,7 @@ def structure(
         code = report(results, names, as_json, None)
         pictures = dict(draw_pictures("whole", results))
         if not pictures:
-            text = _("not drawn: the groups of {problem} cannot be assembled at the sketch")
+            text = _("not drawn: the groups of {problem} cannot be assembled in the sketched position")
             say(text.format(problem=results.problem.name))
         write_pictures(results, out, pictures)
         return code
@@ -72,15 +74,19 @@ def structure(
 
 INTERMITTENT = ("intermittent", "intermittent-cycle")
 Assemblies = Annotated[
-    bool, typer.Option("--assemblies", help="List and draw every real assembly of the groups at one position.")
+    bool, typer.Option("--assemblies", help="List and draw all real assemblies of the groups at one position.")
 ]
 Centres = Annotated[
-    bool, typer.Option("--centres", help="Instantaneous centres in the positions in detail; mechanical advantage.")
+    bool, typer.Option("--centres", help="Find instantaneous centres and mechanical advantage in detailed positions.")
 ]
-ExtremePlaces = Annotated[bool, typer.Option("--extremes", help="Extreme places of all points, links and stones.")]
+ExtremePlaces = Annotated[
+    bool, typer.Option("--extremes", help="Find extreme positions of all points, links and sliding blocks.")
+]
 Of = Annotated[
     str,
-    typer.Option("--of", metavar="NAMES", help="These points, links, centres of mass only: E,5,S3", show_default=False),
+    typer.Option(
+        "--of", metavar="NAMES", help="Compute only these points, links, centres of mass: E,5,S3", show_default=False
+    ),
 ]
 
 
@@ -99,7 +105,7 @@ def kinematics(
     variant: Variant = None,
     tables: Tables = None,
 ) -> None:
-    """Positions, velocities, accelerations, transfer functions; of points, links and sliding pairs."""
+    """Show positions, velocities, accelerations and transfer functions of points, links and prismatic pairs."""
     asked = [name.strip() for name in of.split(",") if name.strip()]
     usual = ("quality", "properties", *INTERMITTENT, "pressure", "cycle", "points", "link-motion", "slides", "centres")
     names = ("points", "link-motion") if asked else usual
@@ -140,17 +146,19 @@ def _list_assemblies(
     code = report(results, [stem for stem, *__ in name_assembly_files(results.assemblies or ())], as_json, None)
     for here in results.assemblies or ():
         if here.undecided is not None:
-            text = _("the sketch does not decide which assembly {group} has; all of them are listed")
+            text = _("the sketch does not determine the assembly of {group}; all assemblies are listed")
             say(text.format(group=here.undecided.title))
             if positions and here.number is None:
-                say(_("while the sketch decides nothing, positions have no numbers; listed at its own place"))
+                say(_("without a determined assembly positions have no numbers; listed for the sketched position"))
         for group in here.lost:
-            say(_("{group} is not listed: links that it hangs on cannot be placed there").format(group=group.title))
+            say(_("{group} is omitted: the links it depends on cannot be assembled here").format(group=group.title))
     write_pictures(results, out, dict(draw_pictures("assemblies", results)))
     return code
 
 
-ExtremeReactions = Annotated[bool, typer.Option("--extremes", help="Largest and smallest reactions over the cycle.")]
+ExtremeReactions = Annotated[
+    bool, typer.Option("--extremes", help="Find the largest and smallest reactions over the cycle.")
+]
 Hodographs = Annotated[bool, typer.Option("--hodographs", help="Draw the hodograph of every reaction.")]
 
 
@@ -167,7 +175,7 @@ def forces(
     variant: Variant = None,
     tables: Tables = None,
 ) -> None:
-    """Loads, reactions in all pairs, what balances the driver, and the Zhukovsky lever."""
+    """Show loads, reactions in all pairs, the balancing moment or force, and the Zhukovsky lever."""
     names = (
         "properties",
         "cycle",
@@ -210,13 +218,13 @@ def dynamics(
     variants: Variants = None,
     variant: Variant = None,
 ) -> None:
-    """Law of motion: what drives the machine, its flywheel, speeds of the driver; and balancing."""
+    """Show the law of motion: driving moment or motor, flywheel, speeds of the driver; and balancing."""
 
     def work(file: str) -> int:
         problem = open_problem(file, variant_settings(file, variants, variant, settings), position, digits).whole
         if problem.dynamics is None and problem.balancing is None:
             missing = ProblemError(
-                _("nothing is asked of the law of motion or of balancing"),
+                _("the file has neither a block `dynamics` nor a block `balancing`"),
                 path=("dynamics",),
                 allowed="dynamics: {delta: 1/30}, balancing: {counterweights: {1: {}}}",
             )

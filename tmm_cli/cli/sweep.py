@@ -42,15 +42,17 @@ from tmm_cli.sweep import (
 File = Annotated[str, typer.Argument(metavar="FILE", help="Problem file (YAML) with parameters.", show_default=False)]
 Over = Annotated[
     list[str],
-    typer.Option(metavar="NAME=FROM..TO:COUNT", help="Sweep this parameter (two at most).", show_default=False),
+    typer.Option(metavar="NAME=FROM..TO:COUNT", help="Parameter to sweep (at most two).", show_default=False),
 ]
 Show = Annotated[
     list[str] | None,
-    typer.Option(metavar="NAMES", help="Quantities, e.g. H,k,pressure,M_b,R_34,v_E.", show_default=False),
+    typer.Option(metavar="NAMES", help="Quantities to show, e.g. H,k,pressure,M_b,R_34,v_E.", show_default=False),
 ]
 Folder = Annotated[
     Path | None,
-    typer.Option("--out", "-o", metavar="DIR", help="Write CSV, result.json, drawings there.", show_default=False),
+    typer.Option(
+        "--out", "-o", metavar="DIR", help="Write CSV, result.json and drawings to this folder.", show_default=False
+    ),
 ]
 
 
@@ -64,9 +66,9 @@ def sweep(
     scheduler: Scheduler = None,
     as_json: Json = False,
 ) -> None:
-    """Show quantities over one parameter or two, and where the mechanism stops to assemble, to turn, to keep limits.
+    """Show quantities over one or two parameters, and the borders of assembly, full rotation and limits.
 
-    Each point is a variant with the assembly of the file's own one.
+    Every point is a variant in the assembly of the file.
     """
     with reporting_errors(as_json):
         if out is not None:
@@ -104,7 +106,7 @@ def sweep(
 
 def _announce(points: int, taped: bool) -> None:
     """Print the amount of work before it starts."""
-    text = _("{points} mechanisms, all at once") if taped else _("{points} mechanisms, one after another")
+    text = _("mechanisms: {points}, solved together") if taped else _("mechanisms: {points}, solved one after another")
     say(text.format(points=points))
 
 

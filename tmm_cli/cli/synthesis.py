@@ -28,10 +28,10 @@ from tmm_cli.synthesis import TaskFile, build_synthesised, measure_problem, solv
 
 
 def synthesis(files: Files, as_json: Json = False, out: Out = None, settings: Settings = None) -> None:
-    """Find lengths from what a mechanism must do, analyse it, and measure on it what was asked.
+    """Find the lengths of a mechanism from its requirements, analyse it, and check the requirements.
 
-    The file has a block `synthesis`; what it finds becomes parameters of its linkage. Exit code 1 when the mechanism
-    does not do what was asked within 1e-9. With -o the tables and the construction as a drawing are written too.
+    The file has a block `synthesis`, whose results become parameters of its linkage. Exit code 1 if a requirement is
+    not met within 1e-9. With -o also write the tables and a drawing of the construction.
     """
 
     def work(file: str) -> int:
@@ -54,7 +54,7 @@ def _solve_and_report(file: str, as_json: bool, out: Path | None, settings: Sequ
             if not table.long:
                 print_on_terminal(table, units, screen, most=None)
         if measured is None:
-            say(_("the file has no linkage: nothing was measured"))
+            say(_("the file has no linkage, so the requirements were not checked"))
     if out is not None:
         folder = out / folder_name(name if recorded_part(out / folder_name(name)) is None else f"{name}-synthesis")
         with StagedFolder(folder) as staged:
@@ -78,7 +78,7 @@ def _solve_task(file: str, settings: Sequence[str] | None) -> tuple[str, str, Sy
     tree = read_tree(file, settings)
     if "synthesis" not in tree.data:
         build_synthesised(tree)  # refuses a misspelt key
-        raise ProblemError(_("this file has no synthesis"), allowed="synthesis: {task: ...}", file=file)
+        raise ProblemError(_("the file has no block `synthesis`"), allowed="synthesis: {task: ...}", file=file)
     if "links" not in tree.data:
         found = solve_alone(tree)
         say(f"{found[0]}: {describe_units(found[3])}")

@@ -25,7 +25,7 @@ ADDRESS = re.compile(r"[a-z][a-z0-9+.-]+:[/\\]", re.IGNORECASE)  # s3://bucket a
 Language = Literal["en", "ru", "sr"]
 Lang = Annotated[
     Language | None,
-    typer.Option("--lang", envvar="TMM_LANG", help="Language, whatever the file says.", show_default=False),
+    typer.Option("--lang", envvar="TMM_LANG", help="Language, overrides that of the file.", show_default=False),
 ]
 
 _asked_for: ContextVar[str | None] = ContextVar("asked_for", default=None)
@@ -54,13 +54,13 @@ def report_fault(error: Exception, words: Sequence[str]) -> int:
     if os.environ.get(TRACEBACK, "0") not in ("", "0"):
         traceback.print_exception(error)
     if isinstance(error, MemoryError):
-        say(_("error: there is not enough memory; fewer positions, variants or drawings take less"))
+        say(_("error: not enough memory; reduce the number of positions, variants or drawings"))
         return FAULT
     place = _program_line(error)
     command = next((word for word in words if not word.startswith("-")), "")
     told = _(
-        "internal fault: {name} at {place} (tmm {version}, command {command}): please report this line and the file; "
-        "{variable}=1 prints the traceback"
+        "internal error: {name} at {place} (tmm {version}, command {command}): please report this line and "
+        "the file; {variable}=1 prints the traceback"
     )
     name, version = type(error).__name__, tmm_cli.__version__
     say(told.format(name=name, place=place, version=version, command=clean(command, 40), variable=TRACEBACK))
@@ -87,7 +87,7 @@ def refuse_addresses(named: Mapping[str, Any]) -> None:
         path = named.get(name)
         if isinstance(path, Path) and ADDRESS.match(str(path)):
             address = re.sub(r"^([^:]+):[/\\]+", r"\1://", str(path))
-            told = _("error: {address} is an address of a network: results are written to a local folder or file")
+            told = _("error: {address} is a network address; give a local folder or file for the results")
             say(told.format(address=printable(address)))
             raise typer.Exit(BAD_INPUT)
 

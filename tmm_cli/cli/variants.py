@@ -32,17 +32,17 @@ from tmm_cli.reports import StagedFolder, print_on_terminal, refuse_unwritable, 
 
 TABLE = "variants.csv"
 
-File = Annotated[str, typer.Argument(metavar="TASK", help="Problem file (YAML), perhaps with a block `variants`.")]
-Count = Annotated[int, typer.Option(min=1, max=10_000, help="How many.")]
-Seed = Annotated[int, typer.Option(min=0, help="Another one gives others; the same one the same.")]
-Folder = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of all that is written.")]
+File = Annotated[str, typer.Argument(metavar="TASK", help="Problem file (YAML); may have a block `variants`.")]
+Count = Annotated[int, typer.Option(min=1, max=10_000, help="Number of variants.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of the random choice; the same seed gives the same variants.")]
+Folder = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder for all files.")]
 Students = Annotated[
     str | None,
-    typer.Option(metavar="FILE", help="A table with the students' names, instead of a count.", show_default=False),
+    typer.Option(metavar="FILE", help="Table with the students' names, instead of --count.", show_default=False),
 ]
 Vary = Annotated[
     list[str] | None,
-    typer.Option(metavar="NAME=FROM..TO:STEP", help="Free this parameter (may be repeated).", show_default=False),
+    typer.Option(metavar="NAME=FROM..TO:STEP", help="Vary this parameter (may be repeated).", show_default=False),
 ]
 
 
@@ -54,7 +54,7 @@ def variants(
     students: Students = None,
     vary: Vary = None,
 ) -> None:
-    """Draw variants of a task for a group: a table, a sheet and a problem file for each student, the answer key."""
+    """Generate variants of a task for a group: table, sheet and problem file for each student, answer key."""
     with reporting_errors():
         refuse_unwritable(out, folder=True)
         task = read_task(with_vary(read_in_file_language(file), vary or ()))
@@ -72,11 +72,9 @@ def variants(
             warn(f"{task.problem.name}: {slip}")
         if len(table.rows) < count:
             raise ProblemError(
-                _("there are only {found} variants that are sound and unlike one another").format(
-                    found=len(table.rows)
-                ),
-                found=_("{count} are wanted").format(count=count),
-                allowed=_("wider ranges, smaller steps"),
+                _("the ranges give too few feasible and distinct variants: {found}").format(found=len(table.rows)),
+                found=_("{count} required").format(count=count),
+                allowed=_("wider ranges or smaller steps"),
                 file=file,
             )
         _write(task, Path(file).read_text(encoding="utf-8-sig"), table, out)
@@ -85,10 +83,10 @@ def variants(
 def _print_drawn(variety: Variety, table: VariantTable) -> None:
     """Print how many variants were drawn and rejected."""
     rows = [(why, str(count)) for why, count in variety.thrown.most_common() if count]
-    told = _("{count} variants of {free}, drawn from {tried} candidates")
+    told = _("variants: {count}, free parameters: {free}, candidates tried: {tried}")
     say(told.format(count=len(table.rows), free=", ".join(table.names), tried=variety.tried))
     if rows:
-        thrown = text_table("thrown", _("Thrown away"), (_("because"), _("candidates")), rows)
+        thrown = text_table("thrown", _("Rejected candidates"), (_("reason"), _("candidates")), rows)
         print_on_terminal(thrown, variety.task.units, console())
 
 
@@ -99,11 +97,11 @@ def _write(task: Task, text: str, table: VariantTable, out: Path) -> None:
         folder.write(TABLE, [csv_of(rows)])
         book = xlsx_of({"variants": rows})
         if book is None:
-            say(_("note: no XLSX is written without xlsxwriter: pip install 'tmm-cli[excel]'"))
+            say(_("note: variants.xlsx requires the package xlsxwriter: pip install 'tmm-cli[excel]'"))
         else:
             folder.write("variants.xlsx", [book])
         if task.blocks.grading is None:
-            say(_("note: the file has no block `grading`, so there is no answer key"))
+            say(_("note: no answer key is written, as the file has no block `grading`"))
         else:
             key = list(compute_answer_key(task, table))
             folder.write("key.csv", [csv_of([HEADER, *(line.cells(task) for line in key)])])

@@ -20,18 +20,22 @@ from tmm_cli.reports import collect_warnings, folder_name, refuse_unwritable, wr
 
 
 def animate(
-    file: Annotated[str, typer.Argument(metavar="FILE", help="A problem file (YAML).", show_default=False)],
+    file: Annotated[str, typer.Argument(metavar="FILE", help="Problem file (YAML).", show_default=False)],
     out: Annotated[
         Path | None,
         typer.Option(
-            "--out", "-o", metavar="FILE.html", help="The page; else outputs/<problem>.html.", show_default=False
+            "--out",
+            "-o",
+            metavar="FILE.html",
+            help="Page to write; default: outputs/<problem>.html.",
+            show_default=False,
         ),
     ] = None,
     settings: Settings = None,
     variants: Variants = None,
     variant: Variant = None,
 ) -> None:
-    """Write a page on which the mechanism turns, with its plans of motion and diagrams; it needs no network."""
+    """Write a web page with the moving mechanism, its motion plans and diagrams; it works offline."""
     with reporting_errors():
         if out is not None:
             refuse_unwritable(out, folder=False)
@@ -45,14 +49,16 @@ def animate(
 
 
 def gallery(
-    paths: Annotated[list[Path], typer.Argument(metavar="DIR|FILE...", help="A bank of problems.", show_default=False)],
-    out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Where index.html is written.")] = Path(
+    paths: Annotated[
+        list[Path], typer.Argument(metavar="DIR|FILE...", help="Problem files, or folders of them.", show_default=False)
+    ],
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder for index.html.")] = Path(
         "outputs/gallery"
     ),
 ) -> None:
-    """Write a page of many mechanisms, each turning, found by class, group, purpose and property; it needs no network.
+    """Write a web page with many moving mechanisms, searchable by class, group, purpose and property; it works offline.
 
-    A file that cannot be computed is said and left out: exit code 1.
+    A file that cannot be computed is reported and omitted: exit code 1.
     """
     with reporting_errors():
         refuse_unwritable(out / "index.html", folder=False)
@@ -68,7 +74,7 @@ def gallery(
         write_atomically(target, gallery_page(cards).encode())
         say(_("written: {folder}").format(folder=printable(target)))
     if len(cards) < len(made):
-        say(_("left out: {count}").format(count=len(made) - len(cards)))
+        say(_("omitted: {count}").format(count=len(made) - len(cards)))
         raise typer.Exit(CHECK_FAILED)
 
 

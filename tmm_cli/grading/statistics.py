@@ -106,7 +106,7 @@ def statistics_tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Tab
         yield text_table("copies", _("Answers that fit another variant"), (_("student"), _("variant of")), copied)
     unread = [(shown(student.student), sentence(problem)) for student in marks for problem in student.problems]
     if unread:
-        yield text_table("problems", _("Could not be read"), (_("student"), _("why")), unread)
+        yield text_table("problems", _("Could not be read"), (_("student"), _("reason")), unread)
 
 
 def _difficulties(found: Sequence[Difficulty]) -> Table:

@@ -60,7 +60,7 @@ def _stroke_rows(results: Results, strokes: Strokes, place: Dimension) -> Iterab
     linkage = results.linkage
     link, run = strokes.link, coordinate_dimension(strokes.kind)
     point, guide = linkage.output_point(link), linkage.output_guide(link)
-    name = _("swing psi of link {link}") if guide is None else _("stroke H of link {link}")
+    name = _("swing angle ψ of link {link}") if guide is None else _("stroke H of link {link}")
     if point is not None:
         name = _("travel of {link}")
     elif guide is not None and FRAME not in (guide.carrier, guide.runner):
@@ -69,7 +69,7 @@ def _stroke_rows(results: Results, strokes: Strokes, place: Dimension) -> Iterab
     arm = linkage.output_arm(link)
     if arm is not None:
         yield _("stroke H = psi l of point {point}").format(point=arm[0]), strokes.travel * arm[1], LENGTH
-    yield _("coefficient of change of mean speed k"), strokes.k, NUMBER
+    yield _("time ratio k"), strokes.k, NUMBER
     if len(strokes.strokes) == 2:
         yield _("1/k = T_idle/T_working"), 1 / strokes.k, NUMBER
         yield _("stroke angle theta = 180 deg (k - 1)/(k + 1)"), np.pi * (strokes.k - 1) / (strokes.k + 1), ANGLE

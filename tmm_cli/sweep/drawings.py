@@ -73,7 +73,7 @@ def sweep_sheets(title: str, sweep: SweepResults, units: UnitSystem) -> Iterable
 def curve_sheet(title: str, sweep: SweepResults, part: Sequence[int], units: UnitSystem) -> Drawing:
     """Draw some of the quantities over one parameter, one panel each."""
     (axis,) = sweep.axes
-    caption = _("Quantities over {parameter}; hatched: no such mechanism; hatched wide: beyond a limit")
+    caption = _("Quantities as functions of {parameter}; dense hatching: no mechanism; wide hatching: limit exceeded")
     sheet = DrawingSheet(title, caption.format(parameter=axis.name), paper=LANDSCAPE)
     start, most = axis_extent(sheet)
     over = filling_axis(float(axis.values[0]), float(axis.values[-1]), start, most)
@@ -122,7 +122,7 @@ def _label_border(panel: Panel, axis: SweepAxis, mark: Border) -> None:
 def contour_sheet(title: str, sweep: SweepResults, k: int, units: UnitSystem) -> Drawing:
     """Draw contour lines of quantity k over both parameters."""
     one = sweep.shown[k]
-    caption = _("{quantity}: lines of equal value over two parameters").format(quantity=_quantity_label(one, units))
+    caption = _("{quantity}: contour lines over two parameters").format(quantity=_quantity_label(one, units))
     sheet = DrawingSheet(title, caption, paper=LANDSCAPE)
     low, high = sheet.canvas.low, sheet.canvas.high
     across, up = sweep.axes
@@ -145,7 +145,7 @@ def contour_sheet(title: str, sweep: SweepResults, k: int, units: UnitSystem) ->
     lines = _Grid(panel, sweep, (columns, rows))
     drawn = [
         (fails, name)
-        for fails, name in ((True, _("no such mechanism")), (False, _("beyond a limit")))
+        for fails, name in ((True, _("no mechanism")), (False, _("limit exceeded")))
         if np.any((state >= STOPS) if fails else (state == LIMIT))
     ]
     for fails, __ in drawn:

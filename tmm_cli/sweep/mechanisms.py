@@ -152,7 +152,9 @@ class SweptMechanisms:
             found.why[row] = _("the output moves differently from that of the problem file")
         for row in otherwise[MOST_DOUBTFUL:]:
             found.state[row] = REFUSED
-            found.why[row] = _("one of very many that are built otherwise than the file's own")
+            found.why[row] = _(
+                "not examined: too many of the mechanisms have another structure of data than the file's own"
+            )
         self._one_by_one(points, otherwise[:MOST_DOUBTFUL], found)
         for row in unsure[:MOST_DOUBTFUL]:
             state, found.why[row], found.values[row], found.reach[row] = self._alone(points[row])

@@ -49,7 +49,7 @@ class SweepAxis:
 def read_axes(task: Task, over: Sequence[str]) -> tuple[SweepAxis, ...]:
     """Read one or two options `--over`. Raises ProblemError."""
     if not 1 <= len(over) <= 2:
-        raise ProblemError(_("one or two parameters are swept"), found=", ".join(over) or None, allowed=EXAMPLE)
+        raise ProblemError(_("a sweep takes one or two parameters"), found=", ".join(over) or None, allowed=EXAMPLE)
     axes = []
     for text in over:
         try:
@@ -57,14 +57,16 @@ def read_axes(task: Task, over: Sequence[str]) -> tuple[SweepAxis, ...]:
         except ProblemError as error:
             raise error.located(f"--over {text}") from None
         if len({axis.name for axis in axes}) < len(axes):
-            raise ProblemError(_("this is swept twice"), found=quote(axes[-1].name), file=f"--over {text}")
+            raise ProblemError(_("this parameter is given twice"), found=quote(axes[-1].name), file=f"--over {text}")
     return tuple(axes)
 
 
 def _read_axis(task: Task, text: str, usual: int) -> SweepAxis:
     found = OVER_OPTION.fullmatch(text)
     if found is None:
-        raise ProblemError(_("a name, two bounds and perhaps a count are wanted"), found=quote(text), allowed=EXAMPLE)
+        raise ProblemError(
+            _("expected a name, two bounds and optionally the number of values"), found=quote(text), allowed=EXAMPLE
+        )
     name, *ends, count = found.groups()
     (own,) = task.dimensions((name,))
     units = [part[2] for part in map(NUMBER_WITH_UNIT.fullmatch, ends[::-1]) if part]
@@ -73,7 +75,7 @@ def _read_axis(task: Task, text: str, usual: int) -> SweepAxis:
     for end in ends:
         part = NUMBER_WITH_UNIT.fullmatch(end)
         if part is None or (part[2] and part[2] != unit):
-            raise ProblemError(_("two numbers in one unit are wanted"), found=quote(end), allowed=EXAMPLE)
+            raise ProblemError(_("expected two numbers in the same unit"), found=quote(end), allowed=EXAMPLE)
         said.append(task.value(f"{part[1]} {unit}".strip()))
     dimension = said[0].dimension
     if own and dimension and not dimension.fits(own):
@@ -84,7 +86,7 @@ def _read_axis(task: Task, text: str, usual: int) -> SweepAxis:
     steps = usual if count is None else int(count) if count.isascii() and count.isdigit() and len(count) < 9 else 0
     if not 2 <= steps <= MOST_VALUES:
         raise ProblemError(
-            _("the number of values is a whole number"),
+            _("the number of values must be a whole number"),
             found=quote(count),
             allowed=_("{least} to {most}").format(least=2, most=MOST_VALUES),
         )
@@ -188,14 +190,14 @@ def read_shown(task: Task, given: Sequence[str]) -> tuple[ShownQuantity, ...]:
         for name in _split_names(text, names):
             if name not in names:
                 some = _("e.g. {names}").format(names=", ".join(_example_names(every)))
-                raise unknown_name_error(name, names, _("there is no such quantity"), some, file=f"--show {text}")
+                raise unknown_name_error(name, names, _("no such quantity"), some, file=f"--show {text}")
             found.append(every[names[name]])
     found = list(dict.fromkeys(found)) or [
         every[name] for name in DEFAULT_QUANTITIES if name in every and not (name == "H" and "psi" in every)
     ]
     if len(found) > MOST_QUANTITIES:
         raise ProblemError(
-            _("these are too many quantities"),
+            _("too many quantities"),
             found=str(len(found)),
             allowed=_("at most {most}").format(most=MOST_QUANTITIES),
             file="--show",

@@ -19,10 +19,10 @@ WORKS, LIMIT, STOPS, APART, REFUSED = range(5)  # how a mechanism goes
 STATES = ("works", "limit", "stops", "apart", "refused")  # in files
 STATE_WORDS = (
     N_("works"),
-    N_("beyond a limit"),
-    N_("does not turn fully"),
+    N_("limit exceeded"),
+    N_("no full rotation"),
     N_("cannot be assembled"),
-    N_("is refused"),
+    N_("refused"),
 )
 
 
@@ -66,7 +66,7 @@ class SweepResults:
 
 
 FORMAT = 1
-TITLE, BORDERS = N_("Sweep"), N_("Where that changes")
+TITLE, BORDERS = N_("Sweep"), N_("Borders between states")
 
 
 def points_table(sweep: SweepResults, *, words: bool = False) -> Table:
@@ -76,7 +76,7 @@ def points_table(sweep: SweepResults, *, words: bool = False) -> Table:
     columns += [Column(one.name, sweep.values[:, k], one.dimension) for k, one in enumerate(sweep.shown)]
     columns.append(Column(N_("mechanism"), [names[n] for n in sweep.state.tolist()]))
     why = [_reason_text(*both) for both in zip(sweep.why, sweep.state.tolist(), strict=True)] if words else sweep.why
-    columns.append(Column(N_("why"), why))
+    columns.append(Column(N_("reason"), why))
     return Table("sweep", translated(TITLE), tuple(columns))
 
 
@@ -90,7 +90,7 @@ def borders_table(sweep: SweepResults, *, words: bool = False) -> Table:
     columns += [
         Column(N_("before"), [names[mark.before] for mark in sweep.marks]),
         Column(N_("after"), [names[mark.after] for mark in sweep.marks]),
-        Column(N_("why"), [_reason_text(m.why, max(m.before, m.after)) if words else m.why for m in sweep.marks]),
+        Column(N_("reason"), [_reason_text(m.why, max(m.before, m.after)) if words else m.why for m in sweep.marks]),
     ]
     return Table("borders", translated(BORDERS), tuple(columns))
 

@@ -76,7 +76,7 @@ def refuse_points(problem: Problem, points: int, *, peaks: bool, taped: bool, co
     most = MOST_VALUES if cores is None else min(MOST_VALUES, int(WORK_BUDGET * cores / each))
     if points > most:
         raise ProblemError(
-            _("these are too many mechanisms"),
+            _("too many mechanisms"),
             file="--over",
             found=_("{points} mechanisms").format(points=points),
             allowed=_("at most {most}").format(most=most),

@@ -28,17 +28,17 @@ STILL_FRACTION, LEAST_DWELL = (
 )  # share of a stroke, and degrees of the crank about an end of it: a crank-slider's are 25
 
 PURPOSES: Final = {
-    "slides": N_("output slides to and fro"),
-    "swings": N_("output swings"),
-    "turns": N_("output turns round"),
-    "carried": N_("output is carried in the plane"),
-    "point": N_("a point is led along its path"),
+    "slides": N_("reciprocating output"),
+    "swings": N_("oscillating output"),
+    "turns": N_("rotating output"),
+    "carried": N_("general plane motion of the output"),
+    "point": N_("path generation"),
     "quick": N_("quick return"),
     "strokes": N_("several strokes in a cycle"),
-    "dwell": N_("output dwells"),
+    "dwell": N_("output with dwell"),
     "outputs": N_("several outputs"),
     "drivers": N_("several drivers"),
-    "space": N_("moves in space"),
+    "space": N_("spatial mechanism"),
 }
 
 
@@ -191,10 +191,10 @@ def _facts(results: Results) -> Iterator[Value]:
     yield from _shown_properties(results)
     yield _("mobility W"), float(structure.mobility + structure.redundant), NUMBER
     if structure.redundant:
-        yield _("passive constraints"), float(structure.redundant), NUMBER
+        yield _("redundant constraints"), float(structure.redundant), NUMBER
     for one in results.swinging:
         yield _stroke_name(linkage, one), one.travel, coordinate_dimension(one.kind)
-        yield _("coefficient of change of mean speed k"), one.k, NUMBER
+        yield _("time ratio k"), one.k, NUMBER
     for travel in results.travels:
         yield _stroke_name(linkage, travel), travel.high - travel.low, coordinate_dimension(travel.kind)
     if results.pressure:
@@ -207,7 +207,7 @@ def _stroke_name(linkage: Linkage, found: Strokes | OutputTravel) -> str:
         return _("travel of {link}").format(link=link)
     if linkage.output_guide(link) is not None:
         return _("stroke H of link {link}").format(link=link)
-    return _("swing psi of link {link}").format(link=link)
+    return _("swing angle ψ of link {link}").format(link=link)
 
 
 def _shown_properties(results: Results | ChainResults) -> Iterable[Value]:

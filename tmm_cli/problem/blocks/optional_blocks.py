@@ -305,7 +305,7 @@ def _build_setting(
     for name in keys:
         if name not in parameters:
             raise ProblemError(
-                _("there is no parameter of that name"),
+                _("no parameter has this name"),
                 path=(*path, name),
                 found=quote(name),
                 key=True,
