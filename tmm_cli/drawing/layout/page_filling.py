@@ -118,7 +118,7 @@ def initial_rooms(pieces: Sequence[SheetPiece], field: PackingField, shrunk: flo
 def shrink_rooms(
     pieces: Sequence[SheetPiece], rooms: Sequence[float], share: float, chosen: Container[int]
 ) -> list[float]:
-    """Multiply the rooms of the pieces in `which` by `share`, but not below their least rooms."""
+    """Multiply the rooms of the pieces in `chosen` by `share`, but not below their least rooms."""
     return [
         piece.fitted(max(share * room, min(room, piece.least))) if k in chosen else room
         for k, (piece, room) in enumerate(zip(pieces, rooms, strict=True))

@@ -46,7 +46,7 @@ class BlockText:
 
 @dataclass(frozen=True)
 class BlockShape:
-    """One of the possible layouts of a block: its size, texts and lines (mm)."""
+    """A possible layout of a block: its size, texts and lines (mm)."""
 
     size: complex
     texts: tuple[BlockText, ...]
