@@ -199,11 +199,11 @@ ANGLES = "\n  allowed: an angle, e.g. 30 deg or 0.5 rad"
         (
             "mm",
             LENGTH,
-            "there is no parameter mm, and a unit follows a number: 1 mm\n  found:   'mm'"
+            "there is no parameter mm; if the unit is meant, write 1 mm\n  found:   'mm'"
             + NAMES
             + "\n  did you mean 'm'?",
         ),
-        ("0.05*H", LENGTH, "there is no parameter H, and a unit follows a number: 1 H\n  found:   'H'" + NAMES),
+        ("0.05*H", LENGTH, "there is no parameter H; if the unit is meant, write 1 H\n  found:   'H'" + NAMES),
         (
             "1 900,5 mm",
             LENGTH,

@@ -389,7 +389,7 @@ REFUSED = {
     json.dumps(file_of_pylinkage(more=[{"id": "X", "position": [1e308, -1.7e308]}])): (
         "file:1:270: joints[4].position[0]: this value is too large for a mechanism\n  found:   1e+308"
     ),
-    json.dumps(file_of_pylinkage(joints=[{}] * 501)): "file:1:32: joints: this is too long: at most 500",
+    json.dumps(file_of_pylinkage(joints=[{}] * 501)): "file:1:32: joints: too many items or characters: at most 500",
     link([(INPUT | GROUND, "A", 0, 0, 0), (TURNING, "B", 1e40, 4, 0)], []): (
         "file: joints.B: this is not a base-64 number\n  found:   'SijRs6CXv000000000000000'"
     ),

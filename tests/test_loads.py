@@ -284,7 +284,7 @@ def test_what_was_understood_of_loads_is_told():
                 "x.yaml:12:9: loads.f: the force and the moment of one load must both have `resists`, or "
                 "neither\n"
                 "  found:   both\n"
-                "  allowed: two loads"
+                "  allowed: two separate loads"
             ),
         ),
         (

@@ -218,7 +218,7 @@ class Parser:
         names = [*self.parameters, *(FUNCTIONS if called else ()), "pi"]
         message = _("there is no such parameter")
         if find_unit(name):
-            message = _("there is no parameter {name}, and a unit follows a number: 1 {name}").format(name=name)
+            message = _("there is no parameter {name}; if the unit is meant, write 1 {name}").format(name=name)
         raise unknown_name_error(name, names, message, ", ".join(self.parameters) or "none is given")
 
     def call(self, name: str) -> PhysicalValue:

@@ -443,9 +443,7 @@ def apply_settings(tree: Tree, settings: Sequence[str]) -> Tree:
             raise ProblemError(_("expected a name and a value"), allowed="--set OA=120", file=words)
         if name not in parameters:
             none = None if parameters else _("none: the file has no block `parameters`")
-            raise unknown_name_error(
-                name, parameters, _("there is no parameter of that name"), none, path=path, file=words
-            )
+            raise unknown_name_error(name, parameters, _("no parameter has this name"), none, path=path, file=words)
         if path in settings_by_path:
             raise ProblemError(
                 _("this parameter is set twice"), path=path, found=f"{settings_by_path[path]}, {words}", file=words

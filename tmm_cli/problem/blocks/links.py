@@ -158,7 +158,7 @@ class _LinkReader:
     def listed(self, names: list[str], section: FileSection) -> dict[str, complex]:
         """Return the points of a list: at most two, the second at the distance `length` from the first."""
         if len(set(names)) < len(names):
-            raise section.refusal("points", _("a point is named twice"), str(names))
+            raise section.refusal("points", _("the same point is listed twice"), str(names))
         if len(names) > 2:
             raise section.refusal(
                 "points",

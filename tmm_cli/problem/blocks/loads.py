@@ -290,11 +290,14 @@ def _build_load(name: str, section: FileSection, linkage: Linkage) -> LoadRecord
     both = bool(pushes.size) and bool(turns.size)
     if (pushes.table is not None and turns.table is not None) or ((pushes.table or turns.table) and both):
         raise section.refusal(
-            "", _("a load given by a table cannot be both a force and a moment"), "both", _("two loads")
+            "", _("a load given by a table cannot be both a force and a moment"), "both", _("two separate loads")
         )
     if both and pushes.resists != turns.resists:
         raise section.refusal(
-            "", _("the force and the moment of one load must both have `resists`, or neither"), "both", _("two loads")
+            "",
+            _("the force and the moment of one load must both have `resists`, or neither"),
+            "both",
+            _("two separate loads"),
         )
     window = None if isinstance(keys.when, str) else _crank_window(section, linkage)
     when, stroke_link = "always", ""
@@ -360,7 +363,11 @@ def _build_pressure(load: FileSection, linkage: Linkage) -> _LoadComponent:
     """Return the force of a pressure on an area or on a piston of given bore."""
     if load.keys.force is not None:
         raise load.refusal(
-            "pressure", _("a load cannot have both `force` and `pressure`"), "both", _("two loads"), at_key=True
+            "pressure",
+            _("a load cannot have both `force` and `pressure`"),
+            "both",
+            _("two separate loads"),
+            at_key=True,
         )
     if load.one_of("area", "bore") == "area":
         area = load.positive("area", AREA)

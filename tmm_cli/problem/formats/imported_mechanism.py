@@ -142,7 +142,7 @@ class FileNode:
 
     def _bounded(self, length: int) -> None:
         if length > MAX_ITEMS:
-            raise self.refused(_("this is too long: at most {max_length}").format(max_length=MAX_ITEMS))
+            raise self.refused(_("too many items or characters: at most {max_length}").format(max_length=MAX_ITEMS))
 
     def pairs(self) -> Iterator[tuple[str, FileNode]]:
         """Yield keys and values."""

@@ -109,7 +109,9 @@ def _refuse_wrong_names(saved: PmksFile, file: str) -> None:
     """Refuse names that occur twice or that refer to no record."""
     for records in (saved.joints, saved.links):
         if len(records) > MAX_RECORDS:
-            raise ProblemError(_("this is too long: at most {max_length}").format(max_length=MAX_RECORDS), file=file)
+            raise ProblemError(
+                _("too many items or characters: at most {max_length}").format(max_length=MAX_RECORDS), file=file
+            )
     joints, links = [joint.id for joint in saved.joints], [link.id for link in saved.links]
     link_names = {*links, *(name for link in saved.links for name in link.parts)}
     for names in (joints, links):
