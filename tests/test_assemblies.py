@@ -420,7 +420,7 @@ def test_an_undecided_sketch_is_told_of_the_listing_and_the_listing_works(tmp_pa
     assert f"tmm kinematics {file} --assemblies" in refused.stderr
     done = tmm("kinematics", file, "--assemblies", "--json", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert "the sketch does not decide" in done.stderr
+    assert "the sketch does not determine the assembly" in done.stderr
     (place,) = json.loads(done.stdout)["assemblies"]
     assert place["undecided"] == "III(2,3,4,5)" and place["position"] is None
     (group,) = place["groups"]

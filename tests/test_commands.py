@@ -392,10 +392,10 @@ def test_no_line_of_help_is_cut():
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_every_command_has_help_and_stands_in_the_readme(command):
+def test_every_command_has_help_and_stands_in_the_documentation(command):
     done = tmm(command, "--help")
     assert done.returncode == 0 and len(done.stdout) > 100
-    assert f"tmm {command}" in (ROOT / "README.md").read_text(encoding="utf-8")
+    assert f"tmm {command}" in (ROOT / "problems" / "docs" / "COMMANDS.md").read_text(encoding="utf-8")
 
 
 def test_a_narrow_terminal_breaks_tables_into_parts_and_no_number_is_cut():

@@ -318,14 +318,14 @@ def test_the_flywheel_for_a_heavy_ram_grows_as_the_ram_does():
 
 
 @pytest.mark.parametrize(
-    ("flywheel", "how"), [("", "without any flywheel"), (", inertia: 9", "with the flywheel that is given")]
+    ("flywheel", "how"), [("", "even without a flywheel"), (", inertia: 9", "with the given flywheel")]
 )
 def test_a_fluctuation_that_is_kept_already_is_told_with_what_keeps_it(flywheel, how):
     text = (PROBLEMS / "four-stroke-engine.yaml").read_text()
     text = text.replace(
         "delta: 1/80, flywheel: {shape: rim", f"mean speed: 6000 rpm, delta: 0.9, flywheel: {{shape: rim{flywheel}"
     )
-    with pytest.raises(ProblemError, match=f"the fluctuation is smaller than this {how}"):
+    with pytest.raises(ProblemError, match=f"the coefficient of fluctuation is smaller than this {how}"):
         solve(build_any_problem(read_text(text, "engine.yaml")))
 
 

@@ -17,6 +17,7 @@ import pytest
 from bank import NAMES, solved
 from test_commands import tmm
 
+from tmm_cli.language import words_of_files
 from tmm_cli.mechanics.analysis import list_quantities
 from tmm_cli.reports import csv_text, tables, to_json
 
@@ -61,9 +62,10 @@ def paths(value: Any, above: str = "") -> Iterator[str]:
 def headings(name: str) -> Iterator[str]:
     """Headings of the CSV files of a problem, by file."""
     results = solved(name)
-    for table in tables(results):
-        first = next(iter(csv_text(table, results.problem.units)))
-        yield f"{table.name}: {first.strip()}"
+    with words_of_files():
+        for table in tables(results):
+            first = next(iter(csv_text(table, results.problem.units)))
+            yield f"{table.name}: {first.strip()}"
 
 
 def names_of_problem(name: str) -> dict[str, list[str]]:
