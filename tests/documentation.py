@@ -29,6 +29,7 @@ sys.path.insert(0, str(Path(__file__).parent))  # as pytest does
 import numpy as np
 import reference_of_commands
 import reference_of_format
+import reference_of_modules
 import reference_of_quantities
 from PIL import Image
 from reference_of_format import DOCS, PROBLEMS, ROOT
@@ -39,6 +40,7 @@ REFERENCES = {
     "FORMAT.md": reference_of_format.lines,
     "QUANTITIES.md": reference_of_quantities.lines,
     "COMMANDS.md": reference_of_commands.lines,
+    "../../tmm_cli/MODULES.md": reference_of_modules.lines,
 }
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.M | re.S)
 WIDTH = "100"  # of a terminal
