@@ -1,4 +1,4 @@
-"""Grading: variants of a task, what students hand in, how right it is, and what went wrong where it is not."""
+"""Grading: variants of a task, submissions of students, marks, and explanations of mistakes."""
 
 from tmm_cli.interfaces import lazy
 

@@ -1,4 +1,4 @@
-"""The answer key of a group, for the teacher: what is right for each student, and what can tell nothing."""
+"""Answer key of a group for the teacher: right answers, tolerances, and questions that are not informative."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ WIDE = 0.25  # of the largest value: whoever guesses is right
 
 @dataclass(frozen=True)
 class KeyLine:
-    """An answer of a student. value: SI; allowed: by how much it may be off, SI; share: of the largest value."""
+    """Answer of a student: value (SI), tolerance (SI), and tolerance as a fraction of the largest value."""
 
     student: str
     asked: Question
@@ -33,7 +33,7 @@ class KeyLine:
 
     @property
     def idle(self) -> str:
-        """Why it can tell nothing, if so."""
+        """Reason why the question is not informative, or ""."""
         if self.asked.quantity.against == "exact":
             return ""
         if self.share > WIDE:
@@ -41,7 +41,7 @@ class KeyLine:
         return _("not informative: zero counts as a right answer") if abs(self.value) <= self.allowed else ""
 
     def cells(self, task: Task) -> list[str]:
-        """By the header."""
+        """Return the cells of the line in the order of HEADER."""
         quantity = self.asked.quantity
         scale = task.units.factor(quantity.dimension)
         value = self.value if abs(self.value) > NOTHING * self.allowed else 0
@@ -57,7 +57,11 @@ class KeyLine:
 
 
 def compute_answer_key(task: Task, table: VariantTable) -> Iterator[KeyLine]:
-    """Student by student. Those whose mechanism cannot be solved have none. Raises ProblemError."""
+    """Yield the answers of all students in order; students whose mechanism cannot be solved have none.
+
+    Raises:
+        ProblemError: The table or the task is wrong.
+    """
     students = list(table.rows)
     dimensions, columns = numbers_of(task, table, students)
     found: dict[int, list[KeyLine]] = {}
@@ -81,7 +85,7 @@ def compute_answer_key(task: Task, table: VariantTable) -> Iterator[KeyLine]:
 
 
 def idle_questions(lines: list[KeyLine]) -> Iterator[str]:
-    """What can tell nothing, a sentence each."""
+    """Yield a sentence for each question that is not informative."""
     students = len({line.student for line in lines})
     found = Counter((line.asked.name, line.idle) for line in lines if line.idle)
     for (name, why), count in found.items():

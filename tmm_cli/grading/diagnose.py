@@ -34,14 +34,14 @@ Explanation = tuple[float, tuple[int, ...], Vector]  # its cost, which cases, an
 
 @dataclass(frozen=True)
 class Claim:
-    """What explains some answers (places in what is asked) of a student. alternatives: each alone does so."""
+    """Explanation of some wrong answers (indices of the questions); each of the alternatives explains them alone."""
 
     alternatives: tuple[Mistake, ...]
     answers: tuple[int, ...]
 
     @property
     def told(self) -> str:
-        """For the student."""
+        """Sentence for the student."""
         sentences = list(dict.fromkeys(case.told for case in self.alternatives))
         if len(sentences) == 1:
             return sentences[0]
@@ -51,12 +51,16 @@ class Claim:
 
     @property
     def called(self) -> str:
-        """For the statistics of the group."""
+        """Name for the statistics of the group."""
         return " / ".join(sorted({case.called for case in self.alternatives}))
 
 
 def diagnose_students(family: VariantFamily, right: Right, written: Written) -> dict[int, list[Claim]]:
-    """Claims by student, for those who have wrong answers."""
+    """Explain the wrong answers of a family of variants.
+
+    Returns:
+        Explanations by index of the student, for students with wrong answers.
+    """
     wrong = right.error(written) > right.allowed
     rows = np.flatnonzero(np.any(wrong, axis=1))
     if not rows.size:
@@ -67,7 +71,7 @@ def diagnose_students(family: VariantFamily, right: Right, written: Written) -> 
 
 
 class _Sheets:
-    """Students with wrong answers, and what every mistake would have made of their variants."""
+    """Students with wrong answers, and the answers that each typical mistake would give for their variants."""
 
     def __init__(self, family: VariantFamily, right: Right, written: Written) -> None:
         self.family, self.right, self.written, self.cases = family, right, written, cases(family)
@@ -90,18 +94,18 @@ class _Sheets:
         self.slips = np.array([c for c, case in enumerate(self.cases) if not case.solves and self.whole[c]])
 
     def errors(self, value: Vector, rows: Real | None = None) -> Real:
-        """In standard errors; of answers that are not there zero, of values that are not there many."""
+        """Return errors in standard errors; 0 for missing answers, infinite for values that do not exist."""
         right, written = self.right, self.written
         if rows is not None:
             right, written = right.take(rows), written.take(rows)
         return _errors(right, written, value)
 
     def cost(self, value: Vector, rows: Real | None = None) -> Real:
-        """How badly a value explains the sheets: squares of standard errors, as far as they count."""
+        """Return the misfit of a value: sum of squared standard errors, each capped."""
         return _cost(self.errors(value, rows))
 
     def claims(self) -> Iterator[list[Claim]]:
-        """Student by student."""
+        """Yield the explanations of each student."""
         pairs = self._pairs()
         for n in range(len(self.none)):
             yield self._claims(n, pairs.get(n, []))
@@ -120,7 +124,7 @@ class _Sheets:
         return [*found, *self._slips(n, {k for claim in found for k in claim.answers})]
 
     def _named(self, n: int, best: Explanation, rivals: Sequence[Explanation]) -> list[Claim]:
-        """The mistakes of the best explanation, each with what explains as well in its place."""
+        """Return the mistakes of the best explanation, each with its equally good alternatives."""
         found = []
         for c in best[1]:
             others = {
@@ -135,7 +139,7 @@ class _Sheets:
         return found
 
     def _explained(self, n: int, best: Explanation, c: int) -> tuple[int, ...]:
-        """Wrong answers that it explains, and that this mistake of it changes."""
+        """Return the wrong answers that an explanation fits and that this mistake changes."""
         fits = self.errors(best[2][None], np.array([n]))[0] <= PER_ALLOWED
         rest = [d for d in best[1] if d != c]
         without = self.values[rest[0], n] if rest else self.right.value[n]
@@ -144,7 +148,7 @@ class _Sheets:
         return tuple(np.flatnonzero(self.wrong[n] & fits & moved).tolist())
 
     def _slips(self, n: int, known: set[int]) -> Iterator[Claim]:
-        """Mistakes in writing down single answers."""
+        """Yield mistakes made in writing down single answers."""
         right, at = self.right.take(np.array([n])), self.slips
         with np.errstate(all="ignore"):
             moved = np.abs(self.values[at, n] - right.value) / right.scale > 4 / PER_ALLOWED * right.allowed
@@ -155,7 +159,7 @@ class _Sheets:
                 yield Claim(tuple(fits), (k,))
 
     def _pairs(self) -> dict[int, list[Explanation]]:
-        """For students whom no single mistake explains: the best pairs, their costs and values."""
+        """Return, for students whom no single mistake explains, the best pairs with their costs and values."""
         best = np.argmin(self.costs, axis=0)
         rows = np.arange(len(best))
         left = np.any(self.errors(self.values[best, rows]) > PER_ALLOWED, axis=1)
@@ -176,7 +180,7 @@ class _Sheets:
         return found
 
     def _likely(self, n: int) -> list[tuple[int, int]]:
-        """Pairs that explain a sheet best if their changes add up, or multiply; one of the two explains much alone."""
+        """Return pairs that fit a sheet best if their changes add or multiply; one of the two explains much alone."""
         right, values, costs = self.right.take(np.array([n])), self.values[:, n], self.costs[:, n]
         written = self.written.take(np.array([n]))
         moving = np.all(np.isfinite(values), axis=1) & np.any(values != right.value, axis=1)
@@ -219,7 +223,7 @@ BLOCK = 50  # students compared with those at once
 
 
 def with_copies(found: Sequence[StudentMarks]) -> list[StudentMarks]:
-    """The marks with the names of those whose variants fit better."""
+    """Return the marks, with the name of the student whose variant fits the answers better."""
     value, size, right, scale, allowed = _arrays(found)
     there = ~np.isnan(value)
     own = _fits(value, size, right, scale, allowed)
@@ -243,7 +247,7 @@ def with_copies(found: Sequence[StudentMarks]) -> list[StudentMarks]:
 
 
 def _told(marks: StudentMarks, other: str, explained: Sequence[bool]) -> StudentMarks:
-    """With the other's name, and without the mistakes that would explain what the other's variant does."""
+    """Add the other student's name and remove mistakes explained by the other variant."""
     own = [
         replace(mark, reasons=() if mark.state == "wrong" else mark.reasons, mistakes=()) if of_other else mark
         for mark, of_other in zip(marks.marks, explained, strict=True)
@@ -259,7 +263,7 @@ def _fits(value: Real, size: Real, right: Real, scale: Real, allowed: Real) -> R
 
 
 def _arrays(found: Sequence[StudentMarks]) -> tuple[Real, Real, Real, Real, Real]:
-    """Values, whether they are sizes alone, what is right, scales, what is allowed: (students, answers)."""
+    """Return values, whether only magnitudes, right values, scales, tolerances: each (students, answers)."""
 
     def of(part: str, kind: type) -> Real:
         rows = [[getattr(mark, part) for mark in marks.marks] for marks in found]

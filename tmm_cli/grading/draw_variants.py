@@ -1,4 +1,4 @@
-"""Whether variants are fit for students: they turn, keep their stones in their slots, force no link across its way."""
+"""Drawing of variants: feasible, different from one another, and spread over the range of their answers."""
 
 from __future__ import annotations
 
@@ -41,11 +41,10 @@ Held = tuple[str, str]  # a link and the pairs in which it is driven
 
 @dataclass(frozen=True)
 class Faults:
-    """What would be wrong with a variant, by the measure of the file's own.
+    """Requirements on a variant, taken from the mechanism of the problem file.
 
-    turns: of a full cycle; 0 where the driver does not turn fully. strokes: how many its output has. limits: largest
-    pressure angles (rad): those that are allowed, or that of the file's own variant where it goes beyond one that the
-    file does not set.
+    turns: crank turns of a full cycle, 0 if the driver does not rotate fully. strokes: number of strokes of the output.
+    limits: largest permitted pressure angles (rad) by link and pair.
     """
 
     turns: int
@@ -53,7 +52,7 @@ class Faults:
     limits: Mapping[Held, float]
 
     def of(self, family: VariantFamily) -> Real:
-        """A sentence for every variant, "" where nothing is wrong."""
+        """Return the reason why each variant is rejected, "" for a feasible one."""
         linkage = family.linkage
         low = np.min(family.q, axis=1, keepdims=True)
         if self.turns:
@@ -85,7 +84,11 @@ class Faults:
 
 
 def tables_apart(task: Task, table: VariantTable) -> Iterator[str]:
-    """Load tables that do not end with the stroke of the variants of a table. Raises ProblemError."""
+    """Yield messages on load tables that do not end with the stroke of the variants.
+
+    Raises:
+        ProblemError: The table or the task is wrong.
+    """
     linkage = task.problem.whole.linkage
     if not any(load.table is not None and load.table.against == "stroke" for load in linkage.loads):
         return
@@ -100,7 +103,11 @@ def tables_apart(task: Task, table: VariantTable) -> Iterator[str]:
 
 
 def faults_of(task: Task) -> Faults:
-    """Raises ProblemError where the file's own variant cannot be moved."""
+    """Return the requirements set by the mechanism of the file.
+
+    Raises:
+        ProblemError: The mechanism of the file cannot be moved.
+    """
     results = solve(task.problem, "kinematics")
     mechanism, problem = results.mechanism, results.problem
     limits = {
@@ -133,7 +140,7 @@ def _slots(states: LinkStates) -> Iterator[tuple[Real, str]]:
 
 
 def _top(values: Real) -> Real:
-    """The largest of each row, by a parabola through it and its neighbours."""
+    """Return the maximum of each row, refined by a parabola through its neighbours."""
     k = np.argmax(values, axis=1)[:, None]
     last = values.shape[1] - 1
     before, top, after = (np.take_along_axis(values, np.clip(k + n, 0, last), 1)[:, 0] for n in (-1, 0, 1))
@@ -162,9 +169,10 @@ MOSTLY = 0.75  # of what is asked is to be better than that
 
 @dataclass(frozen=True)
 class Judged:
-    """Candidates: why each is thrown away, "" where it is sound; rows of the sound ones, and what comes out of these.
+    """Judged candidates.
 
-    values: (sound ones, results); allowed: by how much these may differ and still be right.
+    why: reason of rejection, "" if feasible. rows: indices of feasible candidates. values: their answers, (feasible,
+    answers). allowed: tolerances of the answers.
     """
 
     why: Real
@@ -174,9 +182,10 @@ class Judged:
 
 
 class Variety:
-    """What a task's variants are drawn from: thrown counts the candidates thrown away, by the reason.
+    """Source of variants of a task; `thrown` counts rejected candidates by reason.
 
-    Raises ProblemError.
+    Raises:
+        ProblemError: The task cannot be varied.
     """
 
     def __init__(self, task: Task) -> None:
@@ -198,11 +207,15 @@ class Variety:
         return self.task.make(self.names, self.dimensions, values)
 
     def texts(self, picks: Real) -> tuple[str, ...]:
-        """A variant as it stands in a table."""
+        """Return the parameter values of a variant as table cells."""
         return tuple(choice.texts[k] for choice, k in zip(self.free, picks.tolist(), strict=True))
 
     def judged(self, picks: Real) -> Judged:
-        """Candidates by the numbers of their values, (candidates, parameters). Raises ProblemError."""
+        """Judge candidates given by indices of parameter values, (candidates, parameters).
+
+        Raises:
+            ProblemError: A candidate is not a valid problem.
+        """
         columns = np.stack([values[picks[:, k]] for k, values in enumerate(self.numbers)], axis=1)
         why = np.full(len(columns), "", dtype=object)
         rows, found = [np.zeros(0, dtype=int)], [(np.zeros((0, len(self.asked) or len(self.free))),) * 2]
@@ -226,7 +239,7 @@ class Variety:
         return Judged(why, np.concatenate(rows), values.astype(complex), allowed)
 
     def _families(self, columns: Real) -> Iterator[tuple[Real, VariantFamily | LinkageError]]:
-        """All with the file's own variant before them, whose assembly is that of the sketch; or each alone."""
+        """Yield the candidates with the file's own variant before them, assembled as in the sketch; or each alone."""
         if not self.alone:
             family = build_family(self._make, np.concatenate([self.own, columns]))
             if family is not None:
@@ -236,7 +249,7 @@ class Variety:
             yield from ((np.array([row]), family) for _rows, family in split_families(self._make, own[None]))
 
     def pools(self, seed: int) -> Iterator[Iterator[Real]]:
-        """Sound candidates of each pool, one after another in the order of spreading."""
+        """Yield pools of feasible candidates, each ordered so that its members are far from all before them."""
         for number in range(POOLS):
             random = np.random.default_rng([seed, number])
             tried = SLOWLY if self.alone else TRIED
@@ -264,7 +277,7 @@ class Variety:
         return (picks[rows[row]] for row in _spread(values, allowed, self.thrown))
 
     def as_drawn(self, picks: Real) -> bool:
-        """Whether a variant as a file of its own is assembled as the file's own variant is."""
+        """Return True if a variant, written as a file of its own, is assembled as in the file."""
         if not self._assembled_alike(picks):
             self.thrown[_("the sketch shows a different assembly from that of the problem file")] += 1
             return False
@@ -284,14 +297,22 @@ class Variety:
 
 
 def draw(variety: Variety, seed: int, count: int) -> VariantTable:
-    """Variants 1, 2, ... of this count, or fewer where there are no more. Raises ProblemError."""
+    """Draw `count` numbered variants, or fewer if there are not as many.
+
+    Raises:
+        ProblemError: The task cannot be varied.
+    """
     every = (picks for pool in variety.pools(seed) for picks in pool if variety.as_drawn(picks))
     rows = {variety.texts(picks): None for picks in islice(every, count)}
     return VariantTable(variety.names, {str(n + 1): row for n, row in enumerate(rows)})
 
 
 def draw_for(variety: Variety, seed: int, students: Sequence[str]) -> VariantTable:
-    """A variant for each of these, the first ones first; some may have none. Raises ProblemError."""
+    """Draw a variant for each student, in order; some may have none.
+
+    Raises:
+        ProblemError: The task cannot be varied.
+    """
     found: dict[str, tuple[str, ...]] = {}
     taken: set[tuple[str, ...]] = set()
     for number, pool in enumerate(variety.pools(seed)):
@@ -312,14 +333,14 @@ def draw_for(variety: Variety, seed: int, students: Sequence[str]) -> VariantTab
 
 
 def _well_conditioned(found: Right) -> Real:
-    """Which variants ask mostly what drawing errors act on little."""
+    """Return which variants have mostly answers that are not sensitive to drawing errors."""
     tolerance = np.array([one.tolerance for one in found.asked])
     exact = np.array([one.quantity.against == "exact" for one in found.asked])
     return np.asarray(np.mean((found.allowed <= CLOSE * tolerance) | exact, axis=1) >= MOSTLY)
 
 
 def _spread(values: Vector, allowed: Real, thrown: Counter[str]) -> Iterator[int]:
-    """Rows, each as far as can be from all before it; those that give the answers of another one are thrown away."""
+    """Yield row indices, each as far as possible from those before; rows with the same answers are dropped."""
     if not len(values):
         return
     size = np.nanmax(values.real, axis=0) - np.nanmin(values.real, axis=0) + np.ptp(values.imag, axis=0)

@@ -1,4 +1,4 @@
-"""Drawing of a group: how points are spread, hardest quantities, commonest mistakes."""
+"""Chart of a group: distribution of points, hardest quantities, most frequent mistakes."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ STATES: dict[State, tuple[str, str]] = {
 
 
 def chart(task: Task, marks: Sequence[StudentMarks]) -> Drawing:
-    """A landscape sheet of A4."""
+    """Return the chart of a group on a landscape A4 sheet."""
     own = percents(marks)
     told = _("students: {students}, handed in: {there}; median {median:.0f} %, mean {mean:.0f} % of the points")
     caption = told.format(
@@ -90,7 +90,7 @@ def _spread(panel: Panel, counts: Real, own: Real) -> None:
 
 
 def _counts(panel: Panel) -> None:
-    """Lines at whole numbers of students."""
+    """Draw grid lines at whole numbers of students."""
     for value, text in panel.y.ticks(6):
         if value == round(value):
             height = float(panel.y.on(value))
@@ -131,7 +131,7 @@ def _title(panel: Panel, text: str) -> None:
 
 
 def _across(panel: Panel, ticks: Iterable[tuple[float, str]]) -> None:
-    """Lines at these values, which stand below the panel."""
+    """Draw vertical grid lines with their values below the panel."""
     for value, text in ticks:
         place = float(panel.x.on(value))
         panel.upright(place, GRID_COLOUR, 0.5, z=0.5)
@@ -146,7 +146,7 @@ def _bar(panel: Panel, row: int, first: float, last: float, colour: str) -> None
 
 
 def _name(panel: Panel, row: int, name: str) -> None:
-    """Beside its bar, on two lines where it is long."""
+    """Write a name beside its bar, on two lines if it is long."""
     lines = textwrap.wrap(name, LONGEST, max_lines=2, placeholder="…")
     middle = complex(panel.x.start - 1.5, float(panel.y.on(row + 0.5)))
     for k, line in enumerate(lines):
@@ -154,7 +154,7 @@ def _name(panel: Panel, row: int, name: str) -> None:
 
 
 def _legend(panel: Panel, entries: Iterable[tuple[str, str]], at: complex) -> None:
-    """Small fields of these colours with their words."""
+    """Draw a legend: coloured fields with their texts."""
     for text, colour in entries:
         _area(panel, at.real, at.real + 5, at.imag - 1.2, at.imag + 1.2, colour)
         panel.text(at + 6, text)
@@ -162,12 +162,12 @@ def _legend(panel: Panel, entries: Iterable[tuple[str, str]], at: complex) -> No
 
 
 def _room(entries: Iterable[tuple[str, str]]) -> float:
-    """Width of a legend, mm."""
+    """Return the width (mm) of a legend."""
     return sum(11 + text_width(text, SMALL * POINT) for text, __ in entries)
 
 
 def _area(panel: Panel, left: float, right: float, low: float, high: float, colour: str, z: float = 2.0) -> None:
-    """A rectangle on the paper, mm."""
+    """Draw a filled rectangle (mm on paper)."""
     corners = [complex(left, low), complex(right, low), complex(right, high), complex(left, high)]
     panel.sheet.area(corners, colour, "none", z=z, blocks=False)
 
@@ -176,6 +176,6 @@ def _area(panel: Panel, left: float, right: float, low: float, high: float, colo
 
 
 def files(book: Gradebook) -> Iterator[tuple[str, Iterable[bytes]]]:
-    """One drawing, in every format of drawings."""
+    """Yield the chart in every drawing format."""
     for name, picture in pictures([("group", chart(book.task, book.marks))]):
         yield name, (picture,)

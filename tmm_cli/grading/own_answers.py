@@ -1,4 +1,4 @@
-"""A student's own answer in the place of the right one: what later answers should have been, given it."""
+"""Error carried forward: later answers judged by the student's own earlier answers."""
 
 from __future__ import annotations
 
@@ -35,9 +35,10 @@ from tmm_cli.mechanics.numerics import Real, Vector, cross, squared_length
 
 @dataclass(frozen=True)
 class OwnMotion(Mistake):
-    """Velocity or acceleration of a point, or omega or epsilon of a link, as the student has it.
+    """Student's velocity or acceleration of a point, or ω or ε of a link.
 
-    given: (students, 1), SI. rate, gain: speed and acceleration of the driver, as groups know transfer functions only.
+    given: values (students, 1) in SI. rate, gain: velocity and acceleration of the driver, since group solvers work
+    with transfer functions.
     """
 
     point: str
@@ -56,13 +57,13 @@ class OwnMotion(Mistake):
 
 @dataclass(frozen=True)
 class OwnGroup(WrappedSolver):
-    """A group whose links move as the student's answer says; points that are known keep their motion."""
+    """Group whose links move as the student's answer says; known points keep their motion."""
 
     own: OwnMotion
     linkage: Linkage
 
     def _hinge(self, link: str) -> tuple[str, complex, complex] | None:
-        """The outer hinge of a link: the known link, and its place on both."""
+        """Return the external hinge of a link: the known link and the local coordinates of the hinge on both; or None."""
         for pair in self.group.outer:
             if pair.kind == "R" and self.group.own(pair) == link:
                 other = pair.other(link)
@@ -128,7 +129,7 @@ class OwnGroup(WrappedSolver):
 
 @dataclass(frozen=True)
 class OwnSpeed(Mistake):
-    """The speed of the crank as the student has it, rad/s."""
+    """Student's crank speed, rad/s."""
 
     given: Vector
 
@@ -140,7 +141,7 @@ class OwnSpeed(Mistake):
 
 @dataclass(frozen=True)
 class OwnInertia(Mistake):
-    """An inertia force or couple as the student has it."""
+    """Student's inertia force or couple."""
 
     link: str
     part: str
@@ -155,7 +156,7 @@ class OwnInertia(Mistake):
 
 @dataclass(frozen=True)
 class OwnReaction(Mistake):
-    """A reaction as the student has it, on one of the pair's links."""
+    """Student's reaction on one link of a pair."""
 
     pair: str
     on: str
@@ -168,7 +169,7 @@ class OwnReaction(Mistake):
 
 @dataclass(frozen=True)
 class OwnReactions(WrappedSolver):
-    """A group one of whose reactions is the student's."""
+    """Group with a reaction replaced by the student's."""
 
     own: OwnReaction
 
@@ -184,9 +185,13 @@ class OwnReactions(WrappedSolver):
 
 
 def own_answer(quantity: NamedQuantity, value: Vector, motion: Motion, right: Vector) -> Mistake | None:
-    """A quantity with the students' values, (students, 1), in its place; None where nothing later hangs on it.
+    """Return the replacement of a quantity by the students' values; None if no later quantity depends on it.
 
-    right: what is right for them; motion: theirs.
+    Args:
+        quantity: Quantity to replace.
+        value: Values of the students, (students, 1), SI.
+        motion: Motion of their variants.
+        right: Right values, (students, 1).
     """
     kind, linkage = quantity.name.partition(" of ")[0], motion.linkage
     thing = quantity.thing
@@ -221,7 +226,11 @@ Cell = tuple[int, int]  # a student and an answer
 def following(
     family: VariantFamily, right: Right, written: Written, claims: dict[int, list[Claim]]
 ) -> dict[Cell, tuple[int, ...]]:
-    """Wrong answers that follow from earlier ones of the same student: from which."""
+    """Find wrong answers that are right with the student's own earlier answers.
+
+    Returns:
+        Indices of the earlier answers, by (student, answer).
+    """
     wrong = right.error(written) > right.allowed
     whole = _whole(right, written)
     found: dict[Cell, tuple[int, ...]] = _by_mistake(right, wrong, claims)
@@ -242,14 +251,14 @@ def following(
 
 
 def _whole(right: Right, written: Written) -> Real:
-    """Answers as vectors: what is told by its size alone has the right direction."""
+    """Return answers as vectors; an answer given by magnitude alone gets the right direction."""
     with np.errstate(all="ignore"):
         direction = np.where(right.value == 0, 1, right.value / np.abs(right.value))
     return np.where(written.size, np.abs(written.value) * direction, written.value)
 
 
 def _earlier(right: Right, wrong: Real, n: int, k: int) -> Iterable[int]:
-    """Wrong answers that come before one in the work, at its position."""
+    """Yield the wrong answers that come before one in the work, at the same position."""
     asked = right.asked
     for j in np.flatnonzero(wrong[n]).tolist():
         same = asked[j].position == asked[k].position
@@ -258,7 +267,7 @@ def _earlier(right: Right, wrong: Real, n: int, k: int) -> Iterable[int]:
 
 
 def _by_mistake(right: Right, wrong: Real, claims: dict[int, list[Claim]]) -> dict[Cell, tuple[int, ...]]:
-    """What one mistake in the work made wrong costs once: later answers follow from the first that shows it."""
+    """Return wrong answers caused by a mistake that an earlier answer already shows: it is charged once."""
     found: dict[Cell, tuple[int, ...]] = {}
     for n, own in claims.items():
         for claim in own:
@@ -278,7 +287,7 @@ def _fitting(
     wanted: dict[tuple[int, ...], list[Cell]],
     known: dict[Cell, tuple[int, ...]],
 ) -> dict[Cell, tuple[int, ...]]:
-    """Those of the wanted answers that fit the sources under which they stand."""
+    """Return the answers that are right with the sources under which they are listed."""
     found: dict[Cell, tuple[int, ...]] = {}
     for sources, cells in wanted.items():
         cells = [cell for cell in cells if cell not in known and cell not in found]

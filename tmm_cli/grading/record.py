@@ -1,4 +1,4 @@
-"""What goes into grading and what comes out of it: variants, submissions, marks."""
+"""Data of grading: variants, submissions, marks; and the reading of answers in units."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Form = Literal["number", "size", "components", "polar"]
 
 @dataclass(frozen=True)
 class VariantTable:
-    """Values of parameters by student: rows[student] are texts in the order of names."""
+    """Parameter values by student: rows[student] are texts in the order of names."""
 
     names: tuple[str, ...]
     rows: Mapping[str, tuple[str, ...]]
@@ -30,10 +30,10 @@ class VariantTable:
 
 @dataclass(frozen=True)
 class Given:
-    """An answer as it was read: one number, or two.
+    """Answer as it was read: one number, or two.
 
-    components: x and y; polar: size and direction. unit: as it was written, or as the sheet asks for it; "" where
-    neither says it. turn_unit: of the direction, likewise. text: what stood there.
+    components: x and y; polar: magnitude and direction. unit: as written, or as the sheet asks; "" if neither gives it.
+    turn_unit: the same for the direction. text: the original text.
     """
 
     first: float
@@ -46,11 +46,10 @@ class Given:
 
 @dataclass(frozen=True)
 class Submission:
-    """What one student handed in.
+    """Submission of one student.
 
-    problems: what could not be read, a sentence each; they stop nothing. by_angle: answers whose position is told by
-    the driver's angle (rad), by quantity and angle: which position that is depends on the variant. unread: nothing
-    could be read.
+    problems: sentences on what could not be read. by_angle: answers at a driver angle (rad) instead of a position
+    number, by quantity and angle. unread: nothing could be read.
     """
 
     student: str
@@ -65,11 +64,11 @@ State = Literal["missing", "right", "follows", "wrong"]
 
 @dataclass(frozen=True)
 class Mark:
-    """An answer judged.
+    """Judged answer.
 
-    value, right: SI, in the form of the quantity; size: the value is that of a vector without its direction. scale:
-    the largest value in the cycle, of which error and allowed are shares. reading: the unit in which it was taken where
-    none was written. reasons: sentences for the student. mistakes: their names, for the group.
+    value, right: SI, in the form of the quantity; size: the value is the magnitude of a vector. scale: reference value
+    of `error` and `allowed`. reading: unit assumed where none was written. reasons: sentences for the student.
+    mistakes: their names for the statistics.
     """
 
     key: Key
@@ -89,13 +88,13 @@ class Mark:
 
     @property
     def judged(self) -> bool:
-        """Whether there was a variant to judge it by."""
+        """True if there was a variant to judge the answer by."""
         return self.allowed > 0
 
 
 @dataclass(frozen=True)
 class StudentMarks:
-    """All of one student. copied: of whom the answers fit the variant better, for the teacher alone."""
+    """Marks of one student; `copied`: student whose variant fits the answers better, for the teacher only."""
 
     student: str
     marks: tuple[Mark, ...]
@@ -129,7 +128,11 @@ Cells = dict[tuple[int, int], str]  # words by student and answer
 
 
 def read(units: UnitSystem, wanted: Right, submissions: Sequence[Submission]) -> tuple[Written, Cells, Cells]:
-    """Answers in SI, read in the unit that fits where none is written: which that was; and what is no answer, why."""
+    """Read answers in SI; without a unit, in the most fitting of the usual ones.
+
+    Returns:
+        The answers, the assumed units, and the reasons why a text is not an answer; the last two by (student, answer).
+    """
     shape = len(submissions), len(wanted.asked)
     value, size = np.full(shape, np.nan, dtype=complex), np.zeros(shape, dtype=bool)
     how: Cells = {}
@@ -156,7 +159,7 @@ def read(units: UnitSystem, wanted: Right, submissions: Sequence[Submission]) ->
 
 
 def _alike(submissions: Sequence[Submission], key: Key) -> dict[tuple[Form, str, str], list[int]]:
-    """Who answered in the same form and units."""
+    """Return the indices of submissions by the form and the units of an answer."""
     found: dict[tuple[Form, str, str], list[int]] = {}
     for n, submission in enumerate(submissions):
         given = submission.answers.get(key)
@@ -166,13 +169,17 @@ def _alike(submissions: Sequence[Submission], key: Key) -> dict[tuple[Form, str,
 
 
 def _factors(quantity: NamedQuantity, unit: str, units: UnitSystem) -> dict[str, float]:
-    """In SI: the unit as it is written, else each that it may be, the file's own first. Raises UnitError."""
+    """Return SI factors by unit: the written unit, otherwise all possible ones, the file's own first.
+
+    Raises:
+        UnitError: The unit does not measure this quantity.
+    """
     names = (unit,) if unit else (units.symbol(quantity.dimension), *UNSAID.get(quantity.dimension, ()))
     return {name: factor(name, quantity.dimension) for name in names}
 
 
 def _numbers(given: Sequence[Given], form: Form, turn: float) -> Vector:
-    """What was written, as complex numbers of the unit."""
+    """Return the written answers as complex numbers in their unit."""
     first, second = np.array([[one.first, one.second] for one in given]).T
     turned = first * np.exp(1j * second * turn) if form == "polar" else first
     found: Vector = turned + 1j * second if form == "components" else turned.astype(complex)
@@ -181,7 +188,11 @@ def _numbers(given: Sequence[Given], form: Form, turn: float) -> Vector:
 
 @cache
 def factor(name: str, dimension: Dimension) -> float:
-    """A unit in SI. Raises UnitError where it measures something else."""
+    """Return the SI factor of a unit.
+
+    Raises:
+        UnitError: The unit measures something else.
+    """
     if not name:
         return 1.0
     unit = parse_unit(name)

@@ -48,7 +48,7 @@ VECTORS = ("value", "right")
 
 
 def key_of(task: Task, table: VariantTable, submission: Submission) -> str:
-    """A digest of all that the marks of a student come from: program, task, variant, what was handed in."""
+    """Return a digest of everything the marks of a student depend on: program, task, variant, submission."""
     row = table.rows.get(submission.student)
     return _digest(program_digest(), language(), task.tree.data, table.names, row, submission)
 
@@ -58,14 +58,14 @@ def _digest(*parts: object) -> str:
 
 
 def _line(key: str, marks: StudentMarks) -> str:
-    """A line of the file, without its end."""
+    """Return a line of the file of kept marks, without its end."""
     rows = [[_plain(getattr(mark, name), name) for name in NAMES] for mark in marks.marks]
     text = json.dumps([marks.student, rows, marks.problems])
     return f"{key} {_digest(text)} {text}"
 
 
 def _plain(value: Any, name: str) -> Any:
-    """A value of a mark as JSON has it: of a vector, which may be a real number, both components."""
+    """Return a field of a mark as JSON; a vector as its two components."""
     if name not in VECTORS or value is None:
         return value
     number = complex(value)
@@ -73,7 +73,7 @@ def _plain(value: Any, name: str) -> Any:
 
 
 def read_kept(path: Path, keys: Collection[str]) -> dict[str, StudentMarks]:
-    """The marks under these keys, as far as the file has them."""
+    """Return the kept marks with these keys."""
     found: dict[str, StudentMarks] = {}
     try:
         with path.open(encoding="ascii", errors="replace") as stream:
@@ -99,7 +99,11 @@ def _mark(row: dict[str, Any]) -> Mark:
 
 
 def keep(path: Path, marks: Mapping[str, StudentMarks]) -> None:
-    """Add marks by their keys. Raises OSError."""
+    """Append marks to the file of kept marks.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("a", encoding="ascii") as stream:
         stream.writelines(f"\n{_line(key, own)}" for key, own in marks.items())
@@ -113,7 +117,11 @@ POSITIONS = 100_000  # of all these students, at most: numbers of the work are s
 
 
 def grade(task: Task, table: VariantTable, submissions: Sequence[Submission]) -> Iterator[StudentMarks]:
-    """Marks of every student, in the order of the submissions. Raises ProblemError."""
+    """Yield the marks of all students in the order of the submissions.
+
+    Raises:
+        ProblemError: The table or the task is wrong.
+    """
     some = max(1, min(CHUNK, POSITIONS // task.positions))
     for first in range(0, len(submissions), some):
         yield from _chunk(task, table, submissions[first : first + some])
@@ -136,9 +144,12 @@ def _chunk(task: Task, table: VariantTable, submissions: Sequence[Submission]) -
 
 
 def numbers_of(task: Task, table: VariantTable, students: Sequence[str]) -> tuple[tuple[Dimension | None, ...], Real]:
-    """Dimensions of the parameters, and their numbers (students, parameters): in SI, bare where no value has a unit.
+    """Return the dimensions of the parameters and their values, (students, parameters).
 
-    Raises ProblemError.
+    Values are in SI; a column without units stays as written.
+
+    Raises:
+        ProblemError: A value cannot be read.
     """
     found = [[task.value(text) for text in table.rows[student]] for student in students]
     said = [next((v.dimension for v in column if v.dimension), None) for column in zip(*found, strict=True)]
@@ -151,7 +162,7 @@ def numbers_of(task: Task, table: VariantTable, students: Sequence[str]) -> tupl
 
 
 def ungraded(task: Task, submission: Submission, why: str) -> StudentMarks:
-    """Of a student of whom nothing can be judged."""
+    """Return the marks of a student whose answers cannot be judged."""
     marks = tuple(Mark(one.key, "missing", 0.0, one.points) for one in task.asked)
     return StudentMarks(submission.student, marks, (*submission.problems, why))
 
@@ -159,9 +170,9 @@ def ungraded(task: Task, submission: Submission, why: str) -> StudentMarks:
 def _begun(
     task: Task, family: VariantFamily, submissions: Sequence[Submission]
 ) -> Iterator[tuple[Real, VariantFamily]]:
-    """The students who count the positions from where the task does, and those who do from the other extreme position.
+    """Yield students grouped by the extreme position from which they count the positions.
 
-    The latter only where the task allows it; each by what makes more of the answers right.
+    The other extreme position is considered only if the task allows it and it makes more answers right.
     """
     rows, strokes = np.arange(len(submissions)), family.strokes
     if task.rules.from_ == "task" or strokes is None or len(strokes.strokes) != 2:
@@ -179,7 +190,7 @@ def _begun(
 
 
 def _marks(task: Task, family: VariantFamily, submissions: Sequence[Submission]) -> list[StudentMarks]:
-    """Of the students of one family."""
+    """Return the marks of the students of one family."""
     submissions = [at_positions(one, task, places) for one, places in zip(submissions, family.q, strict=True)]
     found: dict[int, StudentMarks] = {}
     for rows, asked in _by_attachment(task, family, submissions):
@@ -192,9 +203,9 @@ def _marks(task: Task, family: VariantFamily, submissions: Sequence[Submission])
 def _by_attachment(
     task: Task, family: VariantFamily, submissions: Sequence[Submission]
 ) -> Iterator[tuple[Real, tuple[Question, ...]]]:
-    """Students with what is asked of them, reactions in compound hinges as each has attached the links there.
+    """Yield students grouped by the way they attach links at compound hinges, with the quantities asked of them.
 
-    The other attachment counts for an answer that it makes right and the usual one does not.
+    The other attachment counts for an answer that only it makes right.
     """
     other = tuple(replace(one, quantity=one.quantity.otherwise or one.quantity) for one in task.asked)
     if other == task.asked:
@@ -213,7 +224,7 @@ def _by_attachment(
 def _marks_of(
     task: Task, asked_all: tuple[Question, ...], family: VariantFamily, submissions: Sequence[Submission]
 ) -> list[StudentMarks]:
-    """Of students of one family of whom the same is asked."""
+    """Return the marks of students of one family with the same questions."""
     wanted = right(family, asked_all)
     written, how, refused = read(task.units, wanted, submissions)
     error = wanted.error(written)
@@ -264,14 +275,16 @@ SLOW = ("xlsx", "drawing", "junit")  # formats that take as long as all the othe
 
 @dataclass(frozen=True)
 class Chunk:
-    """What a worker needs for some of the students, and what it does."""
+    """Work unit of a grading process: some students with their variants."""
 
     tree: Tree
     table: VariantTable
     submissions: tuple[Submission, ...]
 
     def __call__(self) -> list[StudentMarks]:
-        """Marks in the order of the submissions. What fails is halved until one student is left to say so."""
+        """Return the marks in the order of the submissions; on an error, halve the students to find the one who causes
+        it.
+        """
         task = Task(self.tree)
         try:
             return list(grade(task, self.table, self.submissions))
@@ -293,9 +306,23 @@ def graded(
     seen: Callable[[int], None] = lambda count: None,
     stopped: Callable[[], bool] = lambda: False,
 ) -> list[StudentMarks]:
-    """Marks of all students in the order of the submissions; when it was stopped, of those that are graded.
+    """Grade all students, in parallel and with marks of earlier runs.
 
-    kept: the file of marks of earlier runs. seen: is told of so many more students. Raises ProblemError, OSError.
+    Args:
+        task: Task.
+        table: Variants.
+        submissions: Submissions of the students.
+        way: How the chunks are processed: here, in processes or on a cluster.
+        kept: File of marks of earlier runs.
+        seen: Called with the number of further students graded.
+        stopped: Returns True to stop early.
+
+    Returns:
+        Marks in the order of the submissions; after a stop, those of the graded students.
+
+    Raises:
+        ProblemError: The table or the task is wrong.
+        OSError: The file of kept marks cannot be written.
     """
     task.dimensions(table.names)
     task.asked  # noqa: B018  refuses what is wrong in it before the work starts
@@ -315,7 +342,11 @@ def graded(
 
 
 def written(folder: Path, book: Gradebook, formats: Collection[str], jobs: int) -> None:
-    """Write a gradebook; that of a large group in two processes, where there are more. Raises OSError."""
+    """Write a gradebook, for a large group in two processes.
+
+    Raises:
+        OSError: A file cannot be written.
+    """
     parts = [[name for name in formats if (name in SLOW) == slow] for slow in (True, False)]
     parts = [part for part in parts if part]
     if len(book.marks) <= CHUNK or len(parts) < 2:
@@ -335,7 +366,11 @@ HANDED_IN = ("submissions", "answers.csv", "answers.xlsx")
 
 
 def grades(task_file: Path) -> dict[str, Any]:
-    """What an example is graded with, student by student, as plain data. Raises ProblemError."""
+    """Return the marks of a graded example (a folder with task, variants and submissions) as plain data.
+
+    Raises:
+        ProblemError: A file of the example is missing or wrong.
+    """
     task, folder = read_task(read_file(str(task_file))), task_file.parent
     table = read_table(str(folder / "variants.csv"), task)
     handed_in = next((folder / name for name in HANDED_IN if (folder / name).exists()), None)

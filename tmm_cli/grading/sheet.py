@@ -1,4 +1,4 @@
-"""What all students of a family wrote, and what they would have written, as arrays (students, answers asked)."""
+"""Written and right answers of a family of variants, as arrays (students, answers)."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ SAME = 1e-6  # of a number that is exact, as a class is
 
 @dataclass(frozen=True)
 class Written:
-    """Answers in SI: nan where there is none; size: of a vector that is told by its size alone."""
+    """Answers in SI, nan if missing; `size` marks vectors given by magnitude alone."""
 
     value: Vector
     size: Real
@@ -44,13 +44,13 @@ class Written:
         return ~np.isnan(self.value)
 
     def take(self, rows: Real) -> Written:
-        """Those of some students, or of some again and again."""
+        """Return the answers of some students, possibly repeated."""
         return Written(self.value[rows], self.size[rows])
 
 
 @dataclass(frozen=True)
 class Right:
-    """What is right: value; scale, what errors are shares of; allowed, how large such a share may be."""
+    """Right values; `scale`: reference of relative errors; `allowed`: largest permitted relative error."""
 
     asked: tuple[Question, ...]
     value: Vector
@@ -58,7 +58,7 @@ class Right:
     allowed: Real
 
     def error(self, written: Written, value: Vector | None = None) -> Real:
-        """How far answers are from a value, the right one when left out, as shares of the scale; nan without answer."""
+        """Return relative errors of answers, by default from the right values; nan for missing answers."""
         wanted = self.value if value is None else value
         gap = np.abs(written.value - wanted)
         sizes = np.abs(np.abs(written.value) - np.abs(wanted))
@@ -70,22 +70,22 @@ class Right:
         return np.where(np.isnan(wanted) & written.there, 0.0, share)  # where nothing is right nothing is judged
 
     def side_by_side(self, rows: Sequence[int], k: int, count: int) -> Right:
-        """One answer of some students, for as many values as may be meant by it."""
+        """Return one answer of some students repeated, for several possible meanings of it."""
         own = (part[rows, k][:, None] for part in (self.value, self.scale, self.allowed))
         return Right((self.asked[k],) * count, *own)
 
     def take(self, rows: Real) -> Right:
-        """That of some students, or of some again and again."""
+        """Return the values of some students, possibly repeated."""
         return Right(self.asked, self.value[rows], self.scale[rows], self.allowed[rows])
 
 
 def predicted(family: VariantFamily, asked: Sequence[Question], mistakes: Sequence[Mistake] = ()) -> Vector:
-    """What would have been written down with these mistakes in, (students, asked)."""
+    """Return the answers that would be written down with these mistakes, (students, answers)."""
     return written_down(solve(family, mistakes), asked, mistakes)
 
 
 def written_down(solution: Solution, asked: Sequence[Question], mistakes: Sequence[Mistake] = ()) -> Vector:
-    """What is written down of a solution, (students, asked), with mistakes in the writing."""
+    """Return the answers of a solution, (students, answers), with mistakes made in writing them down."""
     return np.stack([_value(one, solution, mistakes) for one in asked], axis=1)
 
 
@@ -97,13 +97,16 @@ def _value(asked: Question, solution: Solution, mistakes: Sequence[Mistake]) -> 
 
 
 def values_of(quantity: NamedQuantity, solution: Solution) -> Real:
-    """A quantity of all variants at all positions; (variants, 1) of the mechanism as a whole."""
+    """Return a quantity of all variants at all positions; (variants, 1) for a quantity of the whole mechanism."""
     found = np.asarray(quantity.read(solution))
     return np.broadcast_to(found, (len(solution.family), found.shape[-1]))
 
 
 def right(family: VariantFamily, asked: Sequence[Question]) -> Right:
-    """What is right for all variants of a family."""
+    """Return the right answers of a family with their tolerances.
+
+    The tolerance combines the rule of the task with the effect of drawing or rounding errors in the lengths.
+    """
     solution = solve(family)
     value = np.stack([_value(one, solution, ()) for one in asked], axis=1)
     scale = _scales(asked, solution)
@@ -123,7 +126,7 @@ def right(family: VariantFamily, asked: Sequence[Question]) -> Right:
 
 
 def _scales(asked: Sequence[Question], solution: Solution) -> Real:
-    """Of all that is asked; what is zero all the cycle is measured against what is usual in such a mechanism."""
+    """Return reference values; a quantity that is zero throughout the cycle is compared with a typical value."""
     found = np.stack([_scale(one.quantity, solution) for one in asked], axis=1)
     usual = _usual(solution)
     for k, one in enumerate(asked):
@@ -134,7 +137,7 @@ def _scales(asked: Sequence[Question], solution: Solution) -> Real:
 
 
 def _usual(solution: Solution) -> dict[Dimension, Real]:
-    """How large quantities of each kind may be, (variants,): from the longest link, the driver's speed, the loads."""
+    """Return typical magnitudes by dimension, (variants,): from the longest link, the driver speed and the loads."""
     motion, loads = solution.motion, solution.reactions.applied
     size = np.reshape(np.max([np.max(kernel.size, initial=0.0) for kernel in motion.kernels] or [1.0]), (-1,))
     rate = np.maximum(np.nanmax(np.abs(motion.rate), axis=1), NOTHING)
@@ -155,7 +158,7 @@ def _usual(solution: Solution) -> dict[Dimension, Real]:
 
 
 def _scale(quantity: NamedQuantity, solution: Solution) -> Real:
-    """What errors of a quantity are shares of, (variants,)."""
+    """Return the reference value of a quantity's errors, (variants,)."""
     values = values_of(quantity, solution)
     if quantity.against in ("angle", "exact"):
         return np.ones(len(values))
@@ -165,9 +168,9 @@ def _scale(quantity: NamedQuantity, solution: Solution) -> Real:
 
 
 def _nearby(family: VariantFamily) -> Iterator[VariantFamily]:
-    """The family with the lengths of one link after the other a little longer, and with the driver a little on.
+    """Yield the family with the lengths of one link after another, then the driver coordinate, slightly increased.
 
-    All of them as one family, the variants again and again; each alone where a group is not plain.
+    All changes in one family of repeated variants, or one at a time if a group solver is not closed-form.
     """
     of = {
         link: [

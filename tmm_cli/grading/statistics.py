@@ -1,4 +1,4 @@
-"""The group: how its points are spread, which quantities are hardest, which mistakes are commonest; as tables."""
+"""Statistics of a group: distribution of points, hardest quantities, most frequent mistakes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ STEP = 10  # per cent: a bar of the histogram
 
 @dataclass
 class Difficulty:
-    """How a quantity went, at all positions that it was asked at: answers by state, points earned and to be had."""
+    """Results for one quantity at all requested positions: answers by state, points earned and available."""
 
     name: str
     answers: Counter[State] = field(default_factory=Counter)
@@ -30,29 +30,29 @@ class Difficulty:
 
     @property
     def share(self) -> float:
-        """Of the points, earned; without points, of the answers."""
+        """Fraction of the points earned; if there are no points, of the right answers."""
         if self.of:
             return self.points / self.of
         return (self.answers["right"] + self.answers["follows"]) / max(1, self.answers.total())
 
 
 def handed_in(marks: Sequence[StudentMarks]) -> list[StudentMarks]:
-    """Those who gave an answer; the group's figures are of them."""
+    """Return the students who gave at least one answer."""
     return [student for student in marks if any(mark.state != "missing" for mark in student.marks)]
 
 
 def percents(marks: Sequence[StudentMarks]) -> Real:
-    """Points of each who handed in, in per cent."""
+    """Return the points of those who handed in, in per cent."""
     return np.array([100 * student.points / student.of for student in handed_in(marks) if student.of])
 
 
 def histogram(marks: Sequence[StudentMarks]) -> Real:
-    """How many have 0 to 10 %, 10 to 20 %, ...; full marks stand in the last."""
+    """Return the number of students with 0 to 10 %, 10 to 20 %, ...; 100 % counts in the last bin."""
     return np.histogram(np.round(percents(marks), 6), np.arange(0, 101, STEP))[0]
 
 
 def hardest(task: Task, marks: Sequence[StudentMarks]) -> list[Difficulty]:
-    """All quantities, those that earned least first."""
+    """Return all quantities, the hardest first."""
     found = {asked.quantity.name: Difficulty(asked.quantity.name) for asked in task.asked}
     for student in handed_in(marks):
         for mark in student.marks:
@@ -64,7 +64,7 @@ def hardest(task: Task, marks: Sequence[StudentMarks]) -> list[Difficulty]:
 
 
 def commonest(marks: Sequence[StudentMarks]) -> list[tuple[str, int, int]]:
-    """Mistakes that most students made first: name, students, answers."""
+    """Return the mistakes by number of students: name, students, answers."""
     students: defaultdict[str, set[int]] = defaultdict(set)
     answers = Counter[str]()
     for n, student in enumerate(marks):
@@ -77,7 +77,7 @@ def commonest(marks: Sequence[StudentMarks]) -> list[tuple[str, int, int]]:
 
 
 def statistics_tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Table]:
-    """All tables of a group; those that would be empty are left out."""
+    """Yield the tables of a group; empty ones are left out."""
     own = percents(marks)
     absent = len(marks) - len(handed_in(marks))
     notes = [_("students: {count}").format(count=len(marks))]

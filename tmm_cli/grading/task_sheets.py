@@ -1,4 +1,4 @@
-"""What each student gets: a sheet with the scheme, the dimensions and what is asked, and a problem file to run."""
+"""Task sheet of each student: scheme, dimensions, requested quantities, and a problem file."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ SAFE = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 
 
 def file_names(students: Iterable[str]) -> dict[str, str]:
-    """A name of files for each student, without ending: no two alike on any system, none leads elsewhere."""
+    """Return a file name for each student, without extension, unique on every system."""
     found: dict[str, str] = {}
     taken = {"variants", "key"}
     for student in students:
@@ -82,14 +82,17 @@ def file_names(students: Iterable[str]) -> dict[str, str]:
 
 
 class TaskSheets:
-    """The files of students. text: of the task's file. Methods raise ProblemError."""
+    """Writer of the students' files; `text` is the text of the task file.
+
+    Methods raise ProblemError.
+    """
 
     def __init__(self, task: Task, text: str, table: VariantTable) -> None:
         self.task, self.text, self.table = task, text, table
         self.names, self.measures = file_names(table.rows), _measures(task)
 
     def of(self, student: str) -> Iterator[tuple[str, bytes]]:
-        """A student's files by name."""
+        """Yield the files of a student by name."""
         name, title = self.names[student], self.task.problem.title
         who = _("Variant {number}").format(number=student) if student.isdigit() else shown(student)
         values = dict(zip(self.table.names, self.table.rows[student], strict=True))
@@ -109,7 +112,7 @@ class TaskSheets:
 
 
 def problem_text(text: str, values: Mapping[str, str]) -> str:
-    """The text of a file with other values of parameters, without the blocks that are the teacher's."""
+    """Return the text of a problem file with other parameter values and without the teacher's blocks."""
     tree = read_text(text, "")
     ends = {}
     for event in yaml.parse(text):
@@ -127,7 +130,7 @@ def problem_text(text: str, values: Mapping[str, str]) -> str:
 
 
 def _without(text: str) -> str:
-    """Whole lines of the teacher's blocks are left out."""
+    """Remove the teacher's blocks from a problem file."""
     tree = read_text(text, "")
     lines = text.splitlines(keepends=True)
     starts = sorted(mark.line for path, mark in tree.key_marks.items() if len(path) == 1)
@@ -140,7 +143,7 @@ def _without(text: str) -> str:
 
 
 def _dimensions(task: Task, values: Mapping[str, str], measures: Mapping[str, Dimension | None]) -> Table:
-    """All parameters of the variant."""
+    """Return the table of all parameters of a variant."""
     rows = []
     for name, own in (task.tree.data.get("parameters") or {}).items():
         text = values.get(name, str(own))
@@ -152,7 +155,7 @@ def _dimensions(task: Task, values: Mapping[str, str], measures: Mapping[str, Di
 
 
 def _told(table: Table) -> Table:
-    """What concerns the mechanism, not the program."""
+    """Keep only the rows on the mechanism in the table of facts."""
     if table.name != "facts":
         return table
     rows = zip(*(column.values for column in table.columns), strict=True)
@@ -161,7 +164,7 @@ def _told(table: Table) -> Table:
 
 
 def _measures(task: Task) -> dict[str, Dimension | None]:
-    """What every parameter measures: a bare number what the file takes it for, a length before others."""
+    """Return the dimension of each parameter; of a bare number, the one the file accepts, length first."""
     found: dict[str, Dimension | None] = {}
     for name in task.tree.data.get("parameters") or {}:
         (own,) = task.own((name,))
@@ -203,7 +206,7 @@ def _asked(task: Task) -> Iterator[Table]:
 
 
 def meaning(name: str) -> str:
-    """What a quantity is, for a student who has not seen its name yet."""
+    """Return the meaning of a quantity's name for a student."""
     kind, _of, thing = name.partition(" of ")
     kind = f"{kind} on" if f"{kind} on" in MEANINGS and " on " in thing else kind
     return _(MEANINGS.get(kind, MEANINGS.get(kind.partition("_")[0], "")))
@@ -230,7 +233,7 @@ def _markdown(title: str, student: str, picture: str, tables: Iterable[Table]) -
 
 
 def _page(title: str, student: str, picture: bytes | None, tables: Iterable[Table]) -> str:
-    """A page that stands alone, without scripts."""
+    """Return a self-contained page without scripts."""
     body = [f'<h1>{escape(title)}</h1>\n<p class="who"><bdi>{escape(student)}</bdi></p>']
     if picture is not None:
         body.append(

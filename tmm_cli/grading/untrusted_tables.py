@@ -30,7 +30,7 @@ JOINERS = "\u200c\u200d"  # that words of Persian and of Indian languages need
 
 
 def shown(text: str, longest: int = LONGEST_SHOWN) -> str:
-    """A text that others wrote, on one line, without signs that steer (a page, a terminal, the order of letters)."""
+    """Return an untrusted text in one line, shortened, without control characters."""
     if len(text) > longest:
         text = text[: longest - 1] + "…"
     return text if text.isprintable() else re.sub(r"\s", " ", "".join(map(_shown, text)))
@@ -41,7 +41,7 @@ def _shown(sign: str) -> str:
 
 
 def sentence(text: str) -> str:
-    """The same of a sentence that may quote them."""
+    """Return a sentence that may quote untrusted text, made harmless in the same way."""
     return shown(text, LONGEST_SENTENCE)
 
 
@@ -60,9 +60,9 @@ class ProcessEndedError(Exception):
 
 
 class GuardedProcess:
-    """A process for calls, one after another; it starts with the first call.
+    """Process for calls that may exhaust memory or crash; it starts with the first call.
 
-    memory: bytes of address space that the process may take, where the system has such a limit (POSIX).
+    memory: limit of its address space in bytes, where the system supports it (POSIX).
     """
 
     def __init__(self, memory: int) -> None:
@@ -70,10 +70,10 @@ class GuardedProcess:
         self._pool: ProcessPoolExecutor | None = None
 
     def call(self, function: Callable[P, T], *args: P.args, **named: P.kwargs) -> T:
-        """What the function returns, or the exception that it raises; both are pickled.
+        """Call a function in the process and return its result or raise its exception.
 
         Raises:
-            ProcessEndedError: the process was ended, for example for want of memory. The next call starts another one.
+            ProcessEndedError: The process ended, e.g. for lack of memory; the next call starts another one.
         """
         if self._pool is None:
             self._pool = ProcessPoolExecutor(1, get_context("spawn"), _limit, (self._memory,))
@@ -86,7 +86,7 @@ class GuardedProcess:
 
 
 def _limit(memory: int) -> None:
-    """Limit the memory of this process and silence its last words; Ctrl-C is for the first process."""
+    """Limit the memory of this process, discard its error output and ignore Ctrl-C."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     if sys.platform != "win32":
@@ -128,10 +128,15 @@ REFUSED = {  # parts of an XLSX
 
 
 def rows_of(path: Path | str, largest: int = LARGEST, most: int = MOST_ROWS) -> list[list[str]]:
-    """Rows of a CSV file or of the first sheet of an XLSX, empty ones left out; of formulas their last values.
+    """Return the non-empty rows of a CSV file or of the first sheet of an XLSX file; formulas give their last values.
 
-    largest: bytes; most: rows. CSV: semicolons, tabs or commas; UTF-8, UTF-16 with its mark, or cp1251. Raises
-    ProblemError.
+    Args:
+        path: File; CSV with semicolons, tabs or commas, in UTF-8, UTF-16 with a byte-order mark, or cp1251.
+        largest: Largest size of the file, bytes.
+        most: Largest number of rows.
+
+    Raises:
+        ProblemError: The file cannot be read or is too large.
     """
     file = os.fspath(path)
     try:
@@ -147,7 +152,11 @@ def rows_of(path: Path | str, largest: int = LARGEST, most: int = MOST_ROWS) -> 
 
 
 def bytes_of(path: Path | str, largest: int) -> bytes:
-    """A file that is one of its own and not too large. Raises ProblemError."""
+    """Return the contents of a regular file.
+
+    Raises:
+        ProblemError: The file cannot be read, is a link or a device, or is too large.
+    """
     file = os.fspath(path)
     try:
         found = os.lstat(file)
@@ -191,7 +200,7 @@ def _of_csv(data: bytes, most: int) -> list[list[str]]:
 
 
 def decoded(data: bytes) -> str:
-    """A text in UTF-8, in UTF-16 with its mark, or else in cp1251."""
+    """Decode a text in UTF-8, UTF-16 with a byte-order mark, or else cp1251."""
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return data.decode("utf-16", errors="replace")
     try:
@@ -201,7 +210,7 @@ def decoded(data: bytes) -> str:
 
 
 def _of_xlsx(data: bytes, largest: int, most: int) -> list[list[str]]:
-    """Rows of the first sheet, read in a process of its own: what ends that process is a refusal here."""
+    """Return the rows of the first sheet, read in a separate process; a crash of the process is a refusal."""
     _inspect(data, largest, most)
     try:
         return READER.call(_read_sheet, data)
@@ -220,7 +229,11 @@ def _of_xlsx(data: bytes, largest: int, most: int) -> list[list[str]]:
 
 
 def _read_sheet(data: bytes) -> list[list[str]]:
-    """Raises ValueError, ImportError, MemoryError."""
+    """Return the cells of the first sheet as texts.
+
+    Raises:
+        ValueError, ImportError, MemoryError: The sheet cannot be read.
+    """
     from python_calamine import CalamineError, CalamineWorkbook
 
     try:
@@ -240,7 +253,11 @@ def _damaged(error: BaseException) -> ProblemError:
 
 
 def _inspect(data: bytes, largest: int, most: int) -> None:
-    """Refuse what would fill the memory when it is unpacked, or is more than a table. Raises ProblemError."""
+    """Refuse an archive that would fill the memory or contains more than a table.
+
+    Raises:
+        ProblemError: The archive is refused.
+    """
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as packed:
             parts = packed.infolist()
@@ -313,7 +330,7 @@ def _refuse_far(content: bytes, cells: int, most: int) -> None:
 
 
 def _text(cell: Any) -> str:
-    """As a spreadsheet shows it: numbers with 15 figures."""
+    """Return a cell as a spreadsheet shows it, numbers with 15 figures."""
     if isinstance(cell, bool | str):
         return str(cell)
     if isinstance(cell, datetime | date | time):

@@ -25,7 +25,11 @@ FORMULA = re.compile(r"\A'(?=[=+\-@\t\r])")  # what is written so that no spread
 
 
 def read_table(path: Path | str, task: Task) -> VariantTable:
-    """A table with a heading. Variants without a column for their students are numbered from 1. Raises ProblemError."""
+    """Read a table of variants with a header; without a column of students, variants are numbered from 1.
+
+    Raises:
+        ProblemError: The table is wrong.
+    """
     rows = rows_of(path, LARGEST, MOST_ROWS)
     try:
         return _table(rows, task)
@@ -34,7 +38,11 @@ def read_table(path: Path | str, task: Task) -> VariantTable:
 
 
 def read_students(path: Path | str) -> tuple[str, ...]:
-    """Names of the column `student` of a table, or of its first one, each once. Raises ProblemError."""
+    """Return the names in the column `student`, or in the first column, each once.
+
+    Raises:
+        ProblemError: The table contains no names.
+    """
     head, *rows = rows_of(path) or [[]]
     at = _named(head, WHO)
     rows = rows if at is not None else [head, *rows]
@@ -46,7 +54,11 @@ def read_students(path: Path | str) -> tuple[str, ...]:
 
 
 def variant_in(table: VariantTable, asked: str) -> dict[str, str]:
-    """Values of a student's parameters, or of the variant of a number that counts from 1. Raises ProblemError."""
+    """Return the parameter values of a student, or of a variant number from 1.
+
+    Raises:
+        ProblemError: There is no such variant.
+    """
     students = list(table.rows)
     if asked not in table.rows and asked.isascii() and asked.isdigit() and 1 <= int(asked[:9]) <= len(students):
         asked = students[int(asked) - 1]
@@ -57,13 +69,13 @@ def variant_in(table: VariantTable, asked: str) -> dict[str, str]:
 
 
 def csv_of(rows: Iterable[Sequence[str]]) -> bytes:
-    """Texts as CSV, with the mark by which spreadsheets know its letters."""
+    """Return rows as CSV with a byte-order mark."""
     lines = (",".join(csv_cell(cell) for cell in row) for row in rows)
     return ("\ufeff" + "".join(f"{line}\n" for line in lines)).encode()
 
 
 def xlsx_of(sheets: dict[str, Sequence[Sequence[str]]]) -> bytes | None:
-    """Sheets of texts and numbers; no cell is a formula or a link. None where nothing is installed that writes them."""
+    """Return sheets of texts and numbers as XLSX, without formulas and links; None if no XLSX package is installed."""
     stream = io.BytesIO()
     try:
         found = open_workbook("variants.xlsx", stream, {"in_memory": True})
@@ -89,7 +101,7 @@ def _put(sheet: Any, n: int, k: int, cell: str, form: Any) -> None:
 
 
 def rows_of_table(table: VariantTable) -> list[list[str]]:
-    """Its rows with a heading, which has the unit where a column has one alone."""
+    """Return a table of variants as rows with a header; a unit common to a column is in its heading."""
     columns = []
     for k, name in enumerate(table.names):
         texts = [row[k] for row in table.rows.values()]
@@ -134,7 +146,7 @@ def _table(rows: list[list[str]], task: Task) -> VariantTable:
 
 
 def _heading(text: str) -> tuple[str, str]:
-    """Name and unit."""
+    """Split a heading into name and unit."""
     found = HEADING.fullmatch(text)
     assert found is not None
     unit = found[2] or found[3] or found[4] or ""
@@ -145,7 +157,7 @@ def _heading(text: str) -> tuple[str, str]:
 
 
 def _value(task: Task, name: str, cell: str, unit: str, dimension: Any) -> str:
-    """A cell as a value of a problem file."""
+    """Return a cell as a value of a problem file."""
     text = COMMA.sub(r"\1.\2", cell.translate(MINUS))
     with prefix_errors(name):
         if not text:

@@ -35,7 +35,7 @@ X, Y = Symbol("F", "x"), Symbol("F", "y")
 
 
 def write_balancing(subject: Subject) -> Iterable[Block]:
-    """Of a file that asks for it."""
+    """Write the chapter on balancing; nothing if the file does not request it."""
     found = subject.results.balancing
     if found is not None and (found.task.rotor is not None or found.cycle.shakes):
         yield Heading(_("Balancing"))
@@ -62,7 +62,7 @@ def _of_links(subject: Subject, found: BalancingResults) -> Iterable[Block]:
 
 
 def _explained(found: BalancingResults) -> Iterable[Block]:
-    """What is summed up."""
+    """Explain the symbols of the shaking force and the shaking moment."""
     pivot: Inline = Symbol(found.pivot) if found.pivot else _("the origin")
     yield said(
         _(
@@ -85,7 +85,7 @@ def _explained(found: BalancingResults) -> Iterable[Block]:
 
 
 def _position(subject: Subject, found: BalancingResults, k: int) -> Iterable[Block]:
-    """Parts of the force, its size, and the moment."""
+    """Write the components of the shaking force (N), its magnitude and the shaking moment (N m) in one position."""
     results = subject.results
     motion = constant_speed_motion(results.mechanism, subject.motion.q[k : k + 1])
     about, along, across, moments = found.before.about, list[Expression](), list[Expression](), list[Expression]()
@@ -122,7 +122,7 @@ MASS_RADIUS, SHARE = Symbol("D"), Symbol("k")
 
 
 def write_counterweights(subject: Subject, found: BalancedCycle, task: BalancingTask) -> Iterable[Block]:
-    """Each with its mass times radius, and its mass where the radius is told; what they leave of the force."""
+    """Write each counterweight with its mass-radius product (and mass, if its radius is given) and the remaining force."""
     replaced = _Replaced(subject.results.linkage, found, task)
     if replaced.solved():
         yield said(
@@ -167,7 +167,7 @@ def write_counterweights(subject: Subject, found: BalancedCycle, task: Balancing
 
 @dataclass
 class _Replaced:
-    """Masses that are moved to the hinges of links, and from there to counterweights."""
+    """Static replacement of links by masses at their hinges, which counterweights balance."""
 
     linkage: Linkage
     found: BalancedCycle
@@ -176,7 +176,7 @@ class _Replaced:
     lumps: dict[str, list[Leaf]] = field(default_factory=dict)
 
     def solved(self) -> bool:
-        """Whether all counterweights follow; then `told` says how."""
+        """Return True if the replacement gives all counterweights; `told` then holds the blocks that explain it."""
         weights = {weight.place.link: weight for weight in self.found.counterweights}
         if len(weights) < len(self.found.counterweights):
             return False
@@ -186,17 +186,17 @@ class _Replaced:
         return all(self._balance(weights[link]) for link in [*moved, *(n for n in weights if n not in moved)])
 
     def _fixed(self, place: CounterweightPlace) -> str | None:
-        """The hinge on the frame about which a counterweight turns."""
+        """Return the hinge on the frame about which a counterweight rotates, or None if its pivot moves."""
         points = self.linkage.links[place.link].points
         return next((p for p in self._hinges(place.link, FRAME) if points[p] == place.about), None)
 
     def _hinges(self, link: str, *others: str) -> list[str]:
-        """Points in which it is joined to those links by hinges; to any moving one where none is named."""
+        """Return the points in which the link is hinged to the given links, by default to any moving link."""
         named = others or tuple(name for name in self.linkage.moving if name != link)
         return [h.point for h in self.linkage.hinges if link in h.links and set(named) & set(h.links)]
 
     def _replace(self, name: str) -> bool:
-        """A link without a counterweight by masses in its hinges."""
+        """Replace a link without a counterweight by masses at its hinges; return False if that is impossible."""
         link = self.linkage.links[name]
         mass = float(np.ravel(link.mass)[0])
         if not mass:
@@ -226,7 +226,9 @@ class _Replaced:
         return True
 
     def _balance(self, weight: CounterweightSolution) -> bool:
-        """Those of its link and of its points."""
+        """Balance the masses of a link and those at its points; return False if its counterweight does not follow from
+        them.
+        """
         place, link = weight.place, self.linkage.links[weight.place.link]
         name, pivot = place.link, next((p for p, at in link.points.items() if at == place.about), None)
         if pivot is None:
@@ -260,7 +262,7 @@ class _Replaced:
         return True
 
     def _carry(self, weight: CounterweightSolution, pivot: str, masses: list[Leaf]) -> None:
-        """The pivot moves, and carries the link with all its masses and the counterweight."""
+        """Lump a link with its counterweight at its moving pivot."""
         name = weight.place.link
         every = [*(one for one in masses if one.value), Leaf(Symbol("m", f"c{name}"), weight.mass or 0.0)]
         total = Leaf(Symbol("m", f"{name}{pivot}"), sum(one.value for one in every))
@@ -276,7 +278,7 @@ class _Replaced:
         self.lumps.setdefault(pivot, []).append(total)
 
     def _shared(self, name: str, pivot: str, along: complex) -> Iterator[Expression]:
-        """Of masses that go to and fro at the end of a coupler the share that a counterweight on the crank takes."""
+        """Yield the moments of the fraction of reciprocating masses that a counterweight on the crank balances."""
         points = self.linkage.links[name].points
         for point in list(self.lumps):
             sliding = any(
@@ -306,7 +308,7 @@ PLANES = ("I", "II")
 
 
 def write_rotor_balancing(subject: Subject, rotor: UnbalancedShaft, corrections: Vector) -> Iterable[Block]:
-    """In the second plane what leaves no couple about the first one, then in the first what leaves no force."""
+    """Write the correction masses of a rotor: the second plane from the moments about the first, then the first plane."""
     two = len(rotor.planes) > 1
     static = _("A rotor is statically balanced if the vectors {D} = m·r of all its masses sum to zero.")
     dynamic = _(
@@ -344,7 +346,7 @@ def _mass(subject: Subject, rotor: UnbalancedShaft, corrections: Vector, k: int)
 
 
 def _share(rotor: UnbalancedShaft, number: int, function: str, *, moment: bool) -> Expression:
-    """Of a mass, along an axis; moment: about the first plane."""
+    """Return the component of m·r of a mass along an axis, or with `moment` its moment about the first plane."""
     size, index = complex(rotor.sizes[number]), str(number + 1)
     angle = Leaf(Symbol("α", index), float(np.angle(size) % (2 * np.pi)), angle=True)
     share = Leaf(Symbol("D", index), abs(size)) * Function(function, angle)
@@ -352,5 +354,5 @@ def _share(rotor: UnbalancedShaft, number: int, function: str, *, moment: bool) 
 
 
 def _gap(symbol: Symbol, at: float, rotor: UnbalancedShaft) -> Expression:
-    """How far beyond the first plane, m."""
+    """Return the distance (m) of a plane beyond the first correction plane."""
     return Leaf(symbol, at) - Leaf(Symbol("z", PLANES[0]), rotor.planes[0].at)

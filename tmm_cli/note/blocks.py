@@ -15,14 +15,14 @@ from tmm_cli.note.formula_tree import Node
 
 @dataclass(frozen=True)
 class Ref:
-    """The number of a figure or a table, by its key."""
+    """Reference to the number of a figure or a table by its key."""
 
     key: str
 
 
 @dataclass(frozen=True)
 class Link:
-    """A place of the literature list, by its key: [2]."""
+    """Citation of a source by its key, printed as [2]."""
 
     key: str
 
@@ -33,7 +33,7 @@ Line = tuple[Inline, ...]
 
 @dataclass(frozen=True)
 class Heading:
-    """Of a chapter (level 1) or a section (2); formats number them: 3.2."""
+    """Heading of a chapter (level 1) or a section (level 2); formats number it: 3.2."""
 
     text: str
     level: int = 1
@@ -41,28 +41,28 @@ class Heading:
 
 @dataclass(frozen=True)
 class Paragraph:
-    """Sentences with symbols and small formulas in them."""
+    """Paragraph of text with symbols and short formulas."""
 
     line: Line
 
 
 @dataclass(frozen=True)
 class Items:
-    """A list with dots."""
+    """Bulleted list."""
 
     lines: tuple[Line, ...]
 
 
 @dataclass(frozen=True)
 class Equation:
-    """A formula on a line of its own."""
+    """Formula on a line of its own."""
 
     node: Node
 
 
 @dataclass(frozen=True)
 class Rows:
-    """A table of texts. head: of its columns; numeric columns stand at the right."""
+    """Table of text cells with its column headings; numeric columns are right-aligned."""
 
     caption: str
     head: tuple[Line, ...]
@@ -71,14 +71,14 @@ class Rows:
 
     @cached_property
     def numeric(self) -> list[bool]:
-        """Of each column, whether it has figures only, and dashes where there are none."""
+        """For each column, True if its cells are numbers or dashes and at least one is a number."""
         columns = [[row[k] for row in self.rows] for k in range(len(self.head))]
         return [all(map(_is_number, cells)) and any(map(_has_digits, cells)) for cells in columns]
 
 
 @dataclass(frozen=True)
 class Figure:
-    """A drawing with its caption; it is as wide as the text, or smaller if it is."""
+    """Drawing with its caption, reduced to the text width if it is wider."""
 
     caption: str
     drawing: Drawing
@@ -87,12 +87,12 @@ class Figure:
 
 @dataclass(frozen=True)
 class Contents:
-    """The table of contents stands here; what follows begins a page."""
+    """Table of contents; the block after it starts a new page."""
 
 
 @dataclass(frozen=True)
 class Title:
-    """The title page: lines from its top to its bottom, by their weight."""
+    """Title page: its lines from top to bottom."""
 
     institution: str
     heading: str
@@ -103,7 +103,7 @@ class Title:
 
 @dataclass(frozen=True)
 class Source:
-    """A place of the literature list."""
+    """Entry of the list of references."""
 
     key: str
     text: str
@@ -111,7 +111,7 @@ class Source:
 
 @dataclass(frozen=True)
 class Sources:
-    """The literature list."""
+    """List of references."""
 
     sources: tuple[Source, ...]
 
@@ -121,14 +121,14 @@ Block = Heading | Paragraph | Items | Equation | Found | Rows | Figure | Content
 
 @dataclass(frozen=True)
 class Note:
-    """A note: its blocks in order, the language it is in, and its title as the properties of a file have it."""
+    """Explanatory note: its blocks in order, its language, and its title for the properties of the file."""
 
     title: str
     language: str
     blocks: tuple[Block, ...]
 
     def headings(self) -> list[tuple[str, Heading]]:
-        """With their decimal numbers: 2, 2.1, 2.2."""
+        """Return the headings with their decimal numbers: 2, 2.1, 2.2."""
         count: list[int] = []
         found = []
         for block in self.blocks:
@@ -139,7 +139,7 @@ class Note:
         return found
 
     def numbers(self) -> dict[str, str]:
-        """Of tables and figures by their keys: each kind is counted through the note."""
+        """Return the numbers of tables, figures and sources by key; each kind is numbered through the whole note."""
         counted: dict[type, int] = {}
         found: dict[str, str] = {}
         for block in self.blocks:
@@ -152,38 +152,38 @@ class Note:
 
 
 def paragraph(*line: Inline) -> Paragraph:
-    """Of texts and symbols one after another."""
+    """Return a paragraph of texts and symbols in a row."""
     return Paragraph(line)
 
 
 def cells(*parts: Inline | Line) -> tuple[Line, ...]:
-    """Of a row of a table."""
+    """Return a table row from texts, symbols and lines."""
     return tuple(part if isinstance(part, tuple) else (part,) for part in parts)
 
 
 def listed(parts: Iterable[Inline | Line], between: str = ", ") -> Line:
-    """One after another."""
+    """Join texts and symbols into one line with a separator."""
     return tuple(one for k, line in enumerate(cells(*parts)) for one in ((between, *line) if k else line))
 
 
 def listed_below(lines: Sequence[Line]) -> Items:
-    """One below the other, a stop after the last one and a semicolon after each other one."""
+    """Return a bulleted list with a semicolon after each item and a full stop after the last."""
     last = len(lines) - 1
     return Items(tuple((*each, "." if k == last else ";") for k, each in enumerate(lines)))
 
 
 def several(one: str, two: str, more: str, keys: Sequence[str]) -> Paragraph:
-    """A sentence that refers to one table or figure by {first}, to two by {first} and {last}, or to all from..to."""
+    """Return the sentence for one, two or more keys; it refers to {first} and {last} of them."""
     return said((one, two, more)[min(len(keys), 3) - 1], first=Ref(keys[0]), last=Ref(keys[-1]))
 
 
 def said(sentence: str, **parts: Inline | Line) -> Paragraph:
-    """A paragraph of such a sentence."""
+    """Return a paragraph from a translated sentence, with its fields filled by texts, symbols or references."""
     return Paragraph(filled(sentence, **parts))
 
 
 def tabled(sentence: str, rows: Rows, **parts: Inline | Line) -> Iterable[Block]:
-    """A sentence that refers to a table by {table}, and the table."""
+    """Yield a sentence that refers to a table by {table}, then the table."""
     yield said(sentence, table=Ref(rows.key), **parts)
     yield rows
 

@@ -18,7 +18,7 @@ ALL, LINKS = Symbol("N"), Symbol("k")
 
 
 def write_centres(subject: Subject) -> Iterable[Block]:
-    """Of a file that asks for them."""
+    """Write the chapter on instantaneous centres; nothing if the file does not request them."""
     results = subject.results
     if not results.centres:
         return
@@ -90,7 +90,7 @@ def _of_position(subject: Subject, k: int, found: Mapping[LinkPair, InstantCentr
 
 
 def _distance(one: InstantCentre, other: InstantCentre) -> Leaf:
-    """Between two centres, m."""
+    """Return the distance (m) between two instantaneous centres as a leaf P₁₂P₁₃."""
     assert one.place is not None and other.place is not None
     letters = "".join("P" + subscript(centre_name(centre.links)[1:]) for centre in (one, other))
     return Leaf(Symbol(letters), abs(other.place - one.place))

@@ -1,6 +1,6 @@
-"""Expressions whose leaves know both their letter and their value: letters, numbers put in, and result are one thing.
+"""Expressions whose leaves carry a symbol and a value, so that symbols, substituted numbers and result are one object.
 
-So a substitution cannot say another formula than the letters before it, and its rounded numbers can be put to the test
+A substitution therefore cannot show another formula than the symbols before it, and its rounded numbers can be checked
 before they are printed.
 """
 
@@ -26,7 +26,7 @@ CANCELLED = 1e-6  # of the largest term: a sum that is less, and has no digit in
 
 
 class Joined:
-    """What signs of arithmetic join as on paper, numbers too: 2 * a - b / c; sums and products take in one another."""
+    """Arithmetic operators that build expressions as on paper: 2 * a - b / c; nested sums and products are flattened."""
 
     def __add__(self, other: Expression | float) -> Sum:
         return Sum((*_terms(self), *_terms(other)))
@@ -62,9 +62,9 @@ class Joined:
 
 @dataclass(frozen=True)
 class Leaf(Joined):
-    """A quantity with its value, SI; none is needed where it is written in letters only.
+    """Quantity with its value in SI (radians for angles); no value is needed for symbols only.
 
-    angle: in radians, printed in degrees. of: what is put in instead, as 2·π.
+    angle: print the value in degrees. of: expression substituted instead of the value, e.g. 2·π.
     """
 
     symbol: Symbol
@@ -75,7 +75,7 @@ class Leaf(Joined):
 
 @dataclass(frozen=True)
 class Constant(Joined):
-    """A number of the formula itself: the 2 of a Coriolis acceleration. text: where it is not the number, as π."""
+    """Number written as it is, or as `text` (π)."""
 
     value: float
     text: str = ""
@@ -83,21 +83,21 @@ class Constant(Joined):
 
 @dataclass(frozen=True)
 class Sum(Joined):
-    """Terms with their signs, +1 or -1."""
+    """Sum of terms with their signs, +1 or -1."""
 
     terms: tuple[tuple[int, Expression], ...]
 
 
 @dataclass(frozen=True)
 class Product(Joined):
-    """Factors one after another."""
+    """Product of factors."""
 
     factors: tuple[Expression, ...]
 
 
 @dataclass(frozen=True)
 class Quotient(Joined):
-    """One expression over another."""
+    """Fraction of two expressions."""
 
     over: Expression
     under: Expression
@@ -105,7 +105,7 @@ class Quotient(Joined):
 
 @dataclass(frozen=True)
 class Raised(Joined):
-    """To a power, of whole numbers: a square, or with `under` a root written as a power."""
+    """Power with an integer exponent `over`, or with `under` a root written as the exponent over/under."""
 
     of: Expression
     over: int
@@ -114,7 +114,7 @@ class Raised(Joined):
 
 @dataclass(frozen=True)
 class Function(Joined):
-    """cos or sin of an angle; sqrt, abs: they are written as signs."""
+    """Function of an expression: cos, sin, sqrt or abs."""
 
     name: str
     of: Expression
@@ -131,11 +131,10 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
 
 @dataclass(frozen=True)
 class Found:
-    """A quantity found, on a line of its own: name = letters = numbers = result with its unit.
+    """Computed quantity on a line of its own: name = symbols = numbers = result with its unit.
 
-    result: what the calculation found, SI (radians of an angle); it is not taken from the expression, so that a wrong
-    formula shows. unit: as it is printed, degrees of an angle. whole: a number that is counted.
-    most: figures of the result.
+    result: computed value in SI, independent of the expression, so that a wrong formula is detected. unit: printed
+    unit, degrees for angles. whole: an integer. most: significant figures of the result.
     """
 
     name: Symbol
@@ -147,15 +146,15 @@ class Found:
     most: int = FIGURES
 
     def value(self, figures: int) -> float:
-        """Of the expression with numbers of so many figures put in, in the unit of the result."""
+        """Return the expression with numbers of this many figures substituted, in the unit of the result."""
         found = evaluate(self.expression, figures)
         return math.degrees(found) if self.angle else found
 
     def printed(self) -> tuple[int, str]:
-        """How many figures what is put in has, and the result as text: what they give within its last digit.
+        """Return the figures of the substituted numbers and the result as text, consistent within its last digit.
 
         Raises:
-            ValueError: The expression does not give the result, however many figures are put in.
+            ValueError: The expression does not give the result with any number of figures.
         """
         result = math.degrees(self.result) if self.angle else self.result
         terms = largest_term(self.expression)
@@ -175,17 +174,17 @@ class Found:
 
 
 def read(name: Symbol, value: float, unit: str) -> Found:
-    """A quantity that is read off: its letter and its value."""
+    """Return a quantity that is read off a plan: its symbol and its value."""
     return Found(name, Leaf(name, value), value, unit)
 
 
 def added(terms: Iterable[Expression]) -> Sum:
-    """All of them; those of sums one by one."""
+    """Return the sum of the terms; nested sums are flattened."""
     return Sum(tuple(chain.from_iterable(map(_terms, terms))))
 
 
 def signed(sense: float, expression: Expression) -> Expression:
-    """As it is, or with a minus before it where the sense is not positive."""
+    """Return the expression, negated if `sense` is not positive."""
     return expression if sense > 0 else -expression
 
 
@@ -202,7 +201,7 @@ def _terms(part: object) -> tuple[tuple[int, Expression], ...]:
 
 
 def evaluate(expression: Expression, figures: int) -> float:
-    """With every leaf rounded to so many figures."""
+    """Evaluate an expression with each leaf rounded to this many significant figures."""
     of = partial(evaluate, figures=figures)
     match expression:
         case Leaf(_, value, angle, instead):
@@ -224,9 +223,9 @@ def evaluate(expression: Expression, figures: int) -> float:
 
 
 def largest_term(expression: Expression) -> float:
-    """The size of an expression in which nothing cancels: every sum is its largest term, every sine and cosine 1.
+    """Return the magnitude of an expression without cancellation: largest term of each sum, 1 for sine and cosine.
 
-    Rounding of what is put in changes the value of the expression in proportion to this size.
+    Rounding of the substituted numbers changes the value of the expression in proportion to this magnitude.
     """
     match expression:
         case Sum(terms):
@@ -247,12 +246,12 @@ def largest_term(expression: Expression) -> float:
 
 
 def letters(expression: Expression) -> paper.Node:
-    """The expression in letters."""
+    """Return the formula of an expression in symbols."""
     return _written(expression, lambda leaf: paper.Letter(leaf.symbol))
 
 
 def numbers(expression: Expression, figures: int, text: Callable[[str], str]) -> paper.Node:
-    """The expression with numbers put in; text: how the language writes figures."""
+    """Return the formula of an expression with numbers substituted; `text` writes figures in the language of the note."""
 
     def number(leaf: Leaf) -> paper.Node:
         if leaf.of is not None:
@@ -268,7 +267,7 @@ def numbers(expression: Expression, figures: int, text: Callable[[str], str]) ->
 
 
 def _figures(digits: str, text: Callable[[str], str]) -> paper.Node:
-    """-1.2e-5 is −1.2·10^−5."""
+    """Return a number in scientific notation as a formula: -1.2e-5 gives −1.2·10^−5."""
     if digits.startswith("-"):
         return paper.row("−", _figures(digits[1:], text))
     mantissa, _, power = digits.partition("e")
@@ -316,13 +315,16 @@ def _written(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -> pape
 
 
 def rounded(value: float, figures: int) -> float:
-    """To so many significant figures, and all those before the point of a number that people write so."""
+    """Round to this many significant figures, but keep all digits before the point of numbers below 10^7."""
     text = f"{half_up(value):.{figures - 1}e}"
     return float(f"{half_up(value):.0f}") if figures <= int(text.partition("e")[2]) < WHOLE else float(text)
 
 
 def fixed(value: float, figures: int, terms: float = 0.0) -> str:
-    """A result with so many figures or to units, its zeros at the end kept: all are true. terms: what a zero sums."""
+    """Format a value with this many significant figures, keeping trailing zeros.
+
+    terms: for a zero, magnitude of the terms that cancel; it sets the number of decimals.
+    """
     if value == 0:
         return "0" if not terms else f"{0.0:.{max(figures - 1 - math.floor(math.log10(terms)), 0)}f}"
     power = math.floor(math.log10(abs(rounded(value, figures))))
@@ -333,25 +335,25 @@ def fixed(value: float, figures: int, terms: float = 0.0) -> str:
 
 
 def plain(value: float, figures: int) -> str:
-    """The same without zeros at the end: 1234.5, 0.00123, 1.2e-5."""
+    """Format a value without trailing zeros: 1234.5, 0.00123, 1.2e-5."""
     mantissa, *power = fixed(value, figures).split("e")
     return "e".join((mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa, *power))
 
 
 def last_digit(text: str) -> float:
-    """What one unit in the last digit of a printed number is worth."""
+    """Return the value of one unit in the last digit of a printed number."""
     mantissa, _, power = text.partition("e")
     return 10.0 ** (int(power or 0) - len(mantissa.partition(".")[2]))
 
 
 def result_node(text: str, unit: str, say: Callable[[str], str]) -> paper.Node:
-    """A result as it stands at the end of its formula, with its unit."""
+    """Return the formula of a result with its unit."""
     shown = _figures(text, say)
     return paper.row(shown, paper.Words(unit if unit == "°" else f" {unit}")) if unit else shown
 
 
 def formula(found: Found, say: Callable[[str], str]) -> paper.Node:
-    """A quantity found: letters = numbers = result with its unit; say: how the language writes figures.
+    """Return the line symbols = numbers = result of a computed quantity; `say` writes figures in the language.
 
     Raises:
         ValueError: The formula does not give the result.

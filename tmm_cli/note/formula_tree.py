@@ -12,14 +12,18 @@ from tmm_cli.mechanics.forces import Symbol
 
 @dataclass(frozen=True)
 class Number:
-    """Figures as they are printed, in the language of the note."""
+    """Number as it is printed in the language of the note."""
 
     text: str
 
 
 @dataclass(frozen=True)
 class Letter:
-    """A quantity, by its letter with indices. lines: under a vector, two of one known whole, one of a known line."""
+    """Symbol with its indices.
+
+    vector: with a bar above. lines: underlines of a vector: two if it is known completely, one if only its
+    line is known.
+    """
 
     symbol: Symbol
     vector: bool = False
@@ -28,28 +32,28 @@ class Letter:
 
 @dataclass(frozen=True)
 class Sign:
-    """What stands between: + − · = ∥ ⊥, or a name of a function."""
+    """Operator or relation (+ − · = ∥ ⊥), or the name of a function."""
 
     text: str
 
 
 @dataclass(frozen=True)
 class Words:
-    """Upright text in a formula: a unit, a name of a group."""
+    """Upright text in a formula: a unit, the name of a group."""
 
     text: str
 
 
 @dataclass(frozen=True)
 class Row:
-    """Nodes one after another."""
+    """Nodes in a row."""
 
     nodes: tuple[Node, ...]
 
 
 @dataclass(frozen=True)
 class Fraction:
-    """One over another."""
+    """Fraction."""
 
     over: Node
     under: Node
@@ -57,7 +61,7 @@ class Fraction:
 
 @dataclass(frozen=True)
 class Power:
-    """A base with an exponent."""
+    """Base with an exponent."""
 
     base: Node
     exponent: Node
@@ -65,16 +69,16 @@ class Power:
 
 @dataclass(frozen=True)
 class Root:
-    """A square root."""
+    """Square root."""
 
     of: Node
 
 
 @dataclass(frozen=True)
 class Brackets:
-    """Round brackets as high as what is in them; in a broken formula the other one may stand on another line.
+    """Round brackets, or with `bars` an absolute value.
 
-    bars: straight ones, of a size.
+    opens, closes: False if that bracket stands on another line of a broken formula.
     """
 
     inside: Node
@@ -85,7 +89,7 @@ class Brackets:
 
 @dataclass(frozen=True)
 class Lines:
-    """A formula that is too wide for one line, broken before a sign."""
+    """Formula broken into lines, each but the first beginning with a sign."""
 
     lines: tuple[Node, ...]
 
@@ -94,7 +98,7 @@ Node = Number | Letter | Sign | Words | Row | Fraction | Power | Root | Brackets
 
 
 def row(*parts: Node | str) -> Node:
-    """Nodes and signs in a row; a single one is itself."""
+    """Return nodes and signs in a row; a single node is returned unchanged."""
     nodes: list[Node] = []
     for part in parts:
         node = Sign(part) if isinstance(part, str) else part
@@ -112,7 +116,7 @@ OPENING = (Sign("="), OPEN, Sign("·"))  # after which a sign is the number's ow
 
 
 def chain_of_equalities(sides: Sequence[Node], most: float = LINE) -> Node:
-    """Equal sides with their signs; broken before a sign of equality, or of a term, where it is too wide."""
+    """Return equal sides joined by equals signs, broken before an equals sign or the sign of a term if too wide."""
     lines: list[Node] = []
     for side in sides:
         joined = row(lines[-1], "=", side) if lines else side
@@ -127,7 +131,7 @@ def chain_of_equalities(sides: Sequence[Node], most: float = LINE) -> Node:
 
 
 def width(node: Node) -> float:
-    """Of a formula, in widths of a figure."""
+    """Return the approximate width of a formula, in widths of a digit."""
     match node:
         case Number(text) | Words(text):
             return float(len(text))
@@ -150,7 +154,7 @@ def width(node: Node) -> float:
 
 
 def _evened(lines: list[Node], most: float) -> list[Node]:
-    """A result that is alone on its line gets what is before it there too."""
+    """Move the term before a result that stands alone on the last line down to it."""
     if len(lines) < 2 or width(lines[-1]) > 1.5 * SHORT or not isinstance(lines[-2], Row):
         return lines
     nodes = lines[-2].nodes
@@ -161,7 +165,7 @@ def _evened(lines: list[Node], most: float) -> list[Node]:
 
 
 def _in_terms(node: Node, most: float) -> list[Node]:
-    """A row in lines, each but the first of which begins with the sign of a term."""
+    """Break a row into lines, each but the first beginning with the sign of a term."""
     if width(node) <= most or not isinstance(node, Row):
         return [node]
     lines: list[list[Node]] = [[]]
@@ -173,7 +177,7 @@ def _in_terms(node: Node, most: float) -> list[Node]:
 
 
 def _bracketed(line: Sequence[Node]) -> Node:
-    """A line with what stands within brackets that open, or close, on it."""
+    """Return a line with the contents of brackets that open or close on it as one node."""
     first = line.index(OPEN) + 1 if OPEN in line else None
     last = line.index(CLOSE) if CLOSE in line else None
     if first is None and last is None:
@@ -183,7 +187,7 @@ def _bracketed(line: Sequence[Node]) -> Node:
 
 
 def _terms(nodes: Sequence[Node]) -> list[list[Node]]:
-    """Parts of a row, each with its sign before it."""
+    """Split a row into terms, each with its sign."""
     terms: list[list[Node]] = [[]]
     for node in nodes:
         if node in TERMS and terms[-1] and terms[-1][-1] not in OPENING:
@@ -193,7 +197,7 @@ def _terms(nodes: Sequence[Node]) -> list[list[Node]]:
 
 
 def _opened(nodes: Sequence[Node], most: float) -> list[Node]:
-    """The nodes, with a fraction that is too wide as one over what is under it, times what is over it."""
+    """Replace fractions that are too wide by one over the denominator times the numerator."""
     found: list[Node] = []
     for node in nodes:
         if isinstance(node, Fraction) and isinstance(node.over, Row) and width(node) > most - 4:

@@ -1,6 +1,6 @@
-"""The explanatory note: blocks and formulas of a course project, written as DOCX or HTML.
+"""Chapters of the note and their order.
 
-A chapter is a function of the subject that yields blocks, and a line here.
+A chapter is a function of the subject that yields blocks, and an entry in CHAPTERS.
 """
 
 from __future__ import annotations
@@ -31,7 +31,15 @@ PARTS = {"law_of_motion": "steady", "single_run": "single", "balancing": "balanc
 
 
 def note(results: Results, *, drawn: bool = True) -> Note:
-    """The note of a problem that was computed, in the language that is spoken; drawn: with drawings."""
+    """Write the explanatory note of a computed problem in the current language.
+
+    Args:
+        results: Results of the problem.
+        drawn: Include drawings.
+
+    Returns:
+        The note, for the formats in FORMATS.
+    """
     subject = Subject(results, drawn)
     present = [name for name in CHAPTERS if name not in PARTS or getattr(results, PARTS[name]) is not None]
     blocks: list[Block] = []

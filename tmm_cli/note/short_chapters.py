@@ -11,7 +11,9 @@ from tmm_cli.reports import collect_warnings, walk
 
 
 def write_title_page(subject: Subject) -> Iterable[Block]:
-    """What the block `sheet` of the file gives; lines are left for what it does not."""
+    """Write the title page from the block `sheet` of the file, with blanks for missing names, and the table of
+    contents.
+    """
     texts = subject.results.problem.title_texts
     people = ((_("Student"), texts.student), (_("Group"), texts.group), (_("Teacher"), texts.teacher))
     above = "\n".join(text for text in (texts.institution, texts.department) if text)
@@ -26,7 +28,7 @@ def write_title_page(subject: Subject) -> Iterable[Block]:
 
 
 def write_checks(subject: Subject) -> Iterable[Block]:
-    """The table of checks, then what is worth a second look."""
+    """Write the table of checks and the warnings."""
     results = subject.results
     tables = list(walk(results, ("checks",)))
     told = tuple(collect_warnings(results, checked=False))
@@ -42,7 +44,7 @@ def write_checks(subject: Subject) -> Iterable[Block]:
 
 
 def write_literature(subject: Subject) -> Iterable[Block]:
-    """A list."""
+    """Write the list of references."""
     yield Heading(_("References"))
     yield Sources(tuple(Source(key, text) for key, text in _sources()))
 

@@ -1,4 +1,4 @@
-"""The structure: links, pairs, mobility, Assur groups, formula, class."""
+"""Chapter on structure: links, pairs, mobility, Assur groups, structural formula, class."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ W, N, LOWER, HIGHER = Symbol("W"), Symbol("n"), Symbol("p", "1"), Symbol("p", "2
 
 
 def write_structure(subject: Subject) -> Iterable[Block]:
-    """From the scheme to the class."""
+    """Write the chapter on structure."""
     structure = subject.results.structure
     yield Heading(_("Structure of the mechanism"))
     yield from subject.figures(
@@ -147,7 +147,7 @@ def _mobility(structure: Structure) -> Iterable[Block]:
 
 
 def chebyshev(n: int, lower: int, higher: int) -> Expression:
-    """3n − 2p₁ − p₂."""
+    """Return Chebyshev's formula 3n − 2p₁ − p₂ with its values."""
     held = 2 * Leaf(LOWER, lower)
     return 3 * Leaf(N, n) - held - Leaf(HIGHER, higher)
 
@@ -185,7 +185,7 @@ def _groups(subject: Subject) -> Iterable[Block]:
 
 
 def _apart(subject: Subject) -> Iterable[Block]:
-    """The drawings of the parts, one after the other."""
+    """Write the drawings of the primary mechanisms and groups."""
     drawn = subject.drawings("groups")
     if drawn:
         yield several(

@@ -71,7 +71,10 @@ OF_POSITION: Mapping[str, tuple[Callable[[Position], NamedDrawings], float]] = {
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """What a note is about. drawn: whether it has drawings; without them a note is there in no time."""
+    """Results that a note describes, with its drawings.
+
+    drawn: False for a note without drawings, which is much faster.
+    """
 
     results: Results
     drawn: bool = True
@@ -79,83 +82,83 @@ class Subject:
 
     @cached_property
     def detail(self) -> tuple[int, ...]:
-        """Indices of the positions that are shown in full."""
+        """Indices of the detailed positions."""
         return detailed_positions(self.results) if self.results.motion is not None else ()
 
     @property
     def motion(self) -> Motion:
-        """Of what moves; chapters on what stands still ask for none."""
+        """Motion of the mechanism; only for chapters on a mechanism that moves."""
         assert self.results.motion is not None
         return self.results.motion
 
     @property
     def reactions(self) -> Reactions:
-        """Of what has forces."""
+        """Reactions; only for chapters on forces."""
         assert self.results.reactions is not None
         return self.results.reactions
 
     @property
     def lever(self) -> ZhukovskyLever:
-        """Of what has forces."""
+        """Zhukovsky lever; only for chapters on forces."""
         assert self.results.lever is not None
         return self.results.lever
 
     def position(self, k: int) -> Position:
-        """One of them, as drawings take it."""
+        """Return a position in the form that drawings take."""
         return Position(self.results, self.motion, k)
 
     def called(self, k: int) -> str:
-        """The number of a position."""
+        """Return the number of a position."""
         return str(self.results.numbers[k])
 
     def at_position(self, k: int) -> str:
-        """Which position, and where the driver stands."""
+        """Return the number of a position with its driver coordinate."""
         place = with_degrees(driver_caption(self.results, float(self.motion.q[k]), 4))
         return _("position {number}, {place}").format(number=self.called(k), place=place)
 
     def rate(self, k: int) -> float:
-        """How fast the first driver moves in a position, SI."""
+        """Return the velocity of the first driver in a position, in SI."""
         return float(np.broadcast_to(self.motion.rate, self.motion.q.shape)[k])
 
     @property
     def acts(self) -> bool:
-        """Whether anything acts on the links; else there are no forces to write of."""
+        """True if any load acts on the links."""
         return self.results.reactions is not None and bool(self.results.reactions.applied)
 
     def number(self, si: float, dimension: Dimension, digits: int = 6) -> str:
-        """A number of the file in the unit that it has there."""
+        """Return a value (SI) as text in the unit of the problem file."""
         return self.text(float(self.results.problem.units.from_si(si, dimension)), digits)
 
     def value(self, si: float, dimension: Dimension, digits: int = 6) -> str:
-        """The same with this unit."""
+        """Return a value (SI) as text with the unit of the problem file."""
         return with_degrees(f"{self.number(si, dimension, digits)} {self.unit(dimension)}".rstrip())
 
     def unit(self, dimension: Dimension) -> str:
-        """The file's unit as it is printed."""
+        """Return the printed unit of a dimension in the problem file."""
         return typeset_unit(self.results.problem.units.spelt(dimension))
 
     def text(self, value: float, digits: int = 4) -> str:
-        """A number as the language writes it."""
+        """Return a number as text in the current language, without trailing zeros."""
         return self.figures_of(plain(rounded(value, digits), digits))
 
     def shown(self, value: float) -> str:
-        """A result, with all figures that it has."""
+        """Return a result as text with all its significant figures."""
         return self.figures_of(fixed(value, FIGURES))
 
     def angle(self, radians: float) -> str:
-        """Of a vector from x, 0 to 360, in degrees without their sign."""
+        """Return an angle (rad) from the x axis in degrees, 0 to 360, without the degree sign."""
         return numeral(round(float(np.degrees(radians)), 1) % 360, ".1f")
 
     def direction(self, vector: complex) -> str:
-        """The angle of a vector, with the sign."""
+        """Return the angle of a vector from the x axis with the degree sign."""
         return f"{self.angle(float(np.angle(vector)))}°"
 
     def figures_of(self, text: str) -> str:
-        """Of figures that are there already."""
+        """Return a formatted number in the style of the current language."""
         return localise_figures(text, language())
 
     def drawings(self, name: str, k: int | None = None) -> dict[str, Drawing]:
-        """By their stems; k: of a position. Each is drawn once, when it is first asked for."""
+        """Return drawings by name, of the mechanism or of position `k`; each is drawn on its first use."""
         if not self.drawn:
             return {}
         draw, longest = OF_MECHANISM[name] if k is None else OF_POSITION[name]
@@ -167,7 +170,7 @@ class Subject:
         return {stem: d for stem, d in self._drawings[draw, k].items() if not several or stem.startswith(name)}
 
     def scale(self, name: str, k: int, stem: str) -> float:
-        """How many metres a millimetre of this drawing is; of one that is not drawn, what would suit the mechanism."""
+        """Return the scale (m/mm) of a drawing; if it is not drawn, the scale that would suit the mechanism."""
         picture = self.drawings(name, k).get(stem)
         mu = getattr(picture, "mu", None)
         if mu is not None:
@@ -179,10 +182,15 @@ class Subject:
     def figures(
         self, name: str, sentence: str, caption: str = "", k: int | None = None, only: str = "", further: str = ""
     ) -> Iterable[Block]:
-        """Each of these drawings after a sentence that refers to it: "The velocity plan is in figure {figure}."
+        """Yield drawings, each after a sentence that refers to it by {figure}.
 
-        caption: else the drawing's own heading. only: those of this stem, and what is continued of it. further: the
-        sentence of the second drawing, and of those after it.
+        Args:
+            name: Kind of drawing, a key of OF_MECHANISM or OF_POSITION.
+            sentence: Sentence before the first drawing.
+            caption: Caption; by default the heading of the drawing.
+            k: Index of a position.
+            only: Restrict to the drawing of this stem and its continuation sheets.
+            further: Sentence before each further drawing.
         """
         for stem, drawing in self.drawings(name, k).items():
             if only and not re.fullmatch(rf"{re.escape(only)}(-sheet)?(-\d+)?", stem):
@@ -193,20 +201,20 @@ class Subject:
 
 
 def edged(drawing: Drawing) -> Drawing:
-    """With a little room about it, in which its outer lines are drawn whole."""
+    """Return a drawing with a narrow margin, so that its outer lines are not cut."""
     width, height = drawing.paper
     marks = tuple(mark.moved(EDGE * (1 + 1j)) for mark in drawing.marks)
     return replace(drawing, paper=(width + 2 * EDGE, height + 2 * EDGE), marks=marks)
 
 
 def localise_figures(text: str, spoken: str) -> str:
-    """Figures with the decimal mark, the minus and the power of ten of a language."""
+    """Return a number with the decimal mark, minus sign and power of ten of a language."""
     text = re.sub(r"(?<=\d)e([+-]?\d+)\b", lambda power: f"·10{str(int(power[1])).translate(RAISED)}", text)
     return text.replace("-", "−") if spoken == "en" else text.replace(".", ",").replace("-", "−")
 
 
 def with_degrees(text: str) -> str:
-    """90 deg is 90°, in every language; 5 % stays on one line."""
+    """Replace the unit deg by ° and keep a percent sign on the line of its number."""
     return re.sub(r"(?<=\d) (?:deg\b|град\b|°)", "°", text).replace(" %", "\N{NO-BREAK SPACE}%")
 
 
@@ -227,7 +235,7 @@ GREEK = {
 
 
 def by_hand(text: str) -> str:
-    """Formulas of a text as they are written by hand: ψ1 = π − φ₂ for psi1 = pi - phi_2."""
+    """Return a text with its formulas in handwriting style: psi1 = pi - phi_2 gives ψ1 = π − φ₂."""
     text = re.sub(rf"\b({'|'.join(GREEK)})(?=[\W\d_]|$)", lambda found: GREEK[found[0]], text)
     return re.sub(r"_(\d+)\b", lambda index: subscript(index[1]), signed(typeset(text))).replace(" - ", " − ")
 
@@ -239,9 +247,15 @@ NONE = "—"
 def rows_of(
     subject: Subject, table: Table, caption: str = "", key: str = "", digits: int = DIGITS, *, zeros: bool = False
 ) -> Rows:
-    """The same table in the units of the file, a dash in empty cells; columns in which nothing stands are left out.
+    """Return a table of results as a table of the note, in the units of the file.
 
-    zeros: at the end of a number are kept, so that all of a column have as many figures.
+    Args:
+        subject: Subject of the note.
+        table: Table of results; empty cells get a dash, empty columns are left out.
+        caption: Caption; by default the title of the table.
+        key: Key for references.
+        digits: Significant figures.
+        zeros: Keep trailing zeros, so that all numbers of a column have as many figures.
     """
     units = subject.results.problem.units
     columns = [
@@ -263,19 +277,19 @@ def rows_of(
 
 
 def over_positions(subject: Subject, caption: str, columns: Sequence[tuple[Line, Sequence[str]]], key: str) -> Rows:
-    """A row a position; columns: the head and the texts of each."""
+    """Return a table with a row per position from columns of heading and texts."""
     rows = zip(map(str, subject.results.numbers), *(texts for __, texts in columns), strict=True)
     head = cells(_("position"), *(head for head, __ in columns))
     return Rows(caption, head, tuple(cells(*row) for row in rows), key)
 
 
 def unbroken(text: str) -> str:
-    """Kept on one line of a cell."""
+    """Replace spaces by no-break spaces."""
     return text.replace(" ", "\N{NO-BREAK SPACE}")
 
 
 def _told_apart(table: Table, shown: list[list[str]]) -> None:
-    """Units that stand after the names of quantities go into the column of units: "time, s" is "time" and "s"."""
+    """Move units written after names of quantities into the column of units: "time, s" gives "time" and "s"."""
     headers = [column.header for column in table.columns]
     if headers != ["what", "value", "unit"] or len(shown) != len(headers):
         return
@@ -287,7 +301,7 @@ def _told_apart(table: Table, shown: list[list[str]]) -> None:
 
 
 def _texts(column: Column, units: UnitSystem, zeros: bool) -> list[str]:
-    """Without powers of ten as far as people write numbers so."""
+    """Return the cells of a column as texts, in scientific notation only for very large or small numbers."""
     if column.dimension is None:
         return cells_of(column, units, range(len(column.values)))
     write = fixed if zeros else plain
@@ -300,5 +314,5 @@ def _cell(text: str) -> str:
 
 
 def _on_paper(column: Column) -> Column:
-    """A column of units as they are printed."""
+    """Return a column of units in printed form; other columns unchanged."""
     return replace(column, values=[typeset_unit(unit) for unit in column.values]) if column.header == "unit" else column

@@ -1,4 +1,4 @@
-"""The task and its data, as the file gives them, in its units."""
+"""Chapter on the problem statement: input data in the units of the file, and what is to be found."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ SIDES = 3  # points of a link whose distances are all given; of more, those from
 
 
 def write_task(subject: Subject) -> Iterable[Block]:
-    """What is given and what is to be found."""
+    """Write the input data and the quantities to be found."""
     results = subject.results
     problem, linkage = results.problem, results.linkage
     yield Heading(_("Problem statement and input data"))
@@ -109,7 +109,7 @@ def _sizes(subject: Subject) -> Rows:
 
 
 def _lengths(subject: Subject, link: Link) -> Line:
-    """l_AB = 110 mm, ...; then the coordinates of points that are not on the axis x."""
+    """Return the lengths of a link (l_AB = 110 mm), then the coordinates of its points if any lies off the x axis."""
     points = list(link.points)
     pairs = combinations(points, 2) if len(points) <= SIDES else ((points[0], other) for other in points[1:])
     found: list[Line] = []
@@ -125,7 +125,7 @@ def _lengths(subject: Subject, link: Link) -> Line:
 
 
 def _fixed(subject: Subject) -> Rows:
-    """The last column is that of the directions of guides."""
+    """Return the table of fixed points and guides; the last column is the direction of guides."""
     linkage, unit = subject.results.linkage, subject.unit(LENGTH)
     rows = [cells(point, *_place(subject, place), NONE) for point, place in linkage.links[FRAME].points.items()]
     for slide in linkage.slides:

@@ -1,4 +1,4 @@
-"""What grading writes. A further format is a file here, whose function gives its files by name, and a line below."""
+"""Output formats of grading; a new format is a function that yields files by name, and an entry in EXPORTS."""
 
 from __future__ import annotations
 
@@ -30,10 +30,12 @@ def write(
     formats: Collection[str] = tuple(EXPORTS),
     say: Callable[[str], None] = lambda note: None,
 ) -> None:
-    """Write a gradebook: each file and each folder of files whole or not at all, and none before all are there.
+    """Write a gradebook; files appear completely or not at all, after all of them have been prepared.
 
-    A format that cannot be written here is left out, and `say` is told why. Other files in the folder stay. Raises
-    OSError.
+    A format that cannot be written is skipped and reported by `say`. Other files in the folder are kept.
+
+    Raises:
+        OSError: A file cannot be written.
     """
     whole: dict[str, bytes] = {}
     with ExitStack() as stack:

@@ -1,4 +1,4 @@
-"""What all exports share: marks with their task, and how names, points and values are written for people."""
+"""Marks with their task, and texts of names, points and values shared by all output formats."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ STATES = {
 
 @dataclass(frozen=True)
 class Answer:
-    """An answer that is asked, as exports name it. unit: the file's own; scale: it in SI."""
+    """Requested answer as output formats name it; `scale` is its unit in SI."""
 
     asked: Question
     name: str
@@ -36,9 +36,9 @@ class Answer:
     scale: float
 
     def text(self, value: complex, unit: str = "", size: bool = False) -> str:
-        """A value (SI) with its unit, the file's own when left out; a vector by size and direction: `1.31 m/s at 35°`.
+        """Return a value (SI) with its unit; a vector by magnitude and direction: `1.31 m/s at 35°`.
 
-        size: that of a vector without its direction.
+        size: True if only the magnitude of a vector is known.
         """
         scale = factor(unit, self.asked.quantity.dimension) if unit else self.scale
         number = f"{numeral(self.number(value) / scale + 0.0, '.5g')} {typeset_unit(spelt(unit or self.unit))}".rstrip()
@@ -47,12 +47,12 @@ class Answer:
         return _("{size} at {direction}°").format(size=number, direction=numeral(direction(value), ".4g"))
 
     def number(self, value: complex) -> float:
-        """A value (SI) as one number: the size of a vector."""
+        """Return a value (SI) as one number, the magnitude for a vector."""
         return abs(value) if self.asked.quantity.vector else value.real
 
     @property
     def of(self) -> str:
-        """What errors of it are shares of."""
+        """Reference value of relative errors, in words."""
         return _(OF[self.asked.quantity.against])
 
 
@@ -68,8 +68,8 @@ OF = {
 class Gradebook:
     """Marks of all students, in the order of the task's answers.
 
-    decimal: sign in numbers of CSV files; with a comma cells are divided by semicolons, as spreadsheets of such
-    countries do. users: whom the teacher named; others are in no gradebook of a learning platform. None: all.
+    decimal: decimal mark in CSV files; with a comma, cells are separated by semicolons. users: students listed by the
+    teacher; others are left out of the gradebooks of learning platforms. None: all.
     """
 
     task: Task
@@ -92,7 +92,7 @@ class Gradebook:
 
     @cached_property
     def files(self) -> tuple[str, ...]:
-        """A file's name for every student, without ending: no two alike, on no system."""
+        """File name for each student, without extension, unique on every system."""
         taken: set[str] = set()
         found, count = [], Counter[str]()
         for student in self.marks:
@@ -110,35 +110,35 @@ Export = Callable[[Gradebook], Iterable[tuple[str, Iterable[str | bytes]]]]  # f
 
 @lru_cache(maxsize=1024)
 def points_text(points: float) -> str:
-    """Points in a file: 4, 3.5."""
+    """Return points as text: 4, 3.5."""
     return f"{rounded(points):.10g}"
 
 
 def rounded(points: float) -> float:
-    """Points without what adding up leaves."""
+    """Return points without rounding noise of their sum."""
     return round(points, 3) + 0.0
 
 
 def percent(student: StudentMarks) -> float | None:
-    """Points as a share of all; None where there are none to be had."""
+    """Return the points in per cent of all; None if there are none to be earned."""
     return round(100 * student.points / student.of, 1) if student.of else None
 
 
 def share_text(share: float) -> str:
-    """A share for people, to two figures: 0.51 %, 5.1 %, 51 %."""
+    """Return a fraction in per cent with two figures: 0.51 %, 5.1 %, 51 %."""
     if not share < 10:  # nan too
         return _("over 999 %")
     return f"{100 * share:.0f} %" if share >= 0.0995 else f"{numeral(100 * share, '.2g')} %"
 
 
 def direction(value: complex) -> float:
-    """Of a vector, in degrees from 0 to 360."""
+    """Return the direction of a vector in degrees, 0 to 360."""
     found = math.degrees(cmath.phase(value)) % 360
     return 0.0 if found >= 359.95 else found
 
 
 def fitting(mark: Mark) -> bool:
-    """Whether the answer earns its points."""
+    """Return True if the answer earns its points."""
     return mark.state in ("right", "follows")
 
 
@@ -149,19 +149,19 @@ Cell = str | float | None | Mark  # a mark: its points, and its state beside the
 
 
 def marks_header(book: Gradebook) -> list[str]:
-    """Of a table with a column an answer."""
+    """Return the header of the table with a column per answer."""
     return ["student", "points", "of", "percent", *(answer.name for answer in book.answers), "notes"]
 
 
 def marks_rows(book: Gradebook) -> Iterator[list[Cell]]:
-    """A row a student."""
+    """Yield a row of marks per student."""
     for student in book.marks:
         points = rounded(student.points), rounded(student.of), percent(student)
         yield [shown(student.student), *points, *student.marks, _notes(student)]
 
 
 def _notes(student: StudentMarks) -> str:
-    """For the teacher."""
+    """Return the notes for the teacher."""
     copied = (_("the answers fit the variant of {student}").format(student=shown(student.copied)),)
     return "; ".join((*map(sentence, student.problems), *(copied if student.copied else ())))
 
@@ -187,7 +187,7 @@ ANSWERS_HEADER = (
 
 
 def answers_rows(book: Gradebook) -> Iterator[list[Cell]]:
-    """A row an answer; values in the units of the file, those of a vector as size and direction."""
+    """Yield a row per answer; values in the units of the file, vectors by magnitude and direction."""
     for student in book.marks:
         name = shown(student.student)
         for answer, mark in zip(book.answers, student.marks, strict=True):
@@ -224,10 +224,10 @@ def _percent(share: float | None) -> float | None:
 
 
 def finite(number: float) -> float | None:
-    """To six figures; nothing where it is no number."""
+    """Return a number rounded to six figures; None if it is not finite."""
     return float(f"{number:.6g}") if math.isfinite(number) else None
 
 
 def reasons(mark: Mark) -> str:
-    """All sentences of a mark."""
+    """Return the sentences of a mark in one text."""
     return " ".join(map(sentence, mark.reasons))

@@ -20,13 +20,13 @@ from tmm_cli.reports import csv_cell
 
 
 def csv_tables(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
-    """Both tables."""
+    """Yield marks.csv and answers.csv."""
     yield "marks.csv", csv_lines(book, marks_header(book), marks_rows(book))
     yield "answers.csv", csv_lines(book, ANSWERS_HEADER, answers_rows(book))
 
 
 def csv_lines(book: Gradebook, header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> Iterator[str]:
-    """A table line by line; with decimal commas as spreadsheets of such countries take it: semicolons and a mark."""
+    """Yield a table line by line; with decimal commas, with semicolons and a byte-order mark."""
     comma = book.decimal == ","
     between = ";" if comma else ","
     yield ("\ufeff" if comma else "") + between.join(map(csv_cell, header)) + "\n"
@@ -45,7 +45,7 @@ def _cell(cell: Cell, comma: bool) -> str:
 
 
 def moodle_file(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
-    """Students as the teacher names them (user name, id number or address), and the points."""
+    """Yield moodle.csv: students as the teacher names them (user name, id or address), and points."""
     known = [one for one in book.marks if book.users is None or one.student in book.users]
     rows = ((shown(student.student), rounded(student.points)) for student in known)
     yield "moodle.csv", csv_lines(book, ("user", "grade"), rows)

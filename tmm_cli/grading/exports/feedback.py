@@ -27,7 +27,7 @@ SHARES = {
 
 @dataclass(frozen=True)
 class StudentSheetRow:
-    """An answer of a sheet, its cells as plain text under the sheet's headers."""
+    """Answer on a sheet: its cells as plain text in the order of the headers."""
 
     state: State
     cells: tuple[str, ...]
@@ -35,7 +35,7 @@ class StudentSheetRow:
 
 @dataclass(frozen=True)
 class StudentSheet:
-    """What one student is told, as plain text. reasons: sentences, each with the answers that it is about."""
+    """Feedback for one student as plain text; `reasons` pairs each sentence with the answers it concerns."""
 
     title: str
     student: str
@@ -48,7 +48,7 @@ class StudentSheet:
 
 
 def sheets(book: Gradebook) -> Iterator[StudentSheet]:
-    """In the order of the marks."""
+    """Yield the feedback sheets in the order of the marks."""
     reveal = book.task.rules.reveal
     right = (_("right value"),) if reveal else ()
     headers = (_("asked"), _("your answer"), *right, _("off by"), _("allowed"), _("score"), _("result"))
@@ -97,7 +97,7 @@ def _cells(answer: Answer, mark: Mark, reveal: bool) -> tuple[str, ...]:
 
 
 def written(answer: Answer, mark: Mark) -> str:
-    """The student's value with its unit, in the unit it was read in; as it was written where it is no value."""
+    """Return the student's value with the unit it was read in, or the text if it is not a value."""
     if mark.value is None or not cmath.isfinite(mark.value):
         return shown(mark.text) or "-"
     return answer.text(mark.value, mark.reading, mark.size) + (f" {UNSAID}" if mark.reading else "")
@@ -108,7 +108,7 @@ def _error(answer: Answer, mark: Mark) -> str:
 
 
 def _allowed(answer: Answer, mark: Mark) -> str:
-    """What was allowed, and what is usual where that is less."""
+    """Return the tolerance, with the usual one if that is smaller."""
     if answer.asked.quantity.against == "exact":
         return _("exact")
     if not mark.judged:
@@ -120,13 +120,13 @@ def _allowed(answer: Answer, mark: Mark) -> str:
 
 
 def _notes(book: Gradebook) -> tuple[str, ...]:
-    """What errors are shares of."""
+    """Return the notes on the reference values of errors."""
     against = {answer.asked.quantity.against for answer in book.answers}
     return tuple(_(SHARES[one]) for one in SHARES if one in against)
 
 
 def _why_more(both: Iterable[tuple[Answer, Mark]]) -> Iterator[str]:
-    """Why more than usual is allowed."""
+    """Yield why a larger tolerance than usual applies."""
     drawn = {answer.asked.drawn for answer, mark in both if _widened(answer, mark)}
     if True in drawn:
         yield _(
@@ -145,7 +145,7 @@ def _widened(answer: Answer, mark: Mark) -> bool:
 
 
 def _reasons(both: list[tuple[Answer, Mark]]) -> Iterator[tuple[str, str]]:
-    """Each sentence once, with all answers that it is about; at last what nothing explains."""
+    """Yield each sentence once with all answers it concerns; unexplained errors last."""
     found: dict[str, list[str]] = {}
     left = []
     for answer, mark in both:
@@ -160,7 +160,7 @@ def _reasons(both: list[tuple[Answer, Mark]]) -> Iterator[tuple[str, str]]:
 
 
 def output(answer: Answer, mark: Mark, reveal: bool) -> str:
-    """All about one answer in a few lines."""
+    """Return all about one answer in a few lines."""
     lines = [_("result: {result}").format(result=_(STATES[mark.state]))]
     if mark.state != "missing":
         lines.append(_("your answer: {answer}").format(answer=written(answer, mark)))
@@ -180,7 +180,7 @@ CELL_BREAK = "\x1f"  # stands between the cells of a row while they are escaped
 
 
 def markdown_text(sheet: StudentSheet) -> str:
-    """A sheet as Markdown; nothing in it is markup of the student's."""
+    """Return a sheet as Markdown, with markup in students' texts escaped."""
     parts = [
         f"# {_escape_markdown(sheet.title)}",
         f"**{_escape_markdown(sheet.student)}**: {_escape_markdown(sheet.total)}",
@@ -198,7 +198,7 @@ def _markdown_list(lines: Iterable[str]) -> str:
 
 
 def _escape_markdown(text: str) -> str:
-    """A text with no markup in it, neither of Markdown nor of HTML."""
+    """Escape the markup of Markdown and HTML."""
     safe = SIGNS.sub(r"\\\1", escape(text, quote=False))
     return LINE.sub(r"\\_", safe) if "_" in safe else safe
 
@@ -227,7 +227,7 @@ PAGE_HEAD = (
 
 
 def html_page(sheet: StudentSheet) -> str:
-    """A sheet as a page; names are kept apart in their own direction of writing."""
+    """Return a sheet as a self-contained HTML page; names keep their own writing direction."""
     problems = _html_list(f"<li>{escape(problem)}</li>" for problem in sheet.problems)
     header = "".join(f"<th>{escape(header)}</th>" for header in sheet.headers)
     rows = "\n".join(
@@ -258,6 +258,6 @@ FEEDBACK_FORMATS: Final[Mapping[str, Callable[[StudentSheet], str]]] = {
 
 
 def feedback_files(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
-    """Each sheet in every format."""
+    """Yield each sheet in every format."""
     for name, sheet in zip(book.files, sheets(book), strict=True):
         yield from ((f"feedback/{name}.{ending}", (text(sheet),)) for ending, text in FEEDBACK_FORMATS.items())

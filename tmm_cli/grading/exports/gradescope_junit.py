@@ -13,7 +13,7 @@ from tmm_cli.grading.untrusted_tables import sentence, shown
 
 
 def gradescope_files(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
-    """A record a student."""
+    """Yield a Gradescope record for each student."""
     for name, student in zip(book.files, book.marks, strict=True):
         yield f"gradescope/{name}.json", (_gradescope_record(book, student),)
 
@@ -37,12 +37,12 @@ def _gradescope_record(book: Gradebook, student: StudentMarks) -> str:
 
 
 def junit_file(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
-    """One file of all students."""
+    """Yield junit.xml with all students."""
     yield "junit.xml", _junit_lines(book)
 
 
 def _junit_lines(book: Gradebook) -> Iterator[str]:
-    """classname (the student) and name (the answer) are what a case is known by; texts stand in the elements."""
+    """Yield the lines of junit.xml; a case is identified by classname (student) and name (answer)."""
     marks = [mark for student in book.marks for mark in student.marks]
     counted = f'tests="{len(marks)}" failures="{sum(not fitting(mark) for mark in marks)}"'
     yield f'<?xml version="1.0" encoding="UTF-8"?>\n<testsuites {counted}>\n'

@@ -1,4 +1,4 @@
-"""marks.xlsx: the marks, every answer, the group. Texts are written as texts: nothing in it is a formula or a link."""
+"""Workbook marks.xlsx: marks, answers and statistics; texts are never written as formulas or links."""
 
 from __future__ import annotations
 
@@ -25,12 +25,16 @@ HEAD_HEIGHT = 32  # points: two lines
 
 
 def files(book: Gradebook) -> Iterator[tuple[str, Iterable[bytes]]]:
-    """One workbook."""
+    """Yield the workbook."""
     yield "marks.xlsx", (_workbook(book),)
 
 
 def _workbook(book: Gradebook) -> bytes:
-    """Raises ProblemError where nothing is installed that writes it."""
+    """Return the workbook.
+
+    Raises:
+        ProblemError: No package that writes XLSX is installed.
+    """
     stream = io.BytesIO()
     with open_workbook("marks.xlsx", stream) as workbook:
         workbook.set_properties({"created": CREATED, "title": "marks"})
@@ -44,7 +48,7 @@ def _workbook(book: Gradebook) -> bytes:
 
 
 def _answers(book: Gradebook) -> Iterator[list[Cell]]:
-    """A row an answer, to be read; answers.csv has more, to be computed with."""
+    """Yield a row per answer for reading; answers.csv has more columns for computing."""
     for student in book.marks:
         name = shown(student.student)
         for answer, mark in zip(book.answers, student.marks, strict=True):
@@ -62,7 +66,7 @@ def _sheets(
     head: Any,
     widths: Sequence[float],
 ) -> None:
-    """A table, on further sheets where one cannot hold it."""
+    """Write a table, continued on further sheets if one cannot hold it."""
     rows = iter(rows)
     for number in count(1):
         some = islice(rows, MOST_ROWS)
@@ -97,7 +101,7 @@ def _row(sheet: Any, at: int, row: Sequence[Cell], formats: dict[str, Any]) -> N
 
 
 def _group(workbook: Any, book: Gradebook, head: Any) -> None:
-    """All tables of the group, one below the other."""
+    """Write all tables of the statistics below one another."""
     sheet, at = workbook.add_worksheet("Group"), 0
     sheet.set_column(0, 0, 40)
     sheet.set_column(1, 7, 18)

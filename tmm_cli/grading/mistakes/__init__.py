@@ -1,4 +1,4 @@
-"""Typical mistakes. A further one is a file here and a word in MISTAKES."""
+"""Typical mistakes; a new one is a class in a module here and an entry in MISTAKES."""
 
 from __future__ import annotations
 
@@ -43,5 +43,5 @@ MISTAKES: tuple[type[Mistake], ...] = (
 
 
 def cases(family: VariantFamily) -> tuple[Mistake, ...]:
-    """All cases of all mistakes that a task has."""
+    """Return all cases of all mistakes that are possible in a family of variants."""
     return tuple(case for kind in MISTAKES for case in kind.cases(family))

@@ -36,7 +36,7 @@ class Solution:
 
 
 def solve(family: VariantFamily, mistakes: Sequence[Mistake] = ()) -> Solution:
-    """All stages; each mistake changes what it is a mistake in, the first one first."""
+    """Solve a family of variants with mistakes; each mistake changes the stage it concerns, in the given order."""
     for mistake in mistakes:
         family = mistake.family(family)
     lead = family.linkage.driver
@@ -60,9 +60,10 @@ def solve(family: VariantFamily, mistakes: Sequence[Mistake] = ()) -> Solution:
 
 @dataclass(frozen=True)
 class Mistake:
-    """One case of a mistake, e.g. that the normal part of link 3 was left out. It changes one of these, or several.
+    """Case of a typical mistake, e.g. the normal acceleration of link 3 left out.
 
-    name: in tables and statistics; sentence: for the student, whole. Both may have fields of the mistake.
+    A subclass overrides one or more of the methods below. name: for tables and statistics. sentence: for the student.
+    Both may contain fields of the mistake.
     """
 
     name: ClassVar[str]
@@ -72,35 +73,35 @@ class Mistake:
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
-        """All of its cases that this task has."""
+        """Yield the cases of this mistake that are possible in a family of variants."""
         yield cls()
 
     @property
     def told(self) -> str:
-        """The sentence with the fields of this case."""
+        """Sentence with the fields of this case."""
         return _(self.sentence).format(**vars(self))
 
     @property
     def called(self) -> str:
-        """The name with the fields of this case."""
+        """Name with the fields of this case."""
         return _(self.name).format(**vars(self))
 
     def family(self, family: VariantFamily) -> VariantFamily:
-        """The variants as the student took them."""
+        """Return the variants as this mistake changes them; by default unchanged."""
         return family
 
     def kernel(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
-        """A group as the student solved it."""
+        """Return the group solver as this mistake changes it; by default unchanged."""
         return kernel
 
     def motion(self, motion: Motion) -> Motion:
-        """The motion as the student found it."""
+        """Return the motion as this mistake changes it; by default unchanged."""
         return motion
 
     def load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
-        """What the student let act in the place of a load."""
+        """Return a load as this mistake changes it; by default unchanged."""
         return load
 
     def value(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
-        """What the student wrote down of the values (variants, positions) that the stages gave."""
+        """Return values (variants, positions) as they are written down with this mistake; by default unchanged."""
         return values

@@ -1,4 +1,4 @@
-"""Degrees taken for radians, or radians for degrees."""
+"""Mistakes in input data and units: degrees, millimetres, rpm, zero position, sense of rotation, scale."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tmm_cli.mechanics.numerics import Real
 
 @dataclass(frozen=True)
 class Degrees(Mistake):
-    """Angles, angular speeds and accelerations."""
+    """Degrees taken for radians or the reverse, in angles, angular velocities and accelerations."""
 
     factor: float = 1.0
 
@@ -38,7 +38,7 @@ class Degrees(Mistake):
 
 @dataclass(frozen=True)
 class Millimetres(Mistake):
-    """Whatever a length is a factor of."""
+    """Millimetres taken for metres or the reverse, in every quantity with a length in its dimension."""
 
     factor: float = 1.0
 
@@ -59,7 +59,7 @@ class Millimetres(Mistake):
 
 @dataclass(frozen=True)
 class Rpm(Mistake):
-    """Velocities are 9.55 times too large, accelerations and inertia forces 91 times."""
+    """Crank speed in rpm used as rad/s: velocities are 9.55 times too large, accelerations 91 times."""
 
     name = N_("rpm instead of rad/s")
     sentence = N_("The speed of the crank was substituted in revolutions per minute; use omega = pi n / 30 in rad/s.")
@@ -79,7 +79,7 @@ class Rpm(Mistake):
 
 @dataclass(frozen=True)
 class OtherZero(Mistake):
-    """From the other extreme position, or from the crank along the x axis."""
+    """Positions counted from the other extreme position, or from the crank along the x axis."""
 
     extreme: bool = True
 
@@ -108,7 +108,7 @@ class OtherZero(Mistake):
 
 @dataclass(frozen=True)
 class Neighbour(Mistake):
-    """The value of the position before or after."""
+    """Value of the position before or after."""
 
     step: int = 1
 
@@ -129,7 +129,7 @@ class Neighbour(Mistake):
 
 @dataclass(frozen=True)
 class Sense(Mistake):
-    """In the same positions, or with the positions counted the wrong way too."""
+    """Crank rotated in the wrong sense, with the positions as they are or counted in the wrong sense too."""
 
     counted: bool = False
 
@@ -159,7 +159,7 @@ SIZES = tuple(m * 10.0**power for power in (-3, -2, -1, 0, 1, 2) for m in (1, 2,
 
 @dataclass(frozen=True)
 class ScaleInverted(Mistake):
-    """All values off one kind of plan are wrong by the square of its scale factor, a round number in mm."""
+    """All values of one kind of plan multiplied by the square of its scale factor, a round number."""
 
     stage: str = ""
     scale: float = 1.0

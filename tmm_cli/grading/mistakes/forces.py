@@ -1,4 +1,4 @@
-"""Inertia forces drawn along the accelerations."""
+"""Mistakes in forces: inertia forces, weights, guide reactions, working stroke."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tmm_cli.mechanics.numerics import Real
 
 @dataclass(frozen=True)
 class InertiaReversed(Mistake):
-    """Forces, couples, or both."""
+    """Inertia forces, couples or both directed along the acceleration."""
 
     parts: tuple[str, ...] = ()
 
@@ -44,7 +44,7 @@ class InertiaReversed(Mistake):
 
 @dataclass(frozen=True)
 class HingeInertia(Mistake):
-    """Of one link, or of all: its couple of inertia is too large by m s^2 epsilon."""
+    """Moment of inertia of one link or of all about a hinge: the inertia couple is too large by m s² ε."""
 
     link: str = ""
 
@@ -69,7 +69,7 @@ class HingeInertia(Mistake):
 
 
 def _arm(family: VariantFamily, name: str) -> Real:
-    """From a link's hinge, that on the frame if it has one, to its centre of mass, m."""
+    """Return the vector (m) from a link's hinge, preferably on the frame, to its centre of mass."""
     link = family.linkage.links[name]
     frame = family.linkage.links[FRAME].points
     hinge = next((p for n, p in link.points.items() if n in frame), next(iter(link.points.values()), 0j))
@@ -81,7 +81,7 @@ def _arm(family: VariantFamily, name: str) -> Real:
 
 @dataclass(frozen=True)
 class NoInertia(Mistake):
-    """Of one link, or of all."""
+    """Inertia force of one link or of all left out."""
 
     link: str = ""
 
@@ -108,7 +108,7 @@ class NoInertia(Mistake):
 
 @dataclass(frozen=True)
 class NoCouple(NoInertia):
-    """Of one link, or of all."""
+    """Inertia couple of one link or of all left out."""
 
     name = N_("inertia couple left out")
     sentence = N_("The inertia couple J epsilon was left out.")
@@ -120,7 +120,7 @@ class NoCouple(NoInertia):
 
 @dataclass(frozen=True)
 class NoWeight(Mistake):
-    """Of one link, or of all. mass: the weight is the number of kilograms."""
+    """Weight of one link or of all left out, or with `mass` replaced by the mass."""
 
     link: str = ""
     mass: bool = False
@@ -148,7 +148,7 @@ class NoWeight(Mistake):
 
 @dataclass(frozen=True)
 class WeightForMass(Mistake):
-    """Inertia forces are g times too large."""
+    """Weight used as mass: inertia forces are g times too large."""
 
     name = N_("weight instead of mass")
     sentence = N_(
@@ -169,7 +169,7 @@ class WeightForMass(Mistake):
 
 @dataclass(frozen=True)
 class GuideThroughHinge(Mistake):
-    """It acts where moments about the hinge vanish, which is seldom the hinge itself."""
+    """Reaction of a guide drawn through the hinge, where it seldom acts."""
 
     name = N_("reaction of a guide drawn through the hinge")
     sentence = N_(
@@ -187,7 +187,7 @@ class GuideThroughHinge(Mistake):
 
 @dataclass(frozen=True)
 class OppositeReaction(Mistake):
-    """Reactions with the opposite direction."""
+    """Reaction with the opposite direction: R_ik instead of R_ki."""
 
     name = N_("R_ik instead of R_ki")
     sentence = N_("This is the opposite of the requested reaction: R_ik acts from link i on link k.")
@@ -202,7 +202,7 @@ class OppositeReaction(Mistake):
 
 @dataclass(frozen=True)
 class WrongStroke(Mistake):
-    """both: it acts always; else in the idle stroke alone."""
+    """Useful resistance acting in the return stroke only, or with `both` always."""
 
     both: bool = False
 

@@ -1,4 +1,4 @@
-"""A group drawn in its other assembly."""
+"""Mistakes in motion: assembly; normal, tangential and Coriolis accelerations."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from tmm_cli.mechanics.numerics import Real, cross
 
 @dataclass(frozen=True)
 class Mirror(Mistake):
-    """The group of these links lies on the other side."""
+    """Group of these links in its other assembly."""
 
     links: str = ""
 
@@ -58,7 +58,7 @@ Terms = Callable[[PairConstraint, Poses, Rates], Any]  # the velocity terms of a
 
 @dataclass(frozen=True)
 class Equations(NewtonSolver):
-    """A group as equations, one a row of a pair, with other velocity terms."""
+    """Group solved as a system of equations with modified velocity terms."""
 
     terms: Terms = field(kw_only=True)
 
@@ -68,13 +68,13 @@ class Equations(NewtonSolver):
 
 @dataclass(frozen=True)
 class OtherTerms(WrappedSolver):
-    """Accelerations from equations with other velocity terms."""
+    """Group whose accelerations follow from equations with modified velocity terms."""
 
     equations: Equations
 
     @classmethod
     def of(cls, right: GroupSolver, linkage: Linkage, terms: Terms) -> OtherTerms:
-        """The group with its numbers."""
+        """Return the group with its numbers and modified velocity terms."""
         plain = NewtonSolver.of(right.group.rebind(linkage), linkage)
         own = {f.name: getattr(plain, f.name) for f in fields(plain)}
         return cls.around(right, Equations(**own, terms=terms))
@@ -90,7 +90,7 @@ class OtherTerms(WrappedSolver):
 
 @dataclass(frozen=True)
 class Normal(Mistake):
-    """Of one link: its points accelerate as if it did not turn."""
+    """Normal acceleration of one link left out, as if it did not rotate."""
 
     link: str = ""
 
@@ -119,13 +119,13 @@ class Normal(Mistake):
 
 
 def without(rates: Rates, link: str) -> Rates:
-    """Velocities in which a link does not turn."""
+    """Return the velocities with the rotation of one link set to zero."""
     return {**rates, link: replace(rates[link], w=rates[link].w * 0)}
 
 
 @dataclass(frozen=True)
 class Unturned(WrappedSolver):
-    """A group that hangs on the link."""
+    """Group that depends on a link whose normal acceleration is left out."""
 
     link: str
 
@@ -138,7 +138,7 @@ class Unturned(WrappedSolver):
 
 @dataclass(frozen=True, kw_only=True)
 class UnturnedMotion(Motion):
-    """A motion in which the points of the link accelerate so."""
+    """Motion in which the normal accelerations of one link are left out."""
 
     link_without: str
 
@@ -156,7 +156,7 @@ class UnturnedMotion(Motion):
 
 @dataclass(frozen=True)
 class Tangential(Mistake):
-    """Of a link that turns about an outer hinge of its group."""
+    """Tangential acceleration left out, of a link that rotates about an external hinge of its group."""
 
     link: str = ""
 
@@ -181,7 +181,7 @@ class Tangential(Mistake):
 
 @dataclass(frozen=True)
 class NotTurningFaster(WrappedSolver):
-    """A group one of whose links has no angular acceleration."""
+    """Group in which one link has no angular acceleration."""
 
     link: str
     known: str
@@ -203,7 +203,7 @@ class NotTurningFaster(WrappedSolver):
 
 @dataclass(frozen=True)
 class Coriolis(Mistake):
-    """Of one link that slides on a moving one. sense: 0 left out, -1 reversed."""
+    """Coriolis acceleration of one link on a moving guide left out (sense 0) or reversed (-1)."""
 
     runner: str = ""
     carrier: str = ""

@@ -1,1 +1,1 @@
-"""What students hand in, read from files that nobody has checked, and the empty sheets that they fill in."""
+"""Submissions: reading of unchecked files, and empty answer sheets."""

@@ -1,4 +1,4 @@
-"""Cells under their headings to what a student answered: parts of vectors put together, what is not asked left out."""
+"""Conversion of table cells under their headings to answers; components of vectors are joined."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ Cells = dict[Part, tuple[str, str]]  # text and unit of every part of an answer
 
 
 class Entry(NamedTuple):
-    """A cell and what stands over it, or beside it in columns of their own."""
+    """Cell with its heading, or with the contents of the other columns that describe it."""
 
     cell: str
     heading: str
@@ -44,7 +44,7 @@ class Entry(NamedTuple):
 
 
 class Over(NamedTuple):
-    """What a cell answers: a quantity at a position, which part of it, in which unit, and whether it is asked."""
+    """Meaning of a heading: quantity and position, component, unit, and whether it is requested."""
 
     place: Heading
     part: Part
@@ -53,7 +53,11 @@ class Over(NamedTuple):
 
 
 class Answers:
-    """Reads answers to what a task asks. Raises ProblemError where its block `grading` is wrong."""
+    """Reader of answers to the questions of a task.
+
+    Raises:
+        ProblemError: The block `grading` of the task is wrong.
+    """
 
     def __init__(self, task: Task) -> None:
         self.asked = {one.key for one in task.asked}
@@ -63,7 +67,11 @@ class Answers:
         self.known: dict[Entry, Over | ProblemError] = {}
 
     def heading(self, entry: Entry) -> Over:
-        """What is over a cell. Raises ProblemError."""
+        """Return the meaning of the heading of a cell.
+
+        Raises:
+            ProblemError: The heading cannot be read.
+        """
         key = entry._replace(cell="")
         found = self.known.get(key)
         if found is None:
@@ -87,7 +95,7 @@ class Answers:
         return Over(place, entry.part or over.part, checked_unit(entry.unit) or over.unit, asked)
 
     def submission(self, student: str, entries: Iterable[Entry], problems: Iterable[str] = ()) -> Submission:
-        """What the cells of one student say. Cells that are empty, or hold a dash, are no answers."""
+        """Return the submission given by the cells of one student; empty cells and dashes are not answers."""
         told: list[str | ProblemError] = list(problems)
         cells: dict[Heading, Cells] = {}  # by quantity and position
         unasked: dict[Heading, None] = {}
@@ -144,7 +152,7 @@ class Answers:
         return one_line(error)
 
     def _not_asked(self, places: list[Heading]) -> str:
-        """Of a quantity that is not asked with what is perhaps meant: R_12 is never taken for R_21."""
+        """Return the message on quantities not requested, with similar requested names; R_12 is never taken for R_21."""
         names = []
         for place in places[:MOST_TOLD]:
             near = None if place.quantity in self.names else nearest_name(place.quantity, self.names)
@@ -154,12 +162,12 @@ class Answers:
 
 
 def one_line(error: ProblemError) -> str:
-    """All that an error says, in one line."""
+    """Return an error message in one line."""
     return "; ".join(" ".join(line.split()) for line in str(error).splitlines())
 
 
 def twice(place: Heading) -> str:
-    """That an answer stands there again."""
+    """Return the message on an answer given twice."""
     return _("{name} is given twice: the first counts").format(name=_called(place))
 
 
@@ -176,7 +184,11 @@ def _called(place: Heading) -> str:
 
 
 def _given(cells: Cells) -> Given | None:
-    """One answer of its parts. Raises ProblemError."""
+    """Return one answer from its components.
+
+    Raises:
+        ProblemError: A component is missing or the units differ.
+    """
     if "x" in cells or "y" in cells:
         if not {"x", "y"} <= cells.keys():
             raise ProblemError(_("one component is missing"), found=", ".join(cells), allowed="x, y")
@@ -216,9 +228,9 @@ NEAR = np.radians(2.0)  # as angles are read off a drawing
 
 
 def at_positions(submission: Submission, task: Task, places: Real) -> Submission:
-    """The submission with these answers among the others; what is not counted of them is told.
+    """Assign answers given by a driver angle to the positions of the student's variant.
 
-    places: angles of the variant's positions (rad).
+    places: angles (rad) of the positions of the variant. Answers that cannot be assigned are reported in `problems`.
     """
     if not submission.by_angle:
         return submission

@@ -1,7 +1,7 @@
-"""The text of one answer, as students write it, to numbers.
+"""Reading of one answer as students write it.
 
 A number: `1,31 m/s`, `3·10^-3`, `1 200.5`, `II`. A vector by components: `(1,2; -3,4) N`, `Fx = 1.2 N, Fy = -3.4 N`; by
-size and direction: `1.2 kN at 34 deg`, `1200 N, 34°`. Nothing is computed, and a text is at most LONGEST characters.
+magnitude and direction: `1.2 kN at 34 deg`, `1200 N, 34°`. Nothing is computed; a text has at most LONGEST characters.
 """
 
 from __future__ import annotations
@@ -52,9 +52,18 @@ _DIRECTIONS = ("phi", "φ", "angle", "alpha", "α")
 
 
 def read_answer(text: str, unit: str = "", turn_unit: str = "") -> Given | None:
-    """What a cell says; None of an empty one or a dash. unit, turn_unit: meant where the cell has none.
+    """Read the answer in a cell.
 
-    Raises ProblemError.
+    Args:
+        text: Text of the cell.
+        unit: Unit if the text has none.
+        turn_unit: Unit of the direction if the text has none.
+
+    Returns:
+        The answer; None for an empty cell or a dash.
+
+    Raises:
+        ProblemError: The text is not an answer.
     """
     if len(text) < LONGEST and _PLAIN.fullmatch(text):
         return Given(read_number(text)[0], unit=unit, text=text)
@@ -94,9 +103,10 @@ def read_answer(text: str, unit: str = "", turn_unit: str = "") -> Given | None:
 
 
 def plainly(text: str) -> str:
-    """The text with minus signs, points, spaces and superscripts of all kinds as those of a keyboard.
+    """Replace typographic minus signs, points, spaces and superscripts by keyboard characters.
 
-    Raises ProblemError.
+    Raises:
+        ProblemError: The text is too long.
     """
     if len(text) > LONGEST:
         raise ProblemError(
@@ -108,7 +118,11 @@ def plainly(text: str) -> str:
 
 
 def read_number(source: str) -> tuple[float, str]:
-    """A number and the unit behind it, "" where none is, of a plain text. Raises ProblemError."""
+    """Read a number and the unit after it ("" if none).
+
+    Raises:
+        ProblemError: The text is not a number.
+    """
     if _PLAIN.fullmatch(source):
         return finite_float(source.replace(",", ".")), ""
     found = _NUMBER.match(source)
@@ -135,7 +149,11 @@ def read_number(source: str) -> tuple[float, str]:
 
 @lru_cache(maxsize=1024)
 def checked_unit(text: str) -> str:
-    """A unit as it is written; "" of none. Raises UnitError."""
+    """Return a unit as written, "" if empty.
+
+    Raises:
+        UnitError: The unit is unknown.
+    """
     name = text.strip().removesuffix(".")
     if name:
         if "." in name:
@@ -150,13 +168,15 @@ def _turns(unit: str) -> bool:
 
 
 def _labelled(part: str) -> tuple[str, str]:
-    """`Fx = 1.2 N` as its label and the rest."""
+    """Split `Fx = 1.2 N` into its label and the rest."""
     label = _LABEL.match(part)
     return (label[1], part[label.end() :]) if label else ("", part)
 
 
 def _parts(source: str) -> tuple[list[str], str, bool]:
-    """The numbers that stand beside one another; the unit of all; whether the second is said to be a direction."""
+    """Split a text into its numbers; return them, their common unit, and True if the second is stated to be a
+    direction.
+    """
     inside, unit = source, ""
     brackets = _BRACKETS.fullmatch(source)
     if brackets:
@@ -187,7 +207,7 @@ _PLACE = re.compile(r"(?:(phi|φ) *= *)?(.*)")
 
 @dataclass(frozen=True)
 class Heading:
-    """A quantity at a position, as the students count it, or at an angle (rad) of the driver; and which part of it."""
+    """Quantity at a position number or at a driver angle (rad), with the requested component."""
 
     quantity: str
     position: int | None = None
@@ -197,7 +217,7 @@ class Heading:
 
 
 class UnknownQuantityError(ProblemError):
-    """A name that no quantity has."""
+    """Name that belongs to no quantity."""
 
     def __init__(self, name: str) -> None:
         super().__init__(_("there is no quantity with this name"), found=quote(name))
@@ -205,13 +225,17 @@ class UnknownQuantityError(ProblemError):
 
 
 class Headings:
-    """Reads headings by the names of quantities. A name may have Cyrillic letters that look like its Latin ones."""
+    """Reader of headings by names of quantities; Cyrillic letters that look like Latin ones are accepted."""
 
     def __init__(self, names: Iterable[str]) -> None:
         self.names = {to_latin(name): name for name in sorted(names, key=len, reverse=True)}
 
     def read(self, text: str) -> Heading:
-        """Raises ProblemError."""
+        """Read a heading.
+
+        Raises:
+            ProblemError: The heading cannot be read.
+        """
         source = " ".join(plainly(text).split())
         alike = to_latin(source)
         for known, name in self.names.items():
@@ -236,7 +260,11 @@ def _heading(name: str, part: str, position: str, rest: str, unit: str) -> Headi
 
 
 def read_position(text: str) -> tuple[int | None, float | None]:
-    """`7` as the number of a position, `phi = 210 deg` or `210 deg` as an angle (rad). Raises ProblemError."""
+    """Read `7` as a position number, `phi = 210 deg` or `210 deg` as an angle (rad).
+
+    Raises:
+        ProblemError: The text is not a position.
+    """
     source = plainly(text)
     if not source.strip("- "):
         return None, None

@@ -1,4 +1,4 @@
-"""The two shapes of a table: an answer in every row, or all answers of a student in one row."""
+"""Reading of submissions: a folder with a file per student, or one table; a damaged file does not stop the others."""
 
 from __future__ import annotations
 
@@ -35,23 +35,29 @@ _WORDS = {word: column for column, words in _COLUMNS.items() for word in words}
 
 @dataclass(frozen=True)
 class Shape:
-    """How the rows below a header are read. student: the column of names, if there is one. width: of the header."""
+    """How the rows below a header are read; `student`: column of names or None; `width`: length of the header."""
 
     student: int | None
     entries: Callable[[Row], Iterator[Entry]]
     width: int
 
     def named(self, row: Row) -> str:
-        """The student that a row names; "" of none."""
+        """Return the student named in a row, "" if none."""
         return "" if self.student is None else _cell(row, self.student)
 
     def longer(self, row: Row) -> bool:
-        """Whether something stands beyond the header."""
+        """Return True if a row has cells beyond the header."""
         return any(row[self.width :])
 
 
 def shape_of(header: Row, answers: Answers, *, filled: bool = True) -> Shape:
-    """Long where a column is called `quantity`, and wide otherwise; filled: rows follow. Raises ProblemError."""
+    """Return the shape of a table: long (a column `quantity`) or wide.
+
+    filled: rows follow the header.
+
+    Raises:
+        ProblemError: The header cannot be read.
+    """
     columns: dict[str, tuple[int, str]] = {}  # places and units: `angle, deg`
     for n, text in enumerate(header):
         word, _comma, unit = re.sub(r"\[(.*)\]$", r",\1", text).partition(",")
@@ -96,7 +102,7 @@ def _is_unit(text: str) -> bool:
 
 
 def _long(columns: dict[str, tuple[int, str]], width: int) -> Shape:
-    """Columns quantity, and perhaps student, position, unit, value, x, y, size, angle."""
+    """Return the shape of a table with the columns quantity, student, position, unit, value, x, y, size, angle."""
     places = {name: place for name, (place, _unit) in columns.items()}
     parts: list[tuple[Part, int, str]] = [("", *columns["value"])] if "value" in columns else []
     parts += [(part, *columns[part]) for part in PARTS if part in columns]
@@ -117,7 +123,7 @@ def _cell(row: Row, place: int | None) -> str:
 
 
 class Texts(Composer):
-    """Every value as the text that stands there, as students write numbers in other ways than YAML does."""
+    """YAML composer that keeps every value as its text, since students write numbers otherwise than YAML does."""
 
     def parsed(self) -> Iterator[Any]:
         for self.last in super().parsed():
@@ -127,7 +133,7 @@ class Texts(Composer):
         return str(event.value)
 
     def cut_by_comma(self, event: Any, path: Any) -> None:
-        """Nothing: a list is read as the text that it is."""
+        """Do nothing: a list is read as its text."""
 
     def sequence(self, start: Any, path: Any) -> Any:
         found = super().sequence(start, path)
@@ -135,7 +141,11 @@ class Texts(Composer):
 
 
 def read_sheet(text: str, file: str) -> tuple[str, list[Entry]]:
-    """The student that a sheet names ("" of none) and its entries. Raises ProblemError."""
+    """Read an answer sheet in YAML: the student's name ("" if none) and its entries.
+
+    Raises:
+        ProblemError: The file is not an answer sheet.
+    """
     data = read_text(text, file, Texts).data
     student: Any = data.pop("student", "")
     answers: Any = data.pop("answers", data) or {}
@@ -170,10 +180,15 @@ TABLES, SHEETS = (".csv", ".tsv", ".txt", ".xlsx"), (".yaml", ".yml")
 
 
 def read_submissions(path: str | os.PathLike[str], task: Task, students: Collection[str]) -> Iterator[Submission]:
-    """Submissions, each read when it is wanted; at the end those of students who handed nothing in.
+    """Yield submissions, each read when needed; at the end those of students who handed in nothing.
 
-    path: a folder, whose files are named as the students, or a table. students: whose names are known. Raises
-    ProblemError where the path or the whole table cannot be read.
+    Args:
+        path: Folder whose files are named after the students, or a table of all.
+        task: Task.
+        students: Known names.
+
+    Raises:
+        ProblemError: The path or the whole table cannot be read.
     """
     real = Path(os.path.realpath(path))
     reader = _Reader(task, students)
@@ -195,7 +210,7 @@ class _Reader:
             self.alike.setdefault(_folded(student), []).append(student)
 
     def student(self, name: str) -> str:
-        """The student who is meant; of one who is not known the name, as it can be printed."""
+        """Return the known student a name means, or the name in printable form."""
         if name in self.students:
             return name
         found = self.alike.get(_folded(name), [])
@@ -204,7 +219,7 @@ class _Reader:
         return clean(name.encode(errors="replace").decode().translate(NO_PATH).strip(" ."), 100) or "?"
 
     def folder(self, folder: Path) -> Iterator[Submission]:
-        """Of all files, in the order of their names. Two files of one student are none."""
+        """Yield the submissions in a folder in the order of file names; two files of one student are refused."""
         files: dict[str, list[str]] = {}
         for name in sorted(os.listdir(folder)):
             if not name.startswith((".", "~$")) and name.casefold() not in OF_WINDOWS:  # ~$: of an editor that is open
@@ -220,7 +235,7 @@ class _Reader:
                 )
 
     def file(self, path: Path, student: str) -> Submission:
-        """Of one student's file."""
+        """Return the submission in one student's file."""
         problems: dict[str, None] = {}
         own: list[Entry] = []
         try:
@@ -248,7 +263,11 @@ class _Reader:
         return replace(read, problems=(_("there is no answer in {file}").format(file=clean(path.name)),))
 
     def table(self, path: Path) -> Iterator[Submission]:
-        """Of all students in one table; a sheet in YAML is that of one. Raises ProblemError."""
+        """Yield the submissions in a table of all students; a YAML sheet belongs to one.
+
+        Raises:
+            ProblemError: The table cannot be read.
+        """
         if path.suffix.lower() in SHEETS:
             yield self.file(path, self.student(path.stem))
             return
@@ -270,7 +289,11 @@ class _Reader:
             yield self.answers.submission(student, entries, problems)
 
     def shape(self, rows: list[list[str]], file: str | None = None) -> Shape:
-        """Raises ProblemError."""
+        """Return the shape of a table.
+
+        Raises:
+            ProblemError: The table is empty or its header cannot be read.
+        """
         if not rows:
             raise ProblemError(_("the table is empty"), file=file)
         return shape_of(rows[0], self.answers, filled=len(rows) > 1)
@@ -281,5 +304,5 @@ def _unread(student: str, why: str) -> Submission:
 
 
 def _folded(name: str) -> str:
-    """Names that look the same are the same: in their accents, capitals, spaces, Latin and Cyrillic letters."""
+    """Return a name without differences in accents, case, spaces, or Latin and Cyrillic lookalikes."""
     return to_latin(" ".join(unicodedata.normalize("NFC", name).replace("_", " ").split())).casefold()

@@ -1,4 +1,4 @@
-"""Empty answer sheets: what is asked, in which unit, and room for the answers; read again as any other sheet."""
+"""Empty answer sheets: quantities, units and blank cells, read back like any other sheet."""
 
 from __future__ import annotations
 
@@ -22,7 +22,11 @@ PLAIN_KEY = re.compile(r"[^\W\d_][\w ,.*/^%°·-]*")
 
 
 def write_template(task: Task, path: str | os.PathLike[str]) -> None:
-    """An empty sheet for one student, in the format of the path's ending. Raises ProblemError."""
+    """Write an empty answer sheet for one student in the format of the file extension.
+
+    Raises:
+        ProblemError: The extension is unknown.
+    """
     kind = Path(path).suffix.lower()
     if kind not in FORMATS:
         raise ProblemError(
@@ -41,7 +45,7 @@ def _row(one: Question, task: Task) -> list[str | int]:
 
 
 def _csv(task: Task) -> bytes:
-    """With semicolons and a mark at its beginning, so that any Excel opens it as a table."""
+    """Return the sheet as CSV with semicolons and a byte-order mark, so that Excel opens it as a table."""
     found = io.StringIO()
     writer = csv.writer(found, delimiter=";", lineterminator="\r\n")
     writer.writerow(_header(task))
@@ -52,7 +56,7 @@ def _csv(task: Task) -> bytes:
 
 
 def _xlsx(task: Task) -> bytes:
-    """Where no answer belongs is grey."""
+    """Return the sheet as XLSX; cells without an answer are grey."""
     found = io.BytesIO()
     options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
     with open_workbook("XLSX", found, options, _("CSV; or: pip install 'tmm-cli[excel]'")) as book:
@@ -72,7 +76,7 @@ def _xlsx(task: Task) -> bytes:
 
 
 def _yaml(task: Task) -> bytes:
-    """A line for every answer; a vector may be written in a line as well."""
+    """Return the sheet as YAML with a line for every answer."""
     lines = [
         _(
             "# Write the answer after the colon; a different unit goes after the number: 1.31 m/s. Vectors: "

@@ -23,7 +23,7 @@ DIAMETER, WIDTH, MASS = Symbol("D"), Symbol("b"), CourseSymbol("m_f")
 
 
 def write_extreme_speeds(here: Here) -> Iterable[Block]:
-    """The largest and the least one, from their mean and the fluctuation."""
+    """Write the largest and the smallest angular velocity from their mean and the coefficient of fluctuation."""
     steady = here.steady
     low, high = steady.speeds
     middle, half = Leaf(MEAN, (low + high) / 2), Leaf(DELTA, steady.delta) / 2
@@ -40,7 +40,7 @@ def write_extreme_speeds(here: Here) -> Iterable[Block]:
 
 
 def write_energy_mass_diagram(here: Here) -> Iterable[Block]:
-    """The energy-mass diagram and what its tangents cut off."""
+    """Write the energy-mass diagram and the energies cut off by its tangents."""
     upper, lower = Leaf(LARGEST) ** 2 / 2, Leaf(LEAST) ** 2 / 2
     slope = Leaf(Symbol("μ", "J")) * Leaf(Symbol("ω")) ** 2 / (2 * Leaf(Symbol("μ", "A")))
     yield said(
@@ -67,7 +67,7 @@ def write_energy_mass_diagram(here: Here) -> Iterable[Block]:
 
 
 def write_flywheel_by_tangents(here: Here) -> Iterable[Block]:
-    """Its inertia from what they cut off."""
+    """Write the moment of inertia of the flywheel from the energies cut off by the tangents."""
     steady = here.steady
     upper, lower = here.tangents
     text = _("The moment of inertia of the flywheel, reduced to the input link:")
@@ -86,7 +86,9 @@ def write_flywheel_by_tangents(here: Here) -> Iterable[Block]:
 
 
 def write_flywheel_by_mertsalov(here: Here) -> Iterable[Block]:
-    """Where the flywheel is found for a constant moment; and what the course's tangents give."""
+    """Write the flywheel by Mertsalov's method and by the approximate tangents of a course, for a constant driving
+    moment.
+    """
     steady = here.steady
     if steady.found is None:
         return
@@ -141,7 +143,7 @@ def write_flywheel_by_mertsalov(here: Here) -> Iterable[Block]:
 
 
 def write_flywheel_on_its_shaft(here: Here) -> Iterable[Block]:
-    """Where it sits on another shaft."""
+    """Write the moment of inertia on the flywheel's own shaft, if that is not the shaft of the input link."""
     steady = here.steady
     if steady.task.ratio == 1:
         return
@@ -157,7 +159,7 @@ def write_flywheel_on_its_shaft(here: Here) -> Iterable[Block]:
 
 
 def write_flywheel_size(here: Here) -> Iterable[Block]:
-    """Diameter, width and mass of a disk, or of a rim."""
+    """Write the diameter, width and mass of a disk or a rim."""
     steady = here.steady
     form, inertia = steady.task.size, Leaf(FLYWHEEL if steady.task.ratio == 1 else ON_SHAFT, steady.on_shaft)
     share, diameter = Leaf(SHARE, form.width), Leaf(DIAMETER, steady.diameter)
@@ -196,5 +198,5 @@ def write_flywheel_size(here: Here) -> Iterable[Block]:
 
 
 def tangent_speed(tangent: Tangent, name: Symbol) -> Leaf:
-    """At which the energy-mass diagram has this tangent."""
+    """Return the speed that corresponds to a tangent of the energy-mass diagram."""
     return Leaf(name, float(np.sqrt(2 * tangent.slope)))

@@ -22,7 +22,7 @@ TABLES = ("dynamics", "law-of-motion")
 
 
 def write_steady_running(subject: Subject) -> Iterable[Block]:
-    """Of steady running."""
+    """Write the chapter on the law of motion of steady running."""
     every = [Here(subject, k) for k in subject.detail]
     here = every[0]
     yield Heading(_("Law of motion"))
@@ -73,7 +73,7 @@ def write_steady_running(subject: Subject) -> Iterable[Block]:
 
 
 def tables(subject: Subject) -> Iterable[Block]:
-    """What was found, and the law of motion at every position."""
+    """Write the tables of the results and of the law of motion in all positions."""
     found = list(walk(subject.results, TABLES))
     sentences = _("The results are summarised in table {table}."), _("The law of motion is given in table {table}.")
     for table, sentence in zip(found, sentences, strict=True):
@@ -82,7 +82,7 @@ def tables(subject: Subject) -> Iterable[Block]:
 
 
 def _energy_at_start(here: Here) -> Iterable[Block]:
-    """From the tangent of the largest speed."""
+    """Write the kinetic energy in position 0 from the tangent of the largest speed."""
     upper, __ = here.tangents
     yield said(_("The kinetic energy of the machine in position 0:"))
     flywheel, offset = Leaf(FLYWHEEL, here.steady.law.flywheel), Leaf(OFFSETS[0], upper.offset)
@@ -91,7 +91,7 @@ def _energy_at_start(here: Here) -> Iterable[Block]:
 
 
 def _position(here: Here, *, explained: bool) -> Iterable[Block]:
-    """Speed and acceleration there."""
+    """Write the angular velocity and acceleration of the input link in one position."""
     text = _("Position {number}:")
     if explained:
         text = _(
@@ -113,7 +113,7 @@ def _position(here: Here, *, explained: bool) -> Iterable[Block]:
 
 
 def _time(here: Here) -> Iterable[Block]:
-    """The time from position 0 on."""
+    """Write the time as the integral of the reciprocal angular velocity, and the period."""
     omega = Letter(Symbol("ω", here.motion.linkage.driver.link))
     yield said(
         _("The time from position 0 is the integral of the reciprocal angular velocity over the angle of rotation:")
@@ -126,7 +126,7 @@ DRIVEN, LOADED, BRAKED, END = CourseSymbol("A_d"), CourseSymbol("A_l"), CourseSy
 
 
 def write_single_run(subject: Subject) -> Iterable[Block]:
-    """Of a run with an end."""
+    """Write the chapter on the law of motion of a single run."""
     single = subject.results.single
     assert single is not None
     yield Heading(_("Law of motion"))
@@ -138,7 +138,7 @@ def write_single_run(subject: Subject) -> Iterable[Block]:
 
 
 def _energies(single: SingleRun, *, crank: bool) -> Iterable[Block]:
-    """Of the whole run."""
+    """Write the energy balance of the whole run and the final velocity."""
     run = single.run
     yield said(
         _(

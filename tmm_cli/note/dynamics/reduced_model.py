@@ -25,7 +25,7 @@ LARGEST, LEAST = Symbol("ω", "max"), Symbol("ω", "min")
 
 @dataclass(frozen=True)
 class Here:
-    """The running machine, and a position of it; letters are those of what it is reduced to, along its sense."""
+    """A position of a machine in steady running; signs follow the sense of rotation of the input link."""
 
     subject: Subject
     k: int
@@ -49,7 +49,7 @@ class Here:
 
     @property
     def speed(self) -> Leaf:
-        """Of the driving link, as a size."""
+        """Angular velocity of the input link, rad/s, as a magnitude."""
         return Leaf(Symbol("ω", self.motion.linkage.driver.link), abs(self.subject.rate(self.k)))
 
     @cached_property
@@ -63,7 +63,7 @@ class Here:
         return upper.slope * self.steady.law.flywheel - upper.offset
 
     def of(self, curve: PanelCurve) -> float:
-        """A function of the way, here."""
+        """Return the value of a curve over the input angle at this position."""
         return float(curve(self.running.way(self.motion.q))[self.k])
 
 
@@ -71,7 +71,7 @@ class Here:
 
 
 def explain_reduction(here: Here) -> Iterable[Block]:
-    """What is reduced, and how."""
+    """Explain the reduction of masses and loads to the input link."""
     link = here.motion.linkage.driver.link
     yield said(
         _(
@@ -87,7 +87,7 @@ def explain_reduction(here: Here) -> Iterable[Block]:
 
 
 def write_reduced_inertia(here: Here) -> Iterable[Block]:
-    """Masses at the squares of the ratios of speeds."""
+    """Write the reduced moment of inertia: inertias times squared velocity ratios."""
     terms = [term for link in here.motion.linkage.moving for term in _of_link(here, link)]
     if not terms:
         return
@@ -116,7 +116,7 @@ def _of_link(here: Here, name: str) -> Iterable[Expression]:
 
 
 def write_reduced_moment(here: Here) -> Iterable[Block]:
-    """Powers of all loads over the speed of the driving link."""
+    """Write the reduced moment: power of all loads divided by the speed of the input link."""
     terms = [term for load in here.subject.results.loads if load.kind != "inertia" for term in _of_load(here, load)]
     if not terms:
         return
@@ -154,7 +154,7 @@ def _of_load(here: Here, load: AppliedLoad) -> Iterable[Expression]:
 
 
 def _sum(terms: list[Expression]) -> Sum:
-    """Without terms that are nothing beside the others."""
+    """Return the sum of the terms without those negligible beside the largest."""
     sizes = [abs(evaluate(term, EXACT)) for term in terms]
     return added(term for term, size in zip(terms, sizes, strict=True) if size > NO_VECTOR * max(sizes))
 
@@ -168,7 +168,7 @@ BREAKDOWN, SLIP, CRITICAL = CourseSymbol("M_k"), Symbol("s"), CourseSymbol("s_k"
 
 
 def write_mean_driving_moment(here: Here) -> Iterable[Block]:
-    """Over a cycle all moments together do no work."""
+    """Write the mean driving moment from the condition of zero total work over the cycle."""
     steady = here.steady
     turns = round(steady.machine.length / (2 * math.pi))
     yield said(
@@ -193,7 +193,7 @@ def write_mean_driving_moment(here: Here) -> Iterable[Block]:
 
 
 def write_motor_moment(here: Here) -> Iterable[Block]:
-    """The moment in a position, by the speed there."""
+    """Write the motor moment at the speed in this position."""
     match here.steady.task.motor:
         case LinearMotor() as found:
             yield said(

@@ -1,1 +1,1 @@
-"""The force analysis in the note: loads of links, equations of moments, force plans, lever, tables."""
+"""Chapter on forces: loads on links, moment equations, force plans, Zhukovsky lever, tables."""

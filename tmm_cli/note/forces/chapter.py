@@ -1,4 +1,4 @@
-"""The force analysis: loads, groups from the last to the driving link, lever, tables of all positions."""
+"""Chapter on forces: loads, groups from the last to the input link, lever, tables of all positions."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tmm_cli.reports import has_flywheel, indeterminate_reactions
 
 
 def write_forces(subject: Subject) -> Iterable[Block]:
-    """Of what has forces."""
+    """Write the chapter on forces; nothing if no load acts on the links."""
     if not subject.acts:
         return
     yield Heading(_("Force analysis"))
@@ -47,7 +47,7 @@ def write_forces(subject: Subject) -> Iterable[Block]:
 
 
 def _position(subject: Subject, k: int) -> Iterable[Block]:
-    """One of those in detail, each of its sections named after it where there are several."""
+    """Write the sections of one detailed position; headings name the position if there are several."""
     several = len(subject.detail) > 1
 
     def heading(text: str) -> str:
@@ -62,7 +62,7 @@ def _position(subject: Subject, k: int) -> Iterable[Block]:
 
 
 def _by_parts(subject: Subject, k: int, heading: Callable[[str], str]) -> Iterable[Block]:
-    """All loads, then a section for each group and each driving link."""
+    """Write all loads, then a section for each group and each input link."""
     first = k == subject.detail[0]
     yield Heading(heading(_("Loads on the links")), 2)
     if first:
@@ -73,7 +73,7 @@ def _by_parts(subject: Subject, k: int, heading: Callable[[str], str]) -> Iterab
 
 
 def _by_steps(subject: Subject, k: int, heading: Callable[[str], str]) -> Iterable[Block]:
-    """Steps 2.3.1 to 2.3.4 of the force guidelines: the plan, weights and loads, inertia, groups one after another."""
+    """Write steps 2.3.1 to 2.3.4 of the force guidelines: plan, weights and loads, inertia forces, groups in turn."""
     first, caption = k == subject.detail[0], subject.at_position(k)
     yield Heading(heading(_("Plan of the mechanism")), 2)
     stem = subject.position(k).stem("position")
@@ -110,7 +110,7 @@ def _further_loads(subject: Subject, k: int) -> Iterable[Block]:
 
 
 def _reactions(subject: Subject, k: int, heading: Callable[[str], str], level: int) -> Iterable[Block]:
-    """The groups from the last one, and the driving links."""
+    """Write the sections of the groups, last group first, and of the input links."""
     for number, part in enumerate(parts_of(subject, k)):
         if part.forces is not None:
             text = _("Group of links {links}") if len(part.links) > 1 else _("Group of link {links}")
@@ -127,7 +127,7 @@ PAIRS = 4  # reactions in one table
 
 
 def reactions(subject: Subject) -> Iterable[Block]:
-    """Sizes and angles of pairs, and of pins of compound hinges on each of their links."""
+    """Write the tables of reactions (N) with angles, and of pin forces of compound hinges."""
     found = subject.reactions
     pairs = [(r.pair.name, reaction_symbol(r.by, r.on), r.force, r.angle) for r in found.directed]
     tables = list(_sized(subject, _("Reactions in the pairs {names}"), pairs, "reactions"))
@@ -163,7 +163,7 @@ def reactions(subject: Subject) -> Iterable[Block]:
 
 
 def transmission(subject: Subject) -> Iterable[Block]:
-    """Of each driven link in the positions in detail: the force that drives it, and the part of it that moves it."""
+    """Write the driving force of each driven link and its useful component in the detailed positions."""
     given = find_transmitted_forces(subject.motion, subject.reactions)
     if not given or not subject.reactions.loaded:
         return
@@ -206,7 +206,10 @@ def transmission(subject: Subject) -> Iterable[Block]:
 def _sized(
     subject: Subject, caption: str, forces: Sequence[tuple[str, Symbol, Vector, Real | None]], key: str
 ) -> Iterable[Rows]:
-    """A few of them to a table. Each: of what, its letter, the force, its angle where that is told apart from zero."""
+    """Yield tables of at most PAIRS forces with their angles.
+
+    forces: name of the pair, symbol, force (N), and the angle if it is defined where the force is zero.
+    """
     for first in range(0, len(forces), PAIRS):
         some = forces[first : first + PAIRS]
         columns: list[tuple[Line, list[str]]] = []
@@ -220,7 +223,7 @@ def _sized(
 
 
 def balancing(subject: Subject) -> Iterable[Block]:
-    """Of every driver by the force plan, and what the lever gives for all of them, per unit of the first."""
+    """Write the table of balancing moments or forces by the force plan and by the Zhukovsky lever."""
     results, balances, lever = subject.results, subject.reactions.balances, subject.lever
     several = len(balances) > 1
     symbols = [balance_symbol(b.driver.link, several, turns=b.moment is not None) for b in balances]
@@ -274,7 +277,7 @@ def balancing(subject: Subject) -> Iterable[Block]:
 
 
 def _texts(subject: Subject, column: Real, write: Callable[[Subject, float], str]) -> list[str]:
-    """Values of all positions; a dash where it cannot move."""
+    """Return the values in all positions as texts, a dash where the mechanism cannot move."""
     values = without_rounding(column, largest_magnitude(column))
     there = np.isfinite(values) & subject.motion.moving
     return [write(subject, float(value)) if known else NONE for value, known in zip(values, there, strict=True)]

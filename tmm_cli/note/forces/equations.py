@@ -1,4 +1,4 @@
-"""Equations of moments and of projections as formulas: the whole sum, and what it gives."""
+"""Equations of moments and of projections as formulas: the whole sum, and the unknown it gives."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ ALONG = 1e-12  # one less the cosine: a force with less is along the guide
 
 
 def moments(equation: MomentEquation, mu: float | None = None) -> Node:
-    """ΣM_E = −R·h₃ + G·h₁ − ... = 0, what is sought first; mu (m/mm): with arms on paper, couples as M/μ_l."""
+    """Return the equation ΣM_E = −R·h₃ + G·h₁ − ... = 0, the unknown first.
+
+    mu: scale (m/mm) for arms measured on paper; couples are then written as M/μ_l.
+    """
     found = equation.found
     terms = [*([found] if found else []), *(t for t in equation.terms if t is not found)]
     return chain_of_equalities(
@@ -24,10 +27,16 @@ def moments(equation: MomentEquation, mu: float | None = None) -> Node:
 
 
 def by_moments(equation: MomentEquation, unit: str = "", mu: float | None = None) -> Found | None:
-    """What an equation gives; of one that gives nothing, the sum itself, which is zero. None: nothing has a moment.
+    """Return the unknown of a moment equation; without an unknown, the sum itself, which is zero.
 
-    unit: of moments, where it is not N·m. mu (m/mm): with arms in millimetres of the drawing, so that a couple is put
-    in as M/μ_l and a sum of F·h is a moment when multiplied by μ_l (guidelines, equation 7).
+    Args:
+        equation: Moment equation.
+        unit: Unit of moments if it is not N·m.
+        mu: Scale (m/mm) for arms in millimetres of the drawing: a couple is substituted as M/μ_l, and a sum of F·h is
+            multiplied by μ_l to give a moment (guidelines, equation 7).
+
+    Returns:
+        The computed quantity, or None if nothing has a moment.
     """
     found, sought = equation.found, equation.sought
     others: Expression = added(_moment(t, mu) for t in equation.terms if t is not found)
@@ -48,7 +57,7 @@ def by_moments(equation: MomentEquation, unit: str = "", mu: float | None = None
 
 
 def along_guide(forces: ForceSum) -> tuple[Node, Found]:
-    """ΣF = R − G·cos α₁ + ... = 0, and what it gives."""
+    """Return the sum of projections ΣF = R − G·cos α₁ + ... = 0 and the unknown it gives."""
     own = forces.found
     parts = [own, *(part for part in forces.parts if part is not own)]
     shares = [_projection(part, number) for number, part in enumerate(parts)]
@@ -61,7 +70,7 @@ def along_guide(forces: ForceSum) -> tuple[Node, Found]:
 
 
 def vector_sum(vectors: Sequence[tuple[Symbol, int]]) -> Node:
-    """Vectors, each with so many lines under it, come to nothing."""
+    """Return a vector equation with zero sum; each symbol with its number of underlines."""
     parts = [part for symbol, lines in vectors for part in ("+", Letter(symbol, vector=True, lines=lines))]
     return chain_of_equalities((row(*parts[1:]), Number("0")))
 
@@ -74,7 +83,7 @@ def _moment(term: MomentTerm, mu: float | None = None) -> Expression:
 
 
 def _arm(term: MomentTerm, mu: float | None) -> Leaf:
-    """Of a force: in metres, or in millimetres of a drawing of this scale."""
+    """Return the moment arm of a force in metres, or in millimetres of a drawing with this scale."""
     return Leaf(term.letter, term.arm if mu is None else term.arm / mu)
 
 

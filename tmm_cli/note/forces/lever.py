@@ -1,4 +1,4 @@
-"""The Zhukovsky lever in the note: couples replaced, moments about the pole, comparison with the force plan."""
+"""Zhukovsky lever: replaced couples, moments about the pole, comparison with the force plan."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tmm_cli.note.subject import Subject
 
 
 def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Iterable[Block]:
-    """All of a section. explained: what the lever is."""
+    """Write the section on the Zhukovsky lever; with `explained` the method first."""
     plan = lever_plan(subject.motion, subject.reactions, subject.lever, k)
     if not plan.equation.terms:
         return
@@ -47,7 +47,7 @@ def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Itera
 
 
 def _explained(*, turns: bool) -> Block:
-    """What the lever is, for a driver that turns or slides."""
+    """Explain the Zhukovsky lever for a rotating or a sliding driver."""
     turning = _(
         "The balancing moment is checked by the Zhukovsky lever: the velocity plan, drawn for an angular "
         "velocity of the input link of 1 rad/s and rotated by 90° clockwise, is treated as a rigid lever "
@@ -64,7 +64,7 @@ def _explained(*, turns: bool) -> Block:
 
 
 def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
-    """Couples as pairs of forces, or turned at the ratio of speeds."""
+    """Write couples as pairs of forces, or multiplied by the velocity ratio of their link."""
     if plan.pairs:
         yield said(
             _(
@@ -92,12 +92,14 @@ def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
 
 
 def turns_of(subject: Subject) -> bool:
-    """Whether the first driver turns."""
+    """Return True if the first driver rotates."""
     return subject.results.linkage.driver.kind == "turn"
 
 
 def _ratio(subject: Subject, load: AppliedLoad, k: int) -> tuple[Expression, ...]:
-    """ω of the link over that of the driver; nothing where they are the same, a number where the driver is at rest."""
+    """Return the ratio of the link's angular velocity to the driver's: no factor if equal, a number if the driver
+    rests.
+    """
     motion, driver = subject.motion, subject.results.linkage.driver
     rate = abs(subject.rate(k))
     if load.link == driver.link and turns_of(subject):
@@ -109,7 +111,7 @@ def _ratio(subject: Subject, load: AppliedLoad, k: int) -> tuple[Expression, ...
 
 
 def _of_several(subject: Subject, k: int, unit: str) -> Iterable[Block]:
-    """What several drivers do together, each in the ratio of its speed to that of the first."""
+    """Write the combined effect of several drivers, each multiplied by its velocity ratio to the first."""
     motion, reactions, lever = subject.motion, subject.reactions, subject.lever
     first, terms = reactions.balance, list[Expression]()
     for balance in reactions.balances:
@@ -132,7 +134,7 @@ def _of_several(subject: Subject, k: int, unit: str) -> Iterable[Block]:
 
 
 def _compared(subject: Subject, k: int) -> Iterable[Block]:
-    """With what the force plan gave, in percent of the largest of all positions."""
+    """Write the difference from the force plan, in per cent of the largest magnitude in all positions."""
     balance, lever = subject.reactions.balance, subject.lever
     moment = balance.kind == "moment"
     name = balance_symbol(balance.driver.link, several=False, turns=moment)
@@ -158,7 +160,7 @@ def _compared(subject: Subject, k: int) -> Iterable[Block]:
 
 
 def _on_paper(subject: Subject, k: int) -> Iterable[Block]:
-    """What both ways give with arms and segments that are read off the drawings of the note."""
+    """Write what both methods give with arms and segments measured on the drawings."""
     drawn = balance_drawings(subject.motion, subject.reactions, subject.lever, k)
     if drawn is None:
         return

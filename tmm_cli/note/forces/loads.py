@@ -1,4 +1,4 @@
-"""What acts on the links besides reactions: weights, forces and couples of inertia, springs, friction, given loads."""
+"""Loads on the links except reactions: weights, inertia forces and couples, springs, friction, given loads."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from tmm_cli.reports import describe_locked_ranges
 
 
 def weights(subject: Subject) -> Iterable[Block]:
-    """They are the same in every position."""
+    """Write the weights of the links, the same in every position."""
     linkage = subject.results.linkage
     gravity = Leaf(Symbol("g"), abs(complex(linkage.gravity)))
     own = [load for load in subject.results.loads if load.kind == "weight"]
@@ -50,7 +50,7 @@ def weights(subject: Subject) -> Iterable[Block]:
 
 
 def inertia(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
-    """Of a position: the products, then in words those that are nothing."""
+    """Write the inertia forces and couples of one position; those that are zero are named in words."""
     found = [one for load in subject.results.loads if load.kind == "inertia" for one in _of_inertia(subject, load, k)]
     if not found:
         return
@@ -90,7 +90,7 @@ def _of_inertia(subject: Subject, load: AppliedLoad, k: int) -> Iterable[Found]:
 
 
 def springs(subject: Subject, k: int) -> Iterable[Block]:
-    """What each does: from its length, or its angle, and how fast that changes."""
+    """Write the force or moment of each spring from its length or angle and their rate of change."""
     for spring in subject.results.linkage.springs:
         load = next((one for one in subject.results.loads if one.name == spring.name), None)
         if load is not None:
@@ -128,7 +128,7 @@ def _spring(subject: Subject, spring: Spring, load: AppliedLoad, k: int) -> Iter
 
 
 def friction(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
-    """What rubs in each pair, of the reactions that are found with it."""
+    """Write the friction force or moment in each pair, for the reactions determined with it."""
     given = subject.results.linkage.friction
     if not given:
         return
@@ -167,7 +167,7 @@ def _rubbing(subject: Subject, given: Friction, k: int) -> Iterable[Block]:
 
 
 def without_friction(subject: Subject, k: int) -> Iterable[Block]:
-    """What would balance the drivers if nothing rubbed."""
+    """Write the balancing moment or force without friction."""
     if not subject.results.linkage.friction:
         return
     loads = tuple(load for load in subject.results.loads if load.kind != "friction")
@@ -181,7 +181,7 @@ def without_friction(subject: Subject, k: int) -> Iterable[Block]:
 
 
 def table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
-    """All that acts in a position: sizes, and angles of forces or senses of couples."""
+    """Write the table of loads in one position: magnitudes, and angles of forces or senses of couples."""
     rows: list[tuple[Line, ...]] = []
     loads = subject.results.loads
     least = NO_FORCE * max((abs(complex(load.force[k])) for load in loads), default=0.0)
@@ -201,7 +201,9 @@ def table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
 
 
 def losses(subject: Subject) -> Iterable[Block]:
-    """What friction takes of the drivers' work over the cycle."""
+    """Write the work of drivers and friction over the cycle (J) and the efficiency, or where the mechanism is self-
+    locking.
+    """
     lost = subject.results.losses
     if lost is None or lost.locked:
         ranges = describe_locked_ranges(subject.results)

@@ -1,4 +1,4 @@
-"""A group, or a driving link, taken apart: what acts on it, what is known and what is sought."""
+"""Section of the note on one group or input link: loads, unknowns, moment equations, force plan, reactions."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from tmm_cli.note.subject import Subject
 
 @dataclass(frozen=True)
 class Part:
-    """Of a position: a group or a driving link with its outer reactions (a driving link's is the frame's)."""
+    """Group or input link in one position, with its external reactions (for an input link, that of the frame)."""
 
     subject: Subject
     here: LoadedPosition
@@ -50,7 +50,7 @@ class Part:
 
     @property
     def sought(self) -> frozenset[Symbol]:
-        """Letters of all that the outer reactions may be told by."""
+        """Symbols of the external reactions and their components."""
         names = [(r.by, r.on) for r in self.outer]
         return frozenset(
             reaction_symbol(*n, part, letter) for n in names for part in ("", "n", "τ") for letter in ("R", "M")
@@ -58,34 +58,34 @@ class Part:
 
     @property
     def given(self) -> list[ForceOrCouple]:
-        """What is known when the part is taken apart."""
+        """Forces and couples known before the part is solved."""
         return [one for one in self.loaded.acting if one.symbol not in self.sought and one.pair != DRIVE]
 
     @property
     def by_moments(self) -> frozenset[Symbol]:
-        """What equations of moments give."""
+        """Symbols found from equations of moments."""
         return frozenset(e.sought.symbol for e in self.loaded.equations if e.sought and not e.sought.arm)
 
     @property
     def calculated(self) -> frozenset[Symbol]:
-        """What is found before the force plan is drawn."""
+        """Symbols found before the force plan is drawn."""
         return self.by_moments | {s.found.acting.symbol for s in self.sums[0]}
 
     @property
     def borne(self) -> frozenset[Symbol]:
-        """Vectors of the plan that are known before it; not what balances a driver."""
+        """Symbols of the plan known in advance, without balancing loads of drivers."""
         drives = {one.symbol for one in self.loaded.acting if one.pair == DRIVE}
         return frozenset(v.symbol for v in self.plan.plan.vectors) - self.sought - drives
 
     @property
     def guided(self) -> frozenset[Symbol]:
-        """What acts along a line that is known: reactions of guides and teeth, forces of drivers."""
+        """Symbols of forces with a known line of action: reactions of guides and teeth, forces of drivers."""
         outer = {reaction_symbol(r.by, r.on) for r in self.outer if r.pair.slide is not None or not r.pair.lower}
         return frozenset(outer | {one.symbol for one in self.loaded.acting if one.pair == DRIVE})
 
     @property
     def sums(self) -> tuple[list[ForceSum], list[ForceSum]]:
-        """Sums along guides of what is known before the force plan is drawn, and the others."""
+        """Sums along guides that have one unknown before the force plan is drawn, and the other sums."""
         inner = () if self.forces is None else self.forces.inner
         both = {reaction_symbol(*names) for r in inner for names in ((r.by, r.on), (r.on, r.by))}
         unknown = (self.sought | both) - self.by_moments
@@ -97,33 +97,33 @@ class Part:
 
     @property
     def inner_first(self) -> bool:
-        """Whether a guide between its two links and one that holds it leave a third unknown to a plan of both."""
+        """True for an RPP group: its two guides leave three unknowns in a plan of both links."""
         return self.forces is not None and self.forces.group.type == "RPP" and len(self.links) == 2
 
     @property
     def at_once(self) -> bool:
-        """Whether no equation has one unknown only."""
+        """True if no equation has a single unknown."""
         return any(e.sought is None for e in self.loaded.equations)
 
     @property
     def caption(self) -> str:
-        """Of its position."""
+        """Position of the mechanism in words."""
         return self.subject.at_position(self.here.k)
 
     @property
     def vectors(self) -> list[NamedVector]:
-        """Of the plan without the inner reaction, and without loads that are nothing here."""
+        """Vectors of the plan without the internal reaction and without negligible loads."""
         least = NO_FORCE * self.plan.plan.size
         return [
             v for v in self.plan.plan.vectors if v.kind != "inner" and (v.symbol in self.sought or abs(v.value) > least)
         ]
 
     def size(self, reaction: Reaction) -> float:
-        """Of a reaction in this position, N."""
+        """Return the magnitude (N) of a reaction in this position."""
         return abs(complex(reaction.force[self.here.k]))
 
     def on_paper(self, equation: MomentEquation) -> float | None:
-        """The scale of the drawing on which the arms of an equation are, m/mm; None where arms are told in metres."""
+        """Return the scale (m/mm) of the drawing that shows the arms of an equation; None if arms are given in metres."""
         if self.subject.results.problem.note_style.arms != "paper":
             return None
         number = next(n for n, few in enumerate(split_equations(self.loaded.equations)) if equation in few)
@@ -131,13 +131,13 @@ class Part:
         return self.subject.scale("group-loads", self.here.k, stem)
 
     def stem(self, name: str) -> str:
-        """Of its drawing."""
+        """Return the name of the part's drawing."""
         kind = "links" if len(self.links) > 1 else "link"
         return file_safe_name("-".join([self.subject.position(self.here.k).stem(name), kind, *self.links]))
 
 
 def parts_of(subject: Subject, k: int) -> Iterable[Part]:
-    """Last group first, the driving links at the end."""
+    """Yield the groups in one position, last group first, then the input links."""
     motion, reactions = subject.motion, subject.reactions
     here = LoadedPosition.at(motion, reactions, k)
     loaded, plans = list_free_bodies(motion, reactions, k), force_plans(reactions, k, motion)
@@ -154,7 +154,10 @@ SIZES = 2  # that a closed polygon gives
 
 
 def written(part: Part, heading: Heading, *, first: bool) -> Iterable[Block]:
-    """All of a section. first: of the note, which says how to read the sum of vectors."""
+    """Write the section of a group or an input link.
+
+    first: the first section of the note, which explains how to read the vector sum.
+    """
     yield heading
     if not part.loaded.acting:
         yield said(_("No loads act here ({links}): all reactions are zero."), links=_links(part.links))
@@ -184,12 +187,12 @@ def written(part: Part, heading: Heading, *, first: bool) -> Iterable[Block]:
 
 
 def _links(names: Sequence[str]) -> str:
-    """Link 4; links 4, 5."""
+    """Return "link 4" or "links 4, 5"."""
     return (_("links {links}") if len(names) > 1 else _("link {links}")).format(links=", ".join(names))
 
 
 def _projections(forces: ForceSum) -> Iterable[Block]:
-    """A sum along a guide."""
+    """Write a sum of projections onto a guide."""
     node, found = along_guide(forces)
     yield said(
         _(
@@ -205,7 +208,7 @@ def _projections(forces: ForceSum) -> Iterable[Block]:
 
 
 def _taken_apart(part: Part) -> Iterable[Block]:
-    """What acts, what is unknown of the outer reactions, and a figure."""
+    """Write the known loads, the unknown external reactions, and the figure of the part."""
     given = listed(dict.fromkeys(one.symbol for one in part.given))
     group = "" if part.forces is None else part.forces.group.title
     text = _("The input link is considered last. Known: {given}. To be found:")
@@ -241,7 +244,7 @@ def _taken_apart(part: Part) -> Iterable[Block]:
 
 
 def _unknown(reaction: Reaction, lead: ExternalPair | None) -> Line:
-    """Of an outer reaction; lead: of the hinge or guide."""
+    """Return the sentence on the unknowns of an external reaction."""
     pair, line = reaction.pair, ""
     if not pair.lower:
         text = _("in pair {pair}: magnitude of the reaction {R} along the common normal of the profiles")
@@ -268,7 +271,7 @@ def _unknown(reaction: Reaction, lead: ExternalPair | None) -> Line:
 
 
 def _moments(part: Part, equation: MomentEquation) -> Iterable[Block]:
-    """A sum of moments, and what it gives: a force, a couple, or where the reaction of a guide acts."""
+    """Write a moment equation and its unknown: a force, a couple, or the point of action of a guide's reaction."""
     mu = part.on_paper(equation)
     found, sought = by_moments(equation, mu=mu), equation.sought
     if sought is None:
@@ -305,7 +308,7 @@ def _moments(part: Part, equation: MomentEquation) -> Iterable[Block]:
 
 
 def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
-    """The closed polygon, what is read off it, whole reactions."""
+    """Write the closed polygon, the values read off it and the total reactions."""
     known = part.calculated | part.borne
     if part.inner_first:
         known |= {reaction_symbol(r.by, r.on) for r in part.outer if r.pair.slide is not None}
@@ -348,7 +351,7 @@ def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
 
 
 def _whole(part: Part, reaction: Reaction) -> Iterable[Block]:
-    """Of its parts."""
+    """Write a total reaction from its normal and tangential components."""
     names = reaction.by, reaction.on
     parts = {v.symbol: abs(v.value) for v in part.plan.plan.vectors}
     along, across = reaction_symbol(*names, "n"), reaction_symbol(*names, "τ")
@@ -358,7 +361,7 @@ def _whole(part: Part, reaction: Reaction) -> Iterable[Block]:
 
 
 def _guide_between(part: Part) -> Iterable[Block]:
-    """The forces on the one of two links that both its guides push across."""
+    """Write the force polygon of the link on which both guides act."""
     assert part.forces is not None
     inner = part.forces.inner[0]
     outer = next(r for r in part.outer if r.pair.slide is not None)
@@ -379,14 +382,14 @@ def _guide_between(part: Part) -> Iterable[Block]:
 
 
 def _polygon(part: Part, link: str, sought: Mapping[Symbol, int]) -> Equation:
-    """The forces on one link, and what is sought of them, each with so many lines under it."""
+    """Return the force polygon of one link; each unknown with its number of underlines."""
     acting = part.here.acting([link], {})
     known = [one.symbol for one in acting if not one.couple and one.symbol not in sought]
     return Equation(vector_sum([*((symbol, 2) for symbol in known), *sought.items()]))
 
 
 def _inner(part: Part) -> Iterable[Block]:
-    """From the forces on one of the two links of each inner pair."""
+    """Write the internal reactions from the equilibrium of one link of each internal pair."""
     inner = () if part.forces is None else part.forces.inner
     if len(inner) == 1:
         (reaction,) = inner
@@ -406,7 +409,7 @@ def _inner(part: Part) -> Iterable[Block]:
 
 
 def _balance(part: Part) -> Iterable[Block]:
-    """Which way what balances a driver acts."""
+    """Write the sense or direction of each balancing load."""
     for one in part.loaded.acting:
         if one.pair == DRIVE:
             way = sense(one.moment) if one.couple else part.subject.direction(one.force)

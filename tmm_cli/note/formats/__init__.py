@@ -1,4 +1,4 @@
-"""Formats of the note: a new one is a function in a file here and an entry below."""
+"""Formats of the note; a new format is a function in a module here and an entry in FORMATS."""
 
 from __future__ import annotations
 
@@ -21,7 +21,11 @@ FORMATS: dict[str, Callable[[Note], bytes]] = {"html": html, "docx": _docx}
 
 
 def formats_of(text: str) -> list[str]:
-    """Formats from their names with commas. Raises ProblemError."""
+    """Parse comma-separated format names.
+
+    Raises:
+        ProblemError: A format is unknown, or python-docx is not installed.
+    """
     wanted = parse_names(text, FORMATS, "--as", _("unknown format of the note"))
     if "docx" in wanted and find_spec("docx") is None:
         raise ProblemError(

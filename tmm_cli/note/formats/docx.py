@@ -1,4 +1,4 @@
-"""Formulas as OMML, Word's own: they are edited there as formulas."""
+"""The note as DOCX: formulas in OMML (Word's own, editable), Word's styles, captions and fields."""
 
 from __future__ import annotations
 
@@ -49,12 +49,12 @@ NOT_XML = dict.fromkeys((*range(9), 11, 12, *range(14, 32), *range(0xD800, 0xE00
 
 
 def data(text: str) -> str:
-    """A text in XML; what XML forbids is replaced."""
+    """Escape a text for XML; characters that XML forbids are replaced."""
     return escape(text.translate(NOT_XML))
 
 
 def omath(node: Node, size: float = 0.0) -> str:
-    """A formula in a line of text. size: of its letters, points, where it is not that of the text."""
+    """Return an inline formula as OMML; `size` is its font size in points if it differs from the text."""
     shown = _of(node)
     if size:
         shown = shown.replace(FONT, FONT.replace("</w:rPr>", f'<w:sz w:val="{round(2 * size)}"/></w:rPr>'))
@@ -62,14 +62,14 @@ def omath(node: Node, size: float = 0.0) -> str:
 
 
 def display(node: Node) -> list[str]:
-    """A formula apart: a paragraph for each of its lines."""
+    """Return a displayed formula as OMML, a paragraph for each line."""
     lines = node.lines if isinstance(node, Lines) else (node,)
     jc = '<m:oMathParaPr><m:jc m:val="left"/></m:oMathParaPr>'
     return [f"<m:oMathPara {SPACES}>{jc}{omath(_begun(line))}</m:oMathPara>" for line in lines]
 
 
 def _begun(line: Node) -> Node:
-    """A line that begins with a sign of equality, with nothing before it: some programs want two sides."""
+    """Put an empty operand before a line that begins with an equals sign; some programs require two operands."""
     return Row((Words("\u200b"), *line.nodes)) if isinstance(line, Row) and line.nodes[0] == Sign("=") else line
 
 
@@ -131,12 +131,12 @@ EMU = 36000  # a millimetre
 
 
 def plain(text: str) -> str:
-    """A text as data: what XML forbids is replaced."""
+    """Replace characters that XML forbids."""
     return text.translate(NOT_XML)
 
 
 def prepared(document: Any, title: str, language: str) -> None:
-    """Paper, styles, numbers of pages and properties of a new file."""
+    """Set paper, styles, page numbers and properties of a new document."""
     section = document.sections[0]
     section.page_width, section.page_height = Mm(210), Mm(297)
     for name, size in MARGINS.items():
@@ -194,7 +194,7 @@ def _font(style: Any, size: float, *, bold: bool = False) -> Any:
 
 
 def _numbers(document: Any) -> None:
-    """Decimal numbers of the headings: 2, 2.1."""
+    """Number the headings decimally: 2, 2.1."""
     numbering = document.part.numbering_part.element
     own = "90"
     levels = "".join(
@@ -214,7 +214,7 @@ def _numbers(document: Any) -> None:
 
 
 def field(paragraph: Any, code: str, shown: str, *, dirty: bool = False) -> None:
-    """A field of Word: its code, and what it shows; dirty: until Word opens the file and counts."""
+    """Add a Word field with its code and displayed text; `dirty` makes Word update it on opening."""
     _open(paragraph, code, dirty=dirty)
     paragraph.add_run(shown)
     _mark(paragraph, "end")
@@ -234,7 +234,7 @@ def _mark(paragraph: Any, kind: str, *, dirty: bool = False) -> None:
 
 
 class Parts:
-    """What is counted through a file: bookmarks and pictures."""
+    """Bookmarks and pictures of a document, numbered through the file."""
 
     def __init__(self, document: Any) -> None:
         self.document = document
@@ -242,14 +242,14 @@ class Parts:
         self.pictures = 0
 
     def marked(self, paragraph: Any, name: str, first: int) -> None:
-        """A bookmark about all of a paragraph from its child number `first` on."""
+        """Bookmark a paragraph from its child number `first` to its end."""
         self.marks += 1
         own = {qn("w:id"): str(self.marks)}
         paragraph._p.insert(first, OxmlElement("w:bookmarkStart", own | {qn("w:name"): name}))
         paragraph._p.append(OxmlElement("w:bookmarkEnd", own))
 
     def picture(self, paragraph: Any, drawing: Drawing, share: float, told: str) -> None:
-        """A drawing at a share of its size; told: what it is, for those who can't see it."""
+        """Add a drawing at a fraction `share` of its size, with `told` as its alternative text."""
         self.pictures += 1
         uri = PackURI(f"/word/media/drawing{self.pictures}.emf")
         part = Part(uri, "image/x-emf", write_emf(drawing), self.document.part.package)
@@ -270,7 +270,7 @@ class Parts:
         )
 
     def contents(self, entries: Iterable[tuple[int, str, str]]) -> None:
-        """The table of contents: a field that Word fills anew, with its entries: level, number, text."""
+        """Add the table of contents: a field that Word updates, filled with entries of level, number and text."""
         paragraph = None
         for k, (level, number, text) in enumerate(entries):
             paragraph = self.document.add_paragraph(style=f"TOC {min(level, 2)}")
@@ -283,7 +283,7 @@ class Parts:
 
 
 def unbroken(row: Any, *, head: bool) -> None:
-    """A row of a table that stays on one page; a head stands on every page."""
+    """Keep a table row on one page; a heading row is repeated on every page."""
     properties = row._tr.get_or_add_trPr()
     properties.append(OxmlElement("w:cantSplit"))
     if head:
@@ -291,7 +291,7 @@ def unbroken(row: Any, *, head: bool) -> None:
 
 
 def title_page(document: Any, block: Title) -> None:
-    """From top to bottom of the page."""
+    """Add the lines of the title page from top to bottom."""
 
     def centred(text: str, before: Length | None = None) -> Any:
         paragraph = document.add_paragraph(plain(text))
@@ -338,7 +338,7 @@ class _Writer:
         self.counted: dict[str, int] = {}
 
     def write(self, block: Block, *, leads: bool = False) -> None:
-        """leads: what follows is on the same page as a paragraph's end."""
+        """Add a block; `leads` keeps a paragraph on the same page as the next block."""
         match block:
             case blocks.Heading(text, level):
                 heading = self.document.add_heading(plain(text), level)
@@ -371,7 +371,7 @@ class _Writer:
                     self._line(self._paragraph("ListNumber"), (source.text,))
 
     def _paragraph(self, style: str = "") -> Any:
-        """style: its identifier; to find it by its name takes longer than all the rest."""
+        """Add a paragraph with a style identifier (a lookup by style name is slow)."""
         paragraph = self.document.add_paragraph()
         paragraph._p.style = style or None
         return paragraph
@@ -397,7 +397,7 @@ class _Writer:
                 paragraph._p.append(parse_xml(omath(part, size)))
 
     def _mark(self, key: str) -> str:
-        """The bookmark of a number that is referred to."""
+        """Return the bookmark of a number that is referred to."""
         return f"_Ref{list(self.numbers).index(key) + 1}"
 
     def _formula(self, lines: Sequence[str]) -> None:
@@ -407,7 +407,7 @@ class _Writer:
             paragraph._p.append(parse_xml(line))
 
     def _caption(self, sentence: str, text: str, key: str, kind: str) -> Any:
-        """Its number is a field that Word counts; sentence: with {number} and {text}."""
+        """Add a caption numbered by a Word field; `sentence` has the fields {number} and {text}."""
         before, after = sentence.split("{number}")
         paragraph = self._paragraph("Caption")
         paragraph.add_run(before)
@@ -457,12 +457,15 @@ class _Writer:
 
 
 def _with_next(number: int, rows: int) -> bool:
-    """Whether a row (the heading is 0) is on the page of the next: short tables are whole, no end of others alone."""
+    """Return True if a row (the heading is 0) stays on the page of the next one.
+
+    Short tables are not divided; a longer one leaves no single rows at its ends.
+    """
     return number < rows and (rows <= WHOLE or number < ENDS or number > rows - ENDS)
 
 
 def _letters(line: Line) -> float:
-    """About how wide a cell is, in letters; a capital is wider than a small one."""
+    """Return the approximate width of a cell in letters; capitals count more."""
     capitals = sum(letter.isupper() for part in line if isinstance(part, str) for letter in part)
     return 0.3 * capitals + sum(
         width(Letter(part) if isinstance(part, Symbol) else Words(part) if isinstance(part, str) else part)
@@ -472,7 +475,7 @@ def _letters(line: Line) -> float:
 
 
 def _widths(block: blocks.Rows, letter: float) -> list[float]:
-    """Of columns, mm: as wide as their cells, or less where the page is not so wide, but no word is broken."""
+    """Return the column widths (mm): those of the cells, reduced to the page width without breaking words."""
     columns = list(zip(block.head, *block.rows, strict=True))
     whole = [letter * (3 + max(map(_letters, column))) for column in columns]
     least = [min(wide, letter * (3 + max(map(_longest, column)))) for column, wide in zip(columns, whole, strict=True)]
@@ -481,6 +484,6 @@ def _widths(block: blocks.Rows, letter: float) -> list[float]:
 
 
 def _longest(line: Line) -> float:
-    """The longest word of a cell, in letters."""
+    """Return the width of the longest word of a cell, in letters."""
     words = [word for part in line if isinstance(part, str) for word in part.split(" ")]
     return max([_letters((part,)) for part in (*words, *(p for p in line if not isinstance(p, str)))], default=0.0)

@@ -1,4 +1,4 @@
-"""Formulas as MathML, which browsers draw themselves."""
+"""The note as one HTML page: formulas in MathML; works offline, prints on A4, runs no scripts."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tmm_cli.note.subject import localise_figures
 
 
 def mathml(node: Node, *, display: bool = False) -> str:
-    """A formula; display: on a line of its own."""
+    """Return a formula as MathML; `display` puts it on a line of its own."""
     return f"<math{' display=' + chr(34) + 'block' + chr(34) if display else ''}>{_of(node)}</math>"
 
 
@@ -74,7 +74,7 @@ WHOLE = 13  # rows of a table that is not parted between pages
 
 
 def html(note: Note) -> bytes:
-    """The page in UTF-8."""
+    """Return the note as an HTML page in UTF-8."""
     style = files("tmm_cli.note.formats").joinpath("note.css").read_text(encoding="utf-8")
     digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
     policy = f"default-src 'none';style-src 'sha256-{digest}'"
@@ -90,12 +90,12 @@ def html(note: Note) -> bytes:
 
 
 def data(text: str) -> str:
-    """A text that comes from anywhere."""
+    """Escape an untrusted text."""
     return escape(text.translate(NOT_XML))
 
 
 class Writer:
-    """Blocks as elements; headings come in their order."""
+    """Writer of blocks as HTML elements; headings are written in order."""
 
     def __init__(self, note: Note) -> None:
         self.note, self.numbers, self.headings = note, note.numbers(), iter(note.headings())
@@ -103,7 +103,7 @@ class Writer:
         self.tables = self.figures = 0
 
     def block(self, block: Block) -> str:
-        """One of them."""
+        """Return a block as HTML."""
         match block:
             case blocks.Heading():
                 number, __ = next(self.headings)
@@ -131,7 +131,7 @@ class Writer:
                 return f'<ol class="sources">{listed}</ol>'
 
     def line(self, line: Line) -> str:
-        """Texts and formulas; a stop stays on the line of the formula before it."""
+        """Return texts and formulas as HTML; punctuation stays on the line of the formula before it."""
         texts = [self.inline(part) for part in line]
         for k, part in enumerate(line[1:], 1):
             if isinstance(part, str) and part[0] in STOPS and not isinstance(line[k - 1], str):
@@ -140,7 +140,7 @@ class Writer:
         return "".join(texts)
 
     def inline(self, part: Inline) -> str:
-        """One of these."""
+        """Return a part of a line as HTML."""
         match part:
             case str():
                 return data(part)
@@ -153,7 +153,7 @@ class Writer:
         return mathml(part)
 
     def table(self, rows: blocks.Rows) -> str:
-        """With its caption above."""
+        """Return a table with its caption above."""
         self.tables += 1
         caption = _("Table {number}. {text}").format(number=self.tables, text=rows.caption)
         head = "".join(f"<th>{self.heading(cell)}</th>" for cell in rows.head)
@@ -173,20 +173,20 @@ class Writer:
         )
 
     def heading(self, cell: Line) -> str:
-        """Of a column; units such as rad/s stay on one line."""
+        """Return a column heading; units such as rad/s are not broken."""
         if not all(isinstance(part, str) for part in cell):
             return self.line(cell)
         return re.sub(r"\S+/\S+", r'<span class="joined">\g<0></span>', data("".join(map(str, cell))))
 
     def figure(self, figure: blocks.Figure) -> str:
-        """With its caption below."""
+        """Return a figure with its caption below."""
         self.figures += 1
         caption = _("Figure {number}. {text}").format(number=self.figures, text=figure.caption)
         drawn = write_svg(figure.drawing).decode().partition("\n")[2]
         return f"<figure{self.place(figure.key)}>{drawn}<figcaption>{data(caption)}</figcaption></figure>"
 
     def contents(self) -> str:
-        """All headings, each a link to its place."""
+        """Return the table of contents with links to the headings."""
         lines = [
             f'<p class="level{heading.level}"><a href="#h{number}">{number} {data(heading.text)}</a></p>'
             for number, heading in self.note.headings()
@@ -194,18 +194,18 @@ class Writer:
         return f'<nav><p class="heading">{data(_("Contents"))}</p>{"".join(lines)}</nav>\n<div class="page"></div>'
 
     def place(self, key: str) -> str:
-        """The name of what is referred to."""
+        """Return the id attribute of a block that is referred to."""
         return f' id="{self.places[key]}"' if key else ""
 
 
 def kind_of(cell: Line, number: bool) -> str:
-    """Its class: a number, or words that stay on one line."""
+    """Return the class attribute of a cell: a number, or a short text that is not broken."""
     short = all(isinstance(part, str) for part in cell) and sum(map(len, map(str, cell))) <= SHORT
     return ' class="number"' if number else ' class="short"' if short else ""
 
 
 def title(block: blocks.Title) -> str:
-    """The title page."""
+    """Return the title page."""
     people = "".join(f"<tr><td>{data(role)}</td><td>{data(name)}</td></tr>" for role, name in block.people)
     return (
         f'<header><p class="institution">{data(block.institution)}</p><div><p class="kind">{data(block.heading)}</p>'

@@ -1,1 +1,1 @@
-"""What the chapter on kinematics writes: the driver, plans of velocities and accelerations, tables of all positions."""
+"""Chapter on kinematics: drivers, velocity and acceleration plans, tables of all positions."""

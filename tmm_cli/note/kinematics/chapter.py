@@ -26,7 +26,7 @@ ROUND = 1e-9  # of a speed in rpm that was given as such
 
 
 def drivers(subject: Subject) -> Iterable[Block]:
-    """How each driving link moves."""
+    """Write how each input link moves."""
     running = subject.results.running
     for driver in subject.results.linkage.drivers:
         if running is not None:
@@ -96,7 +96,7 @@ def _given(subject: Subject, name: Symbol, value: float) -> Block:
 
 
 def speed_here(here: Here) -> Iterable[Block]:
-    """The speed in a position of a first driver that does not keep it."""
+    """Write the velocity of the first driver in a position, if it is not constant."""
     results, motion = here.subject.results, here.motion
     driver, turns = motion.linkage.driver, motion.linkage.driver.kind == "turn"
     if driver.law is not None or results.running is not None:
@@ -124,7 +124,7 @@ def speed_here(here: Here) -> Iterable[Block]:
 
 
 def positions(subject: Subject) -> Iterable[Block]:
-    """How many there are and from where on; the plan of positions; extreme positions with the stroke."""
+    """Write the number of positions, the position plan, and the extreme positions of the output with its stroke."""
     results = subject.results
     request, count = results.inputs.request, len(results.asked)
     full = results.driver_range is not None and results.driver_range.full and results.linkage.driver.kind == "turn"
@@ -151,7 +151,7 @@ def positions(subject: Subject) -> Iterable[Block]:
 
 
 def _extremes(subject: Subject, strokes: Strokes) -> Iterable[Block]:
-    """Where the output turns back, how far it goes, and how long each way takes."""
+    """Write the extreme positions of the output, its stroke and the time ratio."""
     places = ", ".join(f"{subject.text(_degrees(s.start % strokes.cycle))}°" for s in strokes.strokes)
     slides = strokes.kind == "slide"
     size, letter = (strokes.travel, "H") if slides else (float(np.degrees(strokes.travel)), "ψ")
@@ -193,18 +193,18 @@ def _travel(subject: Subject, travel: OutputTravel) -> Iterable[Block]:
 
 
 def _degrees(angle: float) -> float:
-    """Without what only rounding leaves of zero."""
+    """Return an angle (rad) in degrees, rounding noise replaced by zero."""
     found = float(np.degrees(angle))
     return 0.0 if abs(found) < NO_VECTOR else found
 
 
 def output(subject: Subject, link: str) -> str:
-    """A link, or a coordinate of a point."""
+    """Return "link 4", or the coordinate of a point that serves as the output."""
     return _("link {link}").format(link=link) if link in subject.results.linkage.links else link
 
 
 def place_here(here: Here) -> Block:
-    """Where the driving link is in a position."""
+    """Write the angle or displacement of the input link in a position."""
     driver, q, number = here.motion.linkage.driver, float(here.motion.q[here.k]), here.subject.called(here.k)
     if driver.kind == "turn":
         text = _("In position {number} the input link is at the angle {phi} = {angle}° to the x axis.")
@@ -221,7 +221,7 @@ Column = tuple[Line, Real]  # head, values of a quantity in all positions in the
 
 
 def tables(subject: Subject) -> Iterable[Block]:
-    """What is found in all positions in the same way."""
+    """Write the tables of all positions and the diagrams of motion and pressure angles."""
     results, motion = subject.results, subject.motion
     for link in results.mechanism.outputs:
         letters = ("φ", "ω", "ε") if results.linkage.output_swings(link) else ("s", "v", "a")
@@ -244,7 +244,7 @@ def tables(subject: Subject) -> Iterable[Block]:
 
 
 def _rate_tables(subject: Subject) -> Iterable[Block]:
-    """Of the links, in one table if it is not too wide."""
+    """Write the angular velocities and accelerations of the links, in one table if it is not too wide."""
     velocities, accelerations = _rates(subject, "ω", "omega"), _rates(subject, "ε", "epsilon")
     if velocities and accelerations and len(velocities) + len(accelerations) <= BESIDE:
         text = _("The angular velocities and accelerations of the links are given in table {table}.")
@@ -260,7 +260,7 @@ def _rate_tables(subject: Subject) -> Iterable[Block]:
 
 
 def _rates(subject: Subject, letter: str, what: str) -> list[Column]:
-    """Of links that turn, in one column those that turn as one; without what is the same in all positions."""
+    """Return the columns of a rate of rotation: links that rotate together share one; constant rates are left out."""
     motion = subject.motion
     every = {link: np.asarray(getattr(motion.link(link), what), float) for link in motion.linkage.moving}
     most = max(map(largest_magnitude, every.values()), default=0.0)
@@ -281,7 +281,7 @@ def _rates(subject: Subject, letter: str, what: str) -> list[Column]:
 
 
 def _table(subject: Subject, caption: str, columns: Sequence[Column], key: str) -> Rows:
-    """A row a position, with the places of the drivers; what cannot be computed is said in the last column."""
+    """Return a table with a row per position, the driver coordinates first and the state of failed positions last."""
     every, told = (*_places(subject), *columns), position_states(subject.results)
     texts = [
         (head, [subject.shown(float(value)) if np.isfinite(value) else "–" for value in values])
@@ -291,7 +291,7 @@ def _table(subject: Subject, caption: str, columns: Sequence[Column], key: str) 
 
 
 def _places(subject: Subject) -> Iterable[Column]:
-    """Of the drivers; of a crank within a turn, or within the turns of a cycle of loads."""
+    """Yield the columns of the driver coordinates; a rotating crank within one turn or the turns of a load cycle."""
     results = subject.results
     several, cycle = bool(results.linkage.others), 2 * np.pi * results.linkage.turns
     for driver in results.linkage.drivers:
@@ -305,7 +305,7 @@ def _places(subject: Subject) -> Iterable[Column]:
 
 
 def write_kinematics(subject: Subject) -> Iterable[Block]:
-    """Of what moves."""
+    """Write the chapter on kinematics; nothing if the mechanism cannot move."""
     results = subject.results
     if results.motion is None:
         return

@@ -1,4 +1,4 @@
-"""Sentences that velocities and accelerations share."""
+"""Vector equations in symbols, and sentences shared by velocities and accelerations."""
 
 from __future__ import annotations
 
@@ -23,28 +23,28 @@ from tmm_cli.note.kinematics.on_paper import Here, OnPaper, Vector, drawn, large
 
 
 def sense(value: float) -> str:
-    """Of what turns."""
+    """Return the sense of rotation in words."""
     return _("counterclockwise") if value > 0 else _("clockwise")
 
 
 def name_of(spot: PlanPoint) -> Symbol:
-    """The name of a point; of one under a stone with the number of its link below the line."""
+    """Return the symbol of a point; a point under a sliding block has the number of its link as subscript."""
     return Symbol(spot.at, spot.name[len(spot.at) :])
 
 
 def direct(step: SolutionStep) -> list[SameLinkEquation]:
-    """Points that follow from what is known before the equations of a group."""
+    """Return the points of a group that follow from known ones before its equations are solved."""
     return [e for e in step.equations if isinstance(e, SameLinkEquation) and e.known and not e.idle]
 
 
 def solved(step: SolutionStep) -> list[VectorEquation]:
-    """What is solved together; not what a higher pair gives, nor what follows by itself."""
+    """Return the equations that are solved together, without those that follow directly or from a higher pair."""
     alone = direct(step)
     return [e for e in step.equations if e not in alone and not (isinstance(e, FixedGuideEquation) and e.known)]
 
 
 def sought(step: SolutionStep, known: Collection[str]) -> list[PlanPoint]:
-    """Points that the equations give, but for those that move as others."""
+    """Return the points that the equations give, without those that move like others."""
     together = solved(step)
     others = [e for e in step.equations if e not in together or (isinstance(e, SameLinkEquation) and e.idle)]
     spots = [s for e in together for s in ([e.point] if isinstance(e, FixedGuideEquation) else [e.point, e.base])]
@@ -53,7 +53,7 @@ def sought(step: SolutionStep, known: Collection[str]) -> list[PlanPoint]:
 
 
 def once_a_link(together: Iterable[VectorEquation]) -> list[SameLinkEquation]:
-    """The equation of each link whose rotation is sought, by which it is found."""
+    """Return, for each link of unknown rotation, the equation that gives its rotation."""
     found: dict[str, SameLinkEquation] = {}
     for one in together:
         if isinstance(one, SameLinkEquation) and not one.known:
@@ -62,12 +62,12 @@ def once_a_link(together: Iterable[VectorEquation]) -> list[SameLinkEquation]:
 
 
 def further(step: SolutionStep) -> list[SameLinkEquation]:
-    """Further points of links that turn."""
+    """Return the further points of rotating links."""
     return [about for about in step.after if not about.idle]
 
 
 def points_of(step: SolutionStep) -> set[str]:
-    """Points that are told in a step."""
+    """Return the names of the points that a step gives."""
     found = {
         s.name for e in step.equations for s in ([e.point] if isinstance(e, FixedGuideEquation) else [e.point, e.base])
     }
@@ -75,13 +75,13 @@ def points_of(step: SolutionStep) -> set[str]:
 
 
 def equal(*symbols: Symbol) -> Block:
-    """Quantities that are one."""
+    """Return an equation of equal symbols."""
     letters = [Letter(one) for one in symbols]
     return Equation(row(letters[0], *(part for one in letters[1:] for part in ("=", one))))
 
 
 def introduced(step: SolutionStep, points: Sequence[PlanPoint], one: str, several: str) -> Block:
-    """What the equations of a group are for: one point, several ones, or none."""
+    """Return the sentence that introduces the equations of a group: for one point, several points, or none."""
     assert step.group is not None
     text = (
         one
@@ -94,7 +94,7 @@ def introduced(step: SolutionStep, points: Sequence[PlanPoint], one: str, severa
 
 
 def scale(plan: OnPaper, vectors: Sequence[Vector], text: str, at_rest: str) -> Iterable[Block]:
-    """Of a plan, by the first vector on it that is known."""
+    """Write the scale of a plan, set by the first sufficiently large known vector."""
     first = large(vectors)
     if first is None:
         yield said(at_rest)
@@ -111,7 +111,10 @@ def turning(
     carried: str,
     told: str,
 ) -> Iterable[Block]:
-    """What links turn with, each once, with its sense; carried: how that is seen, where the method is explained."""
+    """Write the rate of rotation of each link with its sense.
+
+    carried: sentence of the first detailed position, where the method is explained. told: sentence of the others.
+    """
     for about in once_a_link(together):
         value, found = here.rates(letter).get(about.link, 0.0), vector_of(about)
         rate = Leaf(Symbol(letter, about.link), abs(value))
@@ -131,7 +134,7 @@ def turning(
 
 
 def turning_as_one(here: Here, step: SolutionStep, letter: str) -> Iterable[Block]:
-    """Links that turn as others do, which is said where the method is explained."""
+    """Write that links rotate together."""
     for links in step.same:
         if links[0] in here.rates(letter):
             if here.first and not step.ratios:
@@ -140,7 +143,7 @@ def turning_as_one(here: Here, step: SolutionStep, letter: str) -> Iterable[Bloc
 
 
 def remaining(here: Here, plan: OnPaper, known: Collection[str]) -> Iterable[Block]:
-    """Points that no equation needed, and centres of mass: by similarity."""
+    """Write the points that no equation needed and the centres of mass, found by similarity."""
     linkage = here.motion.linkage
     names = [p for p in linkage.moving_points if p not in known] + [f"S{link}" for link in links_with_mass(linkage)]
     if not names:
@@ -160,7 +163,7 @@ def remaining(here: Here, plan: OnPaper, known: Collection[str]) -> Iterable[Blo
 
 
 def not_on_paper() -> Block:
-    """Of a group that no polygon solves."""
+    """Return the sentence on a group that no vector polygon can solve."""
     return said(
         _(
             "These equations contain more unknown magnitudes than a vector polygon can give, and none of them "
@@ -180,9 +183,9 @@ WHOLE, DIRECTION, UNKNOWN = 2, 1, 0  # lines under a vector
 def equations(
     here: Here, step: SolutionStep, chosen: Sequence[VectorEquation], letter: str, known: Collection[str]
 ) -> Iterable[Block]:
-    """Those of a step, and a line with the directions in them.
+    """Write vector equations of a step, and the directions of their vectors.
 
-    letter: v, or a, whose parts are told apart; known: names of points that are found.
+    letter: v or a (accelerations have components). known: names of points already found.
     """
     lined = {
         e.point.name
@@ -206,7 +209,7 @@ def equations(
 
 
 def of_known_link(here: Here, about: SameLinkEquation, letter: str, known: Collection[str]) -> Iterable[Block]:
-    """Where the method is explained: that a point belongs to a link whose rotation is known, and its equation."""
+    """Write, where the method is explained, the equation of a point of a link whose rotation is known."""
     if here.first:
         text = _("Point {point} belongs to link {link}, whose rotation is known:")
         yield said(text, point=name_of(about.point), link=about.link)
@@ -215,7 +218,7 @@ def of_known_link(here: Here, about: SameLinkEquation, letter: str, known: Colle
 
 
 def _in_lines(told: Sequence[Node]) -> Iterable[Block]:
-    """Short statements one after another, as many in a line as there is room for."""
+    """Write short statements in a row, as many in a line as fit."""
     shown: Node | None = None
     for one in told:
         longer = one if shown is None else row(shown, Words(",  "), one)
@@ -236,7 +239,7 @@ def _lines(spot: PlanPoint, known: Collection[str], lined: Collection[str]) -> i
 def _parts(
     equation: SameLinkEquation | MovingGuideEquation, letter: str, turning: Collection[str]
 ) -> Iterable[tuple[Node, Node]]:
-    """Relative vectors with their lines, and with what they are along or across."""
+    """Yield the relative vectors of an equation, each with the line it is parallel or perpendicular to."""
     index = equation.point.name + equation.base.name
     sought = WHOLE if equation.known else DIRECTION
     if isinstance(equation, MovingGuideEquation):
@@ -261,7 +264,7 @@ def _part(symbol: Symbol, lines: int, sign: str, way: Node) -> tuple[Node, Node]
 
 
 def guide(slide: Slide) -> Node:
-    """What a guide is called: by its own name on the frame, by its points on a link."""
+    """Return the name of a guide: its own on the frame, its end points on a link."""
     if slide.ends is not None:
         return Words("".join(slide.ends))
     if slide.carrier == FRAME:

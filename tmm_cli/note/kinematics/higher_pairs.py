@@ -17,7 +17,7 @@ from tmm_cli.note.kinematics.on_paper import Here, Vector, unit, zero
 
 
 def begun(here: Here, step: SolutionStep, letter: str) -> Iterable[Block]:
-    """How a group begins: what its higher pairs give of ω, or of ε."""
+    """Write the beginning of a group: the angular velocities or accelerations that its higher pairs give."""
     assert step.group is not None
     if step.ratios:
         yield said(_("The motion of group {group} follows from its higher pairs."), group=step.group.title)
@@ -28,7 +28,7 @@ def begun(here: Here, step: SolutionStep, letter: str) -> Iterable[Block]:
 
 
 def _by_ratio(here: Here, step: SolutionStep, ratio: HigherPairRatio, letter: str) -> Iterable[Block]:
-    """Of a link, or in a sliding pair, from a higher pair."""
+    """Write the rate of rotation, or of sliding, that a higher pair gives."""
     mesh, first = ratio.mesh, here.first and letter == "ω"
     if mesh.kind == "gear":
         if first:
@@ -48,20 +48,20 @@ def _by_ratio(here: Here, step: SolutionStep, ratio: HigherPairRatio, letter: st
 
 
 def _turning(here: Here, link: str, letter: str) -> Leaf | None:
-    """What a link turns with, with its sign; None of one that never does."""
+    """Return the rate of rotation of a link with its sign; None if it never rotates."""
     rates = here.rates(letter)
     return Leaf(Symbol(letter, link), rates[link]) if link in rates else None
 
 
 def _less(one: Expression | None, other: Expression | None) -> Expression | None:
-    """One without the other; None of what never turns."""
+    """Return the difference of two rates, None standing for a link that never rotates."""
     if one is None or other is None:
         return one if other is None else -other
     return one - other
 
 
 def _willis(here: Here, mesh: Mesh) -> Iterable[Block]:
-    """The ratio of the wheels while their carrier rests."""
+    """Write the ratio of two gears with their carrier at rest."""
     linkage = here.motion.linkage
     a, b = (complex(carrier_axis(linkage, wheel, mesh.carrier)) for wheel in (mesh.i, mesh.j))
     pitch = (a - mesh.ratio * b) / (1 - mesh.ratio)
@@ -93,7 +93,7 @@ def _ratio(mesh: Mesh) -> Symbol:
 
 
 def _wheel(here: Here, mesh: Mesh, link: str, letter: str) -> Block:
-    """What one of two wheels, or their carrier, turns with."""
+    """Return the rate of rotation of one of two gears, or of their carrier."""
     i, j, c = (_turning(here, one, letter) for one in (mesh.i, mesh.j, mesh.carrier))
     u, found = Leaf(_ratio(mesh), mesh.ratio), _turning(here, link, letter)
     if found is None:
@@ -115,7 +115,7 @@ def _wheel(here: Here, mesh: Mesh, link: str, letter: str) -> Block:
 
 
 def _sliding(here: Here, step: SolutionStep, ratio: HigherPairRatio, letter: str) -> Vector:
-    """The velocity, or acceleration, in the sliding pair of a rack or a follower."""
+    """Return the velocity or acceleration in the prismatic pair of a rack or follower."""
     slide, plan = here.motion.linkage.slide(ratio.mesh.slide), here.plan_of(letter)
     own = next(
         (

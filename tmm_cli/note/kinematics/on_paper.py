@@ -1,4 +1,4 @@
-"""A position as formulas read it: segments of its plans in millimetres, what links turn with, lengths."""
+"""Readings of one position: segments of its plans (mm), rates of rotation, lengths."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SMALL = 0.2  # of the largest known vector: a smaller one is not the one by whic
 
 @dataclass(frozen=True)
 class Vector:
-    """A vector of a plan: its symbol, size (SI) and segment. One of no size is a point, and has none."""
+    """Vector of a plan: its symbol, magnitude (SI) and segment; a zero vector has no segment."""
 
     symbol: Symbol
     size: float
@@ -32,13 +32,13 @@ class Vector:
 
     @property
     def leaf(self) -> Leaf:
-        """Its size in a formula."""
+        """Magnitude as a leaf of a formula."""
         return Leaf(self.symbol, self.size)
 
 
 @dataclass(frozen=True)
 class OnPaper:
-    """The plan of velocities, or of accelerations, at its scale."""
+    """Velocity or acceleration plan at its scale."""
 
     subject: Subject
     motion: Motion
@@ -47,17 +47,17 @@ class OnPaper:
 
     @cached_property
     def sort(self) -> MotionPlanKind:
-        """Its letters and units."""
+        """Letters and units of the plan."""
         return next(sort for sort in motion_plan_kinds() if sort.stem == self.name)
 
     @cached_property
     def plan(self) -> Plan:
-        """Its vectors."""
+        """Vectors of the plan."""
         return self.sort.plan(self.motion, self.k)
 
     @cached_property
     def mu(self) -> float:
-        """SI a millimetre: of its drawing, or as it would be drawn."""
+        """Scale in SI units per mm: that of the drawing, or the one it would have."""
         for drawing in self.subject.drawings(self.name, self.k).values():
             if isinstance(drawing, SheetPicture) and drawing.mu is not None:
                 return drawing.mu
@@ -67,16 +67,16 @@ class OnPaper:
 
     @cached_property
     def ends(self) -> dict[str, NamedVector]:
-        """Vectors of points and centres of mass, by their names."""
+        """Vectors of points and centres of mass by name."""
         return {v.symbol.below: v for v in self.plan.vectors if v.kind == "absolute"}
 
     def of(self, spot: PlanPoint | str) -> Vector:
-        """The vector of a point, or of a centre of mass by its name."""
+        """Return the vector of a point, or of a centre of mass by name."""
         name = spot if isinstance(spot, str) else spot.name
         return self._vector(Symbol(self.sort.letter, name), self._end(name), self.sort.pole + self._letter(name))
 
     def relative(self, point: PlanPoint, base: PlanPoint) -> Vector:
-        """The velocity of a point about another one; about one of the frame it is the whole one."""
+        """Return the velocity of a point relative to another; relative to a fixed point, its absolute velocity."""
         if base.fixed:
             return self.of(point)
         symbol = Symbol(self.sort.letter, point.name + base.name)
@@ -84,27 +84,27 @@ class OnPaper:
         return self._vector(symbol, self._end(point.name) - self._end(base.name), "".join(letters))
 
     def part(self, point: PlanPoint, base: PlanPoint, above: str) -> Vector:
-        """A part of an acceleration: n, τ, k or r."""
+        """Return a component of a relative acceleration: n, τ, k or r."""
         symbol = Symbol(self.sort.letter, point.name + base.name, above)
         found = next(v for v in self.plan.vectors if v.symbol == symbol)
         return self._vector(symbol, found.value, found.name)
 
     def same(self, one: str, other: str) -> bool:
-        """Whether two points move as one."""
+        """Return True if two points have the same velocity or acceleration."""
         return abs(self._end(one) - self._end(other)) <= NO_VECTOR * self.plan.size
 
     def read(self, vector: Vector) -> Block:
-        """What a segment of the plan is worth."""
+        """Return the value of a vector measured on the plan."""
         return self.found(vector, Leaf(Symbol("μ", self.sort.letter), self.mu) * self._segment(vector))
 
     def found(self, vector: Vector, expression: Expression) -> Block:
-        """A vector by what gives its size."""
+        """Return a vector whose magnitude an expression gives."""
         if not vector.segment:
             return zero(vector.symbol)
         return Found(vector.symbol, expression, vector.size, unit(self.sort.letter))
 
     def scaled(self, vector: Vector) -> Block:
-        """The scale, told by the vector that is drawn first."""
+        """Return the scale of the plan from the vector drawn first."""
         per_mm = {"v": _("(m/s)/mm"), "a": _("(m/s²)/mm")}[self.sort.letter]
         name, most = Symbol("μ", self.sort.letter), len(f"{self.mu:e}".partition("e")[0].rstrip("0").replace(".", ""))
         return Found(name, vector.leaf / self._segment(vector), self.mu, per_mm, most=most)
@@ -116,7 +116,7 @@ class OnPaper:
         return self.ends[name].end if name in self.ends else 0j
 
     def _letter(self, name: str) -> str:
-        """Of the end of its vector; none of a point of the frame, which ends in the pole."""
+        """Return the letter at the end of a point's vector; none for a fixed point, which is at the pole."""
         return self.ends[name].name[len(self.sort.pole) :] if name in self.ends else ""
 
     def _vector(self, symbol: Symbol, value: complex, segment: str) -> Vector:
@@ -126,7 +126,10 @@ class OnPaper:
 
 @dataclass(frozen=True)
 class Here:
-    """A position with both its plans. first: of those that are shown in full, in which the method is explained."""
+    """Position with its velocity and acceleration plans.
+
+    first: the first detailed position, in which the method is explained.
+    """
 
     subject: Subject
     k: int
@@ -134,68 +137,68 @@ class Here:
 
     @property
     def motion(self) -> Motion:
-        """The motion of the problem."""
+        """Motion of the mechanism."""
         return self.subject.motion
 
     @cached_property
     def v(self) -> OnPaper:
-        """The plan of velocities."""
+        """Velocity plan."""
         return OnPaper(self.subject, self.motion, self.k, "velocity")
 
     @cached_property
     def a(self) -> OnPaper:
-        """The plan of accelerations."""
+        """Acceleration plan."""
         return OnPaper(self.subject, self.motion, self.k, "acceleration")
 
     @cached_property
     def omega(self) -> Mapping[str, float]:
-        """Of the links that turn in some position, rad/s."""
+        """Angular velocities (rad/s) of the links that rotate in some position."""
         return {turn.symbol.below: turn.value for turn in angular_values(self.motion, self.k, "omega")}
 
     @cached_property
     def epsilon(self) -> Mapping[str, float]:
-        """Of the links that turn unevenly, rad/s2."""
+        """Angular accelerations (rad/s²) of the links that do not rotate uniformly."""
         return {turn.symbol.below: turn.value for turn in angular_values(self.motion, self.k, "epsilon")}
 
     def rates(self, letter: str) -> Mapping[str, float]:
-        """What links turn with: ω, or ε."""
+        """Return the angular velocities (ω) or accelerations (ε) by link."""
         return self.omega if letter == "ω" else self.epsilon
 
     def rate(self, letter: str, link: str) -> Leaf:
-        """The size of what a link turns with."""
+        """Return the magnitude of a link's angular velocity or acceleration."""
         return Leaf(Symbol(letter, link), abs(self.rates(letter).get(link, 0.0)))
 
     def plan_of(self, letter: str) -> OnPaper:
-        """Of what belongs to ω, or to ε."""
+        """Return the velocity plan for ω, the acceleration plan for ε."""
         return self.v if letter == "ω" else self.a
 
     def length(self, point: PlanPoint, base: PlanPoint) -> Leaf:
-        """Between two points of a link, m."""
+        """Return the distance (m) between two points of a link."""
         places = [complex(self.motion.spot(spot.at)[self.k]) for spot in (base, point)]
         return Leaf(Symbol("l", base.at + point.at), abs(places[1] - places[0]))
 
 
 def unit(letter: str) -> str:
-    """Of velocities, accelerations, and of what links turn with."""
+    """Return the unit of v, a, ω or ε."""
     return {"v": _("m/s"), "a": _("m/s²"), "ω": _("rad/s"), "ε": _("rad/s²")}[letter]
 
 
 def large(vectors: Sequence[Vector]) -> Vector | None:
-    """The first that is large enough among these to tell a scale; None where all are points."""
+    """Return the first vector large enough to set a scale; None if all are zero."""
     largest = max((vector.size for vector in vectors), default=0.0)
     return next((vector for vector in vectors if vector.segment and vector.size > SMALL * largest), None)
 
 
 def vector(symbol: Symbol) -> Letter:
-    """A quantity with its direction."""
+    """Return a symbol with a bar above."""
     return Letter(symbol, True)
 
 
 def drawn(vector: Vector) -> Symbol:
-    """Its segment."""
+    """Return the symbol of a vector's segment."""
     return Symbol(with_subscripts(vector.segment))
 
 
 def zero(symbol: Symbol) -> Block:
-    """A quantity that is nothing."""
+    """Return the equation symbol = 0."""
     return Equation(row(Letter(symbol), "=", Number("0")))

@@ -20,7 +20,7 @@ from tmm_cli.note.kinematics.on_paper import Here, Vector
 
 
 def velocities(here: Here, steps: Sequence[SolutionStep]) -> Iterable[Block]:
-    """All that the plan gives, in the order in which it is drawn."""
+    """Write the velocities of a position in the order in which the plan is drawn."""
     known: set[str] = set()
     for step in steps:
         if step.group is None:
@@ -43,7 +43,7 @@ def velocities(here: Here, steps: Sequence[SolutionStep]) -> Iterable[Block]:
 
 
 def _driving(here: Here, step: SolutionStep) -> Iterable[Block]:
-    """Points of a driving link."""
+    """Write the velocities of points of an input link."""
     turned = words.further(step)
     if here.first and turned:
         one = _(
@@ -65,13 +65,13 @@ def _driving(here: Here, step: SolutionStep) -> Iterable[Block]:
 
 
 def _turned(here: Here, about: SameLinkEquation) -> Block:
-    """v = ω l of a point about another one of its link."""
+    """Return v = ω l of a point relative to another point of its link."""
     found = here.v.relative(about.point, about.base)
     return here.v.found(found, here.rate("ω", about.link) * here.length(about.point, about.base))
 
 
 def _known(here: Here, step: SolutionStep) -> Iterable[Vector]:
-    """Vectors that are known before the plan is drawn."""
+    """Yield the velocities that are known before the plan is drawn."""
     for equation in (*step.equations, *(step.after if step.group is None else ())):
         if equation.known and isinstance(equation, FixedGuideEquation):
             yield here.v.of(equation.point)
@@ -80,7 +80,7 @@ def _known(here: Here, step: SolutionStep) -> Iterable[Vector]:
 
 
 def _group(here: Here, step: SolutionStep, known: Collection[str]) -> Iterable[Block]:
-    """Ratios, equations, what they give, further points."""
+    """Write a group: ratios of higher pairs, equations, their solution, further points."""
     points, together, found = words.sought(step, known), words.solved(step), {*known}
     yield from begun(here, step, "ω")
     for about in words.direct(step):
@@ -113,7 +113,7 @@ def _group(here: Here, step: SolutionStep, known: Collection[str]) -> Iterable[B
 
 
 def _known_about(here: Here, about: SameLinkEquation, found: Collection[str]) -> Iterable[Block]:
-    """A point of a link whose rotation is known."""
+    """Write the velocity of a point of a link whose rotation is known."""
     yield from of_known_link(here, about, "v", found)
     yield _turned(here, about)
     if not about.base.fixed:
@@ -124,7 +124,7 @@ def _known_about(here: Here, about: SameLinkEquation, found: Collection[str]) ->
 
 
 def accelerations(here: Here, steps: Sequence[SolutionStep]) -> Iterable[Block]:
-    """All that the plan gives, in the order in which it is drawn."""
+    """Write the accelerations of a position in the order in which the plan is drawn."""
     known: set[str] = set()
     driving, groups = ([step for step in steps if (step.group is None) is first] for first in (True, False))
     for step in driving:
@@ -142,7 +142,7 @@ def accelerations(here: Here, steps: Sequence[SolutionStep]) -> Iterable[Block]:
 
 
 def _driving_accelerations(here: Here, step: SolutionStep) -> Iterable[Block]:
-    """Points of a driving link."""
+    """Write the accelerations of points of an input link."""
     for equation in step.equations:
         a = here.a.of(equation.point)
         text = _("Input link {link} moves uniformly, so {a} = 0.")
@@ -166,7 +166,7 @@ def _driving_accelerations(here: Here, step: SolutionStep) -> Iterable[Block]:
 
 
 def _parts(here: Here, about: SameLinkEquation) -> Iterable[Block]:
-    """Normal and tangential part of a point's acceleration about another of a link whose rotation is known."""
+    """Write the normal and tangential acceleration of a point of a link whose rotation is known."""
     yield _normal(here, about)
     tangential = _part(here, about, "τ")
     if tangential.segment or about.link in here.epsilon:
@@ -183,7 +183,7 @@ def _part(here: Here, equation: SameLinkEquation | MovingGuideEquation, above: s
 
 
 def _whole(here: Here, about: SameLinkEquation) -> Iterable[Block]:
-    """The acceleration of a point both of whose parts are known."""
+    """Write the acceleration of a point whose two components are known."""
     a = here.a.of(about.point)
     if about.base.fixed and not _part(here, about, "τ").segment:
         yield words.equal(a.symbol, _part(here, about, "n").symbol)
@@ -192,7 +192,7 @@ def _whole(here: Here, about: SameLinkEquation) -> Iterable[Block]:
 
 
 def _coriolis(here: Here, along: MovingGuideEquation) -> Block:
-    """2 ω v."""
+    """Return the Coriolis acceleration 2 ω v."""
     sliding = here.v.relative(along.point, along.base)
     return here.a.found(_part(here, along, "k"), 2 * here.rate("ω", along.slide.carrier) * sliding.leaf)
 
@@ -210,7 +210,7 @@ def _scale(here: Here, steps: Sequence[SolutionStep]) -> Iterable[Block]:
 
 
 def _known_accelerations(here: Here, step: SolutionStep) -> Iterable[Vector]:
-    """Vectors that are known before the plan is drawn."""
+    """Yield the accelerations that are known before the plan is drawn."""
     if step.group is None:
         yield from (here.a.of(equation.point) for equation in step.equations)
     for about in step.after if step.group is None else ():
@@ -224,7 +224,7 @@ def _known_accelerations(here: Here, step: SolutionStep) -> Iterable[Vector]:
 
 
 def _before(here: Here, step: SolutionStep, known: Collection[str]) -> Iterable[Block]:
-    """What is known from velocities and from higher pairs, and the equations."""
+    """Write the equations of a group and the components known from velocities and higher pairs."""
     points, together = words.sought(step, known), words.solved(step)
     yield from begun(here, step, "ε")
     if here.first and together:
@@ -243,14 +243,14 @@ def _before(here: Here, step: SolutionStep, known: Collection[str]) -> Iterable[
 
 
 def _has_known_part(here: Here, equation: VectorEquation) -> bool:
-    """A normal part, or that of Coriolis."""
+    """Return True if an equation has a normal or a Coriolis component."""
     if isinstance(equation, MovingGuideEquation):
         return equation.slide.carrier in here.omega
     return isinstance(equation, SameLinkEquation) and not equation.idle
 
 
 def _solved(here: Here, step: SolutionStep, known: Collection[str]) -> Iterable[Block]:
-    """What the plan gives."""
+    """Write the accelerations that the plan of a group gives."""
     points, together = words.sought(step, known), words.solved(step)
     for about in words.direct(step):
         yield from _whole(here, about)
