@@ -63,7 +63,7 @@ class OwnGroup(WrappedSolver):
     linkage: Linkage
 
     def _hinge(self, link: str) -> tuple[str, complex, complex] | None:
-        """Return the external hinge of a link: the known link and the local coordinates of the hinge on both; or None."""
+        """Return the external hinge of a link: the known link and the hinge in the axes of both; or None."""
         for pair in self.group.outer:
             if pair.kind == "R" and self.group.own(pair) == link:
                 other = pair.other(link)

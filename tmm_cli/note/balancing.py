@@ -122,7 +122,7 @@ MASS_RADIUS, SHARE = Symbol("D"), Symbol("k")
 
 
 def write_counterweights(subject: Subject, found: BalancedCycle, task: BalancingTask) -> Iterable[Block]:
-    """Write each counterweight with its mass-radius product (and mass, if its radius is given) and the remaining force."""
+    """Write each counterweight with its mass-radius product, its mass if the radius is given, the remaining force."""
     replaced = _Replaced(subject.results.linkage, found, task)
     if replaced.solved():
         yield said(
@@ -308,7 +308,7 @@ PLANES = ("I", "II")
 
 
 def write_rotor_balancing(subject: Subject, rotor: UnbalancedShaft, corrections: Vector) -> Iterable[Block]:
-    """Write the correction masses of a rotor: the second plane from the moments about the first, then the first plane."""
+    """Write the correction masses of a rotor, in the second plane first."""
     two = len(rotor.planes) > 1
     static = _("A rotor is statically balanced if the vectors {D} = m·r of all its masses sum to zero.")
     dynamic = _(

@@ -26,7 +26,7 @@ CANCELLED = 1e-6  # of the largest term: a sum that is less, and has no digit in
 
 
 class Joined:
-    """Arithmetic operators that build expressions as on paper: 2 * a - b / c; nested sums and products are flattened."""
+    """Operators that build expressions as on paper: 2 * a - b / c; nested sums and products are flattened."""
 
     def __add__(self, other: Expression | float) -> Sum:
         return Sum((*_terms(self), *_terms(other)))
@@ -223,7 +223,7 @@ def evaluate(expression: Expression, figures: int) -> float:
 
 
 def largest_term(expression: Expression) -> float:
-    """Return the magnitude of an expression without cancellation: largest term of each sum, 1 for sine and cosine.
+    """Return the magnitude of an expression without cancellation: largest term of a sum, 1 for sine and cosine.
 
     Rounding of the substituted numbers changes the value of the expression in proportion to this magnitude.
     """
@@ -251,7 +251,7 @@ def letters(expression: Expression) -> paper.Node:
 
 
 def numbers(expression: Expression, figures: int, text: Callable[[str], str]) -> paper.Node:
-    """Return the formula of an expression with numbers substituted; `text` writes figures in the language of the note."""
+    """Return the formula of an expression with numbers substituted; `text` writes figures in the language."""
 
     def number(leaf: Leaf) -> paper.Node:
         if leaf.of is not None:

@@ -152,7 +152,7 @@ class Answers:
         return one_line(error)
 
     def _not_asked(self, places: list[Heading]) -> str:
-        """Return the message on quantities not requested, with similar requested names; R_12 is never taken for R_21."""
+        """Return the message on quantities not requested, with similar names; R_12 is never taken for R_21."""
         names = []
         for place in places[:MOST_TOLD]:
             near = None if place.quantity in self.names else nearest_name(place.quantity, self.names)

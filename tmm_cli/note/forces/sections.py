@@ -123,7 +123,7 @@ class Part:
         return abs(complex(reaction.force[self.here.k]))
 
     def on_paper(self, equation: MomentEquation) -> float | None:
-        """Return the scale (m/mm) of the drawing that shows the arms of an equation; None if arms are given in metres."""
+        """Return the scale (m/mm) of the drawing with the arms of an equation; None if arms are in metres."""
         if self.subject.results.problem.note_style.arms != "paper":
             return None
         number = next(n for n, few in enumerate(split_equations(self.loaded.equations)) if equation in few)
