@@ -204,38 +204,38 @@ def balance_cycle(motion: Motion, task: BalancingTask, about: complex = 0j) -> B
     before = compute_shaking(motion, about)
     if not task.counterweights:
         return BalancedCycle((), before, before)
-    places = task.counterweights
+    counterweights = task.counterweights
     # force of a counterweight: -c times the second derivative of the link's direction
-    columns = np.stack([-_direction_acceleration(motion, place.link) for place in places], axis=1)
+    columns = np.stack([-_direction_acceleration(motion, place.link) for place in counterweights], axis=1)
     fastest = float(np.max(np.square(motion.rate))) if motion.linkage.driver.kind == "turn" else 0.0
     columns[:, np.nanmax(np.abs(columns), axis=0) <= AT_REST * fastest] = 0.0  # a link that translates balances nothing
-    pivots = np.stack([-motion.point(place.link, place.about).a for place in places], axis=1)
-    per_mass = np.array([1 / place.radius if place.radius else 0.0 for place in places])
-    found, live = (
-        np.zeros(len(places), complex),
+    pivots = np.stack([-motion.point(place.link, place.about).a for place in counterweights], axis=1)
+    per_mass = np.array([1 / place.radius if place.radius else 0.0 for place in counterweights])
+    products, live = (
+        np.zeros(len(counterweights), complex),
         motion.moving & np.isfinite(np.column_stack([columns, pivots, before.force])).all(axis=1),
     )
     for _ in range(ROUNDS):
-        last = found
-        found, rank = _least_squares(columns[live], (before.force + pivots @ (per_mass * np.abs(last)))[live], task)
-        if np.max(np.abs(found - last)) <= SETTLED * np.max(np.abs(found)):
+        last = products
+        products, rank = _least_squares(columns[live], (before.force + pivots @ (per_mass * np.abs(last)))[live], task)
+        if np.max(np.abs(products - last)) <= SETTLED * np.max(np.abs(products)):
             break
     else:
         raise CounterweightError
     weights = tuple(
         CounterweightSolution(place, float(abs(c)), _direction(complex(c)))
-        for place, c in zip(places, found, strict=True)
+        for place, c in zip(counterweights, products, strict=True)
     )
-    return BalancedCycle(weights, before, compute_shaking(motion, about, weights), rank < 2 * len(places))
+    return BalancedCycle(weights, before, compute_shaking(motion, about, weights), rank < 2 * len(counterweights))
 
 
 def _least_squares(columns: Vector, force: Vector, task: BalancingTask) -> tuple[Vector, int]:
     """Counterweights (kg m, complex) that leave the least force, and the rank: the number of independent
     components.
     """
-    own, rest = columns * task.along.conjugate(), -force * task.along.conjugate()
+    rotated, rest = columns * task.along.conjugate(), -force * task.along.conjugate()
     share, other = np.sqrt(task.share), np.sqrt(1 - task.share)
-    matrix = np.block([[share * own.real, -share * own.imag], [other * own.imag, other * own.real]])
+    matrix = np.block([[share * rotated.real, -share * rotated.imag], [other * rotated.imag, other * rotated.real]])
     parts, _, rank, _ = np.linalg.lstsq(matrix, np.concatenate([share * rest.real, other * rest.imag]), rcond=NO_EFFECT)
     half = len(parts) // 2
     return parts[:half] + 1j * parts[half:], int(rank)
@@ -248,9 +248,9 @@ def _direction(c: complex) -> float:
 
 def _direction_acceleration(motion: Motion, link: str) -> Vector:
     """Second time derivative of the direction of a link's x axis, 1/s2."""
-    turning, z = motion.link(link), motion.poses[link].z
-    found: Vector = (1j * turning.epsilon - turning.omega**2) * z
-    return found
+    rotation, z = motion.link(link), motion.poses[link].z
+    acceleration: Vector = (1j * rotation.epsilon - rotation.omega**2) * z
+    return acceleration
 
 
 # Balancing of a mechanism: shaking over its cycle and at its positions, at the constant speed of the driver.
@@ -280,13 +280,13 @@ class BalancingResults:
         return _shaking_at(mechanism, self.cycle, q)
 
 
-def balance_machine(mechanism: Mechanism, start: float, places: Real, task: BalancingTask) -> BalancingResults:
+def balance_machine(mechanism: Mechanism, start: float, positions: Real, task: BalancingTask) -> BalancingResults:
     """Balance a mechanism over the cycle that begins at the driver coordinate `start`.
 
     Args:
         mechanism: the mechanism; its driver runs at constant speed.
         start: driver coordinate of position 0 (rad).
-        places: driver coordinates of the positions (rad).
+        positions: driver coordinates of the positions (rad).
         task: balancing task.
 
     Raises:
@@ -304,13 +304,13 @@ def balance_machine(mechanism: Mechanism, start: float, places: Real, task: Bala
     about = complex(linkage.local(FRAME, pivot)) if pivot else 0j
     cycle = balance_cycle(constant_speed_motion(mechanism, q), task, about)
     corrections = np.empty(0, complex) if task.rotor is None else task.rotor.corrections()
-    return BalancingResults(task, q, cycle, *_shaking_at(mechanism, cycle, places), pivot, corrections)
+    return BalancingResults(task, q, cycle, *_shaking_at(mechanism, cycle, positions), pivot, corrections)
 
 
-def _shaking_at(mechanism: Mechanism, found: BalancedCycle, q: Real) -> tuple[ShakingLoads, ShakingLoads]:
+def _shaking_at(mechanism: Mechanism, balanced: BalancedCycle, q: Real) -> tuple[ShakingLoads, ShakingLoads]:
     """Shaking loads at driver coordinates, without and with counterweights."""
-    motion, about = constant_speed_motion(mechanism, q), found.before.about
-    return compute_shaking(motion, about), compute_shaking(motion, about, found.counterweights)
+    motion, about = constant_speed_motion(mechanism, q), balanced.before.about
+    return compute_shaking(motion, about), compute_shaking(motion, about, balanced.counterweights)
 
 
 def constant_speed_motion(mechanism: Mechanism, q: Real) -> Motion:

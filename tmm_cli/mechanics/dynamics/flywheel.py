@@ -100,20 +100,20 @@ def energy_at_mean_speed(
 
     Both are nan if the machine does not run through at that speed, or has no inertia somewhere.
     """
-    places = work.places()
-    if flywheel + float(np.min(machine.inertia(places))) <= 0:
+    nodes = work.places()
+    if flywheel + float(np.min(machine.inertia(nodes))) <= 0:
         return float("nan"), float("nan")
 
     def speeds(energy: Real) -> Real:
         """Least and largest speed for each initial energy."""
         square = [
-            (find_minimum(of, places)[1], -find_minimum(partial(_negated, of), places)[1])
-            for of in (partial(_squared_speed, machine, work, flywheel, float(e)) for e in np.ravel(energy))
+            (find_minimum(squared_speed, nodes)[1], -find_minimum(partial(_negated, squared_speed), nodes)[1])
+            for squared_speed in (partial(_squared_speed, machine, work, flywheel, float(e)) for e in np.ravel(energy))
         ]
         return np.asarray(np.sqrt(np.maximum(np.array(square), 0.0)))
 
-    low = -float(np.min(work(places)))
-    high = low + np.ptp(work(places)) + mean**2 * (float(np.max(machine.inertia(places))) + flywheel)
+    low = -float(np.min(work(nodes)))
+    high = low + np.ptp(work(nodes)) + mean**2 * (float(np.max(machine.inertia(nodes))) + flywheel)
     if speeds(np.array([low])).mean() >= mean:
         return float("nan"), float("nan")
     energy = find_roots(lambda e: speeds(e).mean(axis=1) - mean, np.array([low]), np.array([high]))
@@ -165,9 +165,9 @@ def refine_minimum(rate: Callable[[Real], Real], x: float, length: float) -> flo
     return float(find_roots(rate, ends[:1], ends[1:])[0]) if below < 0 < above else x
 
 
-def find_minimum(function: Callable[[Real], Real], places: Real) -> tuple[float, float]:
-    """Return argument and value of the minimum of a function whose minima are farther apart than `places`."""
-    values = function(places)
+def find_minimum(function: Callable[[Real], Real], nodes: Real) -> tuple[float, float]:
+    """Return argument and value of the minimum of a function whose minima are farther apart than `nodes`."""
+    values = function(nodes)
     best = int(np.argmin(values))
-    x, value = find_minima(function, float(places[max(best - 1, 0)]), float(places[min(best + 1, len(places) - 1)]))
-    return (x, value) if value < values[best] else (float(places[best]), float(values[best]))
+    x, value = find_minima(function, float(nodes[max(best - 1, 0)]), float(nodes[min(best + 1, len(nodes) - 1)]))
+    return (x, value) if value < values[best] else (float(nodes[best]), float(values[best]))

@@ -52,8 +52,8 @@ class SteadyLaw:
     def acceleration(self, x: Real) -> Real:
         """Acceleration at travel x, rad/s2 or m/s2; at a jump of the load the value after it."""
         moment = self.driving(x) + self.machine.moment(x) - self.machine.slope(x) * self.speed(x) ** 2 / 2
-        found: Real = moment / (self.flywheel + self.machine.inertia(x))
-        return found
+        acceleration: Real = moment / (self.flywheel + self.machine.inertia(x))
+        return acceleration
 
     @property
     def period(self) -> float:
@@ -74,10 +74,10 @@ def constant_moment_law(machine: ReducedMachine, flywheel: float, energy: float,
         StandstillError: the energy falls to zero somewhere.
     """
     work = fit_curves(lambda x: (energy + machine.work(x) + moment * x,), machine.work.edges)[0]
-    places = work.places()
-    values = work(places)
+    nodes = work.places()
+    values = work(nodes)
     if not np.all(values > 0):
-        raise StandstillError(float(places[np.argmin(values)]))
+        raise StandstillError(float(nodes[np.argmin(values)]))
 
     def parts(x: Real) -> Sequence[Real]:
         return np.sqrt((flywheel + machine.inertia(x)) / (2 * work(x))), np.full(np.shape(x), moment)
@@ -154,12 +154,12 @@ class MotorCycle:
             WeakMotorError: the load exceeds the largest moment of the motor.
             RunawayError: the load drives the machine harder than the motor can brake it.
         """
-        wanted = -machine.work_of_cycle / machine.length
+        mean_moment = -machine.work_of_cycle / machine.length
         x = machine.moment.places()
-        if wanted >= motor.most:
-            raise WeakMotorError(wanted, motor.most, float(x[np.argmin(machine.moment(x))]))
-        if -wanted >= motor.holds:
-            raise RunawayError(-wanted, motor.holds, motor.idle, float(x[np.argmax(machine.moment(x))]))
+        if mean_moment >= motor.most:
+            raise WeakMotorError(mean_moment, motor.most, float(x[np.argmin(machine.moment(x))]))
+        if -mean_moment >= motor.holds:
+            raise RunawayError(-mean_moment, motor.holds, motor.idle, float(x[np.argmax(machine.moment(x))]))
         edges = machine.moment.edges.tolist()
         return cls(machine, motor, tuple(_Panel.of(machine, *ends) for ends in pairwise(edges)))
 
@@ -189,8 +189,8 @@ class MotorCycle:
         inertia = flywheel + np.stack([panel.inertia for panel in self.panels], axis=1)
         speed = idle * (1 - values)
         energy, driving, pace = (
-            PanelCurve(self._edges, VALUES_TO_COEFFICIENTS @ own)
-            for own in (inertia * speed**2 / 2, self.motor.at_slip(values)[0], 1 / speed)
+            PanelCurve(self._edges, VALUES_TO_COEFFICIENTS @ node_values)
+            for node_values in (inertia * speed**2 / 2, self.motor.at_slip(values)[0], 1 / speed)
         )
         if abs(driving.total + self.machine.work_of_cycle) > WORK_IMBALANCE * energy.length * self.motor.most:
             raise self._lost(values, 1 - slope)  # so heavy a flywheel that a cycle's change of its energy is rounding
@@ -219,20 +219,20 @@ class MotorCycle:
         """Return the slip after the cycle, its derivative by the initial slip, and slips at the nodes (nodes,
         panels).
         """
-        left, done, slope, size = self.panels[::-1], list[_Panel](), 1.0, abs(begin)
+        left, done, slope, largest_slip = self.panels[::-1], list[_Panel](), 1.0, abs(begin)
         while left:
             panel = left.pop()
-            found = self._solved(panel, flywheel, begin)
-            largest = size if found is None else max(size, float(np.abs(found[:, 0]).max()))
-            if found is None or _is_rough(found[:, 0], begin, largest):
+            solution = self._solved(panel, flywheel, begin)
+            largest = largest_slip if solution is None else max(largest_slip, float(np.abs(solution[:, 0]).max()))
+            if solution is None or _is_rough(solution[:, 0], begin, largest):
                 if panel.high - panel.low < NARROWEST * self.machine.length:
                     raise StandstillError(panel.low)
                 middle = (panel.low + panel.high) / 2
                 parts = pairwise((panel.low, middle, panel.high))
                 left += [_Panel.of(self.machine, *ends) for ends in parts][::-1]
                 continue
-            panel.slips = found[:, 0]
-            (begin, by_begin), size = (VALUES_TO_ENDS[1] @ found).tolist(), largest
+            panel.slips = solution[:, 0]
+            (begin, by_begin), largest_slip = (VALUES_TO_ENDS[1] @ solution).tolist(), largest
             slope *= by_begin
             done.append(panel)
         self.panels = done
@@ -251,25 +251,25 @@ class MotorCycle:
             rate = (panel.moment + driving - panel.slope * speed**2 / 2) / under
             by_rate = -(by_slip + panel.slope * speed * idle + rate * inertia * idle) / under
             right[:, 0] = begin - sums @ rate - values
-            found: Real = np.linalg.solve(IDENTITY - sums * by_rate, right)
-            last = float(np.abs(found[:, 0]).max())
-            found[:, 0] += values
-            own = found[:, 0]
-            largest = float(np.abs(own).max())
+            solution: Real = np.linalg.solve(IDENTITY - sums * by_rate, right)
+            last = float(np.abs(solution[:, 0]).max())
+            solution[:, 0] += values
+            slips = solution[:, 0]
+            largest = float(np.abs(slips).max())
             if not isfinite(largest):
                 return None
-            if own.max() < 1 and last <= LAST_STEP * largest:
-                return found
-            values = np.minimum(own, (1 + values) / 2)
+            if slips.max() < 1 and last <= LAST_STEP * largest:
+                return solution
+            values = np.minimum(slips, (1 + values) / 2)
         return None
 
 
-def _is_rough(values: Real, begin: float, size: float) -> bool:
+def _is_rough(values: Real, begin: float, largest_slip: float) -> bool:
     """Return True if slips are not a polynomial that begins at `begin`, relative to the largest slip."""
     tail = max(
         float(np.abs(VALUES_TO_COEFFICIENTS[-2:] @ values).max()), abs(float(VALUES_TO_ENDS[0] @ values) - begin)
     )
-    return tail > TAIL * size
+    return tail > TAIL * largest_slip
 
 
 # The law of motion of a crank by a table of its speeds: between rows the square of the speed is interpolated.
@@ -300,9 +300,9 @@ class SpeedTableLaw:
 
     def accelerated(self, q: Real) -> Real:
         """Angular acceleration, rad/s2, with its sign; nan beyond the table."""
-        given = self.table.accelerations
-        if given is not None:
-            return self.sense * self._within(given(self._angle(q)), q)
+        accelerations = self.table.accelerations
+        if accelerations is not None:
+            return self.sense * self._within(accelerations(self._angle(q)), q)
         # in a row where it jumps, that after it
         after = q if self.sense > 0 else q - 4 * SEAM * (1 + np.abs(q))
         return self._within(self.table.squares.slope(self._angle(after)) / 2, q)
@@ -316,8 +316,8 @@ class SpeedTableLaw:
     def _angle(self, q: Real) -> Real:
         """Reduce an angle to the cycle that begins with the table."""
         first, seam = self.table.squares.arguments[0], SEAM * (1 + np.abs(q))
-        found: Real = first + np.maximum(np.mod(q - first + seam, self.cycle) - seam, 0.0)
-        return found
+        reduced: Real = first + np.maximum(np.mod(q - first + seam, self.cycle) - seam, 0.0)
+        return reduced
 
     def _within(self, values: Real, q: Real) -> Real:
         """Replace values beyond the table by nan."""
@@ -350,8 +350,8 @@ class SpeedTableLaw:
 
     def _passed(self, q: Real) -> tuple[Real, Real]:
         """Whole cycles since the first end of the table, and the time in the current one, s."""
-        way = self.sense * (q - self._first)
-        laps = np.floor((way + SEAM * (1 + np.abs(way))) / self.cycle)
-        rest = way - laps * self.cycle
+        travel = self.sense * (q - self._first)
+        laps = np.floor((travel + SEAM * (1 + np.abs(travel))) / self.cycle)
+        rest = travel - laps * self.cycle
         inner = np.where(rest <= self._length + SEAM, self._times(np.clip(rest, 0.0, self._length)), np.nan)
         return laps, inner

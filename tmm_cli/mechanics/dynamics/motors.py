@@ -84,8 +84,8 @@ class KlossMotor(MotorCharacteristic):
         """Build the characteristic from rated speed and torque; overload: breakdown torque over rated torque (at
         least 1).
         """
-        own = 1 - speed / synchronous
-        return cls(synchronous, overload * moment, own * (overload + (overload**2 - 1) ** 0.5))
+        rated_slip = 1 - speed / synchronous
+        return cls(synchronous, overload * moment, rated_slip * (overload + (overload**2 - 1) ** 0.5))
 
     @property
     def idle(self) -> float:

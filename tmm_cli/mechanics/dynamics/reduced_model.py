@@ -47,8 +47,10 @@ class PanelCurve:
         x = np.asarray(x, float)
         panel = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, len(self.edges) - 2)
         low, high = self.edges[panel], self.edges[panel + 1]
-        found: Real = chebyshev.chebval((2 * x - low - high) / (high - low), self.coefficients[:, panel], tensor=False)
-        return found
+        heights: Real = chebyshev.chebval(
+            (2 * x - low - high) / (high - low), self.coefficients[:, panel], tensor=False
+        )
+        return heights
 
     def slope(self) -> PanelCurve:
         """Return its derivative, panel by panel."""
@@ -57,16 +59,16 @@ class PanelCurve:
     def summed(self) -> PanelCurve:
         """Return its integral from 0."""
         half = np.diff(self.edges) / 2
-        own = chebyshev.chebint(self.coefficients, lbnd=-1) * half
-        gone = np.concatenate([[0.0], np.cumsum(chebyshev.chebval(1.0, own))])
-        own[0] += gone[:-1]
-        return PanelCurve(self.edges, own)
+        integrals = chebyshev.chebint(self.coefficients, lbnd=-1) * half
+        gone = np.concatenate([[0.0], np.cumsum(chebyshev.chebval(1.0, integrals))])
+        integrals[0] += gone[:-1]
+        return PanelCurve(self.edges, integrals)
 
     @property
     def total(self) -> float:
         """Integral over the whole length."""
-        own = chebyshev.chebval(1.0, chebyshev.chebint(self.coefficients, lbnd=-1))
-        return float(np.sum(np.diff(self.edges) / 2 * own))
+        integrals = chebyshev.chebval(1.0, chebyshev.chebint(self.coefficients, lbnd=-1))
+        return float(np.sum(np.diff(self.edges) / 2 * integrals))
 
     def places(self) -> Real:
         """Return closely spaced arguments: both ends of each panel, just inside it, and its nodes."""
@@ -75,10 +77,10 @@ class PanelCurve:
 
 def panel_nodes(edges: Real, *, ends: bool = False) -> Real:
     """Return the nodes of all panels in order; ends: with both ends of each panel, just inside it."""
-    own = np.concatenate([[-1 + 1e-15], NODE_POINTS, [1 - 1e-15]]) if ends else NODE_POINTS
+    points = np.concatenate([[-1 + 1e-15], NODE_POINTS, [1 - 1e-15]]) if ends else NODE_POINTS
     low, high = edges[:-1, None], edges[1:, None]
-    found: Real = ((low + high) / 2 + (high - low) / 2 * own).ravel()
-    return found
+    nodes: Real = ((low + high) / 2 + (high - low) / 2 * points).ravel()
+    return nodes
 
 
 def fit_curves(function: Callable[[Real], Sequence[Real]], edges: Sequence[float] | Real) -> tuple[PanelCurve, ...]:
@@ -104,7 +106,7 @@ def fit_curves(function: Callable[[Real], Sequence[Real]], edges: Sequence[float
         full[:, :, kept] = values[:, :, ~rough]
         full[:, :, ~kept] = new
         at, values = finer, full
-    return tuple(PanelCurve(at, VALUES_TO_COEFFICIENTS @ own) for own in values)
+    return tuple(PanelCurve(at, VALUES_TO_COEFFICIENTS @ node_values) for node_values in values)
 
 
 def _divide_wide_panels(edges: Real) -> Real:
@@ -116,19 +118,19 @@ def _divide_wide_panels(edges: Real) -> Real:
     return np.concatenate([*parts, edges[-1:]])
 
 
-def _node_values(function: Callable[[Real], Sequence[Real]], edges: Real, wanted: Real | None = None) -> Real:
+def _node_values(function: Callable[[Real], Sequence[Real]], edges: Real, selected: Real | None = None) -> Real:
     """Values at the nodes, (functions, nodes, panels), of all panels or of the selected ones."""
     x = panel_nodes(edges).reshape(-1, NODES)
-    x = x if wanted is None else x[wanted]
-    return np.stack([np.asarray(part).reshape(x.shape).T for part in function(x.ravel())])
+    x = x if selected is None else x[selected]
+    return np.stack([np.asarray(function_values).reshape(x.shape).T for function_values in function(x.ravel())])
 
 
 def _rough_panels(values: Real) -> Real:
     """Mark panels on which the last coefficients of a function are not negligible."""
     tails = np.abs(VALUES_TO_COEFFICIENTS[-2:] @ values).max(axis=1)
     sizes = np.nanmax(np.abs(values), axis=(1, 2), initial=0.0, where=np.isfinite(values))
-    found: Real = np.any(tails > TAIL * NODES * sizes[:, None], axis=0)
-    return found
+    rough: Real = np.any(tails > TAIL * NODES * sizes[:, None], axis=0)
+    return rough
 
 
 # The machine reduced to its driver: inertia, its slope, and the moment of all loads, along the driver's way.

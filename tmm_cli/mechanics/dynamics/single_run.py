@@ -60,27 +60,27 @@ class RunHistory:
     def balance(self) -> float:
         """Largest error of the energy balance over all times, relative to the largest energy."""
         parts = (self.kinetic, self.driven, self.loaded, self.braked)
-        size = max(float(np.max(np.abs(part))) for part in parts)
+        scale = max(float(np.max(np.abs(energies))) for energies in parts)
         left = self.kinetic - self.kinetic[0] - self.driven - self.loaded - self.braked
-        return float(np.max(np.abs(left))) / size if size > 0 else 0.0
+        return float(np.max(np.abs(left))) / scale if scale > 0 else 0.0
 
-    def at(self, way: Real) -> tuple[Real, Real]:
+    def at(self, travel: Real) -> tuple[Real, Real]:
         """Return time (s) and speed at which the driver has covered these distances; nan where it does not get
         there.
         """
-        way = np.asarray(way, float)
+        travel = np.asarray(travel, float)
         if self.steps:
             last = float(self.steps[-1](self.steps[-1].ts[-1])[0])
-            way = np.where((way > last) & (way < last + SEAM), last, way)
-        time, speed = np.full(way.shape, np.nan), np.full(way.shape, np.nan)
+            travel = np.where((travel > last) & (travel < last + SEAM), last, travel)
+        time, speed = np.full(travel.shape, np.nan), np.full(travel.shape, np.nan)
         for step in self.steps:
             low, high = step.ts[0], step.ts[-1]
-            here = (way >= step(low)[0]) & (way <= step(high)[0])
-            if here.any():
-                missed = partial(_distance_past, step, way[here])
-                found = find_roots(missed, low + 0 * way[here], high + 0 * way[here])
-                time[here], speed[here] = found, step(found)[1]
-        begins = way == self.way[0]  # where a search from rest would find what rounding leaves
+            covered = (travel >= step(low)[0]) & (travel <= step(high)[0])
+            if covered.any():
+                missed = partial(_distance_past, step, travel[covered])
+                times = find_roots(missed, low + 0 * travel[covered], high + 0 * travel[covered])
+                time[covered], speed[covered] = times, step(times)[1]
+        begins = travel == self.way[0]  # where a search from rest would find what rounding leaves
         return np.where(begins, self.time[0], time), np.where(begins, self.speed[0], speed)
 
     def closely(self, count: int) -> list[tuple[Real, Real]]:
@@ -108,10 +108,10 @@ def integrate_run(machine: ReducedMachine, task: RunTask) -> RunHistory:
         StandstillError: the machine does not start.
         LongRunError: too many evaluations.
     """
-    places = machine.inertia.places()
-    inertia = task.flywheel + machine.inertia(places)
+    nodes = machine.inertia.places()
+    inertia = task.flywheel + machine.inertia(nodes)
     if not np.min(inertia) > ROUNDOFF * np.max(inertia):
-        raise NoInertiaError(round(float(places[np.argmin(inertia)]), 9))
+        raise NoInertiaError(round(float(nodes[np.argmin(inertia)]), 9))
     state = np.array([0.0, task.speed, 0.0, 0.0, 0.0])
     if task.speed == 0 and _rates(machine, task, (0.0, machine.length), 0.0, state)[1] <= 0:
         raise StandstillError(0.0)
@@ -196,21 +196,21 @@ def _is_stiff(machine: ReducedMachine, task: RunTask) -> bool:
     return steepest * machine.length > STIFF_RATIO * inertia * task.motor.idle
 
 
-def _distance_past(step: Any, way: Real, time: Real) -> Real:
+def _distance_past(step: Any, travel: Real, time: Real) -> Real:
     """Travel of an integration step beyond a given travel."""
-    found: Real = step(time)[0] - way
-    return found
+    excess: Real = step(time)[0] - travel
+    return excess
 
 
-def driver_acceleration(machine: ReducedMachine, task: RunTask, time: Real, way: Real, speed: Real) -> Real:
+def driver_acceleration(machine: ReducedMachine, task: RunTask, time: Real, travel: Real, speed: Real) -> Real:
     """Return the driver's acceleration (rad/s2, or m/s2) at these times, distances and speeds."""
-    states = np.stack([way, speed, 0 * way, 0 * way, 0 * way], axis=-1)
+    states = np.stack([travel, speed, 0 * travel, 0 * travel, 0 * travel], axis=-1)
     return np.array(
         [
             _rates(machine, task, (0.0, machine.length), float(t), y)[1] if np.isfinite(t) else np.nan
             for t, y in zip(np.ravel(time), states.reshape(-1, 5), strict=True)
         ]
-    ).reshape(np.shape(way))
+    ).reshape(np.shape(travel))
 
 
 def _rates(machine: ReducedMachine, task: RunTask, piece: tuple[float, float], t: float, state: Real) -> list[float]:
@@ -220,13 +220,13 @@ def _rates(machine: ReducedMachine, task: RunTask, piece: tuple[float, float], t
     load, driving = float(machine.moment(x)[0]), _driving_moment(task, t, x, speed)
     inertia = task.flywheel + float(machine.inertia(x)[0])
     squared = speed * speed  # not **: far beyond its end a trial step may be so quick that this is infinite
-    own = driving + load - task.brake - float(machine.slope(x)[0]) * squared / 2
-    return [speed, own / inertia, driving * speed, load * speed, -task.brake * speed]
+    net_moment = driving + load - task.brake - float(machine.slope(x)[0]) * squared / 2
+    return [speed, net_moment / inertia, driving * speed, load * speed, -task.brake * speed]
 
 
 def _driving_moment(task: RunTask, t: float, x: Real, speed: float) -> float:
-    found = 0.0 if task.motor is None else float(task.motor.moment(np.array([speed]))[0])
-    return found if task.drive is None else found + float(task.drive(np.array([t]), x)[0])
+    moment = 0.0 if task.motor is None else float(task.motor.moment(np.array([speed]))[0])
+    return moment if task.drive is None else moment + float(task.drive(np.array([t]), x)[0])
 
 
 def _pieces(moment: PanelCurve, way_edges: Sequence[float]) -> Iterator[tuple[float, float]]:
@@ -239,11 +239,11 @@ def _pieces(moment: PanelCurve, way_edges: Sequence[float]) -> Iterator[tuple[fl
 
 
 def _run_history(machine: ReducedMachine, task: RunTask, time: Real, states: Real, ending: RunEnding) -> RunHistory:
-    way, speed, driven, loaded, braked = states
-    x = np.clip(way, 0.0, np.nextafter(machine.length, 0.0))
-    changes = driver_acceleration(machine, task, time, way, speed)
+    travel, speed, driven, loaded, braked = states
+    x = np.clip(travel, 0.0, np.nextafter(machine.length, 0.0))
+    changes = driver_acceleration(machine, task, time, travel, speed)
     kinetic = (task.flywheel + machine.inertia(x)) * speed**2 / 2
-    return RunHistory(time, way, speed, changes, kinetic, driven, loaded, braked, ending)
+    return RunHistory(time, travel, speed, changes, kinetic, driven, loaded, braked, ending)
 
 
 # A single run of a mechanism with its loads: a press that works once, a cylinder that lifts, starting and stopping.
@@ -278,12 +278,12 @@ class SingleRun:
         )
         return np.clip(gone, 0.0, None) if self.turn else np.where(np.abs(gone) < SAME_DRIVER_POSITION, 0.0, gone)
 
-    def driving(self, way: Real, speed: Real, accelerated: Real) -> Real:
+    def driving(self, travel: Real, speed: Real, accelerated: Real) -> Real:
         """Driving moment (N m) or force (N) for a given motion of the driver."""
         machine = self.machine
-        own = (self.task.flywheel + machine.inertia(way)) * accelerated + machine.slope(way) * speed**2 / 2
-        found: Real = own + self.task.brake - machine.moment(way)
-        return found
+        inertial = (self.task.flywheel + machine.inertia(travel)) * accelerated + machine.slope(travel) * speed**2 / 2
+        moment: Real = inertial + self.task.brake - machine.moment(travel)
+        return moment
 
     def speed(self, q: Real) -> Real:
         """Speed with its sign, rad/s or m/s; nan where the run does not get."""
@@ -297,28 +297,28 @@ class SingleRun:
         """Kinetic energy, J; nan where the run does not get."""
         return self.energy(self.way(q), self.speed(q))
 
-    def energy(self, way: Real, speed: Real) -> Real:
+    def energy(self, travel: Real, speed: Real) -> Real:
         """Kinetic energy at a distance and speed of the driver, J."""
-        found: Real = (self.task.flywheel + self.machine.inertia(way)) * speed**2 / 2
-        return found
+        energy: Real = (self.task.flywheel + self.machine.inertia(travel)) * speed**2 / 2
+        return energy
 
-    def acceleration(self, time: Real, way: Real, speed: Real) -> Real:
+    def acceleration(self, time: Real, travel: Real, speed: Real) -> Real:
         """Acceleration of the driver at these times, distances and speeds."""
-        return driver_acceleration(self.machine, self.task, time, way, speed)
+        return driver_acceleration(self.machine, self.task, time, travel, speed)
 
     def accelerated(self, q: Real) -> Real:
         """Acceleration with its sign, rad/s2 or m/s2; nan where the run does not get."""
-        way = self.way(q)
-        time, speed = self.run.at(way)
-        return self.sense * self.acceleration(time, way, speed)
+        travel = self.way(q)
+        time, speed = self.run.at(travel)
+        return self.sense * self.acceleration(time, travel, speed)
 
 
-def compute_single_run(mechanism: Mechanism, asked: Real, task: RunTask) -> SingleRun:
+def compute_single_run(mechanism: Mechanism, positions: Real, task: RunTask) -> SingleRun:
     """Compute the run between the coordinates of the task, or between the first and the last requested position.
 
     Args:
         mechanism: the mechanism with its loads.
-        asked: driver coordinates of the requested positions (rad or m).
+        positions: driver coordinates of the requested positions (rad or m).
         task: drive, brake, flywheel, initial speed, ends of the run.
 
     Raises:
@@ -326,7 +326,7 @@ def compute_single_run(mechanism: Mechanism, asked: Real, task: RunTask) -> Sing
         OutOfRangeError: an end lies outside the driver's range.
         StandstillError: the machine does not start.
     """
-    first, last = (float(asked[k]) if end is None else end for k, end in ((0, task.first), (-1, task.last)))
+    first, last = (float(positions[k]) if end is None else end for k, end in ((0, task.first), (-1, task.last)))
     whole = mechanism.driver_range
     if not whole.full and not all(
         whole.start - SAME_DRIVER_POSITION <= end <= whole.end + SAME_DRIVER_POSITION for end in (first, last)

@@ -144,19 +144,19 @@ class SteadySolution:
 
 def speed_extremes(law: SteadyLaw) -> tuple[float, float]:
     """Return the least and the largest speed over the cycle."""
-    places, signs = law.energy.places(), np.array([1.0, -1.0])
-    values = law.speed(places)
+    nodes, signs = law.energy.places(), np.array([1.0, -1.0])
+    values = law.speed(nodes)
     best = np.argmin(signs[:, None] * values, axis=1)
-    low, high = (places[np.clip(best + side, 0, len(places) - 1)] for side in (-1, 1))
-    found = find_minima(lambda x: (law.speed(x).reshape(-1, 2) * signs).ravel(), low, high)[1]
-    slowest, quickest = signs * np.minimum(found, signs * values[best])
+    low, high = (nodes[np.clip(best + side, 0, len(nodes) - 1)] for side in (-1, 1))
+    minima = find_minima(lambda x: (law.speed(x).reshape(-1, 2) * signs).ravel(), low, high)[1]
+    slowest, quickest = signs * np.minimum(minima, signs * values[best])
     return float(slowest), float(quickest)
 
 
 def speed_extreme_places(law: SteadyLaw) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return travel and speed of the least and of the largest speed."""
-    places = law.energy.places()
-    (slowest, low), (quickest, high) = find_minimum(law.speed, places), find_minimum(lambda x: -law.speed(x), places)
+    nodes = law.energy.places()
+    (slowest, low), (quickest, high) = find_minimum(law.speed, nodes), find_minimum(lambda x: -law.speed(x), nodes)
     length = law.energy.length
     return (
         (refine_minimum(law.acceleration, slowest, length), low),
@@ -182,30 +182,38 @@ def find_steady_running(machine: ReducedMachine, task: SteadyTask) -> SteadySolu
         return _steady_with_motor(machine, task, task.motor)
     moment = -machine.work_of_cycle / machine.length
     work = fit_curves(lambda x: (machine.work(x) + moment * x,), machine.work.edges)[0]
-    energy, own = energy_at_mean_speed(machine, work, task.mean, task.flywheel)
+    energy, fluctuation = energy_at_mean_speed(machine, work, task.mean, task.flywheel)
     if task.delta is None:
         if np.isnan(energy):
             raise StandstillError(find_minimum(work, work.places())[0])
         law = constant_moment_law(machine, task.flywheel, energy, moment)
-        return SteadySolution(task, machine, moment, work, law, own)
-    given = (machine, work, task.mean, task.delta)
-    found = exact_flywheel(*given)
-    if found.inertia <= task.flywheel:
-        raise NoFlywheelError(task.delta, own)
-    law = constant_moment_law(machine, found.inertia, found.energy, moment)
+        return SteadySolution(task, machine, moment, work, law, fluctuation)
+    arguments = (machine, work, task.mean, task.delta)
+    flywheel = exact_flywheel(*arguments)
+    if flywheel.inertia <= task.flywheel:
+        raise NoFlywheelError(task.delta, fluctuation)
+    law = constant_moment_law(machine, flywheel.inertia, flywheel.energy, moment)
     return SteadySolution(
-        task, machine, moment, work, law, own, found, wittenbauer_flywheel(*given).inertia, mertsalov_inertia(*given)
+        task,
+        machine,
+        moment,
+        work,
+        law,
+        fluctuation,
+        flywheel,
+        wittenbauer_flywheel(*arguments).inertia,
+        mertsalov_inertia(*arguments),
     )
 
 
 def _steady_with_motor(machine: ReducedMachine, task: SteadyTask, motor: MotorCharacteristic) -> SteadySolution:
     """Steady running with a motor: a flywheel changes the driving moment, so its size is found iteratively."""
 
-    cycle, places = MotorCycle.of(machine, motor), machine.inertia.places()
-    inertia = machine.inertia(places)
+    cycle, nodes = MotorCycle.of(machine, motor), machine.inertia.places()
+    inertia = machine.inertia(nodes)
     heaviest, lightest = float(np.max(inertia)), float(np.min(inertia))
     if task.delta is None and not task.flywheel + lightest > ROUNDOFF * heaviest:
-        raise NoInertiaError(round(float(places[np.argmin(inertia)]), 9))
+        raise NoInertiaError(round(float(nodes[np.argmin(inertia)]), 9))
 
     def delta_of(flywheel: float) -> float:
         if not flywheel + lightest > ROUNDOFF * heaviest:  # all masses rest somewhere on the driver's way
@@ -215,11 +223,11 @@ def _steady_with_motor(machine: ReducedMachine, task: SteadyTask, motor: MotorCh
         except (StandstillError, RunawayError):
             return STANDSTILL_FLUCTUATION
 
-    own = delta_of(task.flywheel)
+    fluctuation = delta_of(task.flywheel)
     flywheel = task.flywheel
     if task.delta is not None:
-        if own <= task.delta:
-            raise NoFlywheelError(task.delta, own)
+        if fluctuation <= task.delta:
+            raise NoFlywheelError(task.delta, fluctuation)
         flywheel = _search_flywheel(task.delta, delta_of, task.flywheel, heaviest)
     law = cycle.law(flywheel)
     gained = law.energy.coefficients.copy()
@@ -231,7 +239,7 @@ def _steady_with_motor(machine: ReducedMachine, task: SteadyTask, motor: MotorCh
         law.driving.total / machine.length,
         work,
         law,
-        own if own < STANDSTILL_FLUCTUATION else float("nan"),
+        fluctuation if fluctuation < STANDSTILL_FLUCTUATION else float("nan"),
     )
 
 
@@ -243,8 +251,8 @@ def _search_flywheel(delta: float, delta_of: Callable[[float], float], low: floa
     """
 
     def over(flywheel: Real) -> Real:
-        found = delta / delta_of(float(flywheel[0])) - 1
-        return np.array([0.0 if abs(found) <= FLUCTUATION_TOLERANCE else found])
+        excess = delta / delta_of(float(flywheel[0])) - 1
+        return np.array([0.0 if abs(excess) <= FLUCTUATION_TOLERANCE else excess])
 
     below, above = np.array([low]), np.array([low + unit])
     for _ in range(DOUBLINGS):
@@ -285,8 +293,16 @@ def _constant_inertia(mechanism: Mechanism, start: float, length: float) -> floa
     motion = compute_motion(
         mechanism.linkage, mechanism.kernels, q, DriverMotion(start, 1.0, 0.0, mechanism.linkage.driver.sense)
     )
-    inertia = [np.broadcast_to(to_float(own), q.shape) for own, _ in reduced_inertias(motion).values()]
-    return float(sum(np.mean(own) for own in inertia if np.ptp(own) <= CONSTANT_INERTIA * np.max(own)))
+    inertia = [
+        np.broadcast_to(to_float(link_inertia), q.shape) for link_inertia, _ in reduced_inertias(motion).values()
+    ]
+    return float(
+        sum(
+            np.mean(link_inertia)
+            for link_inertia in inertia
+            if np.ptp(link_inertia) <= CONSTANT_INERTIA * np.max(link_inertia)
+        )
+    )
 
 
 def reduce_between(mechanism: Mechanism, start: float, sense: int, length: float) -> ReducedMachine:
@@ -305,11 +321,11 @@ def reduce_between(mechanism: Mechanism, start: float, sense: int, length: float
 
     def sample(x: Real) -> tuple[Real, Real, Real]:
         motion = compute_motion(linkage, mechanism.kernels, start + sense * x, DriverMotion(start, 1.0, 0.0, sense))
-        found = compute_energy(motion, collect_loads(motion, strokes), np.zeros(np.shape(x)))
-        return found.inertia, sense * found.slope, sense * found.moment
+        energy = compute_energy(motion, collect_loads(motion, strokes), np.zeros(np.shape(x)))
+        return energy.inertia, sense * energy.slope, sense * energy.moment
 
-    places = np.array([*find_load_jumps(mechanism)]) if linkage.driver.kind == "turn" else np.empty(0)
-    inner = np.sort(np.mod(sense * (places - start), 2 * np.pi * mechanism.driver_range.turns))
+    jumps = np.array([*find_load_jumps(mechanism)]) if linkage.driver.kind == "turn" else np.empty(0)
+    inner = np.sort(np.mod(sense * (jumps - start), 2 * np.pi * mechanism.driver_range.turns))
     inner = inner[np.diff(inner, prepend=-1.0) > SAME_DRIVER_POSITION]
     return reduce_machine(
         sample, [0.0, *inner[(inner > SAME_DRIVER_POSITION) & (inner < length - SAME_DRIVER_POSITION)], length]

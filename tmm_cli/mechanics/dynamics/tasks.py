@@ -90,9 +90,9 @@ class DriveProfile:
     arguments: tuple[float, ...]
     values: tuple[float, ...]
 
-    def __call__(self, time: Real, way: Real) -> Real:
+    def __call__(self, time: Real, travel: Real) -> Real:
         """Return the values; before the first row and after the last one they are constant."""
-        return np.interp(time if self.against == "time" else way, self.arguments, self.values)
+        return np.interp(time if self.against == "time" else travel, self.arguments, self.values)
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ class RunTask:
             return self
         if isinstance(drive, DriveProfile):
             return replace(self, drive=replace(drive, values=tuple(-value for value in drive.values)))
-        return replace(self, drive=lambda time, way: -drive(time, way))
+        return replace(self, drive=lambda time, travel: -drive(time, travel))
 
     @property
     def edges(self) -> tuple[float, ...]:
