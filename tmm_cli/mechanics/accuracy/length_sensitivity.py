@@ -32,15 +32,16 @@ class LengthCoordinate:
 
 def list_lengths(linkage: Linkage) -> tuple[LengthCoordinate, ...]:
     """List the nonzero coordinates of all links; the same number on the same link counts as one length."""
-    found: dict[tuple[str, complex, float], list[str]] = {}
+    paths_by_length: dict[tuple[str, complex, float], list[str]] = {}
     vectors = list(_link_vectors(linkage))
     least = NO_COORDINATE * max((abs(complex(value)) for _, _, value in vectors), default=0.0)
     for link, path, value in vectors:
-        for along, part in ((1 + 0j, float(value.real)), (1j, float(value.imag))):
-            if abs(part) > least:
-                found.setdefault((link, along, part), []).append(path)
+        for along, coordinate in ((1 + 0j, float(value.real)), (1j, float(value.imag))):
+            if abs(coordinate) > least:
+                paths_by_length.setdefault((link, along, coordinate), []).append(path)
     return tuple(
-        LengthCoordinate(link, along, value, frozenset(paths)) for (link, along, value), paths in found.items()
+        LengthCoordinate(link, along, value, frozenset(paths))
+        for (link, along, value), paths in paths_by_length.items()
     )
 
 
@@ -132,7 +133,7 @@ def search_sensitivities(results: Results, data: tuple[LengthCoordinate, ...]) -
     """
     assert results.driver_range is not None
     beside = _LocalRates(results, results.driver_range, data)
-    found = {
+    rates = {
         path: _extrapolate_to_end(beside.ends[k])
         for k, paths in enumerate(range_end_paths(results.driver_range))
         for path in paths
@@ -141,20 +142,20 @@ def search_sensitivities(results: Results, data: tuple[LengthCoordinate, ...]) -
         starts, lows = beside.extremes(np.array([s.start for s in strokes.strokes]), _output_function(strokes.link))
         ways = results.linkage.driver.sense * (np.roll(starts, -1, axis=0) - starts)
         parts = {"start": starts, "length": ways, "low": lows, "run": np.roll(lows, -1, axis=0) - lows}
-        found |= {f"{path}.strokes[{k}].{part}": row for part, rows in parts.items() for k, row in enumerate(rows)}
+        rates |= {f"{path}.strokes[{k}].{name}": row for name, rows in parts.items() for k, row in enumerate(rows)}
     for k, travel in enumerate(results.travels):
         rows = beside.travel(np.array([travel.low_at, travel.high_at]), _output_function(travel.link))
-        paths = [f"travels[{k}].{part}" for part in ("low_at", "high_at", "low", "high")]
-        found |= zip(paths, np.concatenate(rows), strict=True)
+        paths = [f"travels[{k}].{name}" for name in ("low_at", "high_at", "low", "high")]
+        rates |= zip(paths, np.concatenate(rows), strict=True)
     for k, dead in enumerate(results.dead):
-        found[f"dead[{k}].place"] = beside.extremes(np.array([dead.place]), _margin_function(dead.group))[0][0]
+        rates[f"dead[{k}].place"] = beside.extremes(np.array([dead.place]), _margin_function(dead.group))[0][0]
     for k, pressure in enumerate(results.pressure):
         place, largest = beside.pressure(pressure)
-        found |= {f"pressure[{k}].place": place, f"pressure[{k}].largest": largest}
+        rates |= {f"pressure[{k}].place": place, f"pressure[{k}].largest": largest}
         if np.isfinite(pressure.other):
             place, other = beside.pressure(replace(pressure, place=pressure.other_place, largest=pressure.other))
-            found |= {f"pressure[{k}].other_place": place, f"pressure[{k}].other": other}
-    return {path: np.where(np.isfinite(rate), rate, 0.0) for path, rate in found.items()}
+            rates |= {f"pressure[{k}].other_place": place, f"pressure[{k}].other": other}
+    return {path: np.where(np.isfinite(rate), rate, 0.0) for path, rate in rates.items()}
 
 
 def range_end_paths(driver_range: DriverRange) -> tuple[list[str], list[str]]:
@@ -167,8 +168,8 @@ def range_end_paths(driver_range: DriverRange) -> tuple[list[str], list[str]]:
 
 def stroke_paths(results: Results) -> dict[str, Strokes]:
     """Return the outputs that have strokes, by their paths in results."""
-    every = {"strokes": results.strokes} | {f"further[{k}]": strokes for k, strokes in enumerate(results.further)}
-    return {path: strokes for path, strokes in every.items() if strokes is not None and strokes.strokes}
+    outputs = {"strokes": results.strokes} | {f"further[{k}]": strokes for k, strokes in enumerate(results.further)}
+    return {path: strokes for path, strokes in outputs.items() if strokes is not None and strokes.strokes}
 
 
 @dataclass(frozen=True)
@@ -179,44 +180,44 @@ class _LocalRates:
     driver_range: DriverRange
     data: tuple[LengthCoordinate, ...]
 
-    def values(self, places: Real, aside: Real | float, of: Function, change: float) -> tuple[Real, Real]:
+    def values(self, coordinates: Real, aside: Real | float, function: Function, change: float) -> tuple[Real, Real]:
         """Return a function before, at and after each place, (..., 3, places), and its derivatives (..., 3, places,
         lengths).
 
         change: step, relative to the largest length of the same link.
         """
-        q = places + aside * np.array([[-1], [0], [1]])
+        q = coordinates + aside * np.array([[-1], [0], [1]])
         by = change * largest_on_link(self.data)
         number = np.repeat(np.arange(len(by) + 1), q.size)
         changes = [(length, np.where(number == k, by[k - 1], 0.0)) for k, length in enumerate(self.data, 1)]
         linkage = change_lengths(self.results.linkage, changes)
         kernels = tuple(kernel.rebind(linkage) for kernel in self.results.kernels)
-        found = of(link_states(linkage, kernels, np.tile(q.ravel(), len(by) + 1), 0))
-        found = np.moveaxis(found.reshape(*np.shape(found)[:-1], -1, *q.shape), -3, -1)
-        return found[..., 0], (found[..., 1:] - found[..., :1]) / by
+        sampled = function(link_states(linkage, kernels, np.tile(q.ravel(), len(by) + 1), 0))
+        sampled = np.moveaxis(sampled.reshape(*np.shape(sampled)[:-1], -1, *q.shape), -3, -1)
+        return sampled[..., 0], (sampled[..., 1:] - sampled[..., :1]) / by
 
-    def extremes(self, places: Real, of: Function) -> tuple[Real, Real]:
+    def extremes(self, coordinates: Real, function: Function) -> tuple[Real, Real]:
         """Return derivatives of the places where a function is extreme, and of its values there, both (places,
         lengths).
         """
         slider = self.results.linkage.driver.kind == "slide"
         aside = EXTREME_STEP * (self.driver_range.end - self.driver_range.start if slider else 1.0)
-        values, rates = self.values(places, aside, of, LENGTH_STEP)
+        values, rates = self.values(coordinates, aside, function, LENGTH_STEP)
         before, after = values[0] - values[1], values[2] - values[1]
         bends = np.minimum(before / after, after / before) > LEAST_SYMMETRY
         bends = bends & (np.abs(before) > FLAT_EXTREME * np.abs(values[1]))
         moved = -(rates[2] - rates[0]) / 2 * (aside / (before + after))[:, None]
         return np.where(bends[:, None], moved, 0.0), rates[1]
 
-    def by_end(self, k: int, of: Function) -> tuple[Real, Real]:
+    def by_end(self, k: int, function: Function) -> tuple[Real, Real]:
         """Return derivatives of a function near an end: by the driver (..., 3), and by the lengths (..., 3,
         lengths).
         """
         span = self.driver_range.end - self.driver_range.start
         left = END_DISTANCES * span
-        places = self.driver_range.end - left if k else self.driver_range.start + left
+        coordinates = self.driver_range.end - left if k else self.driver_range.start + left
         values, rates = self.values(
-            places, DRIVER_STEP_AT_END * left, of, LENGTH_STEP_AT_END * END_DISTANCES[0] * min(span, 1.0)
+            coordinates, DRIVER_STEP_AT_END * left, function, LENGTH_STEP_AT_END * END_DISTANCES[0] * min(span, 1.0)
         )
         return (values[..., 2, :] - values[..., 0, :]) / (2 * DRIVER_STEP_AT_END * left), rates[..., 1, :, :]
 
@@ -238,14 +239,14 @@ class _LocalRates:
         """Return the titles of the groups that limit the driver at an end."""
         return {limit.group for limit in self.driver_range.limits if limit.place == place}
 
-    def travel(self, places: Real, of: Function) -> tuple[Real, Real]:
+    def travel(self, coordinates: Real, function: Function) -> tuple[Real, Real]:
         """Return derivatives as `extremes` does, for places some of which are the first or the last requested one."""
-        asked, driver_range = self.results.asked, self.driver_range
-        moved, rates = self.extremes(places, of)
+        requested, driver_range = self.results.asked, self.driver_range
+        moved, rates = self.extremes(coordinates, function)
         start, end = map(_extrapolate_to_end, self.ends)
-        share = (places[:, None] - driver_range.start) / (driver_range.end - driver_range.start)
+        share = (coordinates[:, None] - driver_range.start) / (driver_range.end - driver_range.start)
         edges = (start + share * (end - start)) * (not self.results.inputs.request.places)
-        inner = (np.min(asked) < places) & (places < np.max(asked))
+        inner = (np.min(requested) < coordinates) & (coordinates < np.max(requested))
         return np.where(inner[:, None], moved, edges), rates
 
     def pressure(self, pressure: PressureAngle) -> tuple[Real, Real]:
@@ -254,24 +255,24 @@ class _LocalRates:
         A right angle at a limit position stays a right angle, whatever the lengths.
         """
         driver_range = self.driver_range
-        of, close = _pressure_function(pressure), AT_END * (driver_range.end - driver_range.start)
+        function, close = _pressure_function(pressure), AT_END * (driver_range.end - driver_range.start)
         for k, end in () if driver_range.full else enumerate((driver_range.start, driver_range.end)):
             if abs(pressure.place - end) <= close:
                 moved = _extrapolate_to_end(self.ends[k])
                 if pressure.largest == np.pi / 2:
                     return moved, np.zeros(len(self.data))
-                slopes, rates = self.by_end(k, of)
+                slopes, rates = self.by_end(k, function)
                 return moved, _extrapolate_to_end(rates + slopes[:, None] * moved)
-        places, largest = self.extremes(np.array([pressure.place]), of)
-        return places[0], largest[0]
+        coordinates, largest = self.extremes(np.array([pressure.place]), function)
+        return coordinates[0], largest[0]
 
 
 def _extrapolate_to_end(rates: Real) -> Real:
     """Extrapolate rates (3, lengths), polynomials in roots of the distance, from distances of 1, 2 and 4 root
     units.
     """
-    found: Real = (8 * rates[0] - 6 * rates[1] + rates[2]) / 3
-    return found
+    limit: Real = (8 * rates[0] - 6 * rates[1] + rates[2]) / 3
+    return limit
 
 
 def _link_coordinates(states: LinkStates, links: tuple[str, ...]) -> Real:

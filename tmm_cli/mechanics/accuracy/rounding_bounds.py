@@ -81,34 +81,34 @@ class Digits:
 
 def judge_values(
     results: Results,
-    of: Callable[[Results], Cells],
+    read: Callable[[Results], Cells],
     *,
     mu: float = float("nan"),
     blur: Real | float = 0.0,
 ) -> Digits:
-    """Compute the accuracy of the values that `of` reads from results, at all their positions.
+    """Compute the accuracy of the values that `read` reads from results, at all their positions.
 
     Args:
         results: results with a motion.
-        of: reads values from results, each (positions,), by key.
+        read: reads values from results, each (positions,), by key.
         mu: scale of the drawing (m per mm).
         blur: uncertainty of each driver coordinate (rad or m).
     """
     motion = results.motion
     assert motion is not None
-    values = of(results)
+    values = read(results)
     if not values:
         return Digits(mu=mu)
-    judge = _ValueJudge(results, of, values, np.broadcast_to(blur, np.shape(motion.q)))
-    found = np.full((3, len(values), *np.shape(motion.q)), np.nan)
+    judge = _ValueJudge(results, read, values, np.broadcast_to(blur, np.shape(motion.q)))
+    accuracy = np.full((3, len(values), *np.shape(motion.q)), np.nan)
     chunk = max(POSITIONS_PER_CHUNK // (1 + len(list_lengths(results.linkage))), 1)
     near = is_near_dead(motion) if motion.where is None else motion.where
     for these, close in ((~near & motion.placed, False), (near, True)):
-        places = np.flatnonzero(these)
-        for start in range(0, len(places), chunk):
-            chosen = places[start : start + chunk]
-            found[:, :, chosen] = judge.at(chosen, close, mu)
-    bound, share, paper = (dict(zip(values, part, strict=True)) for part in found)
+        indices = np.flatnonzero(these)
+        for start in range(0, len(indices), chunk):
+            chosen = indices[start : start + chunk]
+            accuracy[:, :, chosen] = judge.at(chosen, close, mu)
+    bound, share, paper = (dict(zip(values, rows, strict=True)) for rows in accuracy)
     return Digits(bound, share, paper, mu)
 
 
@@ -159,11 +159,13 @@ def bound_values(results: Results) -> tuple[Cells, Digits]:
 def list_values(results: Results) -> Cells:
     """Return motion and reactions of results by quantity, name and component."""
     assert results.motion is not None
-    found: dict[Hashable, Real] = {}
+    cells: dict[Hashable, Real] = {}
     for quantity, name, value in leading_values(results.motion, results.reactions):
-        for component, part in (("x", value.real), ("y", value.imag)) if quantity.vector else (("", value),):
-            found[quantity.name, name, component] = part
-    return found
+        for component, component_values in (
+            (("x", value.real), ("y", value.imag)) if quantity.vector else (("", value),)
+        ):
+            cells[quantity.name, name, component] = component_values
+    return cells
 
 
 @dataclass(frozen=True)
@@ -183,8 +185,8 @@ class _ValueJudge:
         assert motion is not None
         q, first, blur = to_double_double(motion.q[chosen]), results.start, self.blur[chosen]
         if results.inputs.extended is not None and results.inputs.request.places:
-            places = np.stack(results.inputs.extended().request.places)
-            first, q, blur = places[0], places[list(results.numbers)][chosen], np.zeros(len(chosen))
+            coordinates = np.stack(results.inputs.extended().request.places)
+            first, q, blur = coordinates[0], coordinates[list(results.numbers)][chosen], np.zeros(len(chosen))
         wide = results_with_linkage(results, exact_linkage(results), q, first, chosen)
         values, true = np.stack([value[..., chosen] for value in self.values.values()]), self.rows(self.of(wide))
         if near:
@@ -207,11 +209,11 @@ class _ValueJudge:
         sizes = largest_on_link(data)
         reach = 1.0 if self.results.linkage.driver.kind == "turn" else np.max(sizes, initial=0.0) or 1.0
         by = step * np.array([reach, *sizes])
-        there, number = np.tile(np.arange(count), len(by)), np.repeat(np.arange(len(by)), count)
+        index, number = np.tile(np.arange(count), len(by)), np.repeat(np.arange(len(by)), count)
         changes = [(length, np.where(number == k, by[k], 0.0)) for k, length in enumerate(data, 1)]
-        places = q[there] + np.where(number == 0, by[0], 0.0)
-        other = results_with_linkage(self.results, change_lengths(linkage, changes), places, first, chosen[there])
-        gaps = to_float(self.gap(self.rows(self.of(other)), rows[:, there])).reshape(len(rows), len(by), count)
+        coordinates = q[index] + np.where(number == 0, by[0], 0.0)
+        other = results_with_linkage(self.results, change_lengths(linkage, changes), coordinates, first, chosen[index])
+        gaps = to_float(self.gap(self.rows(self.of(other)), rows[:, index])).reshape(len(rows), len(by), count)
         slopes = gaps / by[:, None]
         values = np.array([abs(length.value) for length in data])
         return (
@@ -223,12 +225,12 @@ class _ValueJudge:
     def rows(self, cells: Cells) -> Real:
         """Stack values as rows; missing ones are 0."""
         nothing = np.zeros(np.shape(next(iter(cells.values()))))
-        found: Real = array([cells.get(key, nothing) for key in self.values])
-        return found
+        stacked: Real = array([cells.get(key, nothing) for key in self.values])
+        return stacked
 
-    def gap(self, one: Real, other: Real) -> Real:
+    def gap(self, first: Real, second: Real) -> Real:
         """Distance between values; between angles, modulo a full turn."""
-        away: Real = np.abs(one - other)
+        away: Real = np.abs(first - second)
         turning = np.array([[is_angle(key)] for key in self.values])
         return np.where(turning, np.minimum(away, np.abs(2 * np.pi - away)), away)
 
@@ -267,7 +269,7 @@ def results_with_linkage(
     strokes = results.strokes
     if strokes is not None and any(load.table is not None and load.table.against == "stroke" for load in linkage.loads):
         strokes = _strokes_with_linkage(strokes, linkage, kernels, q)
-    found = replace(
+    recomputed = replace(
         results,
         inputs=replace(results.inputs, linkage=linkage),
         structure=results.structure.rebind(linkage),
@@ -276,10 +278,10 @@ def results_with_linkage(
         numbers=numbers,
     )
     if results.reactions is None:
-        return found
-    found = with_forces(found, cycle=False)
-    assert found.lever is not None and results.lever is not None
-    return replace(found, lever=found.lever.with_rows_of(results.lever, moved))
+        return recomputed
+    recomputed = with_forces(recomputed, cycle=False)
+    assert recomputed.lever is not None and results.lever is not None
+    return replace(recomputed, lever=recomputed.lever.with_rows_of(results.lever, moved))
 
 
 def _strokes_with_linkage(strokes: Strokes, linkage: Linkage, kernels: tuple[GroupSolver, ...], q: Real) -> Strokes:
@@ -336,13 +338,13 @@ def relative_bound(results: Results, blur: float = 0.0) -> Real:
         unit[motion.where] = EPS
     away = blur if results.linkage.driver.kind == "turn" else blur / _mechanism_size(results)
     lost = error_growth(results)
-    way = np.max([np.abs(drive.value) for drive in motion.drives.values()], axis=0)
+    travel = np.max([np.abs(drive.value) for drive in motion.drives.values()], axis=0)
     if motion.limits is not None:
         lost = np.where(motion.limits, LIMIT_AGREES / (LOSS_FACTOR * ROUNDOFF), lost)
-    found: Real = (
-        LOSS_FACTOR * (ROUNDOFF + unit * (1 + way) * slenderness(results) * lost) + DRIVER_ERROR_FACTOR * away * lost
+    bound: Real = (
+        LOSS_FACTOR * (ROUNDOFF + unit * (1 + travel) * slenderness(results) * lost) + DRIVER_ERROR_FACTOR * away * lost
     )
-    return found if results.running is None else np.maximum(found, KNOWN_LAW)
+    return bound if results.running is None else np.maximum(bound, KNOWN_LAW)
 
 
 def error_growth(results: Results) -> Real:
@@ -359,7 +361,7 @@ def error_growth(results: Results) -> Real:
 def slenderness(results: Results) -> float:
     """Size of the mechanism over its shortest link, the factor by which position errors rotate that link."""
     short = [link_extent(results.linkage, link) for link in results.linkage.moving]
-    return _mechanism_size(results) / min((size for size in short if size > 0), default=1.0)
+    return _mechanism_size(results) / min((extent for extent in short if extent > 0), default=1.0)
 
 
 def largest_values(results: Results) -> Mapping[Dimension, float]:
@@ -368,14 +370,14 @@ def largest_values(results: Results) -> Mapping[Dimension, float]:
     """
     motion = results.motion
     assert motion is not None
-    size = _mechanism_size(results)
+    extent = _mechanism_size(results)
     w = _largest_magnitude(rate.w for rate in motion.first.values())
-    v = _largest_magnitude(rate.v for rate in motion.first.values()) + w * size
+    v = _largest_magnitude(rate.v for rate in motion.first.values()) + w * extent
     e = _largest_magnitude(accel.e for accel in motion.second.values()) + w * w
-    a = _largest_magnitude(accel.a for accel in motion.second.values()) + e * size
+    a = _largest_magnitude(accel.a for accel in motion.second.values()) + e * extent
     rate, gain = _largest_magnitude([motion.rate]), _largest_magnitude([motion.acceleration])
-    found = {
-        LENGTH: max(size, v),
+    largest = {
+        LENGTH: max(extent, v),
         ANGLE: np.pi,
         SPEED: v * rate,
         ANGULAR_SPEED: w * rate,
@@ -392,13 +394,13 @@ def largest_values(results: Results) -> Mapping[Dimension, float]:
         )
         # a link that does not move has the errors of its forces all the same
         forces = max(
-            found[ACCELERATION] * mass, _largest_magnitude(reaction.force for reaction in results.reactions.all)
+            largest[ACCELERATION] * mass, _largest_magnitude(reaction.force for reaction in results.reactions.all)
         )
-        couples = max(found[ANGULAR_ACCELERATION] * inertia, _largest_magnitude(load.moment for load in applied))
-        found[INERTIA] = mass * v**2 + inertia * w**2  # reduced to the driver
-        found[FORCE] = max(forces, _largest_magnitude(load.force for load in applied)) + couples / size
-        found[MOMENT] = found[FORCE] * found[LENGTH]
-    return found
+        couples = max(largest[ANGULAR_ACCELERATION] * inertia, _largest_magnitude(load.moment for load in applied))
+        largest[INERTIA] = mass * v**2 + inertia * w**2  # reduced to the driver
+        largest[FORCE] = max(forces, _largest_magnitude(load.force for load in applied)) + couples / extent
+        largest[MOMENT] = largest[FORCE] * largest[LENGTH]
+    return largest
 
 
 def _mechanism_size(results: Results) -> float:
@@ -415,5 +417,5 @@ def _mechanism_size(results: Results) -> float:
 
 def _largest_magnitude(values: object) -> float:
     """Largest absolute value in arrays, nan ignored."""
-    found = [np.max(np.abs(v), where=np.isfinite(v), initial=0.0) for v in map(np.asarray, values)]  # type: ignore
-    return float(max(found, default=0.0))
+    magnitudes = [np.max(np.abs(v), where=np.isfinite(v), initial=0.0) for v in map(np.asarray, values)]  # type: ignore
+    return float(max(magnitudes, default=0.0))

@@ -67,49 +67,55 @@ class PreciseLinkage:
         kernels = solvers_towards(self.kernels, links)
         return link_states(self.linkage, kernels, q if isinstance(q, DoubleDouble) else self.kind(q), order)
 
-    def sides(self, places: Real) -> tuple[Real, Real]:
+    def sides(self, coordinates: Real) -> tuple[Real, Real]:
         """Return increasing distances from each place, beginning with its last bit, and the places on both sides at
         them.
         """
-        steps = 2.0 ** np.arange(DOUBLINGS) * np.spacing(np.maximum(np.abs(places), 1e-3))[:, None] / 2
-        there = self.kind(places)[:, None]
-        return steps, np.stack([there - steps, there + steps])
+        steps = 2.0 ** np.arange(DOUBLINGS) * np.spacing(np.maximum(np.abs(coordinates), 1e-3))[:, None] / 2
+        precise = self.kind(coordinates)[:, None]
+        return steps, np.stack([precise - steps, precise + steps])
 
     def brackets(
-        self, places: Real, of: Callable[[LinkStates], Real], links: Iterable[str], size: float | None = None
+        self,
+        coordinates: Real,
+        function: Callable[[LinkStates], Real],
+        links: Iterable[str],
+        scale: float | None = None,
     ) -> tuple[Real, LinkStates, Real]:
         """Find the least distance from each place at which a function certainly has different signs on both sides,
         or inf.
 
         Args:
-            places: driver coordinates.
-            of: the function of the link states.
+            coordinates: driver coordinates.
+            function: the function of the link states.
             links: links that the function depends on.
-            size: largest value of the function; None: over the driver's range.
+            scale: largest value of the function; None: over the driver's range.
 
         Returns:
             The distances, the states (at these places first), and bounds of the function at the places.
         """
-        steps, both = self.sides(places)
+        steps, both = self.sides(coordinates)
         driver_range = self.results.mechanism.driver_range
-        way = np.linspace(driver_range.start, driver_range.end, RANGE_SAMPLES)
+        samples = np.linspace(driver_range.start, driver_range.end, RANGE_SAMPLES)
         with np.errstate(all="ignore"):
-            states = self.at(np.concatenate([self.kind(places), both.ravel(), way]), links, 1)
-            there, values, along = np.split(to_float(of(states)), [len(places), len(places) + both.size])
-        size = float(np.nanmax(np.abs(along))) if size is None else size
-        below, above = np.where(np.abs(values) > self.noise * size, np.sign(values), 0).reshape(both.shape)
+            states = self.at(np.concatenate([self.kind(coordinates), both.ravel(), samples]), links, 1)
+            centre_values, values, along = np.split(
+                to_float(function(states)), [len(coordinates), len(coordinates) + both.size]
+            )
+        scale = float(np.nanmax(np.abs(along))) if scale is None else scale
+        below, above = np.where(np.abs(values) > self.noise * scale, np.sign(values), 0).reshape(both.shape)
         distance = _first_sure_step((below != above) & (np.abs(below) + np.abs(above) > 0), steps)
-        return distance, states, np.abs(there) + self.noise * size
+        return distance, states, np.abs(centre_values) + self.noise * scale
 
-    def turns(self, places: Real, runs: Real, link: str, inner: Real | bool = True) -> tuple[Real, Real]:
+    def turns(self, coordinates: Real, runs: Real, link: str, inner: Real | bool = True) -> tuple[Real, Real]:
         """Return bounds of places where an output reverses, and of its values there.
 
         inner: mask of places that are reversals; the others were requested.
         """
         carrier = self.linkage.output_carrier(link)
-        bounds, states, slope = self.brackets(places, lambda states: output_slope(states, link), [carrier])
-        bounds = np.where(inner, bounds, 2 * ROUNDOFF * np.abs(places))
-        off = np.abs(to_float(output_coordinate(states, link)[: len(places)] - runs))
+        bounds, states, slope = self.brackets(coordinates, lambda states: output_slope(states, link), [carrier])
+        bounds = np.where(inner, bounds, 2 * ROUNDOFF * np.abs(coordinates))
+        off = np.abs(to_float(output_coordinate(states, link)[: len(coordinates)] - runs))
         if self.linkage.output_swings(link):
             off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi)
         off = np.nan_to_num(off) + np.where(np.isfinite(bounds), bounds, 0.0) * np.nan_to_num(slope)
@@ -118,15 +124,15 @@ class PreciseLinkage:
     def strokes(self, strokes: Strokes) -> tuple[Real, Real]:
         """Return bounds of driver coordinates at the ends of strokes, and of the output there."""
         if strokes.link not in self.known:
-            places, lows = (np.array([getattr(s, name) for s in strokes.strokes]) for name in ("start", "low"))
-            self.known[strokes.link] = self.turns(places, lows, strokes.link)
+            coordinates, lows = (np.array([getattr(s, name) for s in strokes.strokes]) for name in ("start", "low"))
+            self.known[strokes.link] = self.turns(coordinates, lows, strokes.link)
         return self.known[strokes.link]
 
     def travel(self, travel: OutputTravel) -> tuple[Real, Real]:
         """Return bounds of driver coordinates at the least and the largest output, and of these outputs."""
-        places, asked = np.array([travel.low_at, travel.high_at]), self.results.asked
-        inner = (np.min(asked) < places) & (places < np.max(asked))
-        return self.turns(places, np.array([travel.low, travel.high]), travel.link, inner)
+        coordinates, requested = np.array([travel.low_at, travel.high_at]), self.results.asked
+        inner = (np.min(requested) < coordinates) & (coordinates < np.max(requested))
+        return self.turns(coordinates, np.array([travel.low, travel.high]), travel.link, inner)
 
     def end(self, place: float, towards: int, group: str, span: float) -> float:
         """Return the bound of an end of the driver's range: the group can be placed inside it, and not outside."""
@@ -168,20 +174,20 @@ class PreciseLinkage:
         if largest == np.pi / 2 and limit is not None:
             return 2 * ROUNDOFF, self.end(place, -1 if place == driver_range.start else 1, limit.group, span)
         states = self.at(self.kind(place) + step * np.arange(-2, 3), [link])
-        b2, b1, here, a1, a2 = pressure_at(states, group, link)
-        error = 2 * abs(float(here) - largest) + 32 * ROUNDOFF + 4 * self.noise / max(float(np.cos(largest)), ROUNDOFF)
+        b2, b1, peak, a1, a2 = pressure_at(states, group, link)
+        error = 2 * abs(float(peak) - largest) + 32 * ROUNDOFF + 4 * self.noise / max(float(np.cos(largest)), ROUNDOFF)
         edge = 2 * DEAD_POSITION_ERROR * span
         for end, inside in ((driver_range.start, a1), (driver_range.end, b1)):
-            if not driver_range.full and abs(place - end) <= edge and float(here - inside) > error:
+            if not driver_range.full and abs(place - end) <= edge and float(peak - inside) > error:
                 return error, edge + 4 * ROUNDOFF * abs(place)
-        bend = abs(float(2 * here - b1 - a1)) / step**2  # of an extreme of either kind
+        bend = abs(float(2 * peak - b1 - a1)) / step**2  # of an extreme of either kind
         if not bend * step**2 > error:  # no bend that could be told from rounding
             return error, np.inf
         slope = float(8 * (a1 - b1) - (a2 - b2)) / (12 * step)
         off = abs(slope / bend)  # where the slope of a smooth top is nothing
         flat = 4 * float(np.sqrt(error / bend)) + 1e-7 * step
-        there = 4 * off + SLOPE_ERROR * step + 4 * ROUNDOFF * abs(place) if off < 1e-3 * step else flat
-        return error, there if there < span else np.inf
+        place_bound = 4 * off + SLOPE_ERROR * step + 4 * ROUNDOFF * abs(place) if off < 1e-3 * step else flat
+        return error, place_bound if place_bound < span else np.inf
 
 
 def choose_precision(results: Results) -> PreciseLinkage:
@@ -224,40 +230,40 @@ class SearchedNumber(NamedTuple):
 
 
 def judge_searched(
-    results: Results, of: Callable[[Results], Cells], wide: PreciseLinkage, mu: float = float("nan")
+    results: Results, read: Callable[[Results], Cells], wide: PreciseLinkage, mu: float = float("nan")
 ) -> Digits:
-    """Compute the accuracy of the values that `of` reads from results and that belong to no position.
+    """Compute the accuracy of the values that `read` reads from results and that belong to no position.
 
     A root is known as well as the sign of its function. A value that depends on several searched numbers is
     computed with each of them shifted by its bound in turn.
 
     Args:
         results: results with a motion.
-        of: reads values from results, by key.
+        read: reads values from results, by key.
         wide: the linkage in higher precision.
         mu: scale of the drawing (m per mm); nan: no sensitivities.
     """
-    values, data = of(results), list_lengths(results.linkage)
-    here = _value_row(values, values)
-    bound = 2 * ROUNDOFF * np.abs(here)
+    values, data = read(results), list_lengths(results.linkage)
+    row = _value_row(values, values)
+    bound = 2 * ROUNDOFF * np.abs(row)
     with np.errstate(all="ignore"):
         rates = {} if np.isnan(mu) or results.driver_range is None else search_sensitivities(results, data)
-        goes = np.zeros((len(here), len(data)))  # how far each number goes a metre of each length
-        for found in searched_numbers(results, wide):
-            rate = rates.get(found.path, 0.0)
-            by = found.sense * (
-                min(LARGEST_SHIFT, SHIFT_FACTOR * found.bound) or (LARGEST_SHIFT if np.any(rate) else 0.0)
+        responses = np.zeros((len(row), len(data)))  # how far each number goes a metre of each length
+        for searched in searched_numbers(results, wide):
+            rate = rates.get(searched.path, 0.0)
+            by = searched.sense * (
+                min(LARGEST_SHIFT, SHIFT_FACTOR * searched.bound) or (LARGEST_SHIFT if np.any(rate) else 0.0)
             )
             if by:
-                slope = _value_changes(_value_row(of(found.shifted(by)), values), here) / by
-                bound = bound + np.where(slope != 0, np.abs(slope) * found.bound, 0.0)
-                goes = goes + np.where(rate, slope[:, None] * rate, 0.0)
+                slope = _value_changes(_value_row(read(searched.shifted(by)), values), row) / by
+                bound = bound + np.where(slope != 0, np.abs(slope) * searched.bound, 0.0)
+                responses = responses + np.where(rate, slope[:, None] * rate, 0.0)
         sizes = np.array([abs(length.value) for length in data])
-        share, paper = LENGTH_CHANGE * np.abs(goes) @ sizes, PAPER_CHANGE * mu * np.abs(goes).sum(axis=1)
+        share, paper = LENGTH_CHANGE * np.abs(responses) @ sizes, PAPER_CHANGE * mu * np.abs(responses).sum(axis=1)
     ends_of = np.cumsum([np.size(value) for value in values.values()])[:-1]
     # of nothing an array is still one part
-    told = [dict(zip(values, np.split(part, ends_of), strict=False)) for part in (bound, share, paper)]
-    return Digits(told[0], told[1], told[2], mu)
+    accuracy = [dict(zip(values, np.split(cells, ends_of), strict=False)) for cells in (bound, share, paper)]
+    return Digits(accuracy[0], accuracy[1], accuracy[2], mu)
 
 
 def _value_row(moved: Cells, values: Cells) -> Real:
@@ -269,11 +275,11 @@ def _value_row(moved: Cells, values: Cells) -> Real:
     return np.concatenate([np.zeros(0), *(np.ravel(value) for value in kept)])
 
 
-def _value_changes(moved: Real, here: Real) -> Real:
+def _value_changes(moved: Real, original: Real) -> Real:
     """Changes of numbers with sign; a change by a full turn, or from or to nan, is none."""
-    way: Real = moved - here
-    turn = np.copysign(2 * np.pi, way)
-    return np.where(np.abs(way - turn) < 1e-3, way - turn, np.where(np.isnan(way), 0.0, way))
+    change: Real = moved - original
+    turn = np.copysign(2 * np.pi, change)
+    return np.where(np.abs(change - turn) < 1e-3, change - turn, np.where(np.isnan(change), 0.0, change))
 
 
 def searched_numbers(results: Results, wide: PreciseLinkage) -> Iterator[SearchedNumber]:
@@ -296,23 +302,25 @@ def searched_numbers(results: Results, wide: PreciseLinkage) -> Iterator[Searche
         starts, lows = wide.strokes(strokes)
         parts = {"start": starts, "length": starts + np.roll(starts, -1), "low": lows, "run": lows + np.roll(lows, -1)}
         for k in range(len(starts)):
-            for part, bounds in parts.items():
-                yield found(f"{output}.strokes[{k}].{part}", bounds[k])
+            for name, bounds in parts.items():
+                yield found(f"{output}.strokes[{k}].{name}", bounds[k])
     for k, travel in enumerate(results.travels):
-        for part, bound_at, bound in zip(("low", "high"), *wide.travel(travel), strict=True):
-            yield found(f"travels[{k}].{part}_at", bound_at)
-            yield found(f"travels[{k}].{part}", bound)
+        for name, bound_at, bound in zip(("low", "high"), *wide.travel(travel), strict=True):
+            yield found(f"travels[{k}].{name}_at", bound_at)
+            yield found(f"travels[{k}].{name}", bound)
     for k, dead in enumerate(results.dead):
         yield found(f"dead[{k}].place", wide.dead(dead.place, dead.group, span))
         yield found(f"dead[{k}].margin", dead.margin + 4 * ROUNDOFF)
     for k, pressure in enumerate(results.pressure):
-        largest, there = wide.pressure(pressure.group, pressure.link, pressure.place, pressure.largest, span)
+        largest, place_bound = wide.pressure(pressure.group, pressure.link, pressure.place, pressure.largest, span)
         yield found(f"pressure[{k}].largest", largest, -1)
-        yield found(f"pressure[{k}].place", there)
+        yield found(f"pressure[{k}].place", place_bound)
         if np.isfinite(pressure.other):
-            other, there = wide.pressure(pressure.group, pressure.link, pressure.other_place, pressure.other, span)
+            other, place_bound = wide.pressure(
+                pressure.group, pressure.link, pressure.other_place, pressure.other, span
+            )
             yield found(f"pressure[{k}].other", other, -1)
-            yield found(f"pressure[{k}].other_place", there)
+            yield found(f"pressure[{k}].other_place", place_bound)
     if results.losses is not None:  # a sum over half as many places has a larger error than theirs
         rough = cycle_losses(results, CYCLE_SAMPLES // 2, ranges=False)
 
@@ -351,13 +359,15 @@ def _shifted_results(results: Results, by: Mapping[str, float]) -> Results:
     Pressure angles at positions are not found by searches and stay.
     """
 
-    def moved(part: str) -> Any:
+    def moved(field: str) -> Any:
         return map_record(
-            lambda path, value: value + by[path] if path in by else value, getattr(results, part), path=part
+            lambda path, value: value + by[path] if path in by else value, getattr(results, field), path=field
         )
 
     parts = {path.partition(".")[0].partition("[")[0] for path in by}
-    return replace(results, mechanism=results.mechanism.changed(**{part: moved(part) for part in parts | {"pressure"}}))
+    return replace(
+        results, mechanism=results.mechanism.changed(**{field: moved(field) for field in parts | {"pressure"}})
+    )
 
 
 def _limiting_group(results: Results, place: float) -> str | None:

@@ -49,8 +49,8 @@ def compute_energy(motion: Motion, loads: tuple[AppliedLoad, ...], drivers: Real
     """
     still = np.zeros(np.shape(motion.q))
     inertia, slope = still, still
-    for own, rate_of_own in reduced_inertias(motion).values():
-        inertia, slope = inertia + own, slope + rate_of_own
+    for link_inertia, link_slope in reduced_inertias(motion).values():
+        inertia, slope = inertia + link_inertia, slope + link_slope
     powers = dict.fromkeys(("weight", "load", "friction"), still)
     for load in loads:
         if load.kind != "inertia":
@@ -60,8 +60,8 @@ def compute_energy(motion: Motion, loads: tuple[AppliedLoad, ...], drivers: Real
     change = (inertia * motion.acceleration + slope * rate**2 / 2) * rate
     parts = [drivers * rate, *(work * rate for work in powers.values())]
     with np.errstate(invalid="ignore", divide="ignore"):
-        size = max(np.nanmax(np.abs(part), initial=0.0) for part in (*parts, change))
-        balance = (sum(parts) - change) / size if size > 0 else still
+        scale = max(np.nanmax(np.abs(power), initial=0.0) for power in (*parts, change))
+        balance = (sum(parts) - change) / scale if scale > 0 else still
     return Energy(
         inertia, slope, moment, inertia * rate**2 / 2, change, parts[0], parts[1], parts[2], parts[3], balance
     )
@@ -69,16 +69,16 @@ def compute_energy(motion: Motion, loads: tuple[AppliedLoad, ...], drivers: Real
 
 def reduced_inertias(motion: Motion) -> dict[str, tuple[Real, Real]]:
     """Return, for each moving link, its inertia reduced to the first driver and the derivative of that by q."""
-    found = {}
+    inertias = {}
     for name in motion.linkage.moving:
         link = motion.linkage.links[name]
-        centre, turning = motion.centre(name), motion.link(name)
-        slope = 2 * (link.mass * dot(centre.first, centre.second) + link.inertia * turning.first * turning.second)
-        found[name] = link.mass * squared_length(centre.first) + link.inertia * turning.first**2, slope
-    return found
+        centre, rotation = motion.centre(name), motion.link(name)
+        slope = 2 * (link.mass * dot(centre.first, centre.second) + link.inertia * rotation.first * rotation.second)
+        inertias[name] = link.mass * squared_length(centre.first) + link.inertia * rotation.first**2, slope
+    return inertias
 
 
 def reduced_moment(motion: Motion, load: AppliedLoad) -> Real:
     """Work of a load per unit of the first driver's motion (N m or N)."""
-    found: Real = dot(load.force, motion.point(load.link, load.at).first) + load.moment * motion.link(load.link).first
-    return found
+    moment: Real = dot(load.force, motion.point(load.link, load.at).first) + load.moment * motion.link(load.link).first
+    return moment

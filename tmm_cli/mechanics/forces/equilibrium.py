@@ -66,31 +66,31 @@ class ForceSum:
     @property
     def value(self) -> float:
         """Value of the unknown component from the others (N); its force is along the guide."""
-        others = sum(part.along for part in self.parts if part is not self.found)
+        others = sum(component.along for component in self.parts if component is not self.found)
         return -others if self.found.along > 0 else others
 
 
 def sums_along_guides(
-    here: LoadedPosition, group: Group, leads: Sequence[ExternalPair], axes: Mapping[str, complex]
+    position: LoadedPosition, group: Group, leads: Sequence[ExternalPair], axes: Mapping[str, complex]
 ) -> tuple[ForceSum, ...]:
     """Return the sums that give normal reactions of sliding external pairs, then those that give cylinder
     forces.
     """
-    found: list[ForceSum] = []
+    sums: list[ForceSum] = []
     for lead in leads:
-        own = group.own(lead.pair)
-        guides = [p for p in group.inner if p.slide is not None and own in (p.i, p.j)]
+        link = group.own(lead.pair)
+        guides = [p for p in group.inner if p.slide is not None and link in (p.i, p.j)]
         if lead.pair.name in axes and len(guides) == 1 and len(lead.links) > 1 and not _is_driven(group, guides[0]):
-            found += _sum_along_guide(here, axes, own, guides[0], lead.pair.name, "normal")
+            sums += _sum_along_guide(position, axes, link, guides[0], lead.pair.name, "normal")
     for guide in (p for p in group.inner if p.slide is not None and _is_driven(group, p)):
         sides = [n for n in (guide.i, guide.j) if any(n in (p.i, p.j) for p in group.outer)] or [guide.j]
-        found += _sum_along_guide(here, axes, sides[0], guide, DRIVE, "reaction")
-    return tuple(found)
+        sums += _sum_along_guide(position, axes, sides[0], guide, DRIVE, "reaction")
+    return tuple(sums)
 
 
-def sums_of_driver(here: LoadedPosition, pair: Pair) -> tuple[ForceSum, ...]:
+def sums_of_driver(position: LoadedPosition, pair: Pair) -> tuple[ForceSum, ...]:
     """Return the sum that gives the driving force of a slider on the frame."""
-    return tuple(_sum_along_guide(here, {}, pair.j if pair.i == FRAME else pair.i, pair, DRIVE, "reaction"))
+    return tuple(_sum_along_guide(position, {}, pair.j if pair.i == FRAME else pair.i, pair, DRIVE, "reaction"))
 
 
 def _is_driven(group: Group, guide: Pair) -> bool:
@@ -98,15 +98,15 @@ def _is_driven(group: Group, guide: Pair) -> bool:
 
 
 def _sum_along_guide(
-    here: LoadedPosition, axes: Mapping[str, complex], link: str, guide: Pair, pair: str, kind: str
+    position: LoadedPosition, axes: Mapping[str, complex], link: str, guide: Pair, pair: str, kind: str
 ) -> Iterable[ForceSum]:
     """Yield the sum of forces on a link along a guide, or nothing if the unknown component is zero."""
-    u = here.guide(guide)
-    forces = [a for a in here.acting((link,), axes) if not a.couple]
+    u = position.guide(guide)
+    forces = [a for a in position.acting((link,), axes) if not a.couple]
     largest = max((a.size for a in forces), default=0.0)
     parts = [GuideComponent(a, float(dot(u, a.force))) for a in forces]
-    parts = [part for part in parts if abs(part.along) > NO_FORCE * largest]
-    sought = [part for part in parts if (part.acting.pair, part.acting.kind) == (pair, kind)]
+    parts = [component for component in parts if abs(component.along) > NO_FORCE * largest]
+    sought = [component for component in parts if (component.acting.pair, component.acting.kind) == (pair, kind)]
     if sought:
         yield ForceSum(link, guide.name, u, tuple(parts), sought[0])
 
@@ -171,19 +171,19 @@ class MomentEquation:
     @property
     def found(self) -> MomentTerm | None:
         """Term of the unknown, or None; if a guide also carries a couple, the term of the couple."""
-        own = [t for t in self.terms if self.sought and _is_unknown(t.acting, self.sought)]
-        return min(own, key=lambda t: not t.acting.couple, default=None)
+        unknowns = [t for t in self.terms if self.sought and _is_unknown(t.acting, self.sought)]
+        return min(unknowns, key=lambda t: not t.acting.couple, default=None)
 
     @property
     def value(self) -> float:
         """Value of the unknown (N, N m or m) from the moments of the other terms; positive in its drawn sense."""
-        found = self.found
-        assert found is not None and self.sought is not None
-        others = sum(t.moment for t in self.terms if t is not found)
-        moment = -others if found.moment > 0 else others
-        if found.acting.couple:
+        unknown = self.found
+        assert unknown is not None and self.sought is not None
+        others = sum(t.moment for t in self.terms if t is not unknown)
+        moment = -others if unknown.moment > 0 else others
+        if unknown.acting.couple:
             return moment
-        return moment / (found.acting.size if self.sought.arm else found.arm)
+        return moment / (unknown.acting.size if self.sought.arm else unknown.arm)
 
 
 @dataclass(frozen=True)
@@ -201,41 +201,48 @@ class FreeBody:
 
 def list_free_bodies(motion: Motion, reactions: Reactions, k: int) -> tuple[FreeBody, ...]:
     """Return the free bodies at position k: groups from the last one to the first, then driving links."""
-    here = LoadedPosition.at(motion, reactions, k)
-    groups = [_group_body(here, group) for group in reversed(reactions.groups)]
-    return (*groups, *(_driving_link_body(here, frame) for frame in reactions.frames))
+    position = LoadedPosition.at(motion, reactions, k)
+    groups = [_group_body(position, group) for group in reversed(reactions.groups)]
+    return (*groups, *(_driving_link_body(position, frame) for frame in reactions.frames))
 
 
-def _group_body(here: LoadedPosition, forces: GroupForces) -> FreeBody:
+def _group_body(position: LoadedPosition, forces: GroupForces) -> FreeBody:
     group = forces.group
-    leads = external_pairs(here, group)
+    leads = external_pairs(position, group)
     axes = {lead.pair.name: lead.axis for lead in leads if lead.axis is not None}
     equations = [
-        *_equations_of_external_pairs(here, group, leads, axes),
-        *_equations_of_higher_pairs(here, group, axes),
+        *_equations_of_external_pairs(position, group, leads, axes),
+        *_equations_of_higher_pairs(position, group, axes),
     ]
     if not equations and len(group.links) > 2:  # all reactions are found at once
-        equations = [_moment_equation(here, axes, (link,), *_moment_centre(here, group, link)) for link in group.links]
+        equations = [
+            _moment_equation(position, axes, (link,), *_moment_centre(position, group, link)) for link in group.links
+        ]
     else:
-        equations += _equations_of_guides(here, group, axes)
-    sums = sums_along_guides(here, group, leads, axes)
-    return FreeBody(group.links, here.acting(group.links, axes), number_arms(equations), sums)
+        equations += _equations_of_guides(position, group, axes)
+    sums = sums_along_guides(position, group, leads, axes)
+    return FreeBody(group.links, position.acting(group.links, axes), number_arms(equations), sums)
 
 
 def _equations_of_external_pairs(
-    here: LoadedPosition, group: Group, leads: Sequence[ExternalPair], axes: Mapping[str, complex]
+    position: LoadedPosition, group: Group, leads: Sequence[ExternalPair], axes: Mapping[str, complex]
 ) -> Iterable[MomentEquation]:
     for lead in leads:
         if lead.about is not None:
             sought = _unknown_component(group, lead.pair, "tangential")
-            yield _moment_equation(here, axes, lead.links, lead.about, here.hinge(lead.about), sought)
+            yield _moment_equation(position, axes, lead.links, lead.about, position.hinge(lead.about), sought)
     open_hinges = [lead for lead in leads if lead.rest is None and lead.pair.slide is None and lead.about is None]
-    special = find_assur_point(here, group, leads)
+    special = find_assur_point(position, group, leads)
     if len(leads) == len(group.outer) == 2 and len(open_hinges) == 1:  # all of one reaction, and a part of the other
         other = next(lead for lead in leads if lead not in open_hinges)
         about = open_hinges[0].pair.point
         yield _moment_equation(
-            here, axes, group.links, about, here.hinge(about), _unknown_component(group, other.pair, other.open_part)
+            position,
+            axes,
+            group.links,
+            about,
+            position.hinge(about),
+            _unknown_component(group, other.pair, other.open_part),
         )
     elif special is not None:
         lead, centre = special
@@ -243,26 +250,28 @@ def _equations_of_external_pairs(
         carried = {other.pair.name: other.rest[0] for other in leads if other.pair.slide is not None and other.rest}
         sought = _unknown_component(group, lead.pair, lead.open_part)
         name = distinct_letter(
-            {point for link in here.motion.linkage.links.values() for point in link.points}, ASSUR_POINT
+            {point for link in position.motion.linkage.links.values() for point in link.points}, ASSUR_POINT
         )
-        yield replace(_moment_equation(here, axes, group.links, name, centre, sought, carried), special=True)
+        yield replace(_moment_equation(position, axes, group.links, name, centre, sought, carried), special=True)
 
 
 def _equations_of_higher_pairs(
-    here: LoadedPosition, group: Group, axes: Mapping[str, complex]
+    position: LoadedPosition, group: Group, axes: Mapping[str, complex]
 ) -> Iterable[MomentEquation]:
     """Yield moments of a gear or cam follower about its only hinge, which give the reaction in the higher pair."""
     for pair in group.outer:
-        own = group.own(pair)
-        joined = [p for p in (*group.inner, *group.outer) if own in (p.i, p.j) and p != pair]
+        follower = group.own(pair)
+        joined = [p for p in (*group.inner, *group.outer) if follower in (p.i, p.j) and p != pair]
         if not pair.lower and [p.kind for p in joined] == ["R"]:
             point = joined[0].point
             yield _moment_equation(
-                here, axes, (own,), point, here.hinge(point), _unknown_component(group, pair, "reaction")
+                position, axes, (follower,), point, position.hinge(point), _unknown_component(group, pair, "reaction")
             )
 
 
-def _equations_of_guides(here: LoadedPosition, group: Group, axes: Mapping[str, complex]) -> Iterable[MomentEquation]:
+def _equations_of_guides(
+    position: LoadedPosition, group: Group, axes: Mapping[str, complex]
+) -> Iterable[MomentEquation]:
     """Yield moments of one link of each prismatic pair, which give the arm of its reaction.
 
     Inner prismatic pairs are included only where the group has no hinge of its own (type RPP).
@@ -273,35 +282,35 @@ def _equations_of_guides(here: LoadedPosition, group: Group, axes: Mapping[str, 
         sides = [link for link in (pair.i, pair.j) if link in group.links]
         own = min(sides, key=lambda n: (not hinge_names(pairs, (n,)), sum(n in (p.i, p.j) for p in pairs)))
         sought = EquationUnknown(reaction_symbol(pair.other(own), own), pair.name, arm=True)
-        yield _moment_equation(here, axes, (own,), *_moment_centre(here, group, own, pair), sought)
+        yield _moment_equation(position, axes, (own,), *_moment_centre(position, group, own, pair), sought)
 
 
-def _driving_link_body(here: LoadedPosition, frame: Reaction) -> FreeBody:
+def _driving_link_body(position: LoadedPosition, frame: Reaction) -> FreeBody:
     """Free body of a driving link: moments of a crank about its pivot, of a slider about its sliding point."""
     link, pair = frame.on, frame.pair
     if pair.slide is not None:
         sought = EquationUnknown(reaction_symbol(frame.by, link), pair.name, arm=True)
     else:
-        balance = next(b for b in here.reactions.balances if b.driver.link == link)
+        balance = next(b for b in position.reactions.balances if b.driver.link == link)
         turns = balance.kind == "moment"
-        sought = EquationUnknown(balance_symbol(link, len(here.reactions.balances) > 1, turns=turns), DRIVE)
-    equation = _moment_equation(here, {}, (link,), pair.point or pair.name, here.pair(pair), sought)
-    sums = sums_of_driver(here, pair) if pair.slide is not None else ()
-    return FreeBody((link,), here.acting((link,), {}), number_arms([equation]), sums, driving=True)
+        sought = EquationUnknown(balance_symbol(link, len(position.reactions.balances) > 1, turns=turns), DRIVE)
+    equation = _moment_equation(position, {}, (link,), pair.point or pair.name, position.pair(pair), sought)
+    sums = sums_of_driver(position, pair) if pair.slide is not None else ()
+    return FreeBody((link,), position.acting((link,), {}), number_arms([equation]), sums, driving=True)
 
 
 def _unknown_component(group: Group, pair: Pair, kind: VectorKind) -> EquationUnknown:
-    own = group.own(pair)
-    return EquationUnknown(reaction_symbol(pair.other(own), own, MARKS.get(kind, "")), pair.name, kind)
+    link = group.own(pair)
+    return EquationUnknown(reaction_symbol(pair.other(link), link, MARKS.get(kind, "")), pair.name, kind)
 
 
-def _moment_centre(here: LoadedPosition, group: Group, link: str, guide: Pair | None = None) -> tuple[str, complex]:
+def _moment_centre(position: LoadedPosition, group: Group, link: str, guide: Pair | None = None) -> tuple[str, complex]:
     """Name and place of the point for moments of a link: a hinge, inner ones first, else the sliding point of a
     guide.
     """
-    own = [p for p in (*group.inner, *group.outer) if link in (p.i, p.j) and p.kind == "R"]
-    pair = own[0] if own else guide or next(p for p in (*group.inner, *group.outer) if link in (p.i, p.j))
-    return pair.point or pair.name, here.pair(pair)
+    hinges = [p for p in (*group.inner, *group.outer) if link in (p.i, p.j) and p.kind == "R"]
+    pair = hinges[0] if hinges else guide or next(p for p in (*group.inner, *group.outer) if link in (p.i, p.j))
+    return pair.point or pair.name, position.pair(pair)
 
 
 def _is_unknown(acting: ForceOrCouple, sought: EquationUnknown) -> bool:
@@ -309,7 +318,7 @@ def _is_unknown(acting: ForceOrCouple, sought: EquationUnknown) -> bool:
 
 
 def _moment_equation(
-    here: LoadedPosition,
+    position: LoadedPosition,
     axes: Mapping[str, complex],
     links: Sequence[str],
     about: str,
@@ -322,26 +331,28 @@ def _moment_equation(
     carried: places to which reactions of guides are moved, by name of the pair; moving one adds a couple.
     """
     to = carried or {}
-    acting = [one for given in here.acting(links, axes) for one in _moved_to(given, to.get(given.pair), here.size)]
-    return MomentEquation(tuple(links), about, centre, moment_terms(acting, centre, here.size), sought)
+    acting = [
+        moved for force in position.acting(links, axes) for moved in _moved_to(force, to.get(force.pair), position.size)
+    ]
+    return MomentEquation(tuple(links), about, centre, moment_terms(acting, centre, position.size), sought)
 
 
-def moment_terms(acting: Iterable[ForceOrCouple], centre: complex, size: float) -> tuple[MomentTerm, ...]:
+def moment_terms(acting: Iterable[ForceOrCouple], centre: complex, extent: float) -> tuple[MomentTerm, ...]:
     """Compute moments of forces and couples about a centre, without those that are zero but for rounding.
 
-    size: size of the linkage (m), the scale for arms.
+    extent: size of the linkage (m), the scale for arms.
     """
-    found = []
+    terms = []
     for one in acting:
         if one.couple:
-            found.append(MomentTerm(one, one.moment, 0.0, one.at))
+            terms.append(MomentTerm(one, one.moment, 0.0, one.at))
             continue
         along = one.force / abs(one.force)
         foot = one.at - along * float(dot(one.at - centre, along))
-        if abs(foot - centre) > NO_COORDINATE * size:
-            found.append(MomentTerm(one, one.about(centre), abs(foot - centre), foot))
-    least = NO_FORCE * max((abs(term.moment) for term in found), default=0.0)
-    return tuple(term for term in found if abs(term.moment) > least)
+        if abs(foot - centre) > NO_COORDINATE * extent:
+            terms.append(MomentTerm(one, one.about(centre), abs(foot - centre), foot))
+    least = NO_FORCE * max((abs(term.moment) for term in terms), default=0.0)
+    return tuple(term for term in terms if abs(term.moment) > least)
 
 
 def _moved_to(acting: ForceOrCouple, place: complex | None, size: float) -> Iterable[ForceOrCouple]:
@@ -357,7 +368,7 @@ def _moved_to(acting: ForceOrCouple, place: complex | None, size: float) -> Iter
 
 def number_arms(equations: Iterable[MomentEquation]) -> tuple[MomentEquation, ...]:
     """Number the moment arms; forces with the same line of action (weight and inertia) share a number."""
-    found: list[MomentEquation] = []
+    numbered: list[MomentEquation] = []
     feet: list[tuple[complex, complex]] = []
     for equation in equations:
         terms = []
@@ -369,5 +380,5 @@ def number_arms(equations: Iterable[MomentEquation]) -> tuple[MomentEquation, ..
                 feet += [] if same else [arm]
                 number = same[0] if same else len(feet)
             terms.append(replace(term, number=number))
-        found.append(replace(equation, terms=tuple(terms)))
-    return tuple(found)
+        numbered.append(replace(equation, terms=tuple(terms)))
+    return tuple(numbered)

@@ -70,13 +70,13 @@ def subscript(text: str) -> str:
     return text.translate(SUBSCRIPTS) if text.isdecimal() and text.isascii() else f"({text})"
 
 
-def reaction_symbol(by: str, on: str, part: str = "", letter: str = "R") -> Symbol:
+def reaction_symbol(by: str, on: str, mark: str = "", letter: str = "R") -> Symbol:
     """Symbol of a reaction: R₃₄ is the force of link 3 on link 4.
 
-    part: τ tangential, n normal. letter: M for the couple in a guide or cam.
+    mark: τ tangential, n normal. letter: M for the couple in a guide or cam.
     """
     by, on = printed(by), printed(on)
-    return Symbol(letter, by + on if len(by) == len(on) == 1 else f"{by},{on}", part)
+    return Symbol(letter, by + on if len(by) == len(on) == 1 else f"{by},{on}", mark)
 
 
 def course_symbol(mark: str, index: str = "") -> Symbol:
@@ -172,12 +172,12 @@ class LoadedPosition:
 
         axes: directions by names of hinges; reactions of these hinges are resolved along and across them.
         """
-        found = [*self._loads(links), *self._drives(links)]
+        forces = [*self._loads(links), *self._drives(links)]
         for reaction in self.reactions.all:
             if (reaction.on in links) != (reaction.by in links):
                 link = reaction.on if reaction.on in links else reaction.by
-                found += self._reaction(reaction, link, axes.get(reaction.pair.name))
-        return drop_negligible(found, self.size)
+                forces += self._reaction(reaction, link, axes.get(reaction.pair.name))
+        return drop_negligible(forces, self.size)
 
     def given(self) -> tuple[ForceOrCouple, ...]:
         """Return the loads on all links and the balancing force or couple of each driver on its driven link."""
@@ -216,14 +216,18 @@ class LoadedPosition:
         """Yield the reaction on one link of a pair: of a guide at its line of action, of a hinge with an axis in two
         parts.
         """
-        k, pair, own = self.k, reaction.pair, link == reaction.on
-        by, at, force = reaction.by if own else reaction.on, complex(reaction.at[k]), complex(reaction.onto(link)[k])
+        k, pair, forward = self.k, reaction.pair, link == reaction.on
+        by, at, force = (
+            reaction.by if forward else reaction.on,
+            complex(reaction.at[k]),
+            complex(reaction.onto(link)[k]),
+        )
         couple = 0.0
         if reaction.couple is not None:
             if pair.slide is None:  # of a cam; a couple may stand anywhere on its link
                 at = self.place(link, 0j)
             back = -reaction.couple if reaction.back is None else reaction.back
-            couple = float((reaction.couple if own else back)[k])
+            couple = float((reaction.couple if forward else back)[k])
         if reaction.arm is not None and abs(reaction.arm[k]) < FARTHEST_ARM * self.size:
             at, couple = at + float(reaction.arm[k]) * self.guide(pair), 0.0
         if axis is None:
@@ -243,11 +247,11 @@ def component_across(force: complex, axis: complex) -> complex:
     return across * float(dot(across, force))
 
 
-def drop_negligible(acting: Iterable[ForceOrCouple], size: float) -> tuple[ForceOrCouple, ...]:
-    """Drop forces and couples that are zero but for rounding beside the largest. size: size of the linkage (m)."""
+def drop_negligible(acting: Iterable[ForceOrCouple], extent: float) -> tuple[ForceOrCouple, ...]:
+    """Drop forces and couples that are zero but for rounding beside the largest. extent: size of the linkage (m)."""
     acting = tuple(acting)
-    largest = max((a.size / size if a.couple else a.size for a in acting), default=0.0)
-    return tuple(a for a in acting if a.size > NO_FORCE * largest * (size if a.couple else 1.0))
+    largest = max((a.size / extent if a.couple else a.size for a in acting), default=0.0)
+    return tuple(a for a in acting if a.size > NO_FORCE * largest * (extent if a.couple else 1.0))
 
 
 def vector_kind(load: AppliedLoad) -> VectorKind:
@@ -318,9 +322,9 @@ class ExternalPair:
         return "tangential" if self.about is None else "normal"
 
 
-def external_pairs(here: LoadedPosition, group: Group) -> tuple[ExternalPair, ...]:
+def external_pairs(position: LoadedPosition, group: Group) -> tuple[ExternalPair, ...]:
     """Return the external lower pairs of a group, in its own order."""
-    return tuple(_external_pair(here, group, pair) for pair in group.outer if pair.lower)
+    return tuple(_external_pair(position, group, pair) for pair in group.outer if pair.lower)
 
 
 def hinge_names(pairs: Iterable[Pair], links: Collection[str]) -> list[str]:
@@ -328,23 +332,23 @@ def hinge_names(pairs: Iterable[Pair], links: Collection[str]) -> list[str]:
     return list(dict.fromkeys(p.point for p in pairs if p.kind == "R" and len({p.i, p.j} & {*links}) == 1))
 
 
-def _external_pair(here: LoadedPosition, group: Group, pair: Pair) -> ExternalPair:
+def _external_pair(position: LoadedPosition, group: Group, pair: Pair) -> ExternalPair:
     own = group.own(pair)
     links = _sliding_together(group, own)
     inner = hinge_names(group.inner, links)
     if pair.slide is not None:
         hinges = hinge_names(group.inner, (own,))
-        rest = (here.hinge(hinges[0]), 1j * here.guide(pair)) if len(hinges) == 1 else None
+        rest = (position.hinge(hinges[0]), 1j * position.guide(pair)) if len(hinges) == 1 else None
         return ExternalPair(pair, links, rest=rest)
-    at = here.hinge(pair.point)
+    at = position.hinge(pair.point)
     outer = [p for p in group.outer if group.own(p) in links]
     if len(inner) == 1 and len(outer) == 1:
-        axis = here.hinge(inner[0]) - at
+        axis = position.hinge(inner[0]) - at
         return ExternalPair(pair, links, axis, inner[0], (at, axis)) if axis else ExternalPair(pair, links)
     driven = {link for driver in group.drivers for link in (driver.base, driver.link)}
     slides = [p for p in group.inner if own in (p.i, p.j)]
     if len(slides) == 1 and slides[0].slide is not None and own not in driven:
-        axis = here.guide(slides[0])  # nothing else holds the link along its guide
+        axis = position.guide(slides[0])  # nothing else holds the link along its guide
         others = [p.point for p in outer if p != pair and p.kind == "R"]
         if not inner and len(others) == len(outer) - 1 == 1:
             return ExternalPair(pair, links, axis, others[0])
@@ -354,16 +358,16 @@ def _external_pair(here: LoadedPosition, group: Group, pair: Pair) -> ExternalPa
 
 def _sliding_together(group: Group, link: str) -> tuple[str, ...]:
     """Return the links of a group that rotate together with one of its links."""
-    found = {link}
+    joined = {link}
     for _ in group.links:
         for pair in group.inner:
-            if pair.slide is not None and {pair.i, pair.j} & found:
-                found |= {pair.i, pair.j}
-    return tuple(n for n in group.links if n in found)
+            if pair.slide is not None and {pair.i, pair.j} & joined:
+                joined |= {pair.i, pair.j}
+    return tuple(n for n in group.links if n in joined)
 
 
 def find_assur_point(
-    here: LoadedPosition, group: Group, leads: Sequence[ExternalPair]
+    position: LoadedPosition, group: Group, leads: Sequence[ExternalPair]
 ) -> tuple[ExternalPair, complex] | None:
     """Find the Assur point of a group with three external pairs.
 
@@ -378,6 +382,6 @@ def find_assur_point(
         sine = cross(u, v) / (abs(u) * abs(v))
         if abs(sine) > LEAST_SINE:
             centre = p + u * cross(q - p, v) / cross(u, v)
-            if abs(centre - here.pair(lead.pair)) < FARTHEST_ARM * here.size:
+            if abs(centre - position.pair(lead.pair)) < FARTHEST_ARM * position.size:
                 return lead, complex(centre)
     return None

@@ -130,10 +130,10 @@ def find_locked_ranges(
     outside = np.concatenate([q[np.maximum(begins - 1, 0)], q[np.minimum(ends + 1, len(q) - 1)]])
     for _ in range(HALVINGS):
         middle = (inside + outside) / 2
-        here = locked_at(middle)
-        inside, outside = np.where(here, middle, inside), np.where(here, outside, middle)
-    found = zip(inside[: len(begins)], inside[len(begins) :], pairs[(begins + ends) // 2], strict=True)
-    return tuple(LockedRange(float(start), float(end), str(pair)) for start, end, pair in found)
+        locks = locked_at(middle)
+        inside, outside = np.where(locks, middle, inside), np.where(locks, outside, middle)
+    ranges = zip(inside[: len(begins)], inside[len(begins) :], pairs[(begins + ends) // 2], strict=True)
+    return tuple(LockedRange(float(start), float(end), str(pair)) for start, end, pair in ranges)
 
 
 def solve_friction(
@@ -151,10 +151,10 @@ def solve_friction(
         loads: all loads without friction.
         free: reactions under these loads.
     """
-    given = motion.linkage.friction
-    names = [f.pair for f in given]
+    frictions = motion.linkage.friction
+    names = [f.pair for f in frictions]
     ones = np.ones(np.shape(motion.q))
-    units = [tuple(_friction_loads(f, motion, free, ones)) for f in given]
+    units = [tuple(_friction_loads(f, motion, free, ones)) for f in frictions]
     response = array(
         [_pair_forces(solve_reactions(motion, structure, unit), names) for unit in units]
     )  # friction, pair, position
@@ -164,7 +164,9 @@ def solve_friction(
     for _ in range(OUTER_ROUNDS):
         sizes, locked = _solve_magnitudes(start, response)
         rubbed = tuple(
-            load for f, size in zip(given, sizes, strict=True) for load in _friction_loads(f, motion, free, size)
+            load
+            for f, magnitude in zip(frictions, sizes, strict=True)
+            for load in _friction_loads(f, motion, free, magnitude)
         )
         reactions = solve_reactions(motion, structure, (*loads, *rubbed))
         new = _pair_forces(reactions, names)
@@ -173,7 +175,7 @@ def solve_friction(
         if not bool(np.any(off[:, ~locked & motion.moving] > FRICTION_AGREES)):
             break
         start = new - np.sum(response * sizes[:, None], axis=0)
-    work = {f.pair: _friction_work(f, motion, reactions) for f in given}
+    work = {f.pair: _friction_work(f, motion, reactions) for f in frictions}
     stacked = np.nan_to_num(np.abs(array(list(work.values()))))
     worst = tuple(names[int(k)] for k in np.argmax(stacked, axis=0))
     locked = locked & motion.moving
@@ -188,8 +190,8 @@ def solve_friction(
 
 def _pair_forces(reactions: Reactions, names: list[str]) -> Vector:
     """Return the forces in the named pairs, shape (pairs, positions)."""
-    found: Vector = array([reactions.of(name).force for name in names])
-    return found
+    forces: Vector = array([reactions.of(name).force for name in names])
+    return forces
 
 
 def _solve_magnitudes(start: Vector, response: Vector) -> tuple[Real, Real]:
@@ -203,12 +205,12 @@ def _solve_magnitudes(start: Vector, response: Vector) -> tuple[Real, Real]:
     locked = np.zeros(count, dtype=bool)
     with np.errstate(all="ignore"):
         for stage in range(1, STAGES + 1):
-            part = response * (stage / STAGES)
+            partial_response = response * (stage / STAGES)
             last = np.full(count, np.inf)
             for _ in range(NEWTON_STEPS):
-                force = start + np.sum(part * sizes[:, None], axis=0)
+                force = start + np.sum(partial_response * sizes[:, None], axis=0)
                 along = force / np.where(np.abs(force) > 0, np.abs(force), 1.0)
-                slope = (np.conj(along)[None] * part).real  # of |force j| by f_k
+                slope = (np.conj(along)[None] * partial_response).real  # of |force j| by f_k
                 matrix = np.eye(number)[None] - np.moveaxis(slope, (0, 1, 2), (2, 1, 0))
                 step = solve(matrix, (np.abs(force) - sizes).T).T
                 sizes = sizes + step

@@ -77,16 +77,16 @@ def _coordinates_in_strokes(mechanism: Mechanism, table: LoadTable, arguments: I
     for stroke in strokes.strokes:
         middle = stroke.low + stroke.run / 2
         for row in arguments:
-            wanted = first.low + (first.run if table.shares else np.sign(first.run)) * row
+            target = first.low + (first.run if table.shares else np.sign(first.run)) * row
             # at the ends themselves the output rests: rounding would put the row a little beside them
-            if abs(wanted - middle) < abs(stroke.run) * (0.5 - SAME_DRIVER_POSITION):
+            if abs(target - middle) < abs(stroke.run) * (0.5 - SAME_DRIVER_POSITION):
                 end = stroke.start + linkage.driver.sense * stroke.length
                 yield float(
-                    find_roots(_distance_from_run(curve, wanted, middle), np.array([stroke.start]), np.array([end]))[0]
+                    find_roots(_distance_from_run(curve, target, middle), np.array([stroke.start]), np.array([end]))[0]
                 )
 
 
-def _distance_from_run(curve: OutputCurve, wanted: float, middle: float) -> Callable[[Real], Real]:
+def _distance_from_run(curve: OutputCurve, target: float, middle: float) -> Callable[[Real], Real]:
     """Return a function of q: distance of the output from a value; angles are taken about the middle of the
     stroke.
     """
@@ -95,7 +95,7 @@ def _distance_from_run(curve: OutputCurve, wanted: float, middle: float) -> Call
         place = curve.place(q)
         if curve.swings:
             place = middle + np.angle(np.exp(1j * (place - middle)))
-        return place - wanted
+        return place - target
 
     return missed
 
@@ -115,10 +115,10 @@ def _find_reversals(mechanism: Mechanism, load: Load) -> Iterable[float]:
         back = np.flatnonzero(dot(along[1:], along[:-1]) < 0)
         before = along[back]
         yield from find_roots(
-            lambda places: dot(motion_on_base(load, moved(places, 1))[0], before), q[back], q[back + 1] + half
+            lambda coordinates: dot(motion_on_base(load, moved(coordinates, 1))[0], before), q[back], q[back + 1] + half
         ).tolist()
     if load.moment:
         back = np.flatnonzero(turning[1:] * turning[:-1] < 0)
         yield from find_roots(
-            lambda places: motion_on_base(load, moved(places, 1))[1], q[back], q[back + 1] + half
+            lambda coordinates: motion_on_base(load, moved(coordinates, 1))[1], q[back], q[back + 1] + half
         ).tolist()

@@ -68,8 +68,8 @@ def spring_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLoa
 def twist_angle(spring: Spring, motion: Motion) -> Real:
     """Return the twist of a torsion spring from its free angle, within half a turn (rad)."""
     turned = motion.poses[spring.j].z * np.conj(motion.poses[spring.i].z) * np.conj(unit(spring.free))
-    found: Real = np.angle(turned)
-    return found
+    angle: Real = np.angle(turned)
+    return angle
 
 
 def _torsion_moment(spring: Spring, motion: Motion) -> Real:
@@ -91,13 +91,13 @@ def problem_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLo
     Loads limited to working strokes act at all positions if there are no strokes.
     """
     for load in motion.linkage.loads:
-        size = _load_factor(load, motion, strokes)
+        factor = _load_factor(load, motion, strokes)
         along: Vector | float = motion.poses[load.link].z if load.follows else 1.0
         turning: Real | float = 1.0
         if load.resists:
             velocity, turned = motion_direction(load, motion)
             along, turning = -velocity, -turned
-        force, moment = load.force * size * along, load.moment * size * turning
+        force, moment = load.force * factor * along, load.moment * factor * turning
         yield AppliedLoad(load.name, "load", load.link, load.at, force, moment, load.name)
         if load.base != FRAME:
             yield _opposite_load(load, motion, force, moment)
@@ -105,11 +105,13 @@ def problem_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLo
 
 def _load_factor(load: Load, motion: Motion, strokes: Strokes | None) -> Real:
     """Factor of the force and moment of a load, from its table and the range in which it acts."""
-    size = np.ones(np.shape(motion.q))
+    factor = np.ones(np.shape(motion.q))
     if load.table is not None:
-        size = load.table(table_argument(load.table, motion, strokes))
+        factor = load.table(table_argument(load.table, motion, strokes))
     return (
-        size if always_acts(load, strokes) else np.where(is_acting(load, motion.q, motion.linkage, strokes), size, 0.0)
+        factor
+        if always_acts(load, strokes)
+        else np.where(is_acting(load, motion.q, motion.linkage, strokes), factor, 0.0)
     )
 
 
@@ -241,10 +243,15 @@ BALANCING = ("Mb", "M_b", "Fb", "F_b")  # as the balancing moment and force are 
 def collect_loads(motion: Motion, strokes: Strokes | None) -> tuple[AppliedLoad, ...]:
     """Return all loads on the moving links except friction, in the order of the links."""
     order = {name: k for k, name in enumerate(motion.linkage.links)}
-    found = [load for kind in LOAD_SOURCES for load in kind(motion, strokes)]
-    symbols = {*BALANCING, *(name for load in found if load.kind != "load" for name in (load.name, load.couple_name))}
-    found = [replace(a, ambiguous=True) if a.kind == "load" and a.name.rstrip("'") in symbols else a for a in found]
-    return tuple(sorted(found, key=lambda a: order[a.link]))
+    collected = [load for kind in LOAD_SOURCES for load in kind(motion, strokes)]
+    symbols = {
+        *BALANCING,
+        *(name for load in collected if load.kind != "load" for name in (load.name, load.couple_name)),
+    }
+    collected = [
+        replace(a, ambiguous=True) if a.kind == "load" and a.name.rstrip("'") in symbols else a for a in collected
+    ]
+    return tuple(sorted(collected, key=lambda a: order[a.link]))
 
 
 def weights_and_inertia(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLoad]:

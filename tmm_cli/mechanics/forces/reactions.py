@@ -127,11 +127,11 @@ class Reactions:
         (nan).
         """
         sizes = [np.abs(r.force) for r in self.all]
-        least, found = NO_FORCE * reduce(np.maximum, sizes), []
-        for r, size in zip(self.all, sizes, strict=True):
-            arm = None if r.arm is None else np.where(size > least, r.arm, np.nan)
-            found.append(replace(r, angle=np.where(size > least, np.angle(r.force), np.nan), arm=arm))
-        return tuple(found)
+        least, directed = NO_FORCE * reduce(np.maximum, sizes), []
+        for r, magnitude in zip(self.all, sizes, strict=True):
+            arm = None if r.arm is None else np.where(magnitude > least, r.arm, np.nan)
+            directed.append(replace(r, angle=np.where(magnitude > least, np.angle(r.force), np.nan), arm=arm))
+        return tuple(directed)
 
     def of(self, name: str) -> Reaction:
         """Return the reaction in the pair of this name."""
@@ -182,17 +182,17 @@ def solve_reactions(motion: Motion, structure: Structure, loads: tuple[AppliedLo
     with np.errstate(invalid="ignore", divide="ignore"):
         for kernel, at in zip(reversed(motion.kernels), reversed(motion.placements), strict=True):
             group = kernel.group
-            found = kernel.reactions(at, motion.poses, tuple(applied[link] for link in group.links))
-            parts = zip(group.outer, found.outer, strict=True)
-            outer = tuple(_reaction(motion, pair, group.own(pair), part) for pair, part in parts)
-            parts = zip(group.inner, found.inner, strict=True)
-            inner = tuple(_reaction(motion, pair, kernel.inner_on(pair), part) for pair, part in parts)
+            solution = kernel.reactions(at, motion.poses, tuple(applied[link] for link in group.links))
+            parts = zip(group.outer, solution.outer, strict=True)
+            outer = tuple(_reaction(motion, pair, group.own(pair), pair_force) for pair, pair_force in parts)
+            parts = zip(group.inner, solution.inner, strict=True)
+            inner = tuple(_reaction(motion, pair, kernel.inner_on(pair), pair_force) for pair, pair_force in parts)
             groups.append(GroupForces(group, outer, inner, tuple(r for link in group.links for r in borne[link])))
             for reaction in outer:
                 applied[reaction.by] += _opposite_wrench(reaction, motion)
                 borne[reaction.by].append(reaction)
             for driver in group.drivers:
-                balance = balances[driver.link] = _moving_driver_balance(motion, driver, found.drives[driver.link])
+                balance = balances[driver.link] = _moving_driver_balance(motion, driver, solution.drives[driver.link])
                 for link, sense in ((driver.base, -1), (driver.link, 1)):
                     if link not in group.links:
                         applied[link] += _driver_wrench(motion, balance, link, sense)
@@ -210,10 +210,10 @@ def solve_reactions(motion: Motion, structure: Structure, loads: tuple[AppliedLo
 
 def _loads_by_point(loads: tuple[AppliedLoad, ...]) -> list[list[AppliedLoad]]:
     """Group loads that act at the same point of a link, such as weight and inertia."""
-    found: dict[tuple[str, int], list[AppliedLoad]] = {}
+    by_point: dict[tuple[str, int], list[AppliedLoad]] = {}
     for load in loads:
-        found.setdefault((load.link, id(load.at)), []).append(load)
-    return list(found.values())
+        by_point.setdefault((load.link, id(load.at)), []).append(load)
+    return list(by_point.values())
 
 
 def reduced_driving_moment(motion: Motion, reactions: Reactions) -> Real:
@@ -226,22 +226,22 @@ def reduced_driving_moment(motion: Motion, reactions: Reactions) -> Real:
     return total
 
 
-def _reaction(motion: Motion, pair: Pair, own: str, found: PairReaction) -> Reaction:
-    other = pair.other(own)
+def _reaction(motion: Motion, pair: Pair, link: str, solution: PairReaction) -> Reaction:
+    other = pair.other(link)
     if pair.mesh is not None:
-        assert found.at is not None
-        return Reaction(pair, own, other, found.at, found.force, found.couple, back=found.back)
+        assert solution.at is not None
+        return Reaction(pair, link, other, solution.at, solution.force, solution.couple, back=solution.back)
     if pair.slide is None:
-        at = motion.poses[own].at(motion.linkage.local(own, pair.point))
-        return Reaction(pair, own, other, at, found.force, None, found.tangential, found.normal)
-    assert found.couple is not None
+        at = motion.poses[link].at(motion.linkage.local(link, pair.point))
+        return Reaction(pair, link, other, at, solution.force, None, solution.tangential, solution.normal)
+    assert solution.couple is not None
     slide = pair.slide
     at = motion.poses[slide.runner].at(slide.at)
     u = motion.poses[slide.carrier].z * unit(slide.direction)
-    signed = dot(1j * u, found.force)
+    signed = dot(1j * u, solution.force)
     # on the carrier both force and couple change sign, and the arm stays
-    arm = _guide_reaction_arm(motion, found.couple, signed)
-    return Reaction(pair, own, other, at, found.force, found.couple, signed=signed, arm=arm)
+    arm = _guide_reaction_arm(motion, solution.couple, signed)
+    return Reaction(pair, link, other, at, solution.force, solution.couple, signed=signed, arm=arm)
 
 
 def _guide_reaction_arm(motion: Motion, couple: Real, signed: Real) -> Real:
@@ -254,8 +254,8 @@ def _guide_reaction_arm(motion: Motion, couple: Real, signed: Real) -> Real:
 def _opposite_wrench(reaction: Reaction, motion: Motion) -> Wrench:
     """Opposite of a reaction, on the other link, reduced to the origin of that link."""
     by, pair = motion.poses[reaction.by], reaction.pair
-    own = pair.slide is None and pair.mesh is None
-    arm = motion.linkage.local(reaction.by, pair.point) * by.z if own else reaction.at - by.x
+    hinged = pair.slide is None and pair.mesh is None
+    arm = motion.linkage.local(reaction.by, pair.point) * by.z if hinged else reaction.at - by.x
     moment = cross(arm, -reaction.force)
     if reaction.back is not None:
         moment = moment + reaction.back
@@ -264,14 +264,14 @@ def _opposite_wrench(reaction: Reaction, motion: Motion) -> Wrench:
     return Wrench(-reaction.force, moment)
 
 
-def _moving_driver_balance(motion: Motion, driver: Driver, size: Real) -> Balance:
+def _moving_driver_balance(motion: Motion, driver: Driver, magnitude: Real) -> Balance:
     """Balance of a driver between two moving links, from its equation in the group."""
     linkage = motion.linkage
     if driver.kind == "turn":
         at = motion.poses[driver.link].at(linkage.local(driver.link, driver.joint))
-        return Balance(driver, "moment", size, size * np.nan, size * 0j, at, float("nan"))
+        return Balance(driver, "moment", magnitude, magnitude * np.nan, magnitude * 0j, at, float("nan"))
     u, at = _cylinder_axis(motion, driver)
-    return Balance(driver, "force", None, size, size * u, at, 1.0)
+    return Balance(driver, "force", None, magnitude, magnitude * u, at, 1.0)
 
 
 def _cylinder_axis(motion: Motion, driver: Driver) -> tuple[Vector, Vector]:
@@ -300,15 +300,15 @@ def _frame_driver(motion: Motion, structure: Structure, driver: Driver, total: W
         end = _crank_end(linkage, driver)
         radius = pose.at(end) - pivot
         arm = np.abs(end - linkage.local(driver.link, driver.joint))
-        size = moment / arm
+        magnitude = moment / arm
         vector = 1j * radius * (moment / (arm * arm))
         force = -total.force - (vector if driver.balance == "force" else 0)
         return (
             Reaction(pair, driver.link, FRAME, pivot, force),
-            Balance(driver, driver.balance, moment, size, vector, pivot + radius, arm),
+            Balance(driver, driver.balance, moment, magnitude, vector, pivot + radius, arm),
         )
     u, at = _cylinder_axis(motion, driver)
-    size = -dot(total.force, u)
+    magnitude = -dot(total.force, u)
     guide = -1j * u * dot(total.force, 1j * u)
     # the balancing force acts in the line of the running point, so moments about it leave the guide's couple
     couple = -total.about(at - pose.x)
@@ -317,7 +317,7 @@ def _frame_driver(motion: Motion, structure: Structure, driver: Driver, total: W
         Reaction(
             pair, driver.link, FRAME, at, guide, couple, signed=signed, arm=_guide_reaction_arm(motion, couple, signed)
         ),
-        Balance(driver, "force", None, size, size * u, at, 1.0),
+        Balance(driver, "force", None, magnitude, magnitude * u, at, 1.0),
     )
 
 

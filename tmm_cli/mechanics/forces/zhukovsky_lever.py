@@ -59,14 +59,14 @@ class ZhukovskyLever:
         With other numbers a load may become zero everywhere and lose its item, or gain one. A missing force has
         no arm; a missing couple keeps its speed ratio.
         """
-        own, zero = dict(zip(_numbered_keys(self.items), self.items, strict=True)), 0 * self.balancing
+        items_by_key, zero = dict(zip(_numbered_keys(self.items), self.items, strict=True)), 0 * self.balancing
 
         def zero_item(item: LeverItem) -> LeverItem:
             arm = motion.link(item.link).first if item.end is None else zero
             return LeverItem(item.name, item.link, zero, arm, zero)
 
         keys = zip(_numbered_keys(other.items), other.items, strict=True)
-        return replace(self, items=tuple(own.get(key) or zero_item(item) for key, item in keys))
+        return replace(self, items=tuple(items_by_key.get(key) or zero_item(item) for key, item in keys))
 
 
 def _numbered_keys(items: tuple[LeverItem, ...]) -> list[tuple[tuple[str, str, bool], int]]:
@@ -93,11 +93,11 @@ def compute_lever(motion: Motion, loads: tuple[AppliedLoad, ...], plan: Real) ->
     for load in loads:
         if load.has_force:
             end = motion.point(load.link, load.at).first
-            size = np.abs(load.force)
+            magnitude = np.abs(load.force)
             moment = dot(load.force, end)
             with np.errstate(invalid="ignore", divide="ignore"):
-                arm = np.where(size > 0, moment / size, np.nan)
-            items.append(LeverItem(load.name, load.link, size, arm, moment, end, load.force))
+                arm = np.where(magnitude > 0, moment / magnitude, np.nan)
+            items.append(LeverItem(load.name, load.link, magnitude, arm, moment, end, load.force))
         if load.has_moment:
             ratio = motion.link(load.link).first
             name = load.couple_name or load.name
@@ -113,8 +113,8 @@ def compute_lever(motion: Motion, loads: tuple[AppliedLoad, ...], plan: Real) ->
         else 1.0
     )
     acting = sum(np.abs(i.size) * (reach if i.end is not None else 1.0) for i in items)
-    known = motion.moving & np.isfinite(plan)  # not where it locks itself by friction
-    plan_size = np.where(known, np.abs(plan), 0.0)
-    largest = float(np.max(np.where(known, np.maximum(plan_size, NO_MOMENT * acting), 0.0), initial=0.0))
+    comparable = motion.moving & np.isfinite(plan)  # not where it locks itself by friction
+    plan_size = np.where(comparable, np.abs(plan), 0.0)
+    largest = float(np.max(np.where(comparable, np.maximum(plan_size, NO_MOMENT * acting), 0.0), initial=0.0))
     difference = np.abs(plan - balancing) / largest if largest > 0 else np.abs(plan - balancing)
     return ZhukovskyLever(tuple(items), balancing, difference)

@@ -46,18 +46,18 @@ def force_plans(reactions: Reactions, k: int, motion: Motion | None = None) -> t
     motion: if given, reactions in external pairs of groups of any class are resolved into components, as
     those of dyads are.
     """
-    here = None if motion is None else LoadedPosition.at(motion, reactions, k)
-    groups = [_group_plan(group, reactions, k, here) for group in reversed(reactions.groups)]
+    position = None if motion is None else LoadedPosition.at(motion, reactions, k)
+    groups = [_group_plan(group, reactions, k, position) for group in reversed(reactions.groups)]
     return (*groups, *(_driving_link_plan(frame, reactions, k) for frame in reactions.frames))
 
 
-def _group_plan(group: GroupForces, reactions: Reactions, k: int, here: LoadedPosition | None) -> ForcePlan:
+def _group_plan(group: GroupForces, reactions: Reactions, k: int, position: LoadedPosition | None) -> ForcePlan:
     """Polygon of a group of any class: external reactions and borne forces link by link; internal reactions
     cancel.
     """
     if len(group.group.links) == 2 and len(group.outer) == 2 and len(group.inner) == 1 and not group.group.drivers:
         return _dyad_plan(group, reactions, k)
-    axes = {} if here is None else {lead.pair.name: lead.axis for lead in external_pairs(here, group.group)}
+    axes = {} if position is None else {lead.pair.name: lead.axis for lead in external_pairs(position, group.group)}
     parts: list[PolygonPart] = []
     parted: list[tuple[Reaction, int]] = []
     for link in group.group.links:
@@ -139,10 +139,10 @@ def _borne_forces(
             yield load_symbols(load)[0], complex(load.force[k]), vector_kind(load)
     several = len(reactions.balances) > 1
     for balance in reactions.balances:
-        own, base = balance.driver.link, balance.driver.base
-        if balance.kind == "force" and link in (own, base) and not {own, base} <= {*links}:
-            symbol, vector = balance_symbol(own, several), complex(balance.vector[k])
-            if link != own:
+        driven, base = balance.driver.link, balance.driver.base
+        if balance.kind == "force" and link in (driven, base) and not {driven, base} <= {*links}:
+            symbol, vector = balance_symbol(driven, several), complex(balance.vector[k])
+            if link != driven:
                 symbol, vector = symbol.primed, -vector
             yield symbol, vector, "load"
 

@@ -109,12 +109,12 @@ def lever_plan(motion: Motion, reactions: Reactions, lever: ZhukovskyLever, k: i
     first = reactions.balance
     turns = first.kind == "moment"
     sought = None if several else EquationUnknown(balance_symbol(first.driver.link, False, turns=turns), DRIVE)
-    size = max((abs(end) for end in ends.values()), default=0.0)
-    found = drop_negligible(acting, size or 1.0)
-    symbols = {a.symbol for a in found}
-    kept = tuple((load, couple) for load, couple in couples if any(couple is a for a in found))
-    (equation,) = number_arms([MomentEquation((), LEVER_POLE, 0j, moment_terms(found, 0j, size), sought)])
-    return LeverPlan(ends, bars, found, tuple(pair for pair in pairs if pair.symbol in symbols), kept, equation)
+    extent = max((abs(end) for end in ends.values()), default=0.0)
+    forces = drop_negligible(acting, extent or 1.0)
+    symbols = {a.symbol for a in forces}
+    kept = tuple((load, couple) for load, couple in couples if any(couple is a for a in forces))
+    (equation,) = number_arms([MomentEquation((), LEVER_POLE, 0j, moment_terms(forces, 0j, extent), sought)])
+    return LeverPlan(ends, bars, forces, tuple(pair for pair in pairs if pair.symbol in symbols), kept, equation)
 
 
 def _lever_force(motion: Motion, load: AppliedLoad, k: int) -> Iterable[ForceOrCouple]:
@@ -150,10 +150,10 @@ def _forces_of_couple(motion: Motion, load: AppliedLoad, pair: CoupleAsForces, k
     """Yield the two forces, perpendicular to the line of the two points, at the ends of the velocities of these
     points.
     """
-    one, other = (complex(motion.linkage.local(load.link, point)) for point in pair.points)
-    arm = (other - one) * complex(motion.poses[load.link].z[k])
+    first, second = (complex(motion.linkage.local(load.link, point)) for point in pair.points)
+    arm = (second - first) * complex(motion.poses[load.link].z[k])
     force = 1j * arm * (pair.moment / abs(arm) ** 2)
-    for local, symbol, sense in ((one, pair.symbol.primed, -1), (other, pair.symbol, 1)):
+    for local, symbol, sense in ((first, pair.symbol.primed, -1), (second, pair.symbol, 1)):
         end = ROTATED * complex(motion.point(load.link, local).first[k])
         yield ForceOrCouple(symbol, vector_kind(load), load.link, end, sense * force)
 
@@ -172,13 +172,13 @@ def _balancing_forces(
     if turns:
         yield ForceOrCouple(symbol, "reaction", driver.link, 0j, 0j, total, DRIVE)
         return
-    own, base = (
+    driven, base = (
         _point_transfer_function(motion, link, complex(balance.at[k]), k) for link in (driver.link, driver.base)
     )
-    if own == base:  # of several drivers one may be at rest: what holds it acts in the pole
+    if driven == base:  # of several drivers one may be at rest: what holds it acts in the pole
         return
-    force = (own - base) * (total / abs(own - base) ** 2)
-    yield ForceOrCouple(symbol, "reaction", driver.link, ROTATED * own, force, pair=DRIVE)
+    force = (driven - base) * (total / abs(driven - base) ** 2)
+    yield ForceOrCouple(symbol, "reaction", driver.link, ROTATED * driven, force, pair=DRIVE)
     if driver.base != FRAME:
         yield ForceOrCouple(symbol.primed, "reaction", driver.base, ROTATED * base, -force)
 
@@ -232,19 +232,19 @@ class BalanceDrawings:
     def scales(self) -> DrawingScales:
         """Return the scales at which each drawing fills a sheet A4."""
         terms = [term for equation in self.link.equations for term in equation.terms]
-        places = [*(e.centre for e in self.link.equations), *(p for t in terms for p in (t.acting.at, t.foot))]
+        positions = [*(e.centre for e in self.link.equations), *(p for t in terms for p in (t.acting.at, t.foot))]
         polygon = [p for vector in self.forces.plan.vectors for p in (vector.start, vector.end)]
         ends = [*self.lever.ends.values(), *(term.foot for term in self.lever.equation.terms)]
-        return DrawingScales(*(sheet_scale(points)[1] for points in (places, polygon, ends)))
+        return DrawingScales(*(sheet_scale(points)[1] for points in (positions, polygon, ends)))
 
 
 def balance_drawings(motion: Motion, reactions: Reactions, lever: ZhukovskyLever, k: int) -> BalanceDrawings | None:
     """Return the drawings of position k; None with several drivers, or if the driving link is not on the frame."""
-    own = [part for part in list_free_bodies(motion, reactions, k) if part.links == (reactions.balance.driver.link,)]
+    bodies = [body for body in list_free_bodies(motion, reactions, k) if body.links == (reactions.balance.driver.link,)]
     plans = [plan for plan in force_plans(reactions, k, motion) if plan.driving]
-    if len(reactions.balances) > 1 or not own or not own[-1].driving or not plans:
+    if len(reactions.balances) > 1 or not bodies or not bodies[-1].driving or not plans:
         return None
-    return BalanceDrawings(own[-1], plans[0], lever_plan(motion, reactions, lever, k))
+    return BalanceDrawings(bodies[-1], plans[0], lever_plan(motion, reactions, lever, k))
 
 
 def drawn_check(motion: Motion, reactions: Reactions, drawn: BalanceDrawings, scales: DrawingScales) -> DrawnCheck:
@@ -267,16 +267,16 @@ def _read_off(length: float, mu: float) -> float:
 
 def _measured_unknown(equation: MomentEquation, mu: float, segments: Mapping[Symbol, float]) -> float:
     """Value of the unknown of a moment equation with measured arms. segments: forces that are measured too, N."""
-    found = equation.found
-    if found is None:
+    unknown = equation.found
+    if unknown is None:
         return 0.0
 
     def moment(term: MomentTerm) -> float:
         if not term.number:
             return term.moment
-        size = segments.get(term.acting.symbol, term.acting.size) if term.acting.pair else term.acting.size
-        return math.copysign(size * _read_off(term.arm, mu), term.moment)
+        magnitude = segments.get(term.acting.symbol, term.acting.size) if term.acting.pair else term.acting.size
+        return math.copysign(magnitude * _read_off(term.arm, mu), term.moment)
 
-    value = -math.copysign(1.0, found.moment) * math.fsum(moment(t) for t in equation.terms if t is not found)
-    arm = 1.0 if found.acting.couple else _read_off(found.arm, mu)
+    value = -math.copysign(1.0, unknown.moment) * math.fsum(moment(t) for t in equation.terms if t is not unknown)
+    arm = 1.0 if unknown.acting.couple else _read_off(unknown.arm, mu)
     return value / arm if arm else math.nan

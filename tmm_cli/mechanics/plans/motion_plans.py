@@ -29,14 +29,14 @@ def plan_letters(linkage: Linkage) -> dict[str, str]:
     another.
     """
     fixed = linkage.links[FRAME].points
-    found = {point: point.lower() for point in fixed}
+    letters = {point: point.lower() for point in fixed}
     taken = {"p", "π"}
     for link in linkage.moving:
         for point in linkage.links[link].points:
-            if point not in found:
-                found[point] = distinct_letter(taken, point.lower())
-                taken.add(found[point])
-    return found
+            if point not in letters:
+                letters[point] = distinct_letter(taken, point.lower())
+                taken.add(letters[point])
+    return letters
 
 
 def plan_ends(linkage: Linkage, pole: str, value: Callable[[str], complex]) -> dict[str, complex]:
@@ -143,13 +143,13 @@ def pitch_points(motion: Motion, k: int) -> Iterable[tuple[str, str, complex]]:
     for mesh in linkage.meshes:
         if mesh.kind == "cam":
             continue
-        one = carrier_axis(linkage, mesh.i, mesh.carrier)
+        axis = carrier_axis(linkage, mesh.i, mesh.carrier)
         if mesh.kind == "gear":
-            place = GearConstraint(mesh.name, mesh, one, carrier_axis(linkage, mesh.j, mesh.carrier)).contact(
+            place = GearConstraint(mesh.name, mesh, axis, carrier_axis(linkage, mesh.j, mesh.carrier)).contact(
                 motion.poses
             )[0]
         else:
-            place = RackConstraint(mesh.name, mesh, linkage.slide(mesh.slide), one).contact(motion.poses)[0]
+            place = RackConstraint(mesh.name, mesh, linkage.slide(mesh.slide), axis).contact(motion.poses)[0]
         yield mesh.name, mesh.j if mesh.i == FRAME else mesh.i, complex(np.broadcast_to(place, motion.q.shape)[k])
 
 
@@ -169,24 +169,24 @@ def acceleration_plan(motion: Motion, k: int) -> Plan:
     linkage = motion.linkage
     ends = plan_ends(linkage, ACCELERATION_POLE, lambda point: motion.named(point).a[k])
     names = {letter: point for point, letter in plan_letters(linkage).items()}
-    found = {stone.slide.name: stone for stone in sliding_blocks(motion, ends, k)}
-    for stone in found.values():
+    blocks = {stone.slide.name: stone for stone in sliding_blocks(motion, ends, k)}
+    for stone in blocks.values():
         ends[stone.under] = complex(motion.point(stone.slide.carrier, stone.local).a[k])
         names[stone.under] = stone.below
     ended = {name: ends[letter] for letter, name in names.items() if letter in ends}
-    local = {stone.below: stone.local for stone in found.values()}
+    local = {stone.below: stone.local for stone in blocks.values()}
     pairs: list[VectorPair] = []
     for step in solution_steps(linkage, groups_of(motion)):
         for equation in (*step.equations, *step.after):
             if isinstance(equation, MovingGuideEquation):
-                stone = found[equation.slide.name]
+                stone = blocks[equation.slide.name]
                 pairs.append(_sliding_parts(motion, k, stone, ends[stone.under]))
             elif isinstance(equation, SameLinkEquation) and not equation.idle:
                 pairs.append(_rotation_parts(motion, k, equation, local, ended.get(equation.base.name, 0j)))
     for link in links_with_mass(linkage):
         letter = distinct_letter(ends, f"s{link}")
         ends[letter], names[letter] = complex(motion.centre(link).a[k]), f"S{link}"
-    vectors = [part for pair in pairs for part in pair]
+    vectors = [component for pair in pairs for component in pair]
     least = NO_VECTOR * Plan(tuple(vectors), ends).size
     corners = _corners(pairs, ends, least)
     segments = [replace(v, name=_segment_letters(v, {**ends, **corners}, least)) for v in vectors]
@@ -202,10 +202,10 @@ def _rotation_parts(
     local: points of guides under sliding blocks, in the axes of their links.
     """
     link, index = about.link, about.point.name + about.base.name
-    turning, own = motion.link(link), {**motion.linkage.links[link].points, **local}
-    radius = complex((own[about.point.name] - own[about.base.name]) * motion.poses[link].z[k])
-    bend = start - complex(turning.omega[k] ** 2) * radius
-    end = bend + 1j * complex(turning.epsilon[k]) * radius
+    rotation, points = motion.link(link), {**motion.linkage.links[link].points, **local}
+    radius = complex((points[about.point.name] - points[about.base.name]) * motion.poses[link].z[k])
+    bend = start - complex(rotation.omega[k] ** 2) * radius
+    end = bend + 1j * complex(rotation.epsilon[k]) * radius
     return (
         NamedVector("", start, bend, "normal", Symbol("a", index, "n")),
         NamedVector("", bend, end, "tangential", Symbol("a", index, "τ")),
@@ -225,7 +225,7 @@ def _sliding_parts(motion: Motion, k: int, stone: SlidingBlock, start: complex) 
 
 def _corners(pairs: Sequence[VectorPair], ends: Mapping[str, complex], least: float) -> dict[str, complex]:
     """Return letters of the points in which two components meet: n₁, n₂, ..., k; none if one of them is zero."""
-    found: dict[str, complex] = {}
+    corners: dict[str, complex] = {}
     for letter, kind in (("n", "normal"), ("k", "coriolis")):
         bends = [
             first.end
@@ -233,8 +233,8 @@ def _corners(pairs: Sequence[VectorPair], ends: Mapping[str, complex], least: fl
             if first.kind == kind and min(map(abs, (first.value, last.value))) > least
         ]
         for number, bend in enumerate(bends, 1):
-            found[distinct_letter(ends, letter + (subscript(str(number)) if len(bends) > 1 else ""))] = bend
-    return found
+            corners[distinct_letter(ends, letter + (subscript(str(number)) if len(bends) > 1 else ""))] = bend
+    return corners
 
 
 def _segment_letters(vector: NamedVector, lettered: Mapping[str, complex], least: float) -> str:
@@ -281,33 +281,35 @@ def plan_readings(plan: Plan) -> list[PlanReading]:
     """
     least = NO_VECTOR * plan.size
     turning = {v.symbol.below for v in plan.vectors if v.kind in PART_KINDS and abs(v.value) > least}
-    found: dict[complex | int, PlanReading] = {}
+    readings: dict[complex | int, PlanReading] = {}
     for number, vector in enumerate(plan.vectors):
-        size = abs(vector.value)
+        magnitude = abs(vector.value)
         if vector.kind in PART_KINDS and vector.symbol.below not in turning:
             continue
         key: complex | int = number
         if vector.kind == "absolute":
             key = next(
-                (end for end in found if isinstance(end, complex) and abs(end - vector.end) <= least), vector.end
+                (end for end in readings if isinstance(end, complex) and abs(end - vector.end) <= least), vector.end
             )
-        if key in found:
-            found[key] = PlanReading((*found[key].symbols, vector.symbol), found[key].segment, found[key].size)
+        if key in readings:
+            readings[key] = PlanReading(
+                (*readings[key].symbols, vector.symbol), readings[key].segment, readings[key].size
+            )
         else:
-            found[key] = PlanReading(
-                (vector.symbol,), vector.name if size > least else "", size if size > least else 0.0
+            readings[key] = PlanReading(
+                (vector.symbol,), vector.name if magnitude > least else "", magnitude if magnitude > least else 0.0
             )
-    return list(found.values())
+    return list(readings.values())
 
 
-def angular_values(motion: Motion, k: int, what: Literal["omega", "epsilon"]) -> Iterable[AngularValue]:
+def angular_values(motion: Motion, k: int, quantity: Literal["omega", "epsilon"]) -> Iterable[AngularValue]:
     """Yield omega or epsilon at position k of all links that rotate in any of the positions."""
-    letter = {"omega": "ω", "epsilon": "ε"}[what]
+    letter = {"omega": "ω", "epsilon": "ε"}[quantity]
     links = {link: motion.link(link) for link in motion.linkage.moving}
-    rates = {link: getattr(own, what) for link, own in links.items()}
+    rates = {link: getattr(rotation, quantity) for link, rotation in links.items()}
     largest = max((float(np.nanmax(np.abs(rate))) for rate in rates.values()), default=0.0)
-    if what == "epsilon":  # where all turn evenly, rounding is small against omega squared only
-        largest = max([largest, *(float(np.nanmax(np.abs(own.omega))) ** 2 for own in links.values())])
+    if quantity == "epsilon":  # where all turn evenly, rounding is small against omega squared only
+        largest = max([largest, *(float(np.nanmax(np.abs(rotation.omega))) ** 2 for rotation in links.values())])
     for link, rate in rates.items():
         if np.nanmax(np.abs(rate)) > NO_VECTOR * largest:
             value = float(rate[k])

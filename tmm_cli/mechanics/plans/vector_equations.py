@@ -99,8 +99,8 @@ class SolutionStep:
 
 def solution_steps(linkage: Linkage, groups: Sequence[Group]) -> list[SolutionStep]:
     """Return the steps: driving links on the frame, then the groups in their order."""
-    way = _EquationBuilder(linkage, solution_rank(linkage, groups))
-    return [*(way.driving(driver) for driver in linkage.cranks), *(way.group(group) for group in groups)]
+    builder = _EquationBuilder(linkage, solution_rank(linkage, groups))
+    return [*(builder.driving(driver) for driver in linkage.cranks), *(builder.group(group) for group in groups)]
 
 
 def motion_points(linkage: Linkage, link: str) -> list[str]:
@@ -110,8 +110,8 @@ def motion_points(linkage: Linkage, link: str) -> list[str]:
     points = list(linkage.links[link].points)
     shared = {h.point for h in linkage.hinges if link in h.links}
     running = {s.at for s in linkage.slides if s.runner == link}
-    told = [p for p in points if p in shared or linkage.local(link, p) in running]
-    return told if len(told) > 1 else points
+    joints = [p for p in points if p in shared or linkage.local(link, p) in running]
+    return joints if len(joints) > 1 else points
 
 
 def solution_rank(linkage: Linkage, groups: Iterable[Group]) -> dict[str, int]:
@@ -135,8 +135,10 @@ class _EquationBuilder:
         self.linkage, self.rank = linkage, rank
         self.turns = {link: link for link in linkage.links}
         for slide in linkage.slides:
-            one, other = sorted((self.turns[slide.carrier], self.turns[slide.runner]), key=list(linkage.links).index)
-            self.turns = {link: one if first == other else first for link, first in self.turns.items()}
+            earlier, other = sorted(
+                (self.turns[slide.carrier], self.turns[slide.runner]), key=list(linkage.links).index
+            )
+            self.turns = {link: earlier if first == other else first for link, first in self.turns.items()}
         self.known = {FRAME}
         self.slid: set[str] = set()
 
@@ -162,7 +164,7 @@ class _EquationBuilder:
                 self.known.add(self.turns[driver.link])
         ratios = self._ratios(group)
         spots = {link: self._of_group(group, link) for link in group.links}
-        base = {link: min(own, key=self._order) for link, own in spots.items() if own}
+        base = {link: min(link_points, key=self._order) for link, link_points in spots.items() if link_points}
         equations: list[VectorEquation] = [
             self._about(spot, base[link], link) for link in base for spot in spots[link] if spot != base[link]
         ]
@@ -171,8 +173,8 @@ class _EquationBuilder:
         unknown = len(turned) + sum(not e.known for e in equations if not isinstance(e, SameLinkEquation))
         self.known |= turned
         self.slid |= {pair.slide.name for pair in (*group.inner, *group.outer) if pair.slide is not None}
-        told = [spot.name for own in spots.values() for spot in own]
-        after = [about for link in base for about in self._others(link, base[link], told)]
+        solved = [spot.name for link_points in spots.values() for spot in link_points]
+        after = [about for link in base for about in self._others(link, base[link], solved)]
         return SolutionStep(
             group.links,
             group.drivers,
@@ -198,38 +200,38 @@ class _EquationBuilder:
 
     def _of_group(self, group: Group, link: str) -> list[PlanPoint]:
         """Return points of a link in pairs of its group, those that are solved first before the others."""
-        found: list[PlanPoint] = []
+        points: list[PlanPoint] = []
         for pair in (*group.outer, *group.inner):
             if link not in (pair.i, pair.j) or not pair.lower:
                 continue
             slide = pair.slide
             if slide is None:
-                found.append(self._spot(pair.point))
+                points.append(self._spot(pair.point))
             elif FRAME in (slide.carrier, slide.runner):
-                found.append(self._running(link, slide))
+                points.append(self._running(link, slide))
             else:
-                found.append(self._spot(slide.point) if link == slide.runner else coincident_point(slide))
-        return sorted(dict.fromkeys(found), key=self._order)
+                points.append(self._spot(slide.point) if link == slide.runner else coincident_point(slide))
+        return sorted(dict.fromkeys(points), key=self._order)
 
     def _about(self, point: PlanPoint, base: PlanPoint, link: str) -> SameLinkEquation:
         return SameLinkEquation(point, base, link, self.turns[link] in self.known, self.turns[link] == FRAME)
 
     def _of_slides(self, group: Group) -> Iterable[VectorEquation]:
         for slide in (pair.slide for pair in (*group.outer, *group.inner) if pair.slide is not None):
-            known = slide.name in self.slid
+            solved = slide.name in self.slid
             if FRAME in (slide.carrier, slide.runner):
                 yield FixedGuideEquation(
-                    self._running(slide.runner if slide.carrier == FRAME else slide.carrier, slide), slide, known
+                    self._running(slide.runner if slide.carrier == FRAME else slide.carrier, slide), slide, solved
                 )
                 continue
             if slide.carrier not in group.links:  # its guide is known as a whole
                 points = motion_points(self.linkage, slide.carrier)
                 yield self._about(coincident_point(slide), min(map(self._spot, points), key=self._order), slide.carrier)
-            yield MovingGuideEquation(self._spot(slide.point), coincident_point(slide), slide, known)
+            yield MovingGuideEquation(self._spot(slide.point), coincident_point(slide), slide, solved)
 
-    def _others(self, link: str, base: PlanPoint, told: Collection[str]) -> tuple[SameLinkEquation, ...]:
+    def _others(self, link: str, base: PlanPoint, solved: Collection[str]) -> tuple[SameLinkEquation, ...]:
         """Equations of further points of a link, without free ends of cylinders and oscillating rods."""
-        points = [p for p in motion_points(self.linkage, link) if p not in told and p != base.name]
+        points = [p for p in motion_points(self.linkage, link) if p not in solved and p != base.name]
         if not base.fixed and any(link in (slide.carrier, slide.runner) for slide in self.linkage.slides):
             running = {slide.point for slide in self.linkage.slides}
             points = [p for p in points if len(self.linkage.carriers(p)) > 1 or p in running]
@@ -237,29 +239,29 @@ class _EquationBuilder:
 
     def _same(self, group: Group, before: Collection[str]) -> tuple[tuple[str, ...], ...]:
         """Return links of the group that rotate together, after one that was known before."""
-        found = []
+        rotating = []
         for first in dict.fromkeys(self.turns[link] for link in group.links):
             earlier = [link for link in before if self.turns[link] == first][:1]
             links = [*earlier, *(link for link in group.links if self.turns[link] == first)]
             if first != FRAME and len(links) > 1:
-                found.append(tuple(links))
-        return tuple(found)
+                rotating.append(tuple(links))
+        return tuple(rotating)
 
     def _ratios(self, group: Group) -> tuple[HigherPairRatio, ...]:
         """Return higher pairs of the group with a single unknown, in the order in which they can be used."""
         meshes = [pair.mesh for pair in (*group.outer, *group.inner) if pair.mesh is not None]
-        found: list[HigherPairRatio] = []
+        ratios: list[HigherPairRatio] = []
         for _ in meshes:
             for mesh in meshes:
                 slide = self.linkage.slide(mesh.slide) if mesh.slide else None
                 wheels = (mesh.i, mesh.carrier) if slide is not None else (mesh.i, mesh.j, mesh.carrier)
                 links = [link for link in wheels if self.turns[link] not in self.known]
                 slides = [] if slide is None or slide.name in self.slid else [slide]
-                if len(links) + len(slides) == 1 and mesh not in [ratio.mesh for ratio in found]:
-                    found.append(HigherPairRatio(mesh, links[0]) if links else HigherPairRatio(mesh, slide=slides[0]))
+                if len(links) + len(slides) == 1 and mesh not in [ratio.mesh for ratio in ratios]:
+                    ratios.append(HigherPairRatio(mesh, links[0]) if links else HigherPairRatio(mesh, slide=slides[0]))
                     self.known |= {self.turns[link] for link in links}
                     self.slid |= {s.name for s in slides}
-        return tuple(found)
+        return tuple(ratios)
 
 
 def coincident_point(slide: Slide) -> PlanPoint:
