@@ -50,21 +50,21 @@ class MovingBody:
         """Attach marks drawn in the first frame to the body."""
         self.marks += [_in_body_axes(mark, self.own) for mark in marks]
 
-    def at(self, own: Any, k: int) -> Any:
+    def at(self, local_place: Any, k: int) -> Any:
         """Return a place of the body on the sheet in frame k."""
-        local = np.real(own) * self.stretch[k] + 1j * np.imag(own)
+        local = np.real(local_place) * self.stretch[k] + 1j * np.imag(local_place)
         return self.place[k] + local * np.exp(1j * self.angle[k])
 
 
-def _in_body_axes(mark: Mark, own: Callable[[complex], complex]) -> Mark:
+def _in_body_axes(mark: Mark, to_body: Callable[[complex], complex]) -> Mark:
     match mark:
         case LineMark():
-            return replace(mark, places=tuple(map(own, mark.places)))
+            return replace(mark, places=tuple(map(to_body, mark.places)))
         case AreaMark():
-            return replace(mark, corners=tuple(map(own, mark.corners)))
+            return replace(mark, corners=tuple(map(to_body, mark.corners)))
         case CircleMark():
-            return replace(mark, centre=own(mark.centre))
-    return replace(mark, at=own(mark.at))
+            return replace(mark, centre=to_body(mark.centre))
+    return replace(mark, at=to_body(mark.at))
 
 
 @dataclass
@@ -104,18 +104,20 @@ class MechanismPicture:
             if SPRING_BODY.format(spring.name) in parts and length.min() > 0:
                 angle = np.unwrap(np.angle(end - start))
                 picture.bodies[SPRING_BODY.format(spring.name)] = MovingBody(start, angle, length / length[0])
-        for name, which in sheet.parts:
+        for name, indices in sheet.parts:
             if name in picture.bodies:
-                picture.bodies[name].take(sheet.marks[which])
+                picture.bodies[name].take(sheet.marks[indices])
         return picture
 
     def _masses(self) -> None:
         """Draw centres of mass that are not named points."""
         for link in self.scene.linkage.moving:
-            own = self.scene.linkage.links[link]
-            if np.any(own.mass != 0) and all(abs(own.centre - local) > 0 for local in own.points.values()):
+            properties = self.scene.linkage.links[link]
+            if np.any(properties.mass != 0) and all(
+                abs(properties.centre - local) > 0 for local in properties.points.values()
+            ):
                 with self.sheet.part(link):
-                    draw_mass_centre(self.sheet, self.sheet.on(self.scene.place(link, complex(own.centre))))
+                    draw_mass_centre(self.sheet, self.sheet.on(self.scene.place(link, complex(properties.centre))))
 
     def _spots(self, link: str, local: complex) -> Vector:
         """Places of a point of a link on the sheet, in all frames."""
@@ -125,9 +127,9 @@ class MechanismPicture:
 
     def layers(self) -> Iterator[tuple[str, list[Mark]]]:
         """Yield marks of bodies from the lowest to the highest layer."""
-        every = [(mark.z, name, mark) for name, own in self.bodies.items() for mark in own.marks]
-        every.sort(key=lambda one: one[0])
-        for name, layer in groupby(every, key=lambda one: one[1]):
+        marks = [(mark.z, name, mark) for name, body in self.bodies.items() for mark in body.marks]
+        marks.sort(key=lambda entry: entry[0])
+        for name, layer in groupby(marks, key=lambda entry: entry[1]):
             yield name, [mark for *__, mark in layer]
 
 
@@ -144,13 +146,13 @@ def body_labels(picture: MechanismPicture, names: Sequence[str]) -> list[dict[st
     """Return names of points beyond the ends of links and numbers beside links, in axes of the bodies that carry
     them.
     """
-    linkage, found = picture.scene.linkage, dict[tuple[str, complex], list[str]]()
+    linkage, names_by_place = picture.scene.linkage, dict[tuple[str, complex], list[str]]()
     for name in {point: None for link in (FRAME, *linkage.moving) for point in linkage.links[link].points}:
-        there = [link for link in (FRAME, *linkage.moving) if name in linkage.links[link].points]
+        owners = [link for link in (FRAME, *linkage.moving) if name in linkage.links[link].points]
         # on a link with more points there is a way out
-        carrier = FRAME if FRAME in there else max(there, key=lambda link: len(linkage.links[link].points) > 1)
+        carrier = FRAME if FRAME in owners else max(owners, key=lambda link: len(linkage.links[link].points) > 1)
         local = complex(linkage.local(carrier, name))
-        found.setdefault((carrier, complex(round(local.real, 9), round(local.imag, 9))), []).append(name)
+        names_by_place.setdefault((carrier, complex(round(local.real, 9), round(local.imag, 9))), []).append(name)
     points = [
         {
             "body": names.index(link),
@@ -158,7 +160,7 @@ def body_labels(picture: MechanismPicture, names: Sequence[str]) -> list[dict[st
             "text": ", ".join(text),
             "kind": "point",
         }
-        for (link, local), text in found.items()
+        for (link, local), text in names_by_place.items()
     ]
     numbers = [
         {"body": names.index(link), "at": page_coordinates(_number_place(picture, link)), "text": link, "kind": "link"}
@@ -174,26 +176,26 @@ def _point_label_place(picture: MechanismPicture, link: str, local: complex) -> 
     at, driven = sheet.on(scene.place(link, local)), cylinder_drivers(scene.linkage)
     slides = [slide for slide in scene.linkage.slides if slide.name not in driven]
     boxed = any(abs(sheet.on(scene.place(slide.runner, slide.at)) - at) < ON_LINE for slide in slides)
-    own = picture.bodies[link].own(at)
+    label = picture.bodies[link].own(at)
     if link == FRAME:
-        return own + LABEL_DISTANCE * (-1 if at.real < sheet.origin.real else 1)
-    places = [sheet.on(scene.place(link, complex(z))) for z in scene.linkage.links[link].points.values()]
-    out = own - picture.bodies[link].own(sum(places) / len(places))
-    return own + (2 * LABEL_DISTANCE if boxed else LABEL_DISTANCE) * (
+        return label + LABEL_DISTANCE * (-1 if at.real < sheet.origin.real else 1)
+    points = [sheet.on(scene.place(link, complex(z))) for z in scene.linkage.links[link].points.values()]
+    out = label - picture.bodies[link].own(sum(points) / len(points))
+    return label + (2 * LABEL_DISTANCE if boxed else LABEL_DISTANCE) * (
         out / abs(out) if abs(out) > 1 else complex(0.8, 0.6)
     )
 
 
 def _number_place(picture: MechanismPicture, link: str) -> complex:
     """Place of a link's number in its axes: on its plate, beside its longest line, or beside its box."""
-    form, own = picture.forms[link], picture.bodies[link].own
+    form, to_body = picture.forms[link], picture.bodies[link].own
     if len(form.hull) > 2:
-        return own(form.middle)
+        return to_body(form.middle)
     start, end = max(form.lines, key=lambda line: abs(line[1] - line[0]), default=(0j, 0j))
     if abs(end - start) > 1:
-        return own(form.middle + 3j * (end - start) / abs(end - start))
+        return to_body(form.middle + 3j * (end - start) / abs(end - start))
     slide = next((slide for slide in picture.scene.linkage.slides if slide.runner == link), None)
-    return own(form.middle + (1 - 1j if slide is None else -1j * picture.scene.along(slide)) * NUMBER_DISTANCE)
+    return to_body(form.middle + (1 - 1j if slide is None else -1j * picture.scene.along(slide)) * NUMBER_DISTANCE)
 
 
 def page_coordinates(z: complex) -> list[float]:

@@ -44,13 +44,13 @@ def plan_data(motion: Motion, sort: MotionPlanKind) -> dict[str, Any]:
     """
     plans = [sort.plan(motion, k) for k in range(len(motion.q))]
     first = plans[0]
-    size = float(np.percentile([plan.size for plan in plans], 95)) or 1.0
+    extent = float(np.percentile([plan.size for plan in plans], 95)) or 1.0
     points: list[Vector] = []
 
-    def index(places: Iterable[complex]) -> int:
-        course = np.array(list(places))
+    def index(ends: Iterable[complex]) -> int:
+        course = np.array(list(ends))
         for number, other in enumerate(points):
-            if np.max(np.abs(other - course)) < LEAST_DISTANCE * size:
+            if np.max(np.abs(other - course)) < LEAST_DISTANCE * extent:
                 return number
         points.append(course)
         return len(points) - 1
@@ -70,9 +70,9 @@ def plan_data(motion: Motion, sort: MotionPlanKind) -> dict[str, Any]:
                 "width": 0.45 if mass or vector.kind != "absolute" else 0.7,
             }
     below = sorted(vectors.values(), key=lambda vector: vector["colour"] != THIN_COLOUR)
-    every = np.concatenate(points)
-    every = every[np.abs(every) <= SIZE_LIMIT * size]
-    scale = PLAN_SIDE / (max(np.ptp(every.real), np.ptp(every.imag)) or 1.0)
+    all_points = np.concatenate(points)
+    all_points = all_points[np.abs(all_points) <= SIZE_LIMIT * extent]
+    scale = PLAN_SIDE / (max(np.ptp(all_points.real), np.ptp(all_points.imag)) or 1.0)
     return {
         "title": (_("Velocity plan, {unit}") if sort.letter == "v" else _("Acceleration plan, {unit}")).format(
             unit=spelt(sort.unit)
@@ -81,13 +81,13 @@ def plan_data(motion: Motion, sort: MotionPlanKind) -> dict[str, Any]:
         "vectors": below,
         "letters": [{"point": n, "text": _join_letters(text)} for n, text in letters.items()],
         "scale": float(f"{scale:.5g}"),
-        "view": [round(side, 1) for side in field_sides(every * scale, PLAN_MARGIN)],
+        "view": [round(side, 1) for side in field_sides(all_points * scale, PLAN_MARGIN)],
     }
 
 
-def field_sides(places: Vector, room: float) -> tuple[float, float, float, float]:
+def field_sides(points: Vector, room: float) -> tuple[float, float, float, float]:
     """Return left, top (y down), width and height of a field with a margin around places."""
-    x, y = places.real, -places.imag
+    x, y = points.real, -points.imag
     return float(x.min()) - room, float(y.min()) - room, float(np.ptp(x)) + 2 * room, float(np.ptp(y)) + 2 * room
 
 
@@ -120,14 +120,14 @@ def chart_data(results: Results, quantities: QuantityPlot) -> dict[str, Any]:
 
 def position_marks(results: Results, motion: Motion) -> list[list[Any]]:
     """Return the places of the numbered positions among the frames."""
-    found = []
+    marks = []
     for number, q in zip(results.numbers, results.asked[list(results.numbers)].tolist(), strict=True):
         k = int(np.argmin(np.abs(motion.q - q)))
         step = abs(motion.q[-1] - motion.q[0]) / (len(motion.q) - 1)
         ahead = float((q - motion.q[k]) / (motion.q[-1] - motion.q[0]) * (len(motion.q) - 1))
         if abs(q - motion.q[k]) <= 1.01 * step:
-            found.append([round(k + ahead, 3), str(number)])
-    return found
+            marks.append([round(k + ahead, 3), str(number)])
+    return marks
 
 
 def round_figures(values: Any, digits: int) -> list[float | None]:

@@ -62,15 +62,15 @@ def sweep_sheets(title: str, sweep: SweepResults, units: UnitSystem) -> Iterable
     """Yield every sheet with the stem of its file name."""
     if len(sweep.axes) == 1:
         parts = [range(first, min(first + PANELS, len(sweep.shown))) for first in range(0, len(sweep.shown), PANELS)]
-        for number, part in enumerate(parts):
-            yield (f"sweep-{number + 1}" if len(parts) > 1 else "sweep"), curve_sheet(title, sweep, part, units)
+        for number, panels in enumerate(parts):
+            yield (f"sweep-{number + 1}" if len(parts) > 1 else "sweep"), curve_sheet(title, sweep, panels, units)
         return
-    for k, one in enumerate(sweep.shown):
+    for k, quantity in enumerate(sweep.shown):
         if np.any(np.isfinite(sweep.values[:, k])):
-            yield f"sweep-{file_safe_name(one.name)}", contour_sheet(title, sweep, k, units)
+            yield f"sweep-{file_safe_name(quantity.name)}", contour_sheet(title, sweep, k, units)
 
 
-def curve_sheet(title: str, sweep: SweepResults, part: Sequence[int], units: UnitSystem) -> Drawing:
+def curve_sheet(title: str, sweep: SweepResults, indices: Sequence[int], units: UnitSystem) -> Drawing:
     """Draw some of the quantities over one parameter, one panel each."""
     (axis,) = sweep.axes
     caption = _("Quantities as functions of {parameter}; dense hatching: no mechanism; wide hatching: limit exceeded")
@@ -78,20 +78,24 @@ def curve_sheet(title: str, sweep: SweepResults, part: Sequence[int], units: Uni
     start, most = axis_extent(sheet)
     over = filling_axis(float(axis.values[0]), float(axis.values[-1]), start, most)
     plots = []
-    for k in part:
-        one = sweep.shown[k]
-        values = sweep.values[:, k] / units.factor(one.dimension)
+    for k in indices:
+        quantity = sweep.shown[k]
+        values = sweep.values[:, k] / units.factor(quantity.dimension)
         plots.append(
-            PlotContent(_quantity_label(one, units), [ChartCurve(axis.values, values)], degrees=_in_degrees(one, units))
+            PlotContent(
+                _quantity_label(quantity, units),
+                [ChartCurve(axis.values, values)],
+                degrees=_in_degrees(quantity, units),
+            )
         )
     ends = [float(axis.values[0]), *(mark.at[0] for mark in sweep.marks), float(axis.values[-1])]
-    goes = [*(mark.before for mark in sweep.marks), int(sweep.state[-1])]
-    spans = [(low, high, translated(STATE_WORDS[n])) for (low, high), n in zip(pairwise(ends), goes, strict=True)]
+    states = [*(mark.before for mark in sweep.marks), int(sweep.state[-1])]
+    spans = [(low, high, translated(STATE_WORDS[n])) for (low, high), n in zip(pairwise(ends), states, strict=True)]
     panels = draw_chart(sheet, plots, CommonAxis(over, _axis_label(axis), spans=spans if sweep.marks else ()))
     for panel, plot in zip(panels, plots, strict=True):
         for curve in plot.curves:
             sheet.canvas.path(panel.at(curve.xs, curve.ys)[:: max(1, len(curve.xs) // 200)].tolist())
-        for (low, high), n in zip(pairwise(ends), goes, strict=True):
+        for (low, high), n in zip(pairwise(ends), states, strict=True):
             if n >= LIMIT:
                 _hatch_stretch(panel, low, high, fails=n >= STOPS)
     for mark in sweep.marks[:LABELLED_BORDERS]:
@@ -121,8 +125,8 @@ def _label_border(panel: Panel, axis: SweepAxis, mark: Border) -> None:
 
 def contour_sheet(title: str, sweep: SweepResults, k: int, units: UnitSystem) -> Drawing:
     """Draw contour lines of quantity k over both parameters."""
-    one = sweep.shown[k]
-    caption = _("{quantity}: contour lines over two parameters").format(quantity=_quantity_label(one, units))
+    quantity = sweep.shown[k]
+    caption = _("{quantity}: contour lines over two parameters").format(quantity=_quantity_label(quantity, units))
     sheet = DrawingSheet(title, caption, paper=LANDSCAPE)
     low, high = sheet.canvas.low, sheet.canvas.high
     across, up = sweep.axes
@@ -140,7 +144,7 @@ def contour_sheet(title: str, sweep: SweepResults, k: int, units: UnitSystem) ->
     sheet.text(complex((x.start + x.end) / 2, low.imag + 1.5), _axis_label(across), PLAIN_TEXT, ha="center")
     sheet.text(complex(low.real, high.imag - TEXT_ROW / 2), _axis_label(up), PLAIN_TEXT)
     columns, rows = (_drawn_nodes(len(axis.values)) for axis in sweep.axes)
-    values = (sweep.values[:, k] / units.factor(one.dimension)).reshape(sweep.shape)[np.ix_(columns, rows)]
+    values = (sweep.values[:, k] / units.factor(quantity.dimension)).reshape(sweep.shape)[np.ix_(columns, rows)]
     state = sweep.state.reshape(sweep.shape)[np.ix_(columns, rows)]
     lines = _Grid(panel, sweep, (columns, rows))
     drawn = [
@@ -150,7 +154,7 @@ def contour_sheet(title: str, sweep: SweepResults, k: int, units: UnitSystem) ->
     ]
     for fails, __ in drawn:
         lines.hatched(state, fails=fails)
-    _draw_levels(lines, values, degrees=_in_degrees(one, units))
+    _draw_levels(lines, values, degrees=_in_degrees(quantity, units))
     _draw_legend(panel, drawn)
     return sheet.finish()
 
@@ -174,20 +178,20 @@ class _Grid:
             if axes[across][line] == mark.at[across]:
                 self.marks.setdefault((mark.along, line), []).append(mark.at[mark.along])
 
-    def on(self, places: Any) -> Any:
+    def on(self, nodes: Any) -> Any:
         """Return places column + i row on paper, mm."""
-        found = np.asarray(places)
-        x = np.interp(found.real, np.arange(len(self.x)), self.x)
-        y = np.interp(found.imag, np.arange(len(self.y)), self.y)
+        grid = np.asarray(nodes)
+        x = np.interp(grid.real, np.arange(len(self.x)), self.x)
+        y = np.interp(grid.imag, np.arange(len(self.y)), self.y)
         return self.panel.at(x, y)
 
-    def share(self, one: tuple[int, int], other: tuple[int, int]) -> float:
+    def share(self, start: tuple[int, int], end: tuple[int, int]) -> float:
         """Return the fraction of the distance between two nodes at which a border was found."""
-        along = 0 if one[0] != other[0] else 1
+        along = 0 if start[0] != end[0] else 1
         values = (self.x, self.y)[along]
-        low, high = float(values[one[along]]), float(values[other[along]])
-        found = [at for at in self.marks.get((along, one[1 - along]), ()) if low <= at <= high]
-        return (found[0] - low) / (high - low) if found else 0.5
+        low, high = float(values[start[along]]), float(values[end[along]])
+        borders = [at for at in self.marks.get((along, start[1 - along]), ()) if low <= at <= high]
+        return (borders[0] - low) / (high - low) if borders else 0.5
 
     def hatched(self, state: Any, *, fails: bool) -> None:
         """Hatch the region without a mechanism, or beyond a limit, and outline it."""
@@ -209,12 +213,12 @@ def _draw_levels(lines: _Grid, values: Any, *, degrees: bool) -> None:
     sheet = lines.panel.sheet
     step = round_up((high - low) / LEVELS, TICK_STEPS)
     for n in range(int(np.ceil(low / step)), int(np.floor(high / step)) + 1):
-        found = [lines.on(line) for line in contour_lines(values, n * step)]
-        lengths = [float(np.sum(np.abs(np.diff(line)))) for line in found]
-        for line in found:
+        contours = [lines.on(line) for line in contour_lines(values, n * step)]
+        lengths = [float(np.sum(np.abs(np.diff(line)))) for line in contours]
+        for line in contours:
             sheet.line(line.tolist(), INERTIA_COLOUR, 0.9, z=2, faint=True)
-        if found and max(lengths) > LEAST:
-            line = found[int(np.argmax(lengths))]
+        if contours and max(lengths) > LEAST:
+            line = contours[int(np.argmax(lengths))]
             k = len(line) // 2
             text = numeral(n * step, ".10g") + ("°" if degrees else "")
             sheet.text(complex(line[k]), text, SMALL_TEXT, colour=INERTIA_COLOUR, ha="center")
@@ -238,12 +242,12 @@ def _draw_legend(panel: Panel, drawn: Sequence[tuple[bool, str]]) -> None:
         at += SAMPLE + 5 + text_width(text, SMALL_TEXT * POINT)
 
 
-def _in_degrees(one: ShownQuantity, units: UnitSystem) -> bool:
-    return one.dimension == ANGLE and units.symbol(ANGLE) == "deg"
+def _in_degrees(quantity: ShownQuantity, units: UnitSystem) -> bool:
+    return quantity.dimension == ANGLE and units.symbol(ANGLE) == "deg"
 
 
-def _quantity_label(one: ShownQuantity, units: UnitSystem) -> str:
-    return with_unit(one.words, one.dimension, units)
+def _quantity_label(quantity: ShownQuantity, units: UnitSystem) -> str:
+    return with_unit(quantity.words, quantity.dimension, units)
 
 
 def _axis_label(axis: SweepAxis) -> str:

@@ -100,23 +100,26 @@ class SweptMechanisms:
         problem = self.task.problem.whole
         if "synthesis" in self.task.tree.data or problem.dynamics is not None:
             return None
-        own = [self.task.number(v, d) for v, d in zip(self.task.own(self.names), self.dimensions, strict=True)]
-        at_positions = [one for one in self.shown if not one.whole]
+        file_numbers = [self.task.number(v, d) for v, d in zip(self.task.own(self.names), self.dimensions, strict=True)]
+        at_positions = [quantity for quantity in self.shown if not quantity.whole]
 
         def read(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
-            taped = FirstLinkMotion(**{field.name: getattr(motion, field.name) for field in fields(motion)})
-            return {one.name: one.at_positions(SolvedVariants(taped.linkage, taped, reactions)) for one in at_positions}
+            traced = FirstLinkMotion(**{field.name: getattr(motion, field.name) for field in fields(motion)})
+            return {
+                quantity.name: quantity.at_positions(SolvedVariants(traced.linkage, traced, reactions))
+                for quantity in at_positions
+            }
 
         try:
-            turning = CrankVariants(
+            crank = CrankVariants(
                 lambda numbers: self.task.make(self.names, self.dimensions, numbers),
-                own,
+                file_numbers,
                 read,
-                forces=any(one.forces for one in at_positions),
+                forces=any(quantity.forces for quantity in at_positions),
             )
             with np.errstate(all="ignore"):
-                looked = scan_variants(turning, np.array([own]), ScanRequest())
-            return turning if looked.does[0] == SCAN_WORKS and looked.sure[0] else None
+                scanned = scan_variants(crank, np.array([file_numbers]), ScanRequest())
+            return crank if scanned.does[0] == SCAN_WORKS and scanned.sure[0] else None
         except (NoTapeError, DependsOnData):
             return None
         except LinkageError as error:
@@ -126,7 +129,7 @@ class SweptMechanisms:
     def limits(self) -> dict[str, float]:
         """Limits of limited curves, by their names in the trace."""
         assert self.turning is not None
-        return {one.name: curve_limit(one, self.allowed) for one in self.turning.limited}
+        return {curve.name: curve_limit(curve, self.allowed) for curve in self.turning.limited}
 
     @cached_property
     def goes(self) -> bool:
@@ -136,79 +139,79 @@ class SweptMechanisms:
     def at(self, points: Real, *, values: bool = True) -> SweepPoints:
         """Solve points in the units of the file, (points, parameters). values: False: states only."""
         count = len(points)
-        found = SweepPoints(
+        solved = SweepPoints(
             np.zeros(count, dtype=int),
             [""] * count,
             np.full((count, len(self.shown)), np.nan),
             np.full((count, len(self.tables), 2), np.nan),
         )
         if self.turning is None:
-            self._one_by_one(points, np.arange(count), found)
-            return found
+            self._one_by_one(points, np.arange(count), solved)
+            return solved
         parts = np.array_split(np.arange(count), -(-count // BLOCK))
-        left = [self._taped(points, part, found, values) for part in parts]
+        left = [self._taped(points, part, solved, values) for part in parts]
         unsure, otherwise = (np.concatenate(rows) for rows in zip(*left, strict=True))
         for row in unsure[MOST_DOUBTFUL:]:
-            found.why[row] = _("the output moves differently from that of the problem file")
+            solved.why[row] = _("the output moves differently from that of the problem file")
         for row in otherwise[MOST_DOUBTFUL:]:
-            found.state[row] = REFUSED
-            found.why[row] = _(
+            solved.state[row] = REFUSED
+            solved.why[row] = _(
                 "not examined: too many of the mechanisms have another structure of data than the file's own"
             )
-        self._one_by_one(points, otherwise[:MOST_DOUBTFUL], found)
+        self._one_by_one(points, otherwise[:MOST_DOUBTFUL], solved)
         for row in unsure[:MOST_DOUBTFUL]:
-            state, found.why[row], found.values[row], found.reach[row] = self._alone(points[row])
-            found.state[row] = found.state[row] if state == REFUSED else state  # it goes, but lacks what is asked
-        return found
+            state, solved.why[row], solved.values[row], solved.reach[row] = self._alone(points[row])
+            solved.state[row] = solved.state[row] if state == REFUSED else state  # it goes, but lacks what is asked
+        return solved
 
-    def _one_by_one(self, points: Real, rows: Iterable[int], found: SweepPoints) -> None:
+    def _one_by_one(self, points: Real, rows: Iterable[int], solved: SweepPoints) -> None:
         for row in rows:
-            found.state[row], found.why[row], found.values[row], found.reach[row] = self._alone(points[row])
+            solved.state[row], solved.why[row], solved.values[row], solved.reach[row] = self._alone(points[row])
 
-    def _taped(self, points: Real, part: Real, found: SweepPoints, values: bool) -> tuple[Real, Real]:
-        """Solve the points `part` by the trace and store them in `found`.
+    def _taped(self, points: Real, indices: Real, solved: SweepPoints, values: bool) -> tuple[Real, Real]:
+        """Solve the points `indices` by the trace and store them in `solved`.
 
         Returns:
             Rows that need the ordinary stages, and rows whose linkage is built differently.
         """
         turning, nothing = self.turning, np.zeros(0, dtype=int)
         assert turning is not None
-        columns = points[part] * self.factors
+        columns = points[indices] * self.factors
         with np.errstate(all="ignore"):
             try:
                 varied, otherwise = turning.varied(columns)
             except (ProblemError, DependsOnData):
-                return nothing, part
+                return nothing, indices
             looked = scan_variants(
                 turning, columns, ScanRequest(self._pressures() if values else (), self.limits, values)
             )
             works = looked.does == SCAN_WORKS
-            found.state[part] = np.select([looked.does == SCAN_STOPS, looked.does == SCAN_APART], [STOPS, APART])
-            for one in turning.limited:
-                over = part[works & (looked.peaks[one.name] > self.limits[one.name])]
-                for row in over[found.state[over] == WORKS]:
-                    found.why[row] = f"{one.kind} {one.link}"
-                found.state[over] = LIMIT
+            solved.state[indices] = np.select([looked.does == SCAN_STOPS, looked.does == SCAN_APART], [STOPS, APART])
+            for curve in turning.limited:
+                over = indices[works & (looked.peaks[curve.name] > self.limits[curve.name])]
+                for row in over[solved.state[over] == WORKS]:
+                    solved.why[row] = f"{curve.kind} {curve.link}"
+                solved.state[over] = LIMIT
             unsure = values & works & ~looked.sure & ~otherwise
             rows = np.flatnonzero(works & looked.sure & ~otherwise)
             if values and rows.size:
-                whole = len(rows) == len(part)
-                own = varied if whole else turning.varied(columns[rows])[0]
+                whole = len(rows) == len(indices)
+                kept = varied if whole else turning.varied(columns[rows])[0]
                 try:
-                    found.values[part[rows]], found.reach[part[rows]] = self._values(
-                        columns[rows], looked.take(rows), own
+                    solved.values[indices[rows]], solved.reach[indices[rows]] = self._values(
+                        columns[rows], looked.take(rows), kept
                     )
                 except NoTapeError:
-                    return part, nothing
-        return part[unsure], part[otherwise]
+                    return indices, nothing
+        return indices[unsure], indices[otherwise]
 
     def _pressures(self) -> list[str]:
         """Names of the limited curves whose largest peak is the pressure angle, if it is shown."""
         assert self.turning is not None
-        if not any(one.name == PRESSURE for one in self.shown):
+        if not any(curve.name == PRESSURE for curve in self.shown):
             return []
-        angles = [one for one in self.turning.limited if one.kind == "pressure"]
-        return [one.name for one in angles if one.link == self.turning.output] or [one.name for one in angles]
+        angles = [curve for curve in self.turning.limited if curve.kind == "pressure"]
+        return [curve.name for curve in angles if curve.link == self.turning.output] or [curve.name for curve in angles]
 
     def _values(self, columns: Real, looked: ScanResults, varied: Any) -> tuple[Real, Real]:
         """Requested quantities of feasible variants, and the reach of their load tables."""
@@ -216,34 +219,34 @@ class SweptMechanisms:
         assert turning is not None
         strokes = variant_strokes(turning, columns, looked, varied)
         q, at = turning.over_cycle(columns, strokes)
-        at_positions = [one.name for one in self.shown if not one.whole]
+        at_positions = [quantity.name for quantity in self.shown if not quantity.whole]
         rows = np.arange(len(columns))
         over = at(rows, np.broadcast_to(q, (len(columns), len(q))), at_positions) if at_positions else {}
-        found = np.full((len(columns), len(self.shown)), np.nan)
-        for k, one in enumerate(self.shown):
-            if one.name == PRESSURE:
+        table = np.full((len(columns), len(self.shown)), np.nan)
+        for k, quantity in enumerate(self.shown):
+            if quantity.name == PRESSURE:
                 peaks = [looked.peaks[name] for name in self._pressures()]
-                found[:, k] = np.fmax.reduce(peaks) if peaks else np.nan
-            elif one.quantity is not None and one.whole:
-                found[:, k] = np.ravel(one.quantity.read(SolvedVariants(varied.linkage, strokes=strokes)))
+                table[:, k] = np.fmax.reduce(peaks) if peaks else np.nan
+            elif quantity.quantity is not None and quantity.whole:
+                table[:, k] = np.ravel(quantity.quantity.read(SolvedVariants(varied.linkage, strokes=strokes)))
             else:
-                values = np.broadcast_to(over[one.name], (len(columns), len(q)))
-                found[:, k] = one.over_cycle(_curve_reader(at, one.name), q, values)
-        return found, self._reach(varied.linkage, strokes, len(columns))
+                values = np.broadcast_to(over[quantity.name], (len(columns), len(q)))
+                table[:, k] = quantity.over_cycle(_curve_reader(at, quantity.name), q, values)
+        return table, self._reach(varied.linkage, strokes, len(columns))
 
     def _reach(self, linkage: Linkage, strokes: Strokes | None, count: int) -> Real:
         """Last rows of load tables against the stroke, and the strokes, (variants, loads, 2)."""
-        found = np.full((count, len(self.tables), 2), np.nan)
+        reach = np.full((count, len(self.tables), 2), np.nan)
         for load, last, stroke in table_lengths(linkage, strokes):
             k = self.tables.index(load.name)
-            found[:, k, 0], found[:, k, 1] = np.ravel(last), np.ravel(stroke)
-        return found
+            reach[:, k, 0], reach[:, k, 1] = np.ravel(last), np.ravel(stroke)
+        return reach
 
     def _alone(self, point: Real) -> tuple[int, str, Real, Real]:
         """Solve one point by the ordinary stages: state, reason, quantities, reach of its load tables."""
         nothing = np.full(len(self.shown), np.nan), np.full((len(self.tables), 2), np.nan)
         texts = {axis.name: axis.text(float(value)) for axis, value in zip(self.axes, point, strict=True)}
-        forces = any(one.forces for one in self.shown)
+        forces = any(check.forces for check in self.shown)
         try:
             problem = self._as_own(self.task.variant(texts).whole)
         except ProblemError as error:
@@ -255,8 +258,8 @@ class SweptMechanisms:
             return state, located_problem_error(error, problem).message, *nothing
         if self.goes and not measures.completes_range(results):
             return STOPS, "", *nothing
-        over = [f"pressure {one.link}" for one in results.pressure if not one.holds]
-        over += [f"slot {one.slide.name}" for one in results.slots if one.ways]
+        over = [f"pressure {check.link}" for check in results.pressure if not check.holds]
+        over += [f"slot {check.slide.name}" for check in results.slots if check.ways]
         with np.errstate(all="ignore"):
             reach = self._reach(results.linkage, results.strokes, 1)[0]
             state, why = (LIMIT, over[0]) if over else (WORKS, "")
@@ -268,10 +271,10 @@ class SweptMechanisms:
             return problem
         linkage = problem.linkage
         with np.errstate(all="ignore"):
-            shown = compute_sketch(linkage, [kernel.rebind(linkage) for kernel in self.turning.kernels])
-        if not all(np.isfinite(place) for place in (*shown.points.values(), *shown.angles.values())):
+            sketch = compute_sketch(linkage, [kernel.rebind(linkage) for kernel in self.turning.kernels])
+        if not all(np.isfinite(place) for place in (*sketch.points.values(), *sketch.angles.values())):
             return problem
-        return replace(problem, linkage=replace(linkage, sketch=shown), extended=None)
+        return replace(problem, linkage=replace(linkage, sketch=sketch), extended=None)
 
     def _of(self, results: Results) -> Real:
         """Requested quantities of a mechanism that was solved by the ordinary stages."""
@@ -284,16 +287,16 @@ class SweptMechanisms:
         }
         q = results.closely(CYCLE * max(results.turns, 1) + 1)
         read = _ResultsAtPlaces(results)
-        found = []
-        for one in self.shown:
-            if one.name in searched:
-                found.append(searched[one.name](results))
-            elif one.quantity is not None and one.whole:
-                found.append(float(np.ravel(one.quantity.read(results))[0]))
+        quantities = []
+        for quantity in self.shown:
+            if quantity.name in searched:
+                quantities.append(searched[quantity.name](results))
+            elif quantity.quantity is not None and quantity.whole:
+                quantities.append(float(np.ravel(quantity.quantity.read(results))[0]))
             else:
-                curves = partial(read.curves, one)
-                found.append(float(one.over_cycle(curves, q, curves(np.zeros(1), q[None, :]))[0]))
-        return np.array(found)
+                curves = partial(read.curves, quantity)
+                quantities.append(float(quantity.over_cycle(curves, q, curves(np.zeros(1), q[None, :]))[0]))
+        return np.array(quantities)
 
 
 def _curve_reader(
@@ -308,13 +311,13 @@ class _ResultsAtPlaces:
     def __init__(self, results: Results) -> None:
         self.results, self.q, self.there = results, np.empty(0), results
 
-    def curves(self, one: ShownQuantity, rows: Real, q: Real) -> Real:
+    def curves(self, quantity: ShownQuantity, rows: Real, q: Real) -> Real:
         """Return a quantity at driver coordinates (rows, n), the same mechanism in each row; nan where it cannot
         move.
         """
         if not np.array_equal(q.ravel(), self.q):
             self.q, self.there = q.ravel(), pipeline.results_at(self.results, q.ravel())
         assert self.there.motion is not None
-        values = np.broadcast_to(one.at_positions(self.there), self.q.shape)
-        found: Real = np.where(self.there.motion.moving & ~self.there.locked, values, np.nan).reshape(q.shape)
-        return found
+        values = np.broadcast_to(quantity.at_positions(self.there), self.q.shape)
+        curves: Real = np.where(self.there.motion.moving & ~self.there.locked, values, np.nan).reshape(q.shape)
+        return curves

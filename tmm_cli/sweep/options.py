@@ -62,24 +62,26 @@ def read_axes(task: Task, over: Sequence[str]) -> tuple[SweepAxis, ...]:
 
 
 def _read_axis(task: Task, text: str, usual: int) -> SweepAxis:
-    found = OVER_OPTION.fullmatch(text)
-    if found is None:
+    match = OVER_OPTION.fullmatch(text)
+    if match is None:
         raise ProblemError(
             _("expected a name, two bounds and optionally the number of values"), found=quote(text), allowed=EXAMPLE
         )
-    name, *ends, count = found.groups()
-    (own,) = task.dimensions((name,))
-    units = [part[2] for part in map(NUMBER_WITH_UNIT.fullmatch, ends[::-1]) if part]
+    name, *ends, count = match.groups()
+    (expected,) = task.dimensions((name,))
+    units = [number[2] for number in map(NUMBER_WITH_UNIT.fullmatch, ends[::-1]) if number]
     unit = next(filter(None, units), "") or _unit_in_file(task, name)
-    said: list[Any] = []
+    bounds: list[Any] = []
     for end in ends:
-        part = NUMBER_WITH_UNIT.fullmatch(end)
-        if part is None or (part[2] and part[2] != unit):
+        number = NUMBER_WITH_UNIT.fullmatch(end)
+        if number is None or (number[2] and number[2] != unit):
             raise ProblemError(_("expected two numbers in the same unit"), found=quote(end), allowed=EXAMPLE)
-        said.append(task.value(f"{part[1]} {unit}".strip()))
-    dimension = said[0].dimension
-    if own and dimension and not dimension.fits(own):
-        raise ProblemError(_("expected here: {want}").format(want=own), found=quote(text), allowed=own.example)
+        bounds.append(task.value(f"{number[1]} {unit}".strip()))
+    dimension = bounds[0].dimension
+    if expected and dimension and not dimension.fits(expected):
+        raise ProblemError(
+            _("expected here: {want}").format(want=expected), found=quote(text), allowed=expected.example
+        )
     low, high = (float(NUMBER_WITH_UNIT.fullmatch(end)[1]) for end in ends)  # type: ignore[index]
     if not low < high:
         raise ProblemError(_("the first bound must be smaller than the second"), found=quote(text), allowed=EXAMPLE)
@@ -90,7 +92,7 @@ def _read_axis(task: Task, text: str, usual: int) -> SweepAxis:
             found=quote(count),
             allowed=_("{least} to {most}").format(least=2, most=MOST_VALUES),
         )
-    dimension = dimension or own
+    dimension = dimension or expected
     values = np.linspace(low, high, steps)
     unit = unit or (task.units.symbol(dimension) if dimension else "")
     return SweepAxis(name, values, unit, dimension, task.number(task.value(f"1 {unit}"), dimension) if unit else 1.0)
@@ -108,7 +110,9 @@ def _unit_in_file(task: Task, name: str) -> str:
 
 def grid_points(axes: Sequence[SweepAxis]) -> Real:
     """Return all points in the units of the file, (points, axes); the last parameter changes first."""
-    return np.stack([part.ravel() for part in np.meshgrid(*(axis.values for axis in axes), indexing="ij")], axis=1)
+    return np.stack(
+        [coordinates.ravel() for coordinates in np.meshgrid(*(axis.values for axis in axes), indexing="ij")], axis=1
+    )
 
 
 PRESSURE = "pressure"  # the largest pressure angle on the output, over all the driver's way
@@ -150,8 +154,8 @@ class ShownQuantity:
     def at_positions(self, solved: SolvedState) -> Any:
         """Return its values at positions, as `over_cycle` needs them."""
         assert self.quantity is not None
-        found = self.quantity.read(solved)
-        return found if self.ranges else np.abs(found)
+        samples = self.quantity.read(solved)
+        return samples if self.ranges else np.abs(samples)
 
     def over_cycle(self, curves: Callable[[Real, Real], Real], q: Real, values: Real) -> Real:
         """Return one number per variant, (variants,): the largest value over the cycle, or the range.
@@ -178,45 +182,45 @@ def showable_quantities(task: Task) -> Mapping[str, ShownQuantity]:
     return {**named, PRESSURE: ShownQuantity(PRESSURE, ANGLE, None)}
 
 
-def read_shown(task: Task, given: Sequence[str]) -> tuple[ShownQuantity, ...]:
+def read_shown(task: Task, texts: Sequence[str]) -> tuple[ShownQuantity, ...]:
     """Read options `--show`: names separated by commas; `v_E` is v of E. Raises ProblemError."""
-    every = showable_quantities(task)
+    available = showable_quantities(task)
     names = {
-        **{name.replace(" of ", "_").replace(" on ", "_"): name for name in every},
-        **{name: name for name in every},
+        **{name.replace(" of ", "_").replace(" on ", "_"): name for name in available},
+        **{name: name for name in available},
     }
-    found: list[ShownQuantity] = []
-    for text in given:
+    chosen: list[ShownQuantity] = []
+    for text in texts:
         for name in _split_names(text, names):
             if name not in names:
-                some = _("e.g. {names}").format(names=", ".join(_example_names(every)))
+                some = _("e.g. {names}").format(names=", ".join(_example_names(available)))
                 raise unknown_name_error(name, names, _("no such quantity"), some, file=f"--show {text}")
-            found.append(every[names[name]])
-    found = list(dict.fromkeys(found)) or [
-        every[name] for name in DEFAULT_QUANTITIES if name in every and not (name == "H" and "psi" in every)
+            chosen.append(available[names[name]])
+    chosen = list(dict.fromkeys(chosen)) or [
+        available[name] for name in DEFAULT_QUANTITIES if name in available and not (name == "H" and "psi" in available)
     ]
-    if len(found) > MOST_QUANTITIES:
+    if len(chosen) > MOST_QUANTITIES:
         raise ProblemError(
             _("too many quantities"),
-            found=str(len(found)),
+            found=str(len(chosen)),
             allowed=_("at most {most}").format(most=MOST_QUANTITIES),
             file="--show",
         )
-    return tuple(found)
+    return tuple(chosen)
 
 
 def _split_names(text: str, names: Mapping[str, str]) -> list[str]:
     """Split names at commas; a name may contain a comma itself, R_10,11."""
-    found: list[str] = []
-    for part in re.split(r"\s*,\s*", text.strip()):
-        if found and f"{found[-1]},{part}" in names:
-            found[-1] = f"{found[-1]},{part}"
+    split: list[str] = []
+    for piece in re.split(r"\s*,\s*", text.strip()):
+        if split and f"{split[-1]},{piece}" in names:
+            split[-1] = f"{split[-1]},{piece}"
         else:
-            found.append(part)
-    return found
+            split.append(piece)
+    return split
 
 
-def _example_names(every: Mapping[str, ShownQuantity]) -> list[str]:
+def _example_names(available: Mapping[str, ShownQuantity]) -> list[str]:
     """One example of each kind of quantity."""
-    kinds = {re.split(r" of |_(?=[^b])", name)[0]: name for name in reversed(list(every))}
+    kinds = {re.split(r" of |_(?=[^b])", name)[0]: name for name in reversed(list(available))}
     return list(kinds.values())[::-1]

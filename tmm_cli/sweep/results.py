@@ -73,7 +73,7 @@ def points_table(sweep: SweepResults, *, words: bool = False) -> Table:
     """Return a table with one row per point. words: states in words for people, else as in files."""
     names = [translated(word) for word in STATE_WORDS] if words else list(STATES)
     columns = [Column(axis.words, sweep.points[:, k], NUMBER) for k, axis in enumerate(sweep.axes)]
-    columns += [Column(one.name, sweep.values[:, k], one.dimension) for k, one in enumerate(sweep.shown)]
+    columns += [Column(quantity.name, sweep.values[:, k], quantity.dimension) for k, quantity in enumerate(sweep.shown)]
     columns.append(Column(N_("mechanism"), [names[n] for n in sweep.state.tolist()]))
     why = [_reason_text(*both) for both in zip(sweep.why, sweep.state.tolist(), strict=True)] if words else sweep.why
     columns.append(Column(N_("reason"), why))
@@ -113,12 +113,12 @@ def sections(sweep: SweepResults, problem: Problem) -> Iterator[tuple[str, Any]]
         "quantities",
         [
             {
-                "name": one.name,
-                "unit": _si_unit(one.dimension),
-                "kind": _quantity_kind(one),
+                "name": quantity.name,
+                "unit": _si_unit(quantity.dimension),
+                "kind": _quantity_kind(quantity),
                 "values": sweep.values[:, k],
             }
-            for k, one in enumerate(sweep.shown)
+            for k, quantity in enumerate(sweep.shown)
         ],
     )
     yield (
@@ -146,8 +146,14 @@ def _reason_text(text: str, state: int) -> str:
     return text
 
 
-def _quantity_kind(one: Any) -> str:
-    return "of the mechanism" if one.whole else "range over the cycle" if one.ranges else "largest over the cycle"
+def _quantity_kind(quantity: Any) -> str:
+    return (
+        "of the mechanism"
+        if quantity.whole
+        else "range over the cycle"
+        if quantity.ranges
+        else "largest over the cycle"
+    )
 
 
 def _si_unit(dimension: Any) -> str:

@@ -44,12 +44,12 @@ class BorderSearch:
 
     def __call__(self) -> tuple[Real, Real, Real, list[str]]:
         def at(share: Real) -> Real:
-            found: Real = self.inside + share[:, None] * (self.outside - self.inside)
-            return found
+            points: Real = self.inside + share[:, None] * (self.outside - self.inside)
+            return points
 
         def holds(share: Real) -> Real:
-            found: Real = self.mechanisms.at(at(share), values=False).state == self.state
-            return found
+            same_state: Real = self.mechanisms.at(at(share), values=False).state == self.state
+            return same_state
 
         low, high = bisect(holds, np.zeros(len(self.state)), np.ones(len(self.state)), self.halvings)
         beyond = self.mechanisms.at(at(high), values=False)
@@ -84,29 +84,29 @@ def refuse_points(problem: Problem, points: int, *, peaks: bool, taped: bool, co
 
 
 def run_sweep(
-    mechanisms: SweptMechanisms, way: JobRunner = run_here, seen: Callable[[int], None] = lambda count: None
+    mechanisms: SweptMechanisms, runner: JobRunner = run_here, seen: Callable[[int], None] = lambda count: None
 ) -> SweepResults:
     """Solve all points, and find the borders between them. Raises ProblemError.
 
     Args:
         mechanisms: the mechanisms and their grid.
-        way: runs the jobs.
+        runner: runs the jobs.
         seen: called with the number of points after each chunk.
     """
     axes, points = mechanisms.axes, grid_points(mechanisms.axes)
     taped = mechanisms.turning is not None
-    size = CHUNK if taped else SINGLE_CHUNK
-    chunks = [points[first : first + size] for first in range(0, len(points), size)]
-    found: dict[int, SweepPoints] = {}
-    for number, part in way([partial(mechanisms.at, chunk) for chunk in chunks], lambda: False):
-        found[number] = part
-        seen(len(part.state))
-    whole = [found[number] for number in range(len(chunks))]
-    state = np.concatenate([part.state for part in whole])
-    why = [text for part in whole for text in part.why]
-    values = np.concatenate([part.values for part in whole])
-    marks = _find_borders(mechanisms, _find_edges(axes, points, state, why), way)
-    reach = np.concatenate([part.reach for part in whole])
+    chunk_size = CHUNK if taped else SINGLE_CHUNK
+    chunks = [points[first : first + chunk_size] for first in range(0, len(points), chunk_size)]
+    by_chunk: dict[int, SweepPoints] = {}
+    for number, solved in runner([partial(mechanisms.at, chunk) for chunk in chunks], lambda: False):
+        by_chunk[number] = solved
+        seen(len(solved.state))
+    whole = [by_chunk[number] for number in range(len(chunks))]
+    state = np.concatenate([solved.state for solved in whole])
+    why = [text for solved in whole for text in solved.why]
+    values = np.concatenate([solved.values for solved in whole])
+    marks = _find_borders(mechanisms, _find_edges(axes, points, state, why), runner)
+    reach = np.concatenate([solved.reach for solved in whole])
     of_loads = {
         name: reach[np.all(np.isfinite(reach[:, k]), axis=1), k].tolist() for k, name in enumerate(mechanisms.tables)
     }
@@ -126,37 +126,39 @@ class GridEdge:
 def _find_edges(axes: Sequence[SweepAxis], points: Real, state: Real, why: Sequence[str]) -> list[GridEdge]:
     """Grid edges whose ends have different states."""
     number = np.arange(len(points)).reshape([len(axis.values) for axis in axes])
-    found = []
+    edges = []
     for along in range(len(axes)):
         lines = np.moveaxis(number, along, -1)
         before, after = lines[..., :-1].ravel(), lines[..., 1:].ravel()
         change = state[before] != state[after]
         for b, a in zip(before[change].tolist(), after[change].tolist(), strict=True):
-            found.append(GridEdge(along, (points[b], points[a]), (int(state[b]), int(state[a])), (why[b], why[a])))
-    return found
+            edges.append(GridEdge(along, (points[b], points[a]), (int(state[b]), int(state[a])), (why[b], why[a])))
+    return edges
 
 
-def _find_borders(mechanisms: SweptMechanisms, edges: Sequence[GridEdge], way: JobRunner) -> tuple[Border, ...]:
+def _find_borders(mechanisms: SweptMechanisms, edges: Sequence[GridEdge], runner: JobRunner) -> tuple[Border, ...]:
     """Borders on grid edges; one edge may contain several."""
     taped = mechanisms.turning is not None
     halvings = HALVINGS if taped else SINGLE_HALVINGS[len(mechanisms.axes) - 1]
-    size = CHUNK if taped else max(1, SINGLE_CHUNK // halvings)
-    found: list[Border] = []
+    chunk_size = CHUNK if taped else max(1, SINGLE_CHUNK // halvings)
+    borders: list[Border] = []
     for _round in STATES:
-        work_size = [edges[first : first + size] for first in range(0, len(edges), size)]
+        work_size = [edges[first : first + chunk_size] for first in range(0, len(edges), chunk_size)]
         jobs = []
-        for part in work_size:
-            inside, outside = (np.array([edge.points[side] for edge in part]) for side in (0, 1))
-            state = np.array([edge.states[0] for edge in part])
+        for chunk in work_size:
+            inside, outside = (np.array([edge.points[side] for edge in chunk]) for side in (0, 1))
+            state = np.array([edge.states[0] for edge in chunk])
             jobs.append(BorderSearch(mechanisms, inside, outside, state, halvings))
         left: list[GridEdge] = []
-        for k, (last, first, state, why) in way(jobs, lambda: False):
+        for k, (last, first, state, why) in runner(jobs, lambda: False):
             for n, edge in enumerate(work_size[k]):
                 before, after = edge.states
-                goes = after if int(state[n]) == before else int(state[n])  # what only the ordinary stages tell
-                reason = (why[n] or edge.why[1]) if goes > before else edge.why[0]
-                found.append(Border(tuple(((last[n] + first[n]) / 2).tolist()), edge.along, before, goes, reason))
-                if goes != after:
-                    left.append(GridEdge(edge.along, (first[n], edge.points[1]), (goes, after), (why[n], edge.why[1])))
+                reached = after if int(state[n]) == before else int(state[n])  # what only the ordinary stages tell
+                reason = (why[n] or edge.why[1]) if reached > before else edge.why[0]
+                borders.append(Border(tuple(((last[n] + first[n]) / 2).tolist()), edge.along, before, reached, reason))
+                if reached != after:
+                    left.append(
+                        GridEdge(edge.along, (first[n], edge.points[1]), (reached, after), (why[n], edge.why[1]))
+                    )
         edges = left
-    return tuple(sorted(found, key=lambda mark: (mark.along, *mark.at[:: -1 if mark.along == 0 else 1])))
+    return tuple(sorted(borders, key=lambda mark: (mark.along, *mark.at[:: -1 if mark.along == 0 else 1])))

@@ -65,23 +65,23 @@ class ScanResults:
 
 def scan_variants(turning: CrankVariants, columns: Real, wish: ScanRequest) -> ScanResults:
     """Scan the variants whose numbers are the rows of columns (variants, n)."""
-    found = _VariantScan(turning, columns, wish, SCAN).looked
-    again = np.flatnonzero(~found.sure)
+    scanned = _VariantScan(turning, columns, wish, SCAN).looked
+    again = np.flatnonzero(~scanned.sure)
     for rows in np.array_split(again, -(-len(again) // BLOCK)) if again.size else ():
         fine = _VariantScan(turning, columns[rows], wish, FINE_SCAN).looked
-        found.does[rows], found.sure[rows], found.ends[rows] = fine.does, fine.sure, fine.ends
-        for name, peak in found.peaks.items():
+        scanned.does[rows], scanned.sure[rows], scanned.ends[rows] = fine.does, fine.sure, fine.ends
+        for name, peak in scanned.peaks.items():
             peak[rows] = fine.peaks[name]
-    return found
+    return scanned
 
 
 class _VariantScan:
     """Variants at equally spaced driver positions of one revolution."""
 
-    def __init__(self, turning: CrankVariants, columns: Real, wish: ScanRequest, places: int) -> None:
+    def __init__(self, turning: CrankVariants, columns: Real, wish: ScanRequest, samples: int) -> None:
         self.turning, self.columns, self.wish = turning, columns, wish
-        self.places, self.step = places, 2 * np.pi / places
-        self.found = turning.scan(*split_columns(columns), self.at(np.arange(places)))
+        self.places, self.step = samples, 2 * np.pi / samples
+        self.found = turning.scan(*split_columns(columns), self.at(np.arange(samples)))
 
     def at(self, numbers: Real) -> Real:
         """Return driver coordinates of scan positions."""

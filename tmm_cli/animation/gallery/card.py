@@ -44,8 +44,8 @@ PURPOSES: Final = {
 
 def purposes(results: Results) -> tuple[str, ...]:
     """Return keys of PURPOSES, in their order, for results with a motion."""
-    found = set(_iterate_purposes(results))
-    return tuple(key for key in PURPOSES if key in found)
+    keys = set(_iterate_purposes(results))
+    return tuple(key for key in PURPOSES if key in keys)
 
 
 def _iterate_purposes(results: Results) -> Iterable[str]:
@@ -59,14 +59,14 @@ def _iterate_purposes(results: Results) -> Iterable[str]:
         elif not linkage.hinged_to_frame(link):
             yield "carried"
         else:
-            swings = any(one.link == link for one in back) or not results.turns
+            swings = any(strokes.link == link for strokes in back) or not results.turns
             yield "swings" if swings else "turns"
-    for one in back:
-        if one.k >= LEAST_TIME_RATIO or 0 < one.k <= 1 / LEAST_TIME_RATIO:
+    for strokes in back:
+        if strokes.k >= LEAST_TIME_RATIO or 0 < strokes.k <= 1 / LEAST_TIME_RATIO:
             yield "quick"
-        if len(one.strokes) > 2:
+        if len(strokes.strokes) > 2:
             yield "strokes"
-        if any(stroke.rest for stroke in one.strokes) or _has_dwell(results, one.link):
+        if any(stroke.rest for stroke in strokes.strokes) or _has_dwell(results, strokes.link):
             yield "dwell"
     if len(outputs) > 1:
         yield "outputs"
@@ -192,17 +192,17 @@ def _facts(results: Results) -> Iterator[Value]:
     yield _("mobility W"), float(structure.mobility + structure.redundant), NUMBER
     if structure.redundant:
         yield _("redundant constraints"), float(structure.redundant), NUMBER
-    for one in results.swinging:
-        yield _stroke_name(linkage, one), one.travel, coordinate_dimension(one.kind)
-        yield _("time ratio k"), one.k, NUMBER
+    for strokes in results.swinging:
+        yield _stroke_name(linkage, strokes), strokes.travel, coordinate_dimension(strokes.kind)
+        yield _("time ratio k"), strokes.k, NUMBER
     for travel in results.travels:
         yield _stroke_name(linkage, travel), travel.high - travel.low, coordinate_dimension(travel.kind)
     if results.pressure:
-        yield _("largest pressure angle"), max(one.largest for one in results.pressure), ANGLE
+        yield _("largest pressure angle"), max(strokes.largest for strokes in results.pressure), ANGLE
 
 
-def _stroke_name(linkage: Linkage, found: Strokes | OutputTravel) -> str:
-    link = found.link
+def _stroke_name(linkage: Linkage, motion: Strokes | OutputTravel) -> str:
+    link = motion.link
     if linkage.output_point(link) is not None:
         return _("travel of {link}").format(link=link)
     if linkage.output_guide(link) is not None:
@@ -211,15 +211,15 @@ def _stroke_name(linkage: Linkage, found: Strokes | OutputTravel) -> str:
 
 
 def _shown_properties(results: Results | ChainResults) -> Iterable[Value]:
-    for one in shown_properties(results):
-        yield one.name, 0.0 if abs(one.value) <= PROPERTY_TOLERANCE else one.value, one.dimension
+    for shown in shown_properties(results):
+        yield shown.name, 0.0 if abs(shown.value) <= PROPERTY_TOLERANCE else shown.value, shown.dimension
 
 
 def _format_facts(values: Iterable[Value], units: UnitSystem) -> Iterator[Fact]:
     """Values in the units of the file; the first one of each name, without those that are undefined."""
-    told = set[str]()
+    listed = set[str]()
     for name, value, dimension in values:
-        if name not in told and math.isfinite(value):
+        if name not in listed and math.isfinite(value):
             number = float(f"{units.from_si(value, dimension):.{DIGITS}g}") + 0.0
             yield Fact(name, signed(with_unit(units, value, dimension, DIGITS).strip()), number)
-        told.add(name)
+        listed.add(name)

@@ -113,21 +113,21 @@ EDGE, LEAST = 4.0, 110.0  # mm: about the scheme, and its least width
 
 def draw_chain(chain: SpatialChain) -> MovingPicture:
     """Draw a chain with the frame at the bottom; each pair shows the number of its freedoms."""
-    places = chain_places(chain)
+    centres = chain_places(chain)
     marks: list[Mark] = []
     between = Counter[frozenset[str]]()
     for pair in chain.pairs:
         ends = frozenset((pair.i, pair.j))
-        start, end = places[pair.i], places[pair.j]
+        start, end = centres[pair.i], centres[pair.j]
         bow, share = (BOW, 0.5) if start.imag == end.imag else (0.0, NEAR if start.imag < end.imag else 1 - NEAR)
         middle = start + share * (end - start) + 1j * bow + between[ends] * HIGH
         between[ends] += 1
         marks.append(LineMark((start, middle, end), DARK_COLOUR, 0.5))
         marks.append(CircleMark(middle, 2.3, "white", DARK_COLOUR, 0.3))
         marks.append(TextMark(middle, str(pair.freedoms), 3.2, GREY_TEXT, "center"))
-    for name, place in places.items():
+    for name, place in centres.items():
         marks += _link_box(name, place)
-    xs, ys = [abs(z.real) for z in places.values()], [z.imag for z in places.values()]
+    xs, ys = [abs(z.real) for z in centres.values()], [z.imag for z in centres.values()]
     half, top = max(max(xs) + APART / 2 + EDGE, LEAST / 2), max(ys) + BOW + EDGE
     sides = (-half, -top, 2 * half, top - min(ys) + HIGH + EDGE)
     return MovingPicture("".join(svg_element(mark, 0.0) for mark in marks), sides)
@@ -146,19 +146,22 @@ def _link_box(name: str, place: complex) -> list[Mark]:
 def chain_places(chain: SpatialChain) -> dict[str, complex]:
     """Return the centres of the links: in rows, each link as near to its neighbours below as its row allows."""
     rows = [[FRAME]]
-    known = {FRAME}
+    placed = {FRAME}
     while rows[-1]:
         near = [pair.other(link) for link in rows[-1] for pair in chain.pairs if link in (pair.i, pair.j)]
-        rows.append([link for link in dict.fromkeys(near) if link not in known])
-        known.update(rows[-1])
-    rows[-1] = [link for link in chain.links if link not in known]  # what does not hang on the frame
+        rows.append([link for link in dict.fromkeys(near) if link not in placed])
+        placed.update(rows[-1])
+    rows[-1] = [link for link in chain.links if link not in placed]  # what does not hang on the frame
     wide = max(map(len, rows))
-    places = {FRAME: 0j}
+    centres = {FRAME: 0j}
     for number, row in enumerate(rows[1:], 1):
         held = {link: [pair.other(link) for pair in chain.pairs if link in (pair.i, pair.j)] for link in row}
-        below = {link: [places[one].real for one in others if one in places] for link, others in held.items()}
+        below = {
+            link: [centres[neighbour].real for neighbour in others if neighbour in centres]
+            for link, others in held.items()
+        }
         across = {link: sum(xs) / len(xs) if xs else 0.0 for link, xs in below.items()}
         step = min(WIDEST, APART * (wide - 1) / max(len(row) - 1, 1))
         for k, link in enumerate(sorted(row, key=across.__getitem__)):
-            places[link] = complex((k - (len(row) - 1) / 2) * step, number * ROW)
-    return places
+            centres[link] = complex((k - (len(row) - 1) / 2) * step, number * ROW)
+    return centres

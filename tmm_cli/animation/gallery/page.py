@@ -121,7 +121,8 @@ def _tag_html(field: str, value: str, words: str) -> str:
 
 def _options_html(words: Mapping[str, str], counts: Mapping[str, int]) -> str:
     return "".join(
-        f'<option value="{_escape(value)}">{_escape(told)} ({counts[value]})</option>' for value, told in words.items()
+        f'<option value="{_escape(value)}">{_escape(label)} ({counts[value]})</option>'
+        for value, label in words.items()
     )
 
 

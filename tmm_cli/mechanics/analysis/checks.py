@@ -48,7 +48,7 @@ def run_checks(results: Results) -> tuple[Check, ...]:
     if results.lever is None or results.of or results.driver_range is None:
         return ()
     closely = motion_at_positions(results, results.closely(SCAN * results.driver_range.turns + 1), 1)
-    found = (
+    checks = (
         *_slot_checks(results),
         *_pressure_checks(results),
         *_load_checks(results, closely),
@@ -56,10 +56,10 @@ def run_checks(results: Results) -> tuple[Check, ...]:
         *_lever_checks(results),
     )
     if not results.driver_range.full:
-        return found
+        return checks
     cycle = results.driver_range.end - results.driver_range.start
     seam = SEAM_OF_EXTREMES
-    return tuple(c if c.at is None else replace(c, at=max((c.at + seam) % cycle - seam, 0.0)) for c in found)
+    return tuple(c if c.at is None else replace(c, at=max((c.at + seam) % cycle - seam, 0.0)) for c in checks)
 
 
 def _slot_checks(results: Results) -> Iterable[Check]:
@@ -70,9 +70,11 @@ def _slot_checks(results: Results) -> Iterable[Check]:
 
 
 def _pressure_checks(results: Results) -> Iterable[Check]:
-    for found in results.pressure:
-        place = found.place if found.largest > NO_PRESSURE else None
-        yield Check("pressure", found.link, place, found.largest, found.allowed, found.holds, found.group)
+    for pressure in results.pressure:
+        place = pressure.place if pressure.largest > NO_PRESSURE else None
+        yield Check(
+            "pressure", pressure.link, place, pressure.largest, pressure.allowed, pressure.holds, pressure.group
+        )
 
 
 def _load_checks(results: Results, motion: Motion) -> Iterable[Check]:
@@ -115,19 +117,19 @@ def _dead_position_checks(results: Results, motion: LinkStates) -> Iterable[Chec
             continue
         k = int(np.argmin(margin))
         upto = solvers_towards(motion.kernels, kernel.group.links)
-        found = [
+        margins = [
             find_minima(partial(_last_margin, results, upto), float(motion.q[k]) - step, float(motion.q[k]) + step)
         ]
-        found += [(float(motion.q[k]), float(margin[k]))]
-        found += [(dead.place, dead.margin) for dead in results.dead if dead.group == title]
-        place, value = min(found, key=lambda pair: pair[1])
+        margins += [(float(motion.q[k]), float(margin[k]))]
+        margins += [(dead.place, dead.margin) for dead in results.dead if dead.group == title]
+        place, value = min(margins, key=lambda pair: pair[1])
         yield Check("near dead", title, place, value, kernel.near, value >= kernel.near)
 
 
 def _last_margin(results: Results, upto: tuple[GroupSolver, ...], q: Real) -> Real:
     """Margin of the last group."""
-    there = link_states(results.linkage, upto, q, 0)
-    return np.where(there.placed, there.placements[-1].margin, np.inf)
+    states = link_states(results.linkage, upto, q, 0)
+    return np.where(states.placed, states.placements[-1].margin, np.inf)
 
 
 def _lever_checks(results: Results) -> Iterable[Check]:

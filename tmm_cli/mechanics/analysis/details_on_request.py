@@ -25,9 +25,9 @@ def detailed_positions(results: Results) -> tuple[int, ...]:
     often rests.
     """
     computed = _solved_positions(results)
-    wanted = results.inputs.request.detail if len(results.numbers) > 1 else results.numbers
-    if wanted:
-        return tuple(k for k in np.flatnonzero(computed).tolist() if results.numbers[k] in wanted)
+    requested = results.inputs.request.detail if len(results.numbers) > 1 else results.numbers
+    if requested:
+        return tuple(k for k in np.flatnonzero(computed).tolist() if results.numbers[k] in requested)
     if not computed.any():
         return ()
     balance = balancing_magnitude(results)
@@ -65,8 +65,8 @@ def with_centres(results: Results) -> Results:
     """Add instantaneous centres, at positions that were requested one by one or are detailed."""
     motion = results.motion
     assert motion is not None
-    every = len(results.numbers) < len(results.asked)
-    chosen = np.flatnonzero(motion.moving).tolist() if every else detailed_positions(results)
+    one_by_one = len(results.numbers) < len(results.asked)
+    chosen = np.flatnonzero(motion.moving).tolist() if one_by_one else detailed_positions(results)
     return replace(results, centres={k: find_centres(motion, results.structure, k) for k in chosen})
 
 
@@ -105,15 +105,15 @@ def _undecided_assemblies(inputs: Inputs, group: Group, positions: Sequence[int]
     results = solve(inputs, "structure", problem=problem)
     order = [g.links for g in results.structure.solved]
     kernels = assemble(inputs.linkage, results.structure, results.structure.solved[: order.index(group.links)])
-    given = inputs.request.places
+    coordinates = inputs.request.places
     for number in positions:
-        if given and number >= len(given):
-            raise UnknownPositionError(number, len(given))
-    places: list[tuple[float, int | None]] = [(given[n], n) for n in positions] if given else []
+        if coordinates and number >= len(coordinates):
+            raise UnknownPositionError(number, len(coordinates))
+    numbered: list[tuple[float, int | None]] = [(coordinates[n], n) for n in positions] if coordinates else []
     return replace(
         results,
         assemblies=tuple(
             find_assemblies(inputs.linkage, results.structure, kernels, q, number)
-            for q, number in places or [(inputs.linkage.sketch.at, None)]
+            for q, number in numbered or [(inputs.linkage.sketch.at, None)]
         ),
     )

@@ -53,12 +53,12 @@ def with_extremes(results: Results) -> Results:
     """
 
     def sample(q: Real) -> list[SampledQuantity]:
-        there = results_at(results, q)
-        assert there.motion is not None
+        solved = results_at(results, q)
+        assert solved.motion is not None
         return (
-            _sample_motion(there.motion)
-            if there.reactions is None
-            else _sample_forces(there.reactions, results.linkage)
+            _sample_motion(solved.motion)
+            if solved.reactions is None
+            else _sample_forces(solved.reactions, results.linkage)
         )
 
     q = results.closely(STEPS_PER_TURN * max(results.turns, 1) + 1)
@@ -66,32 +66,32 @@ def with_extremes(results: Results) -> Results:
 
 
 def _sample_motion(motion: Motion) -> list[SampledQuantity]:
-    linkage, found = motion.linkage, []
+    linkage, samples = motion.linkage, []
     for name in named_points(linkage):
         place = motion.named(name).x
-        found += [SampledQuantity("x", name, LENGTH, place.real), SampledQuantity("y", name, LENGTH, place.imag)]
+        samples += [SampledQuantity("x", name, LENGTH, place.real), SampledQuantity("y", name, LENGTH, place.imag)]
     for name, (link, __) in mass_centres(linkage).items():
         place = motion.centre(link).x
-        found += [SampledQuantity("x", name, LENGTH, place.real), SampledQuantity("y", name, LENGTH, place.imag)]
-    found += [SampledQuantity("angle", link, ANGLE, motion.link(link).angle) for link in linkage.moving]
-    found += [SampledQuantity("s", slide.name, LENGTH, motion.slide(slide).run) for slide in linkage.slides]
-    return found
+        samples += [SampledQuantity("x", name, LENGTH, place.real), SampledQuantity("y", name, LENGTH, place.imag)]
+    samples += [SampledQuantity("angle", link, ANGLE, motion.link(link).angle) for link in linkage.moving]
+    samples += [SampledQuantity("s", slide.name, LENGTH, motion.slide(slide).run) for slide in linkage.slides]
+    return samples
 
 
 def _sample_forces(reactions: Reactions, linkage: Linkage) -> list[SampledQuantity]:
-    found = [SampledQuantity("R", r.pair.name, FORCE, np.abs(r.force)) for r in reactions.all]
-    found += [SampledQuantity("M", r.pair.name, MOMENT, r.couple) for r in reactions.all if r.couple is not None]
-    found += [
+    samples = [SampledQuantity("R", r.pair.name, FORCE, np.abs(r.force)) for r in reactions.all]
+    samples += [SampledQuantity("M", r.pair.name, MOMENT, r.couple) for r in reactions.all if r.couple is not None]
+    samples += [
         SampledQuantity("R pin", f"{pin.point}, {pin.link}", FORCE, np.abs(pin.force))
         for pin in reactions.pins(linkage)
     ]
     for balance in reactions.balances:
         turns = balance.moment is not None
-        size = MOMENT if turns else FORCE
-        found.append(
-            SampledQuantity("M_b" if turns else "F_b", balance.driver.link, size, np.asarray(balance.generalized))
+        dimension = MOMENT if turns else FORCE
+        samples.append(
+            SampledQuantity("M_b" if turns else "F_b", balance.driver.link, dimension, np.asarray(balance.generalized))
         )
-    return found
+    return samples
 
 
 def find_extremes(
@@ -121,13 +121,13 @@ def find_extremes(
         near = at[:, None] + step * np.linspace(-1, 1, 2 * PARTS + 1)
         near = near if cyclic else np.clip(near, np.min(q), np.max(q))
         fine = _value_rows(sample(near.ravel()), near.ravel()).reshape(len(rows), *near.shape)
-        own = signs * np.concatenate([fine, fine])[each, each]
-        off = own - values[:, None]
-        own = np.where(turning, values[:, None] + off - 2 * np.pi * np.round(off / (2 * np.pi)), own)
-        own = np.where(np.isfinite(own), own, -np.inf)
-        best = np.argmax(own, axis=1)
-        better = own[each, best] > values
-        at, values = np.where(better, near[each, best], at), np.where(better, own[each, best], values)
+        refined = signs * np.concatenate([fine, fine])[each, each]
+        off = refined - values[:, None]
+        refined = np.where(turning, values[:, None] + off - 2 * np.pi * np.round(off / (2 * np.pi)), refined)
+        refined = np.where(np.isfinite(refined), refined, -np.inf)
+        best = np.argmax(refined, axis=1)
+        better = refined[each, best] > values
+        at, values = np.where(better, near[each, best], at), np.where(better, refined[each, best], values)
         step /= PARTS
     half = len(courses)
     return tuple(
@@ -146,8 +146,8 @@ def _value_rows(courses: Iterable[SampledQuantity], q: Real) -> Real:
 
 def _unwrapped(rows: Real) -> Real:
     """Unwrap angles along each row, skipping missing positions."""
-    found = rows.copy()
-    for row in found:
-        there = np.isfinite(row)
-        row[there] = np.unwrap(row[there])
-    return found
+    unwrapped = rows.copy()
+    for row in unwrapped:
+        finite = np.isfinite(row)
+        row[finite] = np.unwrap(row[finite])
+    return unwrapped

@@ -121,30 +121,30 @@ class IntermittentMotion:
 
     @property
     def driven(self) -> tuple[WheelMotion, ...]:
-        return tuple(part for part in self.parts if part.ride.driven)
+        return tuple(motion for motion in self.parts if motion.ride.driven)
 
     @property
     def turn(self) -> float:
         """Rotation of the wheel in a cycle (rad)."""
-        return sum(part.step for part in self.parts)
+        return sum(motion.step for motion in self.parts)
 
     def of_setting(self, number: int) -> float:
         """Rotation of the wheel with one of the settings (rad)."""
-        return sum(part.step for part in self.parts if part.setting == number)
+        return sum(motion.step for motion in self.parts if motion.setting == number)
 
     @property
     def way(self) -> float:
         """Travel of the driver in a cycle (rad, or m forward and back)."""
-        return sum(part.ride.way for part in self.parts)
+        return sum(motion.ride.way for motion in self.parts)
 
     @property
     def standing(self) -> float:
         """Fraction of the driver's travel during which the wheel rests."""
-        return sum(part.ride.way for part in self.parts if not part.ride.driven) / self.way
+        return sum(motion.ride.way for motion in self.parts if not motion.ride.driven) / self.way
 
     def time(self, *, driven: bool) -> float:
         """Time in a cycle in which the wheel is driven, or rests (s)."""
-        return sum(part.time for part in self.parts if part.ride.driven == driven)
+        return sum(motion.time for motion in self.parts if motion.ride.driven == driven)
 
     @cached_property
     def cycles(self) -> int | None:
@@ -156,19 +156,19 @@ class IntermittentMotion:
     @property
     def omega(self) -> float:
         """Largest angular velocity (rad/s)."""
-        return float(np.max([part.omega for part in self.driven], initial=0.0))
+        return float(np.max([motion.omega for motion in self.driven], initial=0.0))
 
     @property
     def epsilon(self) -> float:
         """Largest angular acceleration while driven (rad/s2)."""
-        return float(np.max([part.epsilon for part in self.driven], initial=0.0))
+        return float(np.max([motion.epsilon for motion in self.driven], initial=0.0))
 
     @cached_property
     def jumps(self) -> tuple[float, ...]:
         """Jumps of omega at the beginning of each part (rad/s); the first part follows the last one."""
         before = (self.parts[-1], *self.parts[:-1])
-        found = [float(own.omegas[0] - last.omegas[-1]) for last, own in zip(before, self.parts, strict=True)]
-        return tuple(0.0 if abs(jump) <= SHOCKLESS * self.omega else jump for jump in found)
+        jumps = [float(motion.omegas[0] - last.omegas[-1]) for last, motion in zip(before, self.parts, strict=True)]
+        return tuple(0.0 if abs(jump) <= SHOCKLESS * self.omega else jump for jump in jumps)
 
     @property
     def shock(self) -> float:
@@ -190,16 +190,16 @@ def one_way_motions_of_rotation(task: WheelTask, strokes: Strokes, sense: int, s
         chosen = [s.run > 0 if task.when == "forward" else s.run < 0 for s in strokes.strokes]
     else:
         chosen = [s.working == (task.when == "working stroke") for s in strokes.strokes]
-    found = []
+    motions = []
     for stroke, driven in zip(strokes.strokes, chosen, strict=True):
         gone = (
             float(np.mod(sense * (stroke.start - start) + SAME_DRIVER_POSITION, strokes.cycle)) - SAME_DRIVER_POSITION
         )
         first = start + sense * gone
-        found.append(OneWayMotion(first, stroke.length, sense, driven))
+        motions.append(OneWayMotion(first, stroke.length, sense, driven))
         if stroke.rest:
-            found.append(OneWayMotion(first + sense * stroke.length, stroke.rest, sense, driven=False))
-    return _join_rests(sorted(found, key=lambda ride: sense * ride.start))
+            motions.append(OneWayMotion(first + sense * stroke.length, stroke.rest, sense, driven=False))
+    return _join_rests(sorted(motions, key=lambda ride: sense * ride.start))
 
 
 def one_way_motions_of_stroke(
@@ -215,16 +215,16 @@ def one_way_motions_of_stroke(
     turns = find_roots(curve.slope, q[low], q[high]) if low.size else q[:0]
     inside = (turns - q[0] > SAME_DRIVER_POSITION) & (q[-1] - turns > SAME_DRIVER_POSITION)
     ends = np.concatenate([q[:1], turns[inside], q[-1:]])[::sense]
-    wanted = 1 if task.when == "forward" else -1
-    found = []
-    for way, places in ((sense, ends), (-sense, ends[::-1])):
-        __, runs = measure_runs(curve, places[:-1], np.diff(places))
-        lengths = np.abs(np.diff(places))
-        found += [
-            OneWayMotion(float(first), float(length), way, bool(run * wanted > 0))
-            for first, length, run in zip(places, lengths, runs, strict=False)
+    driving_sense = 1 if task.when == "forward" else -1
+    motions = []
+    for direction, reversals in ((sense, ends), (-sense, ends[::-1])):
+        __, runs = measure_runs(curve, reversals[:-1], np.diff(reversals))
+        lengths = np.abs(np.diff(reversals))
+        motions += [
+            OneWayMotion(float(first), float(length), direction, bool(run * driving_sense > 0))
+            for first, length, run in zip(reversals, lengths, runs, strict=False)
         ]
-    return _join_rests(found)
+    return _join_rests(motions)
 
 
 def wheel_motions(
@@ -240,48 +240,48 @@ def wheel_motions(
 
     On its way back the driver has the same speed at each place as on its way forward.
     """
-    way, angle = (float(before[-1].ways[-1]), float(before[-1].angles[-1])) if before else (0.0, 0.0)
+    travel, angle = (float(before[-1].ways[-1]), float(before[-1].angles[-1])) if before else (0.0, 0.0)
     rate = law.rate if isinstance(law, DriverMotion) and law.acceleration == 0 else float("nan")
     upto, sense = solvers_towards(kernels, [link]), linkage.driver.sense
 
     def turning(q: Real) -> LinkMotion:
         return compute_motion(linkage, upto, q, law).link(link)
 
-    found = []
+    motions = []
     for ride in rides:
         gone = np.linspace(0, ride.way, MOTION_SAMPLES if ride.driven else 2)
-        places, back = ride.start + ride.sense * gone, ride.sense * sense
+        coordinates, back = ride.start + ride.sense * gone, ride.sense * sense
         angles = omegas = epsilons = np.zeros(len(gone))
         omega = epsilon = 0.0
         if ride.driven:
-            own = turning(places)
-            angles, omegas, epsilons = np.unwrap(own.angle), back * own.omega, own.epsilon
-            omega = _largest_value(lambda q: np.abs(turning(q).omega), places)
-            epsilon = _largest_value(lambda q: np.abs(turning(q).epsilon), places)
+            rotation = turning(coordinates)
+            angles, omegas, epsilons = np.unwrap(rotation.angle), back * rotation.omega, rotation.epsilon
+            omega = _largest_value(lambda q: np.abs(turning(q).omega), coordinates)
+            epsilon = _largest_value(lambda q: np.abs(turning(q).epsilon), coordinates)
         time = ride.way / rate if rate else float("nan")
         angles = angle + (angles - angles[0])
-        found.append(WheelMotion(ride, setting, time, way + gone, angles, omegas, epsilons, omega, epsilon))
-        way, angle = way + ride.way, float(angles[-1])
-    return found
+        motions.append(WheelMotion(ride, setting, time, travel + gone, angles, omegas, epsilons, omega, epsilon))
+        travel, angle = travel + ride.way, float(angles[-1])
+    return motions
 
 
 def _join_rests(rides: Sequence[OneWayMotion]) -> list[OneWayMotion]:
     """Join consecutive motions in which the wheel rests and the driver does not reverse."""
-    found: list[OneWayMotion] = []
+    joined: list[OneWayMotion] = []
     for (driven, sense), group in groupby(rides, attrgetter("driven", "sense")):
         first, *others = group
-        found.append(OneWayMotion(first.start, first.way + sum(ride.way for ride in others), sense, driven))
-    return found
+        joined.append(OneWayMotion(first.start, first.way + sum(ride.way for ride in others), sense, driven))
+    return joined
 
 
-def _largest_value(size: Callable[[Real], Real], places: Real) -> float:
+def _largest_value(magnitude: Callable[[Real], Real], coordinates: Real) -> float:
     """Largest value of a function near closely spaced places, refined between them."""
-    values = size(places)
+    values = magnitude(coordinates)
     if not bool(np.all(np.isfinite(values))):
         return float("nan")
     best = int(np.argmax(values))
-    low, high = sorted((places[max(best - 1, 0)], places[min(best + 1, len(places) - 1)]))
-    return max(float(values[best]), -float(find_minima(lambda q: -size(q), low, high)[1]))
+    low, high = sorted((coordinates[max(best - 1, 0)], coordinates[min(best + 1, len(coordinates) - 1)]))
+    return max(float(values[best]), -float(find_minima(lambda q: -magnitude(q), low, high)[1]))
 
 
 # Intermittent motion: each wheel over the cycles of all its settings.
@@ -309,12 +309,14 @@ def compute_intermittent(mechanism: Mechanism, start: float, law_of: LawOf) -> t
 def _wheel_cycle(mechanism: Mechanism, task: WheelTask, start: float, law_of: LawOf) -> IntermittentMotion:
     parts: list[WheelMotion] = []
     for number, setting in enumerate(task.settings):
-        own, linkage = mechanism, setting.linkage
+        variant, linkage = mechanism, setting.linkage
         try:
             if linkage is not None:
-                own = Mechanism(Inputs(linkage), analyse_mobile_structure(linkage))
-            rides = _one_way_motions(own, task, start)
-            parts += wheel_motions(own.linkage, own.kernels, task.link, rides, law_of(own.linkage), number, parts)
+                variant = Mechanism(Inputs(linkage), analyse_mobile_structure(linkage))
+            rides = _one_way_motions(variant, task, start)
+            parts += wheel_motions(
+                variant.linkage, variant.kernels, task.link, rides, law_of(variant.linkage), number, parts
+            )
         except LinkageError as error:
             if linkage is None:
                 raise

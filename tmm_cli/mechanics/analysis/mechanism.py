@@ -155,8 +155,8 @@ class Mechanism:
         """Strokes of the other outputs."""
         if not self.driver_range.full:
             return ()
-        found = [self._strokes_of(link) for link in self.outputs[1:]]
-        return tuple(s for s in found if s is not None)
+        strokes = [self._strokes_of(link) for link in self.outputs[1:]]
+        return tuple(s for s in strokes if s is not None)
 
     @cached_property
     def asked(self) -> Real:
@@ -170,8 +170,8 @@ class Mechanism:
         """Travels of the outputs over the requested positions, for a driver that does not rotate fully."""
         if self.driver_range.full:
             return ()
-        found = [find_travel(self.linkage, self.kernels, self.asked, link) for link in self.outputs]
-        return tuple(t for t in found if t is not None)
+        travels = [find_travel(self.linkage, self.kernels, self.asked, link) for link in self.outputs]
+        return tuple(t for t in travels if t is not None)
 
     @cached_property
     def pressure(self) -> tuple[PressureAngle, ...]:

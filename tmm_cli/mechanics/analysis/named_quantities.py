@@ -102,19 +102,19 @@ def mechanism_quantities(linkage: Linkage, structure: Structure) -> dict[str, Na
         "p2": structure.higher,
         "passive": structure.redundant,
     }
-    found = {
+    quantities = {
         name: NamedQuantity(name, "structure", NUMBER, _read_constant(value), whole=True, against="exact")
         for name, value in exact.items()
     }
     output = output_link(linkage, structure.groups)
     slides = output is not None and linkage.slides_on_frame(output)
     name, dimension = ("H", LENGTH) if slides else ("psi", ANGLE)
-    found[name] = NamedQuantity(name, "places", dimension, _read_stroke, whole=True)
+    quantities[name] = NamedQuantity(name, "places", dimension, _read_stroke, whole=True)
     if output is not None and not slides and linkage.output_arm(output) is not None:
-        found["H"] = NamedQuantity("H", "places", LENGTH, partial(_read_arc, output), whole=True)
-    found["strokes"] = NamedQuantity("strokes", "places", NUMBER, _read_stroke_count, whole=True, against="exact")
-    found["k"] = NamedQuantity("k", "places", NUMBER, _read_time_ratio, whole=True)
-    return found
+        quantities["H"] = NamedQuantity("H", "places", LENGTH, partial(_read_arc, output), whole=True)
+    quantities["strokes"] = NamedQuantity("strokes", "places", NUMBER, _read_stroke_count, whole=True, against="exact")
+    quantities["k"] = NamedQuantity("k", "places", NUMBER, _read_time_ratio, whole=True)
+    return quantities
 
 
 def _read_constant(value: int) -> Any:
@@ -154,10 +154,10 @@ def motion_quantities(linkage: Linkage, structure: Structure) -> dict[str, Named
     """x, y, v, a of points and centres of mass; phi, omega, epsilon of links; v, a and Coriolis in prismatic
     pairs.
     """
-    found: dict[str, NamedQuantity] = {}
+    quantities: dict[str, NamedQuantity] = {}
 
     def put(quantity: NamedQuantity) -> None:
-        found[quantity.name] = quantity
+        quantities[quantity.name] = quantity
 
     for point, place in {**named_points(linkage), **mass_centres(linkage)}.items():
         put(
@@ -249,46 +249,46 @@ def motion_quantities(linkage: Linkage, structure: Structure) -> dict[str, Named
                 thing=slide.runner,
             )
         )
-    return found
+    return quantities
 
 
 def relative_angles(linkage: Linkage) -> dict[str, NamedQuantity]:
     """`phi of 5 on 4`: rotation of a link relative to another moving link that is hinged to it, rad."""
-    found = {}
+    angles = {}
     for hinge in linkage.hinges:
         for link, base in permutations([name for name in hinge.links if name != FRAME], 2):
             name = f"phi of {link} on {base}"
             read = partial(_read_relative_angle, link, base)
-            found[name] = NamedQuantity(name, "places", ANGLE, read, against="angle", thing=link)
-    return found
+            angles[name] = NamedQuantity(name, "places", ANGLE, read, against="angle", thing=link)
+    return angles
 
 
 def _read_relative_angle(link: str, base: str, solution: SolvedState) -> Any:
     return solution.motion.link(link).angle - solution.motion.link(base).angle
 
 
-def _read_point(point: str, place: tuple[str, complex], part: str, solution: SolvedState) -> Any:
+def _read_point(point: str, place: tuple[str, complex], field: str, solution: SolvedState) -> Any:
     link = place[0]
     motion = solution.motion
     if point in motion.linkage.links[link].points:
-        return getattr(motion.named(point), part)
-    return getattr(motion.centre(link), part)
+        return getattr(motion.named(point), field)
+    return getattr(motion.centre(link), field)
 
 
-def _read_coordinate(point: str, place: tuple[str, complex], part: str, solution: SolvedState) -> Any:
-    return getattr(_read_point(point, place, "x", solution), part)
+def _read_coordinate(point: str, place: tuple[str, complex], component: str, solution: SolvedState) -> Any:
+    return getattr(_read_point(point, place, "x", solution), component)
 
 
-def _read_link(link: str, part: str, solution: SolvedState) -> Any:
-    return getattr(solution.motion.link(link), part)
+def _read_link(link: str, field: str, solution: SolvedState) -> Any:
+    return getattr(solution.motion.link(link), field)
 
 
 def _read_run(link: str, solution: SolvedState) -> Any:
     return output_run(solution.motion, link)[0]
 
 
-def _read_slide(name: str, part: str, solution: SolvedState) -> Any:
-    return np.asarray(getattr(solution.motion.slide(solution.motion.linkage.slide(name)), part))
+def _read_slide(name: str, field: str, solution: SolvedState) -> Any:
+    return np.asarray(getattr(solution.motion.slide(solution.motion.linkage.slide(name)), field))
 
 
 # Inertia forces and couples, reactions, what balances the driver.
@@ -299,10 +299,10 @@ NEARLY_ZERO = 0.05  # of a reaction's largest size: then where it acts cannot be
 
 def force_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
     """Inertia U3 and M3; R_34, force of link 3 on link 4; R_A, pin of a compound hinge; M_b or F_b."""
-    found: dict[str, NamedQuantity] = {}
+    quantities: dict[str, NamedQuantity] = {}
 
     def put(quantity: NamedQuantity) -> None:
-        found.setdefault(quantity.name, quantity)
+        quantities.setdefault(quantity.name, quantity)
 
     for name in linkage.moving:
         link = linkage.links[name]
@@ -339,30 +339,30 @@ def force_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQ
                 )
                 put(replace(force, otherwise=replace(force, read=partial(_read_pin_force, hinge.point, by, -1))))
     for driver in linkage.drivers:
-        own = "" if len(linkage.drivers) == 1 else f" of {driver.link}"
+        suffix = "" if len(linkage.drivers) == 1 else f" of {driver.link}"
         if driver.kind == "turn":
             put(
                 NamedQuantity(
-                    f"M_b{own}", "balance", MOMENT, partial(_read_balance, driver.link, "moment"), thing=driver.link
+                    f"M_b{suffix}", "balance", MOMENT, partial(_read_balance, driver.link, "moment"), thing=driver.link
                 )
             )
         if driver.kind == "slide" or driver.base == FRAME:
             put(
                 NamedQuantity(
-                    f"F_b{own}", "balance", FORCE, partial(_read_balance, driver.link, "force"), thing=driver.link
+                    f"F_b{suffix}", "balance", FORCE, partial(_read_balance, driver.link, "force"), thing=driver.link
                 )
             )
-    return found
+    return quantities
 
 
 def _common_links(linkage: Linkage, structure: Structure) -> dict[str, str]:
     """For the point of each compound hinge, the link to which the others are attached."""
-    found = {}
+    common = {}
     for hinge in linkage.hinges:
         ends = [{pair.i, pair.j} for pair in structure.pairs if pair.kind == "R" and pair.point == hinge.point]
         if len(ends) > 1:
-            (found[hinge.point],) = set.intersection(*ends)
-    return found
+            (common[hinge.point],) = set.intersection(*ends)
+    return common
 
 
 def _reaction_name(by: str, on: str) -> str:
@@ -374,8 +374,8 @@ def _read_pin_force(point: str, link: str, sense: int, solution: SolvedState) ->
     return sense * solution.reactions.pin_force(point, link)
 
 
-def _read_inertia(link: str, part: str, solution: SolvedState) -> Any:
-    return next(getattr(x, part) for x in solution.reactions.applied if x.link == link and x.kind == "inertia")
+def _read_inertia(link: str, field: str, solution: SolvedState) -> Any:
+    return next(getattr(x, field) for x in solution.reactions.applied if x.link == link and x.kind == "inertia")
 
 
 def _read_reaction(pair: str, on: str, solution: SolvedState) -> Any:
@@ -385,13 +385,13 @@ def _read_reaction(pair: str, on: str, solution: SolvedState) -> Any:
 def _read_arm(pair: str, solution: SolvedState) -> Any:
     """Arm of a guide reaction from the sliding point; nan where the force is nearly zero."""
     reaction = solution.reactions.of(pair)
-    size = np.abs(reaction.force)
+    magnitude = np.abs(reaction.force)
     assert reaction.arm is not None
-    return np.where(size > NEARLY_ZERO * np.max(size, axis=-1, keepdims=True), reaction.arm, np.nan)
+    return np.where(magnitude > NEARLY_ZERO * np.max(magnitude, axis=-1, keepdims=True), reaction.arm, np.nan)
 
 
-def _read_balance(link: str, part: str, solution: SolvedState) -> Any:
-    return next(getattr(balance, part) for balance in solution.reactions.balances if balance.driver.link == link)
+def _read_balance(link: str, field: str, solution: SolvedState) -> Any:
+    return next(getattr(balance, field) for balance in solution.reactions.balances if balance.driver.link == link)
 
 
 # What a wheel of the block intermittent makes of the mechanism's motion.
@@ -410,17 +410,19 @@ WHEEL_READERS: tuple[tuple[str, Dimension, WheelReader], ...] = (
 
 def wheel_quantities(tasks: Iterable[WheelTask]) -> dict[str, NamedQuantity]:
     """Rotation of wheels in a cycle and in each step, fraction of rest, cycles to whole turns, largest speeds."""
-    found = []
+    readers = []
     for number, task in enumerate(tasks):
-        for name, dimension, of in WHEEL_READERS:
-            found.append((f"{name} of {task.name}", dimension, partial(_read_wheel, number, of)))
+        for name, dimension, reader in WHEEL_READERS:
+            readers.append((f"{name} of {task.name}", dimension, partial(_read_wheel, number, reader)))
         for k in range(len(task.settings)):
-            found.append((f"step {k + 1} of {task.name}", ANGLE, partial(_read_wheel, number, partial(_step_angle, k))))
-    return {name: NamedQuantity(name, "velocities", dimension, read, whole=True) for name, dimension, read in found}
+            readers.append(
+                (f"step {k + 1} of {task.name}", ANGLE, partial(_read_wheel, number, partial(_step_angle, k)))
+            )
+    return {name: NamedQuantity(name, "velocities", dimension, read, whole=True) for name, dimension, read in readers}
 
 
-def _read_wheel(number: int, of: WheelReader, results: Any) -> Any:
-    return np.array([float(of(results.wheels[number]))])
+def _read_wheel(number: int, reader: WheelReader, results: Any) -> Any:
+    return np.array([float(reader(results.wheels[number]))])
 
 
 def _step_angle(setting: int, wheel: IntermittentMotion) -> float:

@@ -118,15 +118,15 @@ def _refuse_missing_strokes(mechanism: Mechanism) -> None:
     if request.start == "working stroke" and driver_range.full and (strokes is None or not strokes.strokes):
         raise MissingStrokesError(strokes.link if strokes else None, ("positions", "from"))
     for load in loads:
-        own = strokes.of_link(load.stroke_link) if strokes else None
-        if load.working_stroke_only and driver_range.full and (own is None or not own.strokes):
-            raise MissingStrokesError(own.link if own else None, ("loads", load.name, "when"))
+        load_strokes = strokes.of_link(load.stroke_link) if strokes else None
+        if load.working_stroke_only and driver_range.full and (load_strokes is None or not load_strokes.strokes):
+            raise MissingStrokesError(load_strokes.link if load_strokes else None, ("loads", load.name, "when"))
         if load.table is not None and load.table.against == "stroke":
-            own = strokes.of_link(load.table.stroke_link) if strokes else None
-            if own is None or not own.strokes:
+            load_strokes = strokes.of_link(load.table.stroke_link) if strokes else None
+            if load_strokes is None or not load_strokes.strokes:
                 limits = None if driver_range.full else (driver_range.start, driver_range.end)
                 path = ("loads", load.name, load.table.key)
-                raise MissingStrokesError(own.link if own else None, path, limits)
+                raise MissingStrokesError(load_strokes.link if load_strokes else None, path, limits)
 
 
 def _refuse_long_load_tables(mechanism: Mechanism) -> None:
@@ -147,14 +147,14 @@ def _refuse_long_load_tables(mechanism: Mechanism) -> None:
 
 def _refuse_short_speed_table(mechanism: Mechanism) -> None:
     """Refuse a speed table of the driver that does not cover all positions."""
-    law, asked = mechanism.linkage.driver.law, mechanism.asked
+    law, requested = mechanism.linkage.driver.law, mechanism.asked
     if law is None:
         return
-    unknown = ~np.isfinite(driver_motion(mechanism.linkage, float(asked[0])).speed(asked))
+    unknown = ~np.isfinite(driver_motion(mechanism.linkage, float(requested[0])).speed(requested))
     goes_round = mechanism.driver_range.full and not mechanism.inputs.request.places
     if np.any(unknown) or (goes_round and not law.squares.closed):
         first = float(to_float(law.squares.arguments[0]))
-        at = float(asked[np.argmax(unknown)]) if np.any(unknown) else None
+        at = float(requested[np.argmax(unknown)]) if np.any(unknown) else None
         raise SpeedTableError(
             at, first, float(to_float(law.squares.arguments[-1])), 2 * np.pi * mechanism.linkage.turns
         )
@@ -232,7 +232,7 @@ class Results:
     @property
     def swinging(self) -> tuple[Strokes, ...]:
         """Strokes of reciprocating outputs."""
-        return tuple(one for one in (self.strokes, *self.further) if one is not None and one.strokes)
+        return tuple(strokes for strokes in (self.strokes, *self.further) if strokes is not None and strokes.strokes)
 
     @property
     def travels(self) -> tuple[OutputTravel, ...]:
@@ -283,8 +283,8 @@ class Results:
         driver = self.linkage.driver
         if self.turns:
             return self.start + driver.sense * np.linspace(0, 2 * np.pi * self.turns, count)
-        asked = self.asked
-        return np.linspace(np.min(asked), np.max(asked), count)[:: driver.sense]
+        requested = self.asked
+        return np.linspace(np.min(requested), np.max(requested), count)[:: driver.sense]
 
     @property
     def law(self) -> LawOfMotion:
@@ -370,9 +370,9 @@ def _solve_motion(results: Results, kernels: tuple[GroupSolver, ...], numbers: t
     if results.inputs.extended is None or not np.any(where):
         return fill_in_limits(motion)
     exact = results.inputs.extended()
-    asked: Any = exact.request.places
-    asked = np.stack(asked) if asked else to_double_double(results.asked)
-    return fill_in_limits(refine_near_dead(motion, exact.linkage, asked[list(numbers)][where], law, where))
+    requested: Any = exact.request.places
+    requested = np.stack(requested) if requested else to_double_double(results.asked)
+    return fill_in_limits(refine_near_dead(motion, exact.linkage, requested[list(numbers)][where], law, where))
 
 
 def with_forces(results: Results, *, cycle: bool = True) -> Results:
@@ -409,15 +409,15 @@ def with_forces(results: Results, *, cycle: bool = True) -> Results:
     )
 
 
-def cycle_losses(results: Results, places: int = CYCLE_SAMPLES, *, ranges: bool = True) -> FrictionLosses:
-    """Integrate friction losses over the cycle with `places` steps; ranges: also find the ranges in which it
+def cycle_losses(results: Results, samples: int = CYCLE_SAMPLES, *, ranges: bool = True) -> FrictionLosses:
+    """Integrate friction losses over the cycle with `samples` steps; ranges: also find the ranges in which it
     locks.
     """
-    whole = motion_at_positions(results, results.closely(places + 1))
+    whole = motion_at_positions(results, results.closely(samples + 1))
     rubbed = _solve_friction_at(results, whole)
-    found = compute_losses(rubbed, whole)
-    if not found.locked or not ranges:
-        return found
+    losses = compute_losses(rubbed, whole)
+    if not losses.locked or not ranges:
+        return losses
     q = whole.q
     if results.linkage.driver.sense < 0:
         q = q[::-1]
@@ -426,7 +426,7 @@ def cycle_losses(results: Results, places: int = CYCLE_SAMPLES, *, ranges: bool 
     def locked_at(q: Real) -> Real:
         return _solve_friction_at(results, motion_at_positions(results, q)).locked
 
-    return replace(found, ranges=find_locked_ranges(q, rubbed, locked_at, cyclic=results.turns > 0))
+    return replace(losses, ranges=find_locked_ranges(q, rubbed, locked_at, cyclic=results.turns > 0))
 
 
 def _solve_friction_at(results: Results, motion: Motion) -> FrictionSolution:

@@ -35,40 +35,40 @@ def mass_centres(linkage: Linkage) -> dict[str, PointOnLink]:
 
 def refuse_unknown_names(linkage: Linkage, names: Sequence[str]) -> None:
     """Raise UnknownNameError for a name that is no point, centre of mass or moving link."""
-    known = {**named_points(linkage), **mass_centres(linkage), **dict.fromkeys(linkage.moving)}
+    allowed = {**named_points(linkage), **mass_centres(linkage), **dict.fromkeys(linkage.moving)}
     for name in names:
-        if name not in known:
-            raise UnknownNameError(name, tuple(known))
+        if name not in allowed:
+            raise UnknownNameError(name, tuple(allowed))
 
 
 def point_places(linkage: Linkage, kernels: Sequence[GroupSolver], names: Sequence[str]) -> Mapping[str, PointOnLink]:
     """Return the places of the named points and centres of mass, on the link that needs the fewest groups."""
     points, centres = named_points(linkage), mass_centres(linkage)
-    found: dict[str, PointOnLink] = {}
+    points_on_links: dict[str, PointOnLink] = {}
     for name in names:
         if name in points:
             link = min(
                 (link for link in linkage.moving if name in linkage.links[link].points),
                 key=lambda link: (len(solvers_towards(kernels, [link])), link != points[name][0]),
             )
-            found[name] = link, linkage.local(link, name)
+            points_on_links[name] = link, linkage.local(link, name)
         elif name in centres:
-            found[name] = centres[name]
-    return found
+            points_on_links[name] = centres[name]
+    return points_on_links
 
 
 def moving_points(linkage: Linkage, motion: Motion, names: Sequence[str] = ()) -> dict[str, PointMotion]:
     """Return the motion of all named points, or of those among the names."""
-    known = named_points(linkage)
-    return {name: motion.named(name) for name in (dict.fromkeys(names) if names else known) if name in known}
+    points = named_points(linkage)
+    return {name: motion.named(name) for name in (dict.fromkeys(names) if names else points) if name in points}
 
 
 def moving_centres(linkage: Linkage, motion: Motion, names: Sequence[str] = ()) -> dict[str, PointMotion]:
     """Return the motion of all centres of mass, or of those among the names."""
-    known = mass_centres(linkage)
+    centres = mass_centres(linkage)
     points = named_points(linkage)
-    chosen = [name for name in dict.fromkeys(names) if name not in points] if names else known
-    return {name: motion.centre(known[name][0]) for name in chosen if name in known}
+    chosen = [name for name in dict.fromkeys(names) if name not in points] if names else centres
+    return {name: motion.centre(centres[name][0]) for name in chosen if name in centres}
 
 
 def select_links(linkage: Linkage, names: Sequence[str]) -> tuple[str, ...]:
@@ -94,10 +94,10 @@ def leading_values(
     first: take a shared point as a point of its first link, not of the one with the least loss of digits
     (which depends on numbers that a trace does not have).
     """
-    linkage, told = motion.linkage, set(motion.linkage.links[FRAME].points)
+    linkage, listed = motion.linkage, set(motion.linkage.links[FRAME].points)
     for name in linkage.moving:
-        points = [point for point in linkage.links[name].points if point not in told]
-        told.update(points)
+        points = [point for point in linkage.links[name].points if point not in listed]
+        listed.update(points)
         yield from _leading_of(LINK, name, motion.link(name))
         for point in points:
             yield from _leading_of(POINT, point, motion.named_on(name, point) if first else motion.named(point))
