@@ -174,7 +174,7 @@ def page_data(results: Results, whole: Results, picture: MechanismPicture) -> di
         "bodies": [body_data(picture.bodies[name]) for name in names],
         "labels": body_labels(picture, names),
         "plans": [plan_data(motion, sort) for sort in motion_plan_kinds()],
-        "charts": [chart_data(results, one) for one in chart_quantities(results, whole)],
+        "charts": [chart_data(results, quantity) for quantity in chart_quantities(results, whole)],
         "marks": position_marks(results, motion),
     }
 
@@ -183,33 +183,35 @@ def draw_first_frame(whole: Results, motion: Motion) -> MechanismPicture:
     """Draw the mechanism in its first frame on a sheet that has room for its whole motion."""
     linkage = whole.linkage
     scene = MechanismScene(linkage, whole.structure, motion.poses, 0)
-    places = [*frame_pivots(linkage), *(z for name in linkage.moving_points for z in motion.spot(name).tolist())]
+    points = [*frame_pivots(linkage), *(z for name in linkage.moving_points for z in motion.spot(name).tolist())]
     sheet = DrawingSheet("", "", paper=PAPER)
-    fit_points(sheet, points_to_scale(scene, places), 0.0, LARGEST)
+    fit_points(sheet, points_to_scale(scene, points), 0.0, LARGEST)
     return MechanismPicture.of(sheet, motion, scene)
 
 
 def picture_view(picture: MechanismPicture) -> tuple[float, float, float, float]:
     """Return the part of the sheet that is drawn on in any frame: left, top (y down), width and height, mm."""
-    local = [(own, np.array([z for mark in own.marks for z in mark_corners(mark)])) for own in picture.bodies.values()]
+    local = [
+        (body, np.array([z for mark in body.marks for z in mark_corners(mark)])) for body in picture.bodies.values()
+    ]
     times = range(0, len(picture.motion.q), max(1, len(picture.motion.q) // 24))
-    return field_sides(np.concatenate([own.at(places, k) for own, places in local for k in times]), EDGE)
+    return field_sides(np.concatenate([body.at(corners, k) for body, corners in local for k in times]), EDGE)
 
 
-def body_data(own: MovingBody) -> dict[str, Any]:
+def body_data(body: MovingBody) -> dict[str, Any]:
     """Return the place of a body in each frame; a constant as one number."""
     return {
-        "x": rounded_frames(own.place.real, 2),
-        "y": rounded_frames(-own.place.imag, 2),
-        "turn": rounded_frames(-own.angle, 4),
-        "stretch": rounded_frames(own.stretch, 4),
+        "x": rounded_frames(body.place.real, 2),
+        "y": rounded_frames(-body.place.imag, 2),
+        "turn": rounded_frames(-body.angle, 4),
+        "stretch": rounded_frames(body.stretch, 4),
     }
 
 
 def rounded_frames(values: Real, digits: int) -> Any:
     """Round values; a constant becomes one number."""
-    found = [round(value, digits) + 0.0 for value in np.asarray(values, float).tolist()]
-    return found[0] if min(found) == max(found) else found
+    rounded = [round(value, digits) + 0.0 for value in np.asarray(values, float).tolist()]
+    return rounded[0] if min(rounded) == max(rounded) else rounded
 
 
 def point_paths(picture: MechanismPicture) -> Iterable[list[list[float]]]:
@@ -228,11 +230,11 @@ TEXT = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"})  # nothin
 def animation_page(results: Results) -> str:
     """Return the page of a mechanism, with fewer frames if it would exceed MOST_BYTES. Raises ProblemError."""
     count = FRAMES
-    made = _build_page(results, count)
-    while len(made.encode()) > MOST_BYTES and count > FEWEST_FRAMES:
+    page = _build_page(results, count)
+    while len(page.encode()) > MOST_BYTES and count > FEWEST_FRAMES:
         count = count * 3 // 4
-        made = _build_page(results, count)
-    return made
+        page = _build_page(results, count)
+    return page
 
 
 def _build_page(results: Results, count: int) -> str:
@@ -248,7 +250,7 @@ def _build_page(results: Results, count: int) -> str:
         "",
         title=escape(results.problem.title),
         view=" ".join(f"{side:.1f}" for side in picture_view(picture)),
-        paths="".join(_path_html(way) for way in point_paths(picture)),
+        paths="".join(_path_html(path) for path in point_paths(picture)),
         bodies=bodies,
         data=data_text(page_data(results, whole, picture)),
         hint=escape(
@@ -266,8 +268,10 @@ def _build_page(results: Results, count: int) -> str:
 
 def fill_page(folder: str, **texts: str) -> str:
     """Fill the page template of a folder with its style, its script and these texts."""
-    own = files("tmm_cli.animation")
-    whole, style, script = (own.joinpath(f"{folder}page.{kind}").read_text("utf-8") for kind in ("html", "css", "js"))
+    package = files("tmm_cli.animation")
+    whole, style, script = (
+        package.joinpath(f"{folder}page.{kind}").read_text("utf-8") for kind in ("html", "css", "js")
+    )
     policy = f"default-src 'none';style-src '{_digest(style)}';script-src '{_digest(script)}'"
     return Template(whole).substitute(texts, lang=language(), policy=policy, style=style, script=script)
 
@@ -277,8 +281,8 @@ def data_text(data: Any) -> str:
     return json.dumps(data, separators=(",", ":"), allow_nan=False).translate(TEXT)
 
 
-def _path_html(way: Iterable[Iterable[float]]) -> str:
-    return f'<polyline points="{" ".join(",".join(f"{x:g}" for x in place) for place in way)}"/>'
+def _path_html(path: Iterable[Iterable[float]]) -> str:
+    return f'<polyline points="{" ".join(",".join(f"{x:g}" for x in place) for place in path)}"/>'
 
 
 def _digest(text: str) -> str:

@@ -36,10 +36,10 @@ Placeholders = Sequence[Any]
 
 def unroll_groups(linkage: Linkage, kernels: Sequence[GroupSolver]) -> tuple[GroupSolver, ...]:
     """Convert groups that are solved by iteration to a fixed number of Newton steps. Raises NotUnrolledError."""
-    there = link_states(linkage, kernels, np.array([linkage.sketch.at]), 0)
+    states = link_states(linkage, kernels, np.array([linkage.sketch.at]), 0)
     geared = {link for mesh in linkage.meshes for link in (mesh.i, mesh.j, mesh.carrier)}
     return tuple(
-        UnrolledNewton.from_newton(kernel, there.poses, there.drives, geared)
+        UnrolledNewton.from_newton(kernel, states.poses, states.drives, geared)
         if isinstance(kernel, NewtonSolver)
         else kernel
         for kernel in kernels
@@ -52,55 +52,55 @@ def count_initial_guesses(kernels: Sequence[GroupSolver]) -> int:
 
 
 def with_initial_guesses(
-    kernels: Sequence[GroupSolver], stands: Placeholders, steps: int | None = None
+    kernels: Sequence[GroupSolver], placeholders: Placeholders, steps: int | None = None
 ) -> tuple[GroupSolver, ...]:
     """Return the groups with their initial guesses, taken one after another.
 
     steps: number of Newton steps, if not the default.
     """
-    found, at = [], 0
+    prepared, at = [], 0
     for kernel in kernels:
         if isinstance(kernel, UnrolledNewton) and not kernel.linear:
-            own = tuple(stands[at : at + len(kernel.free)])
-            kernel = replace(kernel, starts=own, steps=steps or kernel.steps)
-            at += len(own)
-        found.append(kernel)
-    return tuple(found)
+            guesses = tuple(placeholders[at : at + len(kernel.free)])
+            kernel = replace(kernel, starts=guesses, steps=steps or kernel.steps)
+            at += len(guesses)
+        prepared.append(kernel)
+    return tuple(prepared)
 
 
 def newton_converged(states: LinkStates) -> Any:
     """Mask of positions where the Newton steps of all traced groups have converged."""
-    found: Any = np.ones(np.shape(states.q), dtype=bool)
+    converged: Any = np.ones(np.shape(states.q), dtype=bool)
     for kernel, at in zip(states.kernels, states.placements, strict=True):
         if isinstance(kernel, UnrolledNewton):
-            found = found & (at.residual < 0)
-    return found
+            converged = converged & (at.residual < 0)
+    return converged
 
 
 def accumulated_angles_agree(states: LinkStates) -> Any:
     """Mask of positions where the accumulated angles of gears are those of the tables of groups in closed form."""
-    found: Any = np.ones(np.shape(states.q), dtype=bool)
+    agree: Any = np.ones(np.shape(states.q), dtype=bool)
     for kernel, at in zip(states.kernels, states.placements, strict=True):
         if isinstance(kernel, ClosedFormSolver) and kernel.winding is not None:
-            found = found & kernel.winding.sure(kernel.group.links, at.poses, states.q)
-    return found
+            agree = agree & kernel.winding.sure(kernel.group.links, at.poses, states.q)
+    return agree
 
 
 def free_unknowns(states: LinkStates) -> Mapping[str, Any]:
     """Free unknowns x0, x1, ... of all iterated groups, their rates v0, v1, ... by the driver, and whether they
     converged.
     """
-    found: dict[str, Any] = {"sure": newton_converged(states)}
+    unknowns: dict[str, Any] = {"sure": newton_converged(states)}
     number = 0
     for kernel in states.kernels:
         if isinstance(kernel, UnrolledNewton) and not kernel.linear:
             links = kernel.group.links
-            places = [p for link in links for p in _components(states.poses[link].x, states.poses[link].unwrapped)]
+            components = [p for link in links for p in _components(states.poses[link].x, states.poses[link].unwrapped)]
             rates = [p for link in links for p in _components(states.first[link].v, states.first[link].w)]
-            for x, v in zip(kernel.values(places), kernel.values(rates), strict=True):
-                found |= {f"x{number}": x, f"v{number}": v}
+            for x, v in zip(kernel.values(components), kernel.values(rates), strict=True):
+                unknowns |= {f"x{number}": x, f"v{number}": v}
                 number += 1
-    return found
+    return unknowns
 
 
 def _components(vector: Any, angle: Any) -> tuple[Any, Any, Any]:
@@ -124,8 +124,8 @@ class StartTable:
     def of(cls, q: Real, x: Real, v: Real, *, closed: bool) -> StartTable:
         """Build the table from unknowns and rates (unknowns, places) at equal steps; nan where they are unknown."""
         h = float(q[1] - q[0])
-        a, b, one, other = x[:, :-1], x[:, 1:], h * v[:, :-1], h * v[:, 1:]
-        pieces = np.stack([a, one, 3 * (b - a) - 2 * one - other, 2 * (a - b) + one + other])
+        a, b, left, right = x[:, :-1], x[:, 1:], h * v[:, :-1], h * v[:, 1:]
+        pieces = np.stack([a, left, 3 * (b - a) - 2 * left - right, 2 * (a - b) + left + right])
         return cls(float(q[0]), h, pieces, x[:, -1:] - x[:, :1] if closed else None)
 
     def __call__(self, q: Real) -> Real:
@@ -141,11 +141,11 @@ class StartTable:
             beyond = whole * self.gain.reshape(-1, *[1] * np.ndim(q))
         share = share - number
         a, b, c, d = self.pieces.take((number if self.gain is None else number - whole * many).astype(np.intp), axis=2)
-        for part in (c, b, a):
+        for coefficient in (c, b, a):
             d *= share
-            d += part
-        found: Real = d + beyond
-        return found
+            d += coefficient
+        unknowns: Real = d + beyond
+        return unknowns
 
 
 class InitialGuesses:
@@ -153,19 +153,21 @@ class InitialGuesses:
 
     def __init__(self, linkage: Linkage, kernels: Sequence[GroupSolver]) -> None:
         """Tabulate the unknowns of the unrolled groups `kernels`."""
-        own = [kernel for kernel in kernels if isinstance(kernel, UnrolledNewton) and not kernel.linear]
-        traces = [kernel.trace for kernel in own if kernel.trace is not None]
+        iterated = [kernel for kernel in kernels if isinstance(kernel, UnrolledNewton) and not kernel.linear]
+        traces = [kernel.trace for kernel in iterated if kernel.trace is not None]
         self.tables: list[StartTable] = []
-        if not own:
+        if not iterated:
             return
         closing = _closing_program(linkage, kernels)
         first = 0
-        for kernel, trace in zip(own, traces, strict=True):
+        for kernel, trace in zip(iterated, traces, strict=True):
             q = _table_coordinates(trace, turns=linkage.driver.kind == "turn")
-            found = closing(q, *(x for k, t in zip(own, traces, strict=True) for x in _unknowns_from_trace(k, t, q)))
+            closed = closing(
+                q, *(x for k, t in zip(iterated, traces, strict=True) for x in _unknowns_from_trace(k, t, q))
+            )
             numbers = range(first, first + len(kernel.free))
-            lost = np.where(found["sure"], 0.0, np.nan)
-            x, v = (np.stack([found[f"{part}{k}"] + lost for k in numbers]) for part in "xv")
+            lost = np.where(closed["sure"], 0.0, np.nan)
+            x, v = (np.stack([closed[f"{letter}{k}"] + lost for k in numbers]) for letter in "xv")
             self.tables.append(StartTable.of(q, x, v, closed=trace.closed))
             first += len(kernel.free)
 
@@ -238,9 +240,11 @@ class ContinuedPaths:
         down, up = self.steps
         return replace(self, x=self.x[:, rows], v=self.v[:, rows], steps=(down[rows], up[rows]), gain=gain)
 
-    def of(self, part: slice) -> ContinuedPaths:
+    def of(self, selected: slice) -> ContinuedPaths:
         """Return the paths of some unknowns."""
-        return replace(self, x=self.x[part], v=self.v[part], gain=None if self.gain is None else self.gain[part])
+        return replace(
+            self, x=self.x[selected], v=self.v[selected], gain=None if self.gain is None else self.gain[selected]
+        )
 
     def __call__(self, q: Real) -> list[Real]:
         """Return initial guesses at driver coordinates (variants, positions)."""
@@ -256,15 +260,15 @@ class ContinuedPaths:
         k = np.clip(np.floor(share + NODE_TOLERANCE), -n, n - 1)
         t = share - k
         flat = (k + n).astype(np.intp) + many * np.arange(variants)[:, None]
-        x, v = (part.reshape(unknowns, -1) for part in (self.x, self.v))
+        x, v = (nodes.reshape(unknowns, -1) for nodes in (self.x, self.v))
         a, b = x.take(flat, axis=1), x.take(flat + 1, axis=1)
         # the step of the piece: the piece from -1 to 0 is one of the way down
-        one, other = (step * v.take(f, axis=1) for f in (flat, flat + 1))
-        found = a + t * (one + t * (3 * (b - a) - 2 * one - other + t * (2 * (a - b) + one + other)))
-        found = np.where(np.abs(t) <= NODE_TOLERANCE, a, found)  # a node, whatever lies after it
+        left, right = (step * v.take(f, axis=1) for f in (flat, flat + 1))
+        guesses = a + t * (left + t * (3 * (b - a) - 2 * left - right + t * (2 * (a - b) + left + right)))
+        guesses = np.where(np.abs(t) <= NODE_TOLERANCE, a, guesses)  # a node, whatever lies after it
         if self.gain is not None:
-            found = np.where(whole == 0, found, found + whole * self.gain)
-        return list(found)
+            guesses = np.where(whole == 0, guesses, guesses + whole * self.gain)
+        return list(guesses)
 
 
 class Continuation:
@@ -290,15 +294,15 @@ class Continuation:
 
         def stages(*data: TracedArray) -> Mapping[str, Any]:
             other = varied(data[:many])
-            own = with_initial_guesses(
+            rebound = with_initial_guesses(
                 [_with_loose_tolerance(kernel.rebind(other)) for kernel in kernels], data[many + 1 :], CORRECTOR_STEPS
             )
-            states = link_states(other, own, data[many], 1, blank=False)  # type: ignore[arg-type]
+            states = link_states(other, rebound, data[many], 1, blank=False)  # type: ignore[arg-type]
             dets = {
                 f"det{k}": at.det
                 for k, at in enumerate(
                     at
-                    for kernel, at in zip(own, states.placements, strict=True)
+                    for kernel, at in zip(rebound, states.placements, strict=True)
                     if isinstance(kernel, UnrolledNewton) and not kernel.linear
                 )
             }
@@ -316,19 +320,21 @@ class Continuation:
         Returns:
             Unknowns and rates (2, unknowns, variants), and the signs (groups, variants).
         """
-        data = [*split_columns(numbers), q[:, None], *(part[:, None] for part in x)]
-        found = self.program(*data)
-        dets = np.sign([found.part(f"det{k}")[:, 0] for k in range(len(self.own))])
-        sound = found.part("sure")[:, 0] if signs is None else found.part("sure")[:, 0] & np.all(dets == signs, axis=0)
-        parts = np.stack([found.part(f"{part}{k}")[:, 0] for part in "xv" for k in range(len(x))])
-        there = parts.reshape(2, *x.shape)
-        there[0, :, ~sound] = np.nan
-        return there, dets
+        data = [*split_columns(numbers), q[:, None], *(unknown[:, None] for unknown in x)]
+        outputs = self.program(*data)
+        dets = np.sign([outputs.part(f"det{k}")[:, 0] for k in range(len(self.own))])
+        sound = (
+            outputs.part("sure")[:, 0] if signs is None else outputs.part("sure")[:, 0] & np.all(dets == signs, axis=0)
+        )
+        parts = np.stack([outputs.part(f"{unknown}{k}")[:, 0] for unknown in "xv" for k in range(len(x))])
+        corrected = parts.reshape(2, *x.shape)
+        corrected[0, :, ~sound] = np.nan
+        return corrected, dets
 
-    def _near(self, found: Real, start: Real) -> Real:
+    def _near(self, corrected: Real, start: Real) -> Real:
         """Mask of the variants whose correction was small."""
         with np.errstate(invalid="ignore"):
-            near: Real = np.max(np.abs(found - start) / self.scale[:, None], axis=0) < LARGEST_CORRECTION
+            near: Real = np.max(np.abs(corrected - start) / self.scale[:, None], axis=0) < LARGEST_CORRECTION
         return near
 
     def sketched(self, numbers: Real) -> Real:
@@ -337,23 +343,23 @@ class Continuation:
         nan where the continuation failed.
         """
         variants = len(numbers)
-        there = np.repeat(np.stack([self.x, np.full_like(self.x, np.nan)])[:, :, None], variants, axis=2)
+        current = np.repeat(np.stack([self.x, np.full_like(self.x, np.nan)])[:, :, None], variants, axis=2)
         gone, stride = np.zeros(variants), np.full(variants, FIRST_SHARE)
-        slope = np.zeros_like(there[0])
+        slope = np.zeros_like(current[0])
         for _ in range(MOST_ROUNDS):
             share = np.minimum(gone + stride, 1.0)
-            start = there[0] + slope * (share - gone)
+            start = current[0] + slope * (share - gone)
             between = self.first + share[:, None] * (numbers - self.first)
-            found, _ = self._closed(between, np.full(variants, self.at), start, self.signs)
-            good = self._near(found[0], start) & (gone < 1)
+            corrected, _ = self._closed(between, np.full(variants, self.at), start, self.signs)
+            good = self._near(corrected[0], start) & (gone < 1)
             moved = np.where(good, share - gone, 1.0)
-            slope = np.where(good, (found[0] - there[0]) / moved, slope)
-            there = np.where(good, found, there)
+            slope = np.where(good, (corrected[0] - current[0]) / moved, slope)
+            current = np.where(good, corrected, current)
             stride = np.where(good, np.where(gone > 0, 2 * stride, 1.0), stride / 2)
             gone = np.where(good, share, gone)
             if np.all(gone == 1):
                 break
-        return np.where(gone == 1, there, np.nan)
+        return np.where(gone == 1, current, np.nan)
 
     def __call__(self, numbers: Real, low: Real, high: Real, count: int, *, closed: bool) -> ContinuedPaths:
         """Continue variants over driver ranges (variants, 1), in at most `count` steps.
@@ -376,7 +382,7 @@ class Continuation:
             x[:, other] = np.nan  # a cycle later it is assembled otherwise
         return ContinuedPaths(self.at, x, v, (-ends[0][:, None] / n, ends[1][:, None] / n), gain)
 
-    def _marched(self, numbers: Real, there: Real, steps: Real, n: int) -> Real:
+    def _marched(self, numbers: Real, sketched: Real, steps: Real, n: int) -> Real:
         """Unknowns and rates (2, unknowns, variants, 2 n + 1), from those at the sketch.
 
         steps: step lengths down and up, (2, variants).
@@ -385,30 +391,32 @@ class Continuation:
         sides = [side for side in (0, 1) if np.any(steps[side])]  # which ways lead anywhere
         both = np.tile(numbers, (len(sides), 1))
         h = np.concatenate([steps[side] for side in sides])
-        now = np.tile(there, (1, 1, len(sides)))
-        ways = np.full((*now.shape, n + 1), np.nan)
-        ways[..., 0] = now
+        now = np.tile(sketched, (1, 1, len(sides)))
+        paths = np.full((*now.shape, n + 1), np.nan)
+        paths[..., 0] = now
         bend = np.zeros_like(now[0])
-        gone, size = np.zeros(len(h)), np.ones(len(h))  # in steps
-        going = np.isfinite(now[0, 0])
-        while np.any(going):
-            step = h * size
+        gone, step_share = np.zeros(len(h)), np.ones(len(h))  # in steps
+        active = np.isfinite(now[0, 0])
+        while np.any(active):
+            step = h * step_share
             start = now[0] + step * (now[1] + step / 2 * bend)
-            found, _ = self._closed(both, self.at + h * gone + step, start, self.signs)
-            good = self._near(found[0], start) & going
+            corrected, _ = self._closed(both, self.at + h * gone + step, start, self.signs)
+            good = self._near(corrected[0], start) & active
             with np.errstate(invalid="ignore", divide="ignore"):
-                bend = np.where(good & (step != 0), (found[1] - now[1]) / step, bend)
-            now = np.where(good, found, now)
-            gone = gone + size * good
+                bend = np.where(good & (step != 0), (corrected[1] - now[1]) / step, bend)
+            now = np.where(good, corrected, now)
+            gone = gone + step_share * good
             whole = np.flatnonzero(good & (gone == np.floor(gone)))
-            ways[:, :, whole, gone[whole].astype(np.intp)] = now[:, :, whole]
-            size = np.where(good, np.where(gone == np.floor(gone), np.minimum(1.0, 2 * size), size), size / 2)
-            going = going & (gone < n) & (size >= SHORTEST_STEP)
-        nowhere = np.full((*there.shape, n), np.nan)
-        side = {k: ways[:, :, row * variants : (row + 1) * variants] for row, k in enumerate(sides)}
+            paths[:, :, whole, gone[whole].astype(np.intp)] = now[:, :, whole]
+            step_share = np.where(
+                good, np.where(gone == np.floor(gone), np.minimum(1.0, 2 * step_share), step_share), step_share / 2
+            )
+            active = active & (gone < n) & (step_share >= SHORTEST_STEP)
+        nowhere = np.full((*sketched.shape, n), np.nan)
+        side = {k: paths[:, :, row * variants : (row + 1) * variants] for row, k in enumerate(sides)}
         down = side[0][..., :0:-1] if 0 in side else nowhere
         up = side[1][..., 1:] if 1 in side else nowhere
-        return np.concatenate([down, there[..., None], up], axis=-1)
+        return np.concatenate([down, sketched[..., None], up], axis=-1)
 
 
 def _with_loose_tolerance(kernel: GroupSolver) -> GroupSolver:

@@ -68,27 +68,29 @@ class ContinuedGroup(NewtonSolver):
     def begun(self, poses: Poses, q: Real, drives: DriverStates) -> tuple[GroupState, Real]:
         posed = self.lines.posed(dict(zip(self.lines.free, self.ways(q), strict=True)), poses, drives)
         parts = [(posed[link].x, posed[link].turned) for link in self.group.links]
-        x, turned = (np.stack(np.broadcast_arrays(*part), axis=-1) for part in zip(*parts, strict=True))
+        x, turned = (np.stack(np.broadcast_arrays(*components), axis=-1) for components in zip(*parts, strict=True))
         return GroupState(x, turned), np.full(x.shape[:-1], -1.0)
 
-    def kept(self, found: LinkStates) -> Real:
+    def kept(self, states: LinkStates) -> Real:
         """Mask of the variants that follow their paths, far from dead positions, in the assembly that their sketch
         shows.
 
-        found: states of all variants, (variants, positions), beginning at the position of the sketch.
+        states: states of all variants, (variants, positions), beginning at the position of the sketch.
         """
-        number = [kernel.group for kernel in found.kernels].index(self.group)
-        at, later = found.placements[number], {link for k in found.kernels[number:] for link in k.group.links}
-        start, _ = self.begun(found.poses, found.q, found.drives)
+        number = [kernel.group for kernel in states.kernels].index(self.group)
+        at, later = states.placements[number], {link for k in states.kernels[number:] for link in k.group.links}
+        start, _ = self.begun(states.poses, states.q, states.drives)
         z = np.stack([pose.z for pose in at.poses], axis=-1)
-        known = {link: Pose(p.x[:, :1], p.z[:, :1]) for link, p in found.poses.items() if link not in later}
+        earlier = {link: Pose(p.x[:, :1], p.z[:, :1]) for link, p in states.poses.items() if link not in later}
         drives = {
-            link: DriverState(d.value[:, :1], d.first[:, :1], d.second[:, :1]) for link, d in found.drives.items()
+            link: DriverState(d.value[:, :1], d.first[:, :1], d.second[:, :1]) for link, d in states.drives.items()
         }
-        shown = sketched_angles(self, found.linkage, known, drives)
+        sketched = sketched_angles(self, states.linkage, earlier, drives)
         with np.errstate(invalid="ignore"):
             followed = np.all(np.abs(z - unit(start.unwrapped)) < LARGEST_CORRECTION, axis=(1, 2))
-            meant = np.all(np.abs(z[:, :1] - (z[:1, :1] if shown is None else unit(shown))) < SKETCH_CLOSE, axis=(1, 2))
+            meant = np.all(
+                np.abs(z[:, :1] - (z[:1, :1] if sketched is None else unit(sketched))) < SKETCH_CLOSE, axis=(1, 2)
+            )
             whole: Real = followed & meant & np.all((at.det * at.det[0, 0] > 0) & (at.margin > self.near), axis=1)
         return whole
 
@@ -110,18 +112,18 @@ def continue_groups(
     if lines is None or any(trace is None or not trace.closed or trace.dead.size for trace in traces):
         raise NoTapeError
     half = np.full((len(columns), 1), np.pi)
-    ways = Continuation(varied, columns[0].tolist(), linkage, lines)(columns, -half, half, STEPS_PER_TURN, closed=True)
-    found: list[GroupSolver] = []
+    paths = Continuation(varied, columns[0].tolist(), linkage, lines)(columns, -half, half, STEPS_PER_TURN, closed=True)
+    continued: list[GroupSolver] = []
     first = 0
     for kernel, line in zip(kernels, lines, strict=True):
         if isinstance(kernel, NewtonSolver) and isinstance(line, UnrolledNewton) and not line.linear:
             last = first + len(line.free)
-            own = kernel.group, kernel.size, kernel.constraints, kernel.start, None, kernel.passive, kernel.order
-            found.append(ContinuedGroup(*own, lines=line, ways=ways.of(slice(first, last))))
+            arguments = kernel.group, kernel.size, kernel.constraints, kernel.start, None, kernel.passive, kernel.order
+            continued.append(ContinuedGroup(*arguments, lines=line, ways=paths.of(slice(first, last))))
             first = last
         else:
-            found.append(kernel)
-    return tuple(found)
+            continued.append(kernel)
+    return tuple(continued)
 
 
 # Variants of a linkage as one linkage whose numbers are arrays, (variants, 1), with positions and strokes of each.
@@ -179,10 +181,10 @@ def split_families(make: Make, columns: Real) -> Iterator[tuple[Real, VariantFam
     A variant that cannot be solved comes with its error instead. Raises the errors of `make`.
     """
     rows = np.arange(len(columns))
-    every = build_family(make, columns) if len(columns) > 1 else None
-    if every is not None and np.any(every.sound):
-        yield rows[every.sound], every.take(rows[every.sound])
-        rows = rows[~every.sound]
+    family = build_family(make, columns) if len(columns) > 1 else None
+    if family is not None and np.any(family.sound):
+        yield rows[family.sound], family.take(rows[family.sound])
+        rows = rows[~family.sound]
     for row in rows:
         try:
             yield np.array([row]), _single_family(make, columns[row])
@@ -301,16 +303,16 @@ def working_and_idle_strokes(linkage: Linkage, curve: StrokeCurve, ends: Real, r
     slower = np.sign(np.where(np.abs(forward - back) > SAME_DRIVER_POSITION, forward - back, 0))
     rest = np.sign(np.ravel(resists) + np.zeros(len(ends)))
     direction = np.where(slower != 0, slower, np.where(rest != 0, rest, 1.0))
-    asked = linkage.working_direction(curve.link)
-    if asked != "auto":
-        direction = np.full(len(ends), 1.0 if asked == "forward" else -1.0)
+    required = linkage.working_direction(curve.link)
+    if required != "auto":
+        direction = np.full(len(ends), 1.0 if required == "forward" else -1.0)
     first = (np.sign(runs[:, 1]) == direction).astype(int)
     rows = np.arange(len(ends))
-    found = []
+    strokes = []
     for order, working in ((first, True), (1 - first, False)):
-        start, length, low, run = (part[rows, order][:, None] for part in (ends, lengths, lows, runs))
-        found.append(Stroke(start, length, low, run, working))
-    return Strokes(curve.link, curve.kind, tuple(found), "")
+        start, length, low, run = (columns[rows, order][:, None] for columns in (ends, lengths, lows, runs))
+        strokes.append(Stroke(start, length, low, run, working))
+    return Strokes(curve.link, curve.kind, tuple(strokes), "")
 
 
 def position_coordinates(request: Request, strokes: Strokes | None, sense: int, count: int) -> Real | None:
@@ -325,5 +327,5 @@ def position_coordinates(request: Request, strokes: Strokes | None, sense: int, 
         if strokes is None or not strokes.strokes:
             return None
         start = strokes.strokes[0].start
-    places: Real = start * ones + sense * 2 * np.pi * np.arange(request.count) / request.count
-    return places
+    coordinates: Real = start * ones + sense * 2 * np.pi * np.arange(request.count) / request.count
+    return coordinates

@@ -64,11 +64,11 @@ def read_all(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
     Keys: `A.x`, `A.v`, `A.a` (m, m/s, m/s2), `S2.x` ..., `2.omega`, `2.epsilon`, `R.A` (force on the pair's
     second link, N), `M.x` (couple in a guide, N m), `T.1` (balancing moment or force).
     """
-    found: dict[str, Any] = {}
+    outputs: dict[str, Any] = {}
     for quantity, name, value in leading_values(motion, reactions, first=True):
         if quantity.dimension != ANGLE:  # of a link its points tell it
-            found[f"{quantity.symbol}.{name}" if quantity.symbol else f"{name}.{quantity.name}"] = value
-    return found
+            outputs[f"{quantity.symbol}.{name}" if quantity.symbol else f"{name}.{quantity.name}"] = value
+    return outputs
 
 
 @dataclass(frozen=True)
@@ -117,44 +117,44 @@ class Batch:
         if self.checks is None:
             return np.zeros(np.shape(q), dtype=bool)
         q = np.asarray(q, dtype=float)
-        found = self.checks.only(*({CONVERGED} & set(self.checks.outputs)))(
+        outputs = self.checks.only(*({CONVERGED} & set(self.checks.outputs)))(
             *self.columns, q, *(self.starts(q) if self.starts else ())
         )
-        return found[CONVERGED] if CONVERGED in found else np.ones(found.several_shape, dtype=bool)
+        return outputs[CONVERGED] if CONVERGED in outputs else np.ones(outputs.several_shape, dtype=bool)
 
     def _played(self, program: TraceProgram, q: Real) -> TraceOutputs:
         """Replay a program; positions that it does not close are solved by the ordinary stages."""
         q = np.asarray(q, dtype=float)
-        found = program(*self.columns, q, *(self.starts(q) if self.starts else ()))
-        if CONVERGED not in found:
-            return found
-        sure, found = np.reshape(found.part(CONVERGED), found.several_shape), found.without(CONVERGED)
+        outputs = program(*self.columns, q, *(self.starts(q) if self.starts else ()))
+        if CONVERGED not in outputs:
+            return outputs
+        sure, outputs = np.reshape(outputs.part(CONVERGED), outputs.several_shape), outputs.without(CONVERGED)
         for k in np.flatnonzero(~np.all(sure, axis=1)).tolist():
-            found = found.put(k, ~sure[k], self._solved(k, (q[k] if q.ndim > 1 else q)[~sure[k]]))
-        return found
+            outputs = outputs.put(k, ~sure[k], self._solved(k, (q[k] if q.ndim > 1 else q)[~sure[k]]))
+        return outputs
 
     def _solved(self, k: int, q: Real) -> Mapping[str, Real]:
         """Solve one of the linkages by the ordinary stages."""
         linkage = self.linkages[k]
         if k not in self.others:
             self.others[k] = self.kernels if k == 0 else assemble(linkage, self.structure.rebind(linkage))
-        found = solve_stages(linkage, self.structure, self.others[k], q, self.wanted, self.forces, self.strokes)
+        outputs = solve_stages(linkage, self.structure, self.others[k], q, self.wanted, self.forces, self.strokes)
         return {
             name: np.broadcast_to(value, np.shape(q))
-            for name, value in found.items()
+            for name, value in outputs.items()
             if name not in (CONVERGED, ANGLES_AGREE)
         }
 
     def _one_by_one(self, q: Real) -> Mapping[str, Real]:
-        found = [self._solved(k, q[k] if np.ndim(q) > 1 else q) for k in range(len(self.linkages))]
-        if len(found) == 1:
-            return found[0]
-        return {name: np.stack([one[name] for one in found]) for name in found[0]}
+        solved = [self._solved(k, q[k] if np.ndim(q) > 1 else q) for k in range(len(self.linkages))]
+        if len(solved) == 1:
+            return solved[0]
+        return {name: np.stack([output[name] for output in solved]) for name in solved[0]}
 
 
 def prepare_batch(
     linkages: Sequence[Linkage] | Linkage,
-    wanted: OutputReader = read_all,
+    read: OutputReader = read_all,
     *,
     forces: bool = True,
     own_places: bool = False,
@@ -164,7 +164,7 @@ def prepare_batch(
 
     Args:
         linkages: one linkage or several.
-        wanted: reads the requested results.
+        read: reads the requested results.
         forces: the results need reactions.
         own_places: each variant will be solved at its own driver coordinates.
         strokes: strokes of a single linkage, if its loads act in them; without strokes such loads act at all
@@ -184,7 +184,7 @@ def prepare_batch(
     kernels = assemble(first, structure)
     # several drivers pass through the places of the sketch together: a tape knows that of the first linkage
     apart = bool(first.others) and any(linkage.sketch.at != first.sketch.at for linkage in linkages)
-    alone = Batch(linkages, structure, kernels, wanted, forces, strokes, None)
+    alone = Batch(linkages, structure, kernels, read, forces, strokes, None)
     lines = None if apart or first.friction else traceable_groups(first, kernels)
     if lines is None:
         return alone
@@ -199,9 +199,9 @@ def prepare_batch(
 
     def stages(*data: Any) -> Mapping[str, Any]:
         linkage = varied(data[:many])
-        own = tuple(kernel.rebind(linkage) for kernel in lines) if columns else lines
-        own = with_initial_guesses(own, data[many + 1 :], steps)
-        return solve_stages(linkage, structure, own, data[many], wanted, forces, strokes, blank=False)
+        rebound = tuple(kernel.rebind(linkage) for kernel in lines) if columns else lines
+        rebound = with_initial_guesses(rebound, data[many + 1 :], steps)
+        return solve_stages(linkage, structure, rebound, data[many], read, forces, strokes, blank=False)
 
     axes = (*[1] * many, 3 if own_places else 2, *[3 if many else 2] * count_initial_guesses(lines))
     try:
@@ -211,9 +211,9 @@ def prepare_batch(
     starts: Callable[[Real], list[Real]] | None = None
     if count_initial_guesses(lines):
         starts = continue_linkages(varied, columns, first, lines) if columns else InitialGuesses(first, lines)
-    own = (CONVERGED,) if isinstance(whole.outputs[CONVERGED][0], Term) else ()
-    checks = whole.only(*CHECKS, *own)
-    program = whole.only(*(name for name in whole.outputs if name not in CHECK_OUTPUTS), *own)
+    convergence = (CONVERGED,) if isinstance(whole.outputs[CONVERGED][0], Term) else ()
+    checks = whole.only(*CHECKS, *convergence)
+    program = whole.only(*(name for name in whole.outputs if name not in CHECK_OUTPUTS), *convergence)
     return replace(alone, program=program, checks=checks, columns=tuple(columns), starts=starts)
 
 
@@ -246,7 +246,7 @@ def solve_stages(
     structure: Structure,
     kernels: tuple[GroupSolver, ...],
     q: Any,
-    wanted: OutputReader,
+    read: OutputReader,
     forces: bool,
     strokes: Strokes | None,
     *,
@@ -260,7 +260,7 @@ def solve_stages(
         structure: its structure.
         kernels: its groups in their assemblies.
         q: driver coordinates.
-        wanted: reads the requested results.
+        read: reads the requested results.
         forces: also solve reactions.
         strokes: strokes, if loads depend on them.
         blank: replace results at positions that cannot be reached by nan.
@@ -283,7 +283,7 @@ def solve_stages(
     margin = reduce(np.minimum, [at.margin for at in motion.placements], np.ones(np.shape(q)))
     checks = {"placed": motion.placed, "moving": motion.moving, "margin": margin}
     turns = accumulated_angles_agree(motion)
-    return {**wanted(motion, reactions), **checks, CONVERGED: newton_converged(motion) & turns, ANGLES_AGREE: turns}
+    return {**read(motion, reactions), **checks, CONVERGED: newton_converged(motion) & turns, ANGLES_AGREE: turns}
 
 
 def solve_forces(motion: Motion, structure: Structure, strokes: Strokes | None) -> Reactions:

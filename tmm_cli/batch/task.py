@@ -77,12 +77,12 @@ def _unreadable() -> PydanticCustomError:
     return PydanticCustomError("range", _("expected [low, high], {from, to, step} or {among: [...]}"))
 
 
-def _bounds_or_choices(found: Any) -> Any:
-    if not isinstance(found, list | dict):
+def _bounds_or_choices(raw: Any) -> Any:
+    if not isinstance(raw, list | dict):
         raise _unreadable()
-    if isinstance(found, list) and len(found) > 2:
+    if isinstance(raw, list) and len(raw) > 2:
         raise PydanticCustomError("range", _("expected two bounds; for a list of values write {among: [...]}"))
-    return found
+    return raw
 
 
 Range = Annotated[Two | Chosen, BeforeValidator(_bounds_or_choices)]
@@ -96,8 +96,8 @@ def bounds_text(low: Any, high: Any) -> str:
 MOST_ANSWERS = 200
 
 
-def _as_list(found: object) -> object:
-    return [found] if isinstance(found, int | str) else found
+def _as_list(raw: object) -> object:
+    return [raw] if isinstance(raw, int | str) else raw
 
 
 class AnswerRule(Strict):
@@ -189,8 +189,8 @@ class Task:
     @cached_property
     def blocks(self) -> Blocks:
         """Blocks `variants` and `grading` of the file."""
-        own: dict[str, Any] = {key: self.tree.data[key] for key in ("variants", "grading") if key in self.tree.data}
-        return validate_shape(Blocks, replace(self.tree, data=own))
+        blocks: dict[str, Any] = {key: self.tree.data[key] for key in ("variants", "grading") if key in self.tree.data}
+        return validate_shape(Blocks, replace(self.tree, data=blocks))
 
     @property
     def rules(self) -> Grading:
@@ -241,9 +241,9 @@ class Task:
         values = ValueReader(self._parameters({}), self.units)
         with locate_errors_in(self.tree):
             return tuple(
-                asked
+                question
                 for n, rule in enumerate(rules.answers)
-                for asked in self._of_rule(rule, rules, values, last, ("grading", "answers", n))
+                for question in self._of_rule(rule, rules, values, last, ("grading", "answers", n))
             )
 
     def _of_rule(self, rule: AnswerRule, rules: Grading, values: ValueReader, last: int, path: Path) -> list[Question]:
@@ -284,14 +284,14 @@ class Task:
         return [Question(quantity, number - rules.count, number, points, tolerance, drawn) for number in rule.at]
 
     def _parameters(
-        self, given: Mapping[str, PhysicalValue], units: UnitSystem | None = None
+        self, replaced: Mapping[str, PhysicalValue], units: UnitSystem | None = None
     ) -> dict[str, PhysicalValue]:
         """All parameters; with a synthesis, only those that do not depend on its results."""
         if "synthesis" in self.tree.data:
-            return {**early_parameters(self.tree), **given}
+            return {**early_parameters(self.tree), **replaced}
         raw = self._shape.parameters
-        rest = {name: value for name, value in raw.items() if name not in given}
-        return {**given, **build_parameters(rest, units or self.units, given)}
+        rest = {name: value for name, value in raw.items() if name not in replaced}
+        return {**replaced, **build_parameters(rest, units or self.units, replaced)}
 
     @cached_property
     def _shape(self) -> Any:
@@ -299,12 +299,12 @@ class Task:
 
     def own(self, names: Sequence[str]) -> tuple[PhysicalValue, ...]:
         """Return the file's own values of parameters."""
-        found = self._parameters({})
+        parameters = self._parameters({})
         for name in names:
-            if name not in found:
-                none = None if found else _("none: the file has no block `parameters`")
-                raise unknown_name_error(name, found, _("no parameter has this name"), none)
-        return tuple(found[name] for name in names)
+            if name not in parameters:
+                none = None if parameters else _("none: the file has no block `parameters`")
+                raise unknown_name_error(name, parameters, _("no parameter has this name"), none)
+        return tuple(parameters[name] for name in names)
 
     def dimensions(self, names: Sequence[str]) -> tuple[Dimension | None, ...]:
         """Return the dimensions of parameters; None for plain numbers."""
@@ -327,11 +327,11 @@ class Task:
             texts = (f"{float(x)!r} {SI.symbol(d) if d else ''}" for x, d in zip(numbers, dimensions, strict=True))
             whole = self.variant(dict(zip(names, texts, strict=True))).whole
             return Variant(whole.linkage, whole.request)
-        given = {name: PhysicalValue(x, d) for name, d, x in zip(names, dimensions, numbers, strict=True)}
+        replaced = {name: PhysicalValue(x, d) for name, d, x in zip(names, dimensions, numbers, strict=True)}
         units = VariedUnits(self.units) if traced else self.units
         with locate_errors_in(self.tree):
-            found = build_from_shape(self._shape, self.tree, ValueReader(self._parameters(given, units), units))
-        return Variant(found.linkage, found.request)
+            built = build_from_shape(self._shape, self.tree, ValueReader(self._parameters(replaced, units), units))
+        return Variant(built.linkage, built.request)
 
     def variant(self, values: Mapping[str, str]) -> Problem | TaskProblem:
         """Return one variant as a problem of its own; values as texts."""
@@ -367,22 +367,22 @@ class FreeParameter:
 
 def with_vary(tree: Tree, vary: Sequence[str]) -> Tree:
     """Return the file with ranges `OA=80..140:5` in place of its own. Raises ProblemError."""
-    own = tree.data.get("variants")
-    ranges: dict[str, Any] = dict(own) if isinstance(own, Mapping) else {}
-    given: dict[Path, str] = {}
+    block = tree.data.get("variants")
+    ranges: dict[str, Any] = dict(block) if isinstance(block, Mapping) else {}
+    origins: dict[Path, str] = {}
     for text in vary:
         words = f"--vary {text}"
-        found = VARY_OPTION.fullmatch(text)
-        if found is None:
+        match = VARY_OPTION.fullmatch(text)
+        if match is None:
             raise ProblemError(
                 _("expected a name, two bounds and optionally a step"), allowed="--vary OA=80..140:5", file=words
             )
-        name, *ends = found.groups()
-        given["variants", name] = words
+        name, *ends = match.groups()
+        origins["variants", name] = words
         with prefix_errors("variants", name):
             values = [plain_value(end) for end in ends if end is not None]
         ranges[name] = dict(zip(("from", "to", "step"), values, strict=True)) if len(values) == 3 else values
-    return replace(tree, data={**tree.data, "variants": ranges}, given={**tree.given, **given}) if given else tree
+    return replace(tree, data={**tree.data, "variants": ranges}, given={**tree.given, **origins}) if origins else tree
 
 
 def read_free_parameters(task: Task) -> tuple[FreeParameter, ...]:
@@ -402,25 +402,26 @@ def _free_parameters(task: Task, blocks: Blocks) -> tuple[FreeParameter, ...]:
             allowed=_("variants: {OA: {from: 80, to: 140, step: 5}}; or --vary OA=80..140:5"),
         )
     found = []
-    for name, own in ranges.items():
+    for name, choice in ranges.items():
         with prefix_errors("variants", name):
             (dimension,) = task.dimensions((name,))
-            values = (own.among or [own.from_, own.to, own.step]) if isinstance(own, Chosen) else own
+            values = (choice.among or [choice.from_, choice.to, choice.step]) if isinstance(choice, Chosen) else choice
             texts = _with_common_unit([str(value) for value in values])
             read = [task.value(text) for text in texts]
-            said = next((v.dimension for v in read if v.dimension), dimension)
-            if not (isinstance(own, Chosen) and own.among):
-                texts = _step_texts(task, values, [task.number(value, said) for value in read], said, texts[0])
-            found.append(FreeParameter(name, tuple(dict.fromkeys(texts)), said))
+            common = next((v.dimension for v in read if v.dimension), dimension)
+            if not (isinstance(choice, Chosen) and choice.among):
+                texts = _step_texts(task, values, [task.number(value, common) for value in read], common, texts[0])
+            found.append(FreeParameter(name, tuple(dict.fromkeys(texts)), common))
     return tuple(found)
 
 
 def _with_common_unit(texts: Sequence[str]) -> list[str]:
     """Give numbers without a unit the unit of the first number that has one."""
     parts = [NUMBER_WITH_UNIT.fullmatch(text) for text in texts]
-    unit = next((part[2] for part in parts if part and part[2]), "")
+    unit = next((number[2] for number in parts if number and number[2]), "")
     return [
-        f"{text} {unit}" if unit and part and not part[2] else text for text, part in zip(texts, parts, strict=True)
+        f"{text} {unit}" if unit and number and not number[2] else text
+        for text, number in zip(texts, parts, strict=True)
     ]
 
 

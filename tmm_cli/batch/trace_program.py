@@ -40,14 +40,14 @@ class TraceOutputs(Mapping[str, Array]):
     def part(self, name: str, imaginary: bool = False) -> Array:
         """Return the real or imaginary part of a result."""
         value = self.names[name][imaginary]
-        found = self.planes[value.number] if isinstance(value, Term) else np.asarray(0.0 if value is None else value)
-        if found.shape != self.shape:
-            found = np.broadcast_to(found, self.shape)
-        return (found.T if self.turned else found) if self.several else found.reshape(-1)
+        plane = self.planes[value.number] if isinstance(value, Term) else np.asarray(0.0 if value is None else value)
+        if plane.shape != self.shape:
+            plane = np.broadcast_to(plane, self.shape)
+        return (plane.T if self.turned else plane) if self.several else plane.reshape(-1)
 
     def without(self, name: str) -> TraceOutputs:
         """Return all results but one."""
-        names = {one: parts for one, parts in self.names.items() if one != name}
+        names = {output: parts for output, parts in self.names.items() if output != name}
         return TraceOutputs(names, self.planes, self.turned, self.several, self.shape)
 
     @property
@@ -64,17 +64,17 @@ class TraceOutputs(Mapping[str, Array]):
                     plane = planes[term.number]
                     if plane.shape != self.shape or term.op == "input":
                         plane = planes[term.number] = np.broadcast_to(plane, self.shape).copy()
-                    own = plane[:, variant] if self.turned else plane[variant]
-                    own[where] = values[name].imag if imaginary else values[name].real
+                    row = plane[:, variant] if self.turned else plane[variant]
+                    row[where] = values[name].imag if imaginary else values[name].real
         return TraceOutputs(self.names, planes, self.turned, self.several, self.shape)
 
     def __getitem__(self, name: str) -> Array:
         if self.names[name][1] is None:
             return self.part(name)
         real, imag = self.part(name), self.part(name, True)
-        found = np.empty(real.shape, dtype=complex)
-        found.real, found.imag = real, imag
-        return found
+        combined = np.empty(real.shape, dtype=complex)
+        combined.real, combined.imag = real, imag
+        return combined
 
 
 # A tape as a program: straight-line NumPy calls on registers that are there before the data come.
@@ -157,9 +157,9 @@ class _CompiledProgram:
         self.before = [t for t in used if t.op != "input" and t.axes != self.everywhere]
         self.inputs = {t.number: t.args[0] for t in used if t.op == "input"}
         full = [t for t in used if t.op != "input" and t.axes == self.everywhere]
-        wanted = [v for parts in program.outputs.values() for v in parts if isinstance(v, Term)]
-        self.small = {t.number for t in wanted if t.op == "input" or t.axes != self.everywhere}
-        slots = {t.number: t for t in wanted if t.number not in self.small}
+        outputs = [v for parts in program.outputs.values() for v in parts if isinstance(v, Term)]
+        self.small = {t.number for t in outputs if t.op == "input" or t.axes != self.everywhere}
+        slots = {t.number: t for t in outputs if t.number not in self.small}
         ordered = sorted(slots.values(), key=lambda t: t.truth)  # truths last
         self.slots = {t.number: k for k, t in enumerate(ordered)}
         self.truths = sum(t.truth for t in ordered)
@@ -185,47 +185,47 @@ class _CompiledProgram:
     def run(self, data: Sequence[Array], shape: tuple[int, int]) -> dict[Any, Array]:
         """Return all terms that are outputs, by number."""
         with np.errstate(all="ignore"):
-            known = {number: data[k] for number, k in self.inputs.items()}
+            evaluated = {number: data[k] for number, k in self.inputs.items()}
             for term in self.before:
-                known[term.number] = _evaluate(term, known)
-            own = [known[number] for number in self.outer]
+                evaluated[term.number] = _evaluate(term, evaluated)
+            operands = [evaluated[number] for number in self.outer]
             floats, truths = len(self.slots) - self.truths, self.truths
             rows, columns = shape
             wide = -(-columns // -(-columns // CHUNK))  # chunks of equal width
             high = max(1, min(rows, CHUNK // wide))
             if rows <= high and columns <= wide:
-                found = [*np.empty((floats, *shape)), *np.empty((truths, *shape), dtype=bool)]
-                self.function(*own, *found, *self.registers(shape))
+                planes = [*np.empty((floats, *shape)), *np.empty((truths, *shape), dtype=bool)]
+                self.function(*operands, *planes, *self.registers(shape))
             else:  # a plane each: the system hands out one large block with all its pages to be cleared, each time
-                found = [np.empty(shape, dtype=bool if k >= floats else float) for k in range(floats + truths)]
+                planes = [np.empty(shape, dtype=bool if k >= floats else float) for k in range(floats + truths)]
                 for top in range(0, rows, high):
                     for left in range(0, columns, wide):
-                        here = (slice(top, top + high), slice(left, left + wide))
-                        size = (min(high, rows - top), min(wide, columns - left))
-                        parts = [_chunk_of(d, here) for d in own]
-                        self.function(*parts, *[plane[here] for plane in found], *self.registers(size))
-        return dict(zip(self.slots, found, strict=True)) | {n: known[n] for n in self.small}
+                        chunk = (slice(top, top + high), slice(left, left + wide))
+                        chunk_shape = (min(high, rows - top), min(wide, columns - left))
+                        parts = [_chunk_of(d, chunk) for d in operands]
+                        self.function(*parts, *[plane[chunk] for plane in planes], *self.registers(chunk_shape))
+        return dict(zip(self.slots, planes, strict=True)) | {n: evaluated[n] for n in self.small}
 
 
-def _chunk_of(data: Array, here: tuple[slice, slice]) -> Array:
+def _chunk_of(data: Array, chunk: tuple[slice, slice]) -> Array:
     """Chunk of data along the axes that it has."""
-    return data[here[0] if data.shape[0] > 1 else slice(None), here[1] if data.shape[1] > 1 else slice(None)]
+    return data[chunk[0] if data.shape[0] > 1 else slice(None), chunk[1] if data.shape[1] > 1 else slice(None)]
 
 
-def _evaluate(term: Term, known: Mapping[int, Array]) -> Array:
-    args = [known[a.number] if isinstance(a, Term) else a for a in term.args]
+def _evaluate(term: Term, evaluated: Mapping[int, Array]) -> Array:
+    args = [evaluated[a.number] if isinstance(a, Term) else a for a in term.args]
     if term.op == "where":
         return np.where(*args)
     if term.op == "table":
         return np.asarray(np.interp(args[0], *args[1]))
-    (called,), given = (args[0], args[1:]) if term.op == "call" else ((UFUNCS[term.op],), args)
-    found: Array = called(*given)
-    return found
+    (called,), operands = (args[0], args[1:]) if term.op == "call" else ((UFUNCS[term.op],), args)
+    evaluation: Array = called(*operands)
+    return evaluation
 
 
 def _call(function: tuple[Any], *operands: Any) -> None:
-    *given, out = operands
-    out[...] = function[0](*given)
+    *inputs, out = operands
+    out[...] = function[0](*inputs)
 
 
 def _interpolate(x: Array, table: tuple[Any, Any], out: Array) -> None:
@@ -234,14 +234,14 @@ def _interpolate(x: Array, table: tuple[Any, Any], out: Array) -> None:
 
 def _needed_terms(program: TraceProgram) -> tuple[Term, ...]:
     """Terms on which some output depends, in order."""
-    wanted: set[int] = set()
+    needed: set[int] = set()
     left = [v for parts in program.outputs.values() for v in parts if isinstance(v, Term)]
     while left:
         term = left.pop()
-        if term.number not in wanted:
-            wanted.add(term.number)
+        if term.number not in needed:
+            needed.add(term.number)
             left += [a for a in term.args if isinstance(a, Term)]
-    return tuple(t for t in program.terms if t.number in wanted)
+    return tuple(t for t in program.terms if t.number in needed)
 
 
 class _ProgramWriter:
@@ -260,13 +260,13 @@ class _ProgramWriter:
         self._free: dict[bool, list[str]] = {False: [], True: []}
         self._owned: dict[int, str] = {}
         self._where = {number: f"o{slot}" for number, slot in slots.items()}
-        own = {t.number for t in terms}
+        inner = {t.number for t in terms}
         uses: dict[int, list[int]] = {}
         for k, term in enumerate(terms):
             for arg in term.args:
                 if isinstance(arg, Term):
                     uses.setdefault(arg.number, []).append(k)
-                    if arg.number not in own and arg.number not in self.outer:
+                    if arg.number not in inner and arg.number not in self.outer:
                         self.outer.append(arg.number)
                         self._where[arg.number] = f"i{len(self.outer) - 1}"
         self._last = {number: where[-1] for number, where in uses.items()}

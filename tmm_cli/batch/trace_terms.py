@@ -108,14 +108,14 @@ class Trace:
     def term(self, op: str, *args: Any, axes: int = 0, truth: bool = False) -> Term:
         """Return the term of an operation; record it if it is new."""
         key = (op, *(("term", a.number) if isinstance(a, Term) else (type(a).__name__, a) for a in args))
-        found = self.written.get(key)
-        if found is None:
+        term = self.written.get(key)
+        if term is None:
             for arg in args:
                 axes |= arg.axes if isinstance(arg, Term) else 0
-            found = Term(len(self.terms), op, args, axes, truth or op in BOOLEAN_OPERATIONS)
-            self.terms.append(found)
-            self.written[key] = found
-        return found
+            term = Term(len(self.terms), op, args, axes, truth or op in BOOLEAN_OPERATIONS)
+            self.terms.append(term)
+            self.written[key] = term
+        return term
 
     def apply(self, op: str, *args: Any) -> Any:
         """Apply an operation to terms and numbers; returns a number if it can be evaluated, else a term."""
@@ -123,9 +123,9 @@ class Trace:
             return UFUNCS[op](*args)[()]
         simple: Any = SIMPLIFICATIONS.get(op)
         if simple is not None:
-            found = simple(self, *args)
-            if found is not None:
-                return found
+            simplified = simple(self, *args)
+            if simplified is not None:
+                return simplified
         if op in COMMUTATIVE:
             args = tuple(sorted(args, key=lambda a: (0, a.number) if isinstance(a, Term) else (1, 0)))
         return self.term(op, *args)
@@ -135,29 +135,29 @@ class Trace:
         if term.number not in self.known:
             args = [self.value(a) if isinstance(a, Term) else a for a in term.args]
             if term.op == "input":
-                found = self.data.get(term.args[0])
+                known_value = self.data.get(term.args[0])
             elif any(a is None for a in args) or term.op in ("table", "call"):
-                found = None
+                known_value = None
             else:
                 with np.errstate(all="ignore"):
-                    found = np.where(*args) if term.op == "where" else UFUNCS[term.op](*args)
-            self.known[term.number] = found
+                    known_value = np.where(*args) if term.op == "where" else UFUNCS[term.op](*args)
+            self.known[term.number] = known_value
         return self.known[term.number]
 
     def settled(self, truth: Any) -> Any:
         """Return a condition as a bool if it is the same for all known data."""
-        found = self.value(truth) if isinstance(truth, Term) else None
-        return truth if found is None or np.any(found != found.flat[0]) else bool(found.flat[0])
+        known_value = self.value(truth) if isinstance(truth, Term) else None
+        return truth if known_value is None or np.any(known_value != known_value.flat[0]) else bool(known_value.flat[0])
 
-    def where(self, truth: Any, one: Any, other: Any) -> Any:
+    def where(self, truth: Any, chosen: Any, other: Any) -> Any:
         """Select one of two numbers."""
         truth = self.settled(truth)
         if not isinstance(truth, Term):
-            return one if truth else other
-        if one is other or (not isinstance(one, Term) and not isinstance(other, Term) and one == other):
-            return one
-        both = [x.truth if isinstance(x, Term) else isinstance(x, (bool, np.bool_)) for x in (one, other)]
-        return self.term("where", truth, one, other, truth=all(both))
+            return chosen if truth else other
+        if chosen is other or (not isinstance(chosen, Term) and not isinstance(other, Term) and chosen == other):
+            return chosen
+        both = [x.truth if isinstance(x, Term) else isinstance(x, (bool, np.bool_)) for x in (chosen, other)]
+        return self.term("where", truth, chosen, other, truth=all(both))
 
 
 def axes_of(value: Any) -> int:
@@ -202,31 +202,40 @@ def _subtract(tape: Trace, a: Any, b: Any) -> Any:
 
 
 def _multiply(tape: Trace, a: Any, b: Any) -> Any:
-    for one, other in ((a, b), (b, a)):
-        if is_number(one, 0):
+    for factor, other in ((a, b), (b, a)):
+        if is_number(factor, 0):
             return 0.0
-        if is_number(one, 1):
+        if is_number(factor, 1):
             return other
-        if is_number(one, -1):
+        if is_number(factor, -1):
             return tape.apply("negative", other)
-        if negated_operand(one) is not None:
-            return tape.apply("negative", tape.apply("multiply", negated_operand(one), other))
-        if not isinstance(one, Term) and one < 0:
-            return tape.apply("negative", tape.apply("multiply", -one, other))
+        if negated_operand(factor) is not None:
+            return tape.apply("negative", tape.apply("multiply", negated_operand(factor), other))
+        if not isinstance(factor, Term) and factor < 0:
+            return tape.apply("negative", tape.apply("multiply", -factor, other))
     return _group_factors(tape, a, b)
 
 
 def _group_factors(tape: Trace, a: Any, b: Any) -> Any:
     """Multiply factors that depend on fewer axes among themselves first."""
-    for one, other in ((a, b), (b, a)):
-        if isinstance(one, Term) and isinstance(other, Term) and one.op == "divide" and one.args[1] is other:
-            return one.args[0]  # (x / y) y
+    for product, other in ((a, b), (b, a)):
+        if (
+            isinstance(product, Term)
+            and isinstance(other, Term)
+            and product.op == "divide"
+            and product.args[1] is other
+        ):
+            return product.args[0]  # (x / y) y
     if isinstance(a, Term) and a is b and a.op == "absolute":
         return tape.apply("multiply", a.args[0], a.args[0])
-    for one, other in ((a, b), (b, a)):
-        if isinstance(one, Term) and one.op == "multiply" and axes_of(other) < one.axes:
-            for x, factor in (one.args, one.args[::-1]):
-                if axes_of(factor) < one.axes and axes_of(x) == one.axes and axes_of(factor) | axes_of(other) != x.axes:
+    for product, other in ((a, b), (b, a)):
+        if isinstance(product, Term) and product.op == "multiply" and axes_of(other) < product.axes:
+            for x, factor in (product.args, product.args[::-1]):
+                if (
+                    axes_of(factor) < product.axes
+                    and axes_of(x) == product.axes
+                    and axes_of(factor) | axes_of(other) != x.axes
+                ):
                     return tape.apply("multiply", x, tape.apply("multiply", factor, other))
     return None
 
@@ -242,9 +251,11 @@ def _divide(tape: Trace, a: Any, b: Any) -> Any:
         return a
     if isinstance(b, Term) and b.op == "multiply" and a in b.args:  # x / (x y)
         return tape.apply("divide", 1.0, b.args[1] if b.args[0] is a else b.args[0])
-    for k, part in enumerate((a, b)):
-        if negated_operand(part) is not None:
-            return tape.apply("negative", tape.apply("divide", *((part.args[0], b) if k == 0 else (a, part.args[0]))))
+    for k, operand in enumerate((a, b)):
+        if negated_operand(operand) is not None:
+            return tape.apply(
+                "negative", tape.apply("divide", *((operand.args[0], b) if k == 0 else (a, operand.args[0])))
+            )
     return None
 
 
@@ -260,9 +271,9 @@ def _simplify_logic(settles: bool) -> Callable[[Trace, Any, Any], Any]:
     """Simplify a logical operation in which a known operand decides: False for `and`, True for `or`."""
 
     def joined(tape: Trace, a: Any, b: Any) -> Any:
-        for one, other in ((a, b), (b, a)):
-            if not isinstance(one, Term):
-                return settles if bool(one) == settles else other
+        for operand, other in ((a, b), (b, a)):
+            if not isinstance(operand, Term):
+                return settles if bool(operand) == settles else other
         return a if a is b else None
 
     return joined

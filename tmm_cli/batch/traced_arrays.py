@@ -79,9 +79,9 @@ class TracedArray(NDArrayOperatorsMixin):
         if ufunc is np.power and isinstance(inputs[1], int) and inputs[1] == 2:
             ufunc, inputs = np.multiply, (inputs[0], inputs[0])
         parts = [self._of(value) for value in inputs]
-        found = COMPLEX.get(ufunc.__name__)
-        if found is not None and any(im is not None for _, im in parts):
-            return TracedArray(self.tape, *found(self.tape, *parts))
+        operation = COMPLEX.get(ufunc.__name__)
+        if operation is not None and any(im is not None for _, im in parts):
+            return TracedArray(self.tape, *operation(self.tape, *parts))
         if ufunc.__name__ == "conjugate":
             return inputs[0]
         if ufunc.__name__ not in UFUNCS or any(im is not None for _, im in parts):
@@ -89,29 +89,29 @@ class TracedArray(NDArrayOperatorsMixin):
         return TracedArray(self.tape, self.tape.apply(ufunc.__name__, *(re for re, _ in parts)))
 
     def __array_function__(self, function: Any, types: Any, args: Any, kwargs: Any) -> Any:
-        known = FUNCTIONS.get(function)
-        if known is None or kwargs:
+        traced = FUNCTIONS.get(function)
+        if traced is None or kwargs:
             raise DependsOnData(f"{function.__name__} cannot be written on a tape")
-        return known(self, *args)
+        return traced(self, *args)
 
     def _of(self, value: Any) -> tuple[Any, Any]:
         """Real and imaginary part of an operand; an array of equal numbers counts as that number."""
         if isinstance(value, TracedArray):
             return value.re, value.im
         array = np.asarray(value)
-        one = array.ravel()[0] if array.size else 0.0
-        if array.size > 1 and not np.all((array == one) | ((array != array) & (one != one))):
+        number = array.ravel()[0] if array.size else 0.0
+        if array.size > 1 and not np.all((array == number) | ((array != array) & (number != number))):
             raise DependsOnData("an array of different numbers is no part of the data")
         if array.dtype.kind == "c":
-            return one.real, one.imag
-        return (one if array.dtype.kind in "bf" else float(one)), None
+            return number.real, number.imag
+        return (number if array.dtype.kind in "bf" else float(number)), None
 
-    def where(self, truth: Any, one: Any, other: Any) -> TracedArray:
-        truth, one, other = (self._of(v) for v in (truth, one, other))
-        re = self.tape.where(truth[0], one[0], other[0])
-        if one[1] is None and other[1] is None:
+    def where(self, truth: Any, chosen: Any, other: Any) -> TracedArray:
+        truth, chosen, other = (self._of(v) for v in (truth, chosen, other))
+        re = self.tape.where(truth[0], chosen[0], other[0])
+        if chosen[1] is None and other[1] is None:
             return TracedArray(self.tape, re)
-        return TracedArray(self.tape, re, self.tape.where(truth[0], _im(one), _im(other)))
+        return TracedArray(self.tape, re, self.tape.where(truth[0], _im(chosen), _im(other)))
 
     def called(self, function: Any, *operands: Any) -> TracedArray:
         """Record a function of whole real arrays as one operation."""
@@ -127,8 +127,8 @@ def _is_truth(re: Any) -> bool:
     return re.truth if isinstance(re, Term) else isinstance(re, (bool, np.bool_))
 
 
-def _im(part: tuple[Any, Any]) -> Any:
-    return 0.0 if part[1] is None else part[1]
+def _im(operand: tuple[Any, Any]) -> Any:
+    return 0.0 if operand[1] is None else operand[1]
 
 
 ComplexParts = tuple[Any, Any]
@@ -211,14 +211,14 @@ def trace_function(
         DependsOnData: the code branches on numbers that differ.
     """
     tape = Trace(dict(data or {}))
-    stands = [TracedArray(tape, tape.term("input", k, axes=axis)) for k, axis in enumerate(axes)]
+    placeholders = [TracedArray(tape, tape.term("input", k, axes=axis)) for k, axis in enumerate(axes)]
     outputs = {}
-    for name, value in function(*stands).items():
+    for name, value in function(*placeholders).items():
         if isinstance(value, TracedArray):
             outputs[name] = (value.re, value.im)
         else:
-            one = np.ravel(value)[0]
-            outputs[name] = (one.real, one.imag) if np.iscomplexobj(one) else (one, None)
+            number = np.ravel(value)[0]
+            outputs[name] = (number.real, number.imag) if np.iscomplexobj(number) else (number, None)
     return TraceProgram(tuple(tape.terms), axes, outputs)
 
 
@@ -297,12 +297,12 @@ def _power(base: Any, exponent: Any) -> Any:
     """Write integer powers as products, half powers with roots."""
     if isinstance(exponent, TracedArray) or 2 * exponent != int(2 * exponent):
         raise DependsOnData("such a power cannot be written on a tape")
-    found, whole = 1.0, int(abs(exponent))
+    product, whole = 1.0, int(abs(exponent))
     for _ in range(whole):
-        found = found * base
+        product = product * base
     if abs(exponent) != whole:
-        found = found * np.sqrt(base)
-    return 1 / found if exponent < 0 else found
+        product = product * np.sqrt(base)
+    return 1 / product if exponent < 0 else product
 
 
 TRACEABLE_FORMS = {

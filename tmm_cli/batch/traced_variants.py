@@ -52,7 +52,7 @@ class TracedVariants:
     Raises NoTapeError or DependsOnData if there is no trace, and the errors of assembly.
     """
 
-    def __init__(self, make: Make, first: Sequence[float], wanted: OutputReader, *, forces: bool = False) -> None:
+    def __init__(self, make: Make, first: Sequence[float], read: OutputReader, *, forces: bool = False) -> None:
         """Trace the variants. make: builds a variant from numbers; first: numbers of the linkage whose assembly all
         have.
         """
@@ -70,9 +70,9 @@ class TracedVariants:
         apart = bool(self.linkage.others) and isinstance(varied.linkage.sketch.at, TracedNumber)
         if apart or isinstance(self.start, TracedNumber):
             raise NoTapeError
-        own = any(isinstance(number, TracedNumber) for number in _extra_numbers(varied))
-        self.ends = trace_function(self._ends, *[1] * len(first)) if own else None
-        self.program = self._program(wanted, forces, own)
+        by_variant = any(isinstance(number, TracedNumber) for number in _extra_numbers(varied))
+        self.ends = trace_function(self._ends, *[1] * len(first)) if by_variant else None
+        self.program = self._program(read, forces, by_variant)
         self.marches = (
             Continuation(self._varied, first, self.linkage, self.lines) if count_initial_guesses(self.lines) else None
         )
@@ -81,19 +81,19 @@ class TracedVariants:
     def _varied(self, data: Sequence[Any]) -> Linkage:
         return placeholder_linkage(self.make, self.first, data, self.linkage.sketch)
 
-    def _program(self, wanted: OutputReader, forces: bool, own: bool) -> TraceProgram:
-        """Trace the stages. own: each variant has its own driver coordinates."""
+    def _program(self, read: OutputReader, forces: bool, by_variant: bool) -> TraceProgram:
+        """Trace the stages. by_variant: each variant has its own driver coordinates."""
 
         many = len(self.first)
 
         def stages(*data: TracedArray) -> Mapping[str, Any]:
-            linkage, q, stands = self._varied(data[:many]), data[many], data[many + 1 :]
+            linkage, q, placeholders = self._varied(data[:many]), data[many], data[many + 1 :]
             kernels = tuple(kernel.rebind(linkage) for kernel in self.lines)
-            kernels = with_initial_guesses(kernels, stands, VARIANT_NEWTON_STEPS)
+            kernels = with_initial_guesses(kernels, placeholders, VARIANT_NEWTON_STEPS)
             structure = self.structure.rebind(linkage)
-            return solve_stages(linkage, structure, kernels, q, wanted, forces, None, blank=False, start=self.start)
+            return solve_stages(linkage, structure, kernels, q, read, forces, None, blank=False, start=self.start)
 
-        whole = trace_function(stages, *[1] * many, 3 if own else 2, *[3] * count_initial_guesses(self.lines))
+        whole = trace_function(stages, *[1] * many, 3 if by_variant else 2, *[3] * count_initial_guesses(self.lines))
         return whole.only(*(name for name in whole.outputs if name not in CHECK_OUTPUTS), ANGLES_AGREE)
 
     def _ends(self, *columns: TracedArray) -> Mapping[str, Any]:
@@ -108,18 +108,18 @@ class TracedVariants:
         """Return the driver ranges of variants: a revolution of the crank, or the range of the driver."""
         if self.ends is None:
             return DriverRanges.of(self.variant, len(columns), self.turns, self.start)
-        found = self.ends(*split_columns(columns))
+        computed = self.ends(*split_columns(columns))
         first = 0 if self.variant.ends is None else 2
         last = first + len(self.variant.asked)
-        numbers = [found[str(k)] for k in range(last + len(self.variant.wanted))]
+        numbers = [computed[str(k)] for k in range(last + len(self.variant.wanted))]
         variant = replace(self.variant, asked=tuple(numbers[first:last]), wanted=tuple(numbers[last:]))
         variant = replace(variant, ends=(numbers[0], numbers[1])) if first else variant
         return DriverRanges.of(variant, len(columns), self.turns, self.start)
 
-    def without(self, part: str) -> TracedVariants:
-        """Return the variants without results whose names contain `part`."""
+    def without(self, fragment: str) -> TracedVariants:
+        """Return the variants without results whose names contain `fragment`."""
         new = copy(self)
-        new.program = self.program.only(*(name for name in self.program.outputs if part not in name))
+        new.program = self.program.only(*(name for name in self.program.outputs if fragment not in name))
         return new
 
     def sketch(self, numbers: Real) -> Sketch:
@@ -132,14 +132,14 @@ class TracedVariants:
             )
         return compute_sketch(linkage, kernels)
 
-    def __call__(self, columns: Real, places: DriverSamples) -> Mapping[str, Real]:
+    def __call__(self, columns: Real, samples: DriverSamples) -> Mapping[str, Real]:
         ranges = self.driver_range(columns[:1] if self.ends is None else columns)
-        q = ranges.at(places)[0] if self.ends is None else ranges.at(places)
-        played = self.program(*split_columns(columns), q, *(self._ways(columns, ranges)(q) if self.marches else ()))
-        found: Mapping[str, Real] = played.without(ANGLES_AGREE)
-        if not np.all(played[ANGLES_AGREE]):  # wheels have gone round otherwise than those of the first linkage
-            found = {name: np.where(played[ANGLES_AGREE], value, np.nan) for name, value in found.items()}
-        return {**found, WANTED: ranges.wanted_at(places)} if self.variant.wanted else found
+        q = ranges.at(samples)[0] if self.ends is None else ranges.at(samples)
+        replayed = self.program(*split_columns(columns), q, *(self._ways(columns, ranges)(q) if self.marches else ()))
+        outputs: Mapping[str, Real] = replayed.without(ANGLES_AGREE)
+        if not np.all(replayed[ANGLES_AGREE]):  # wheels have gone round otherwise than those of the first linkage
+            outputs = {name: np.where(replayed[ANGLES_AGREE], value, np.nan) for name, value in outputs.items()}
+        return {**outputs, WANTED: ranges.wanted_at(samples)} if self.variant.wanted else outputs
 
     def _ways(self, columns: Real, ranges: DriverRanges) -> ContinuedPaths:
         """Paths of variants over their ranges; those of the last call are kept."""
@@ -187,8 +187,8 @@ class SequentialVariants:
     nan outputs. Raises the errors of assembly of the first linkage.
     """
 
-    def __init__(self, make: Make, first: Sequence[float], wanted: OutputReader, *, forces: bool = False) -> None:
-        self.make, self.wanted, self.forces = make, wanted, forces
+    def __init__(self, make: Make, first: Sequence[float], read: OutputReader, *, forces: bool = False) -> None:
+        self.make, self.wanted, self.forces = make, read, forces
         self.variant = make(first)
         self.linkage = self.variant.linkage
         self.structure = analyse_mobile_structure(self.linkage)
@@ -202,7 +202,7 @@ class SequentialVariants:
         """Return the driver range of the first linkage for each variant."""
         return DriverRanges.of(self.variant, len(columns), self.turns)
 
-    def without(self, part: str) -> SequentialVariants:
+    def without(self, fragment: str) -> SequentialVariants:
         """Return itself: unused results cost little here."""
         return self
 
@@ -211,14 +211,14 @@ class SequentialVariants:
         linkage = self.make([float(number) for number in numbers]).linkage
         return compute_sketch(linkage, assemble(linkage, self.structure.rebind(linkage)))
 
-    def __call__(self, columns: Real, places: DriverSamples) -> dict[str, Real]:
+    def __call__(self, columns: Real, samples: DriverSamples) -> dict[str, Real]:
         rows = []
         for row in columns:
             try:
-                rows.append(self._one(tuple(row.tolist()), places))
+                rows.append(self._one(tuple(row.tolist()), samples))
             except LinkageError:
                 rows.append({})
-        lost = np.full(self.driver_range(columns[:1]).at(places).shape[1], np.nan)
+        lost = np.full(self.driver_range(columns[:1]).at(samples).shape[1], np.nan)
         return {name: np.stack([row.get(name, lost) for row in rows]) for name in self.names}
 
     def _moved(self, numbers: tuple[float, ...]) -> tuple[Variant, Mechanism]:
@@ -237,11 +237,11 @@ class SequentialVariants:
         """Groups of the known variant whose numbers have the least relative differences."""
         if not self.known:
             return self.kernels
-        here, known = np.array(numbers), np.array(list(self.known))
-        apart = np.sum(np.abs(known - here) / (np.abs(known) + np.abs(here) + 1e-300), axis=1)
+        point, solved = np.array(numbers), np.array(list(self.known))
+        apart = np.sum(np.abs(solved - point) / (np.abs(solved) + np.abs(point) + 1e-300), axis=1)
         return list(self.known.values())[int(np.argmin(apart))][1].kernels
 
-    def _one(self, numbers: tuple[float, ...], places: DriverSamples) -> dict[str, Real]:
+    def _one(self, numbers: tuple[float, ...], samples: DriverSamples) -> dict[str, Real]:
         variant, mechanism = self._moved(numbers)
         linkage = variant.linkage
         strokes = mechanism.strokes if self.by_strokes and mechanism.driver_range.full else None
@@ -250,9 +250,9 @@ class SequentialVariants:
             begins = mechanism.strokes if isinstance(variant.request.start, str) else None
             start = float(places_of(variant.request, mechanism.driver_range, begins, linkage.driver.sense)[0])
         ranges = DriverRanges.of(variant, 1, self.turns, start)
-        q = ranges.at(places)[0]
+        q = ranges.at(samples)[0]
         with np.errstate(all="ignore"):
-            found = solve_stages(
+            outputs = solve_stages(
                 linkage,
                 mechanism.structure,
                 mechanism.kernels,
@@ -264,19 +264,19 @@ class SequentialVariants:
                 start=start,
             )
         if variant.wanted:
-            found = {**found, WANTED: ranges.wanted_at(places)[0]}
-        return {name: np.broadcast_to(value, q.shape) for name, value in found.items()}
+            outputs = {**outputs, WANTED: ranges.wanted_at(samples)[0]}
+        return {name: np.broadcast_to(value, q.shape) for name, value in outputs.items()}
 
 
 def make_variants(
-    make: Make, first: Sequence[float], wanted: OutputReader, *, forces: bool, one_sense: bool
+    make: Make, first: Sequence[float], read: OutputReader, *, forces: bool, one_sense: bool
 ) -> TracedVariants | SequentialVariants:
     """Return variants solved by a trace if possible, else one after another.
 
     Args:
         make: builds a variant from numbers.
         first: numbers of the first variant.
-        wanted: reads the requested results.
+        read: reads the requested results.
         forces: the results need reactions.
         one_sense: all drivers rotate in the same sense, without which there is no trace.
 
@@ -284,7 +284,7 @@ def make_variants(
     """
     if one_sense:
         try:
-            return TracedVariants(make, first, wanted, forces=forces)
+            return TracedVariants(make, first, read, forces=forces)
         except (NoTapeError, DependsOnData):
             pass
-    return SequentialVariants(make, first, wanted, forces=forces)
+    return SequentialVariants(make, first, read, forces=forces)

@@ -52,28 +52,28 @@ def varying_numbers(linkages: Sequence[Linkage]) -> dict[str, Real]:
     first = dict(numeric_leaves(linkages[0]))
     rows = [list(first.values())]
     for linkage in linkages[1:]:
-        here = dict(numeric_leaves(linkage))
-        if here.keys() != first.keys():
-            raise NotAlikeError(next(iter(here.keys() ^ first.keys())))
-        rows.append([here[path] for path in first])
-    found = {}
+        leaves = dict(numeric_leaves(linkage))
+        if leaves.keys() != first.keys():
+            raise NotAlikeError(next(iter(leaves.keys() ^ first.keys())))
+        rows.append([leaves[path] for path in first])
+    varying = {}
     for path, values in zip(first, zip(*rows, strict=True), strict=True):
         if any(value != values[0] for value in values):
             if not all(isinstance(value, (int, float, complex)) and not isinstance(value, bool) for value in values):
                 raise NotAlikeError(path)
-            found[path] = np.array(values)[:, None]
-    return found
+            varying[path] = np.array(values)[:, None]
+    return varying
 
 
-def split_real_columns(found: Mapping[str, Real]) -> tuple[list[Real], Callable[..., dict[str, Any]]]:
+def split_real_columns(varying: Mapping[str, Real]) -> tuple[list[Real], Callable[..., dict[str, Any]]]:
     """Split varying numbers into real columns.
 
     Returns:
         The columns, and a function that combines such columns, or placeholders for them, to numbers by path.
     """
     columns: list[Real] = []
-    places: dict[str, tuple[int | complex, ...]] = {}
-    for path, values in found.items():
+    pieces_by_path: dict[str, tuple[int | complex, ...]] = {}
+    for path, values in varying.items():
         pieces: list[int | complex] = []
         for piece in (values.real, values.imag) if np.iscomplexobj(values) else (values,):
             if np.all(piece == piece[0]):
@@ -81,13 +81,15 @@ def split_real_columns(found: Mapping[str, Real]) -> tuple[list[Real], Callable[
             else:
                 pieces.append(len(columns))
                 columns.append(np.ascontiguousarray(piece, dtype=float))
-        places[path] = tuple(pieces)
+        pieces_by_path[path] = tuple(pieces)
 
     def together(*data: Any) -> dict[str, Any]:
         def one(piece: int | complex) -> Any:
             return piece.real if isinstance(piece, complex) else data[piece]
 
-        return {path: one(at[0]) if len(at) == 1 else one(at[0]) + 1j * one(at[1]) for path, at in places.items()}
+        return {
+            path: one(at[0]) if len(at) == 1 else one(at[0]) + 1j * one(at[1]) for path, at in pieces_by_path.items()
+        }
 
     return columns, together
 
@@ -184,26 +186,26 @@ class DriverRanges:
         """
         ones = np.ones((variants, 1))
         none = np.zeros((variants, 0))
-        asked, wanted = (
-            np.hstack([none, *(np.reshape(number, (-1, 1)) * ones for number in own)])
-            for own in (variant.asked, variant.wanted)
+        positions, required = (
+            np.hstack([none, *(np.reshape(number, (-1, 1)) * ones for number in numbers)])
+            for numbers in (variant.asked, variant.wanted)
         )
         if variant.ends is None:
             sketch, span = variant.linkage.sketch.at, 2 * np.pi * turns
             low = sketch if start is None else start if variant.linkage.driver.sense > 0 else start - span
-            return cls(np.reshape(low, (-1, 1)) * ones, span * ones, True, asked, wanted)
+            return cls(np.reshape(low, (-1, 1)) * ones, span * ones, True, positions, required)
         low, high = (np.reshape(end, (-1, 1)) * ones for end in variant.ends)
-        return cls(low, high - low, False, asked, wanted)
+        return cls(low, high - low, False, positions, required)
 
-    def at(self, places: DriverSamples) -> Real:
+    def at(self, samples: DriverSamples) -> Real:
         """Return driver coordinates of samples, (variants, samples)."""
-        fixed = np.broadcast_to(places.driver, (len(self.low), len(places.driver)))
-        asked = self.asked if places.asked else self.asked[:, :0]
-        return np.concatenate([self.low + places.shares * self.span, asked, fixed], axis=1)
+        fixed = np.broadcast_to(samples.driver, (len(self.low), len(samples.driver)))
+        requested = self.asked if samples.asked else self.asked[:, :0]
+        return np.concatenate([self.low + samples.shares * self.span, requested, fixed], axis=1)
 
-    def wanted_at(self, places: DriverSamples) -> Real:
+    def wanted_at(self, samples: DriverSamples) -> Real:
         """Return required numbers in the columns of queried coordinates of `at`; other columns are meaningless."""
-        return replace(self, low=self.low * np.nan, asked=self.wanted).at(places)
+        return replace(self, low=self.low * np.nan, asked=self.wanted).at(samples)
 
 
 def compute_sketch(linkage: Linkage, kernels: Iterable[GroupSolver]) -> Sketch:
@@ -220,7 +222,7 @@ def compute_sketch(linkage: Linkage, kernels: Iterable[GroupSolver]) -> Sketch:
     return Sketch(at, points, angles)
 
 
-def same_assembly(one: Sketch, other: Sketch) -> bool:
+def same_assembly(first: Sketch, second: Sketch) -> bool:
     """Return True if two sketches show the same assembly."""
-    size = max((abs(place) for place in one.points.values()), default=1.0)
-    return all(abs(place - other.points[name]) <= SAME_SKETCH * size for name, place in one.points.items())
+    extent = max((abs(place) for place in first.points.values()), default=1.0)
+    return all(abs(place - second.points[name]) <= SAME_SKETCH * extent for name, place in first.points.items())

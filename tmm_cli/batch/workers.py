@@ -131,7 +131,7 @@ def _wait_for_greeting(address: str) -> None:
 
 def _iterate_finished(client: Any, completed: Any, count: int, address: str) -> Iterator[Any]:
     """Yield futures as they finish. Raises ProblemError if there has been no worker for too long."""
-    worked = asked = time.monotonic()
+    worked = queried = time.monotonic()
     while count:
         batch = completed.next_batch(block=False)
         count -= len(batch)
@@ -140,8 +140,8 @@ def _iterate_finished(client: Any, completed: Any, count: int, address: str) -> 
         if batch:
             worked = now
             continue
-        if now - asked > ANSWER_TIMEOUT / 10:
-            asked = now
+        if now - queried > ANSWER_TIMEOUT / 10:
+            queried = now
             worked = now if client.nthreads() else worked
             if now - worked > ANSWER_TIMEOUT:
                 raise _no_workers_error(address)
@@ -163,15 +163,15 @@ def _refuse_other_programs(client: Any, address: str) -> None:
         versions = client.run(version_there)
     except TimeoutError:
         raise _no_workers_error(address) from None
-    here = (tmm_cli.__version__, program_digest())
-    other = next(((worker, there) for worker, there in versions.items() if there != here), None)
+    expected = (tmm_cli.__version__, program_digest())
+    other = next(((worker, reported) for worker, reported in versions.items() if reported != expected), None)
     if other is not None:
         worker, (version, digest) = other
-        found = f"tmm {version} ({digest[:8]})" if version else _("no tmm, or a version older than this check")
+        installed = f"tmm {version} ({digest[:8]})" if version else _("no tmm, or a version older than this check")
         raise ProblemError(
             _("a worker of the cluster has a different version of tmm"),
-            found=f"{worker}: {found}",
-            allowed=_("{version} on each worker").format(version=f"tmm {here[0]} ({here[1][:8]})"),
+            found=f"{worker}: {installed}",
+            allowed=_("{version} on each worker").format(version=f"tmm {expected[0]} ({expected[1][:8]})"),
         )
 
 

@@ -28,12 +28,12 @@ def add_commands(app: typer.Typer, lines: Mapping[str, str], words: Sequence[str
         home: gives the module of a command in `tmm_cli.cli`. It has a function of the command's name, or a function
             `group` that makes a group of commands from the further words.
     """
-    asked = [word for word in words if not word.startswith("-")]
-    if not asked or asked[0] not in lines:
+    requested = [word for word in words if not word.startswith("-")]
+    if not requested or requested[0] not in lines:
         for name, line in lines.items():
             app.command(name, help=line)(_list_only)
         return
-    name, *further = asked
+    name, *further = requested
     module = import_module(f"tmm_cli.cli.{home(name)}")
     function = f"{name}_" if iskeyword(name) else name
     if hasattr(module, function):
@@ -97,8 +97,8 @@ def application(words: Sequence[str]) -> typer.Typer:
     return app
 
 
-def _version(asked: bool) -> None:
-    if asked:
+def _version(requested: bool) -> None:
+    if requested:
         typer.echo(f"tmm {__version__}")
         raise typer.Exit
 

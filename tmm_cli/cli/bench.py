@@ -75,13 +75,13 @@ def requested_names(asked: Sequence[str] | None, names: Iterable[str], unknown: 
     """Return the requested names, or all; exit with the message `unknown` (with {name} and {names}) for an
     unknown one.
     """
-    known = list(names)
-    found = list(dict.fromkeys(asked or known))
-    for name in found:
-        if name not in known:
-            say("error: " + unknown.format(name=name, names=", ".join(known)))
+    available = list(names)
+    chosen = list(dict.fromkeys(asked or available))
+    for name in chosen:
+        if name not in available:
+            say("error: " + unknown.format(name=name, names=", ".join(available)))
             raise typer.Exit(BAD_INPUT)
-    return found
+    return chosen
 
 
 def show_and_write(name: str, measured: M, charts: Callable[[M], Charts], out: Path | None, as_json: bool) -> NoReturn:

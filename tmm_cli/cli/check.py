@@ -58,17 +58,17 @@ def _check_expected(
     name: str, expected_file: Path, compute: Callable[[], dict[str, Any]], update: bool
 ) -> CheckOutcome:
     try:
-        found = compute()
+        computed = compute()
     except ProblemError as error:
         return CheckOutcome(name, wrong=str(error), code=BAD_INPUT)
     expected = _read_expected(expected_file)
-    known = isinstance(expected, dict)
+    recorded = isinstance(expected, dict)
     if update:
-        if not known or expected["result"] != golden_record(found):
+        if not recorded or expected["result"] != golden_record(computed):
             golden = {
                 "golden_run": f"computed by tmm {__version__} itself, to 12 digits; no reference from elsewhere",
-                "tolerance": expected["tolerance"] if known else TOLERANCE,
-                "result": golden_record(found),
+                "tolerance": expected["tolerance"] if recorded else TOLERANCE,
+                "result": golden_record(computed),
             }
             try:
                 write_atomically(expected_file, json_bytes(golden))
@@ -76,9 +76,9 @@ def _check_expected(
                 wrong = f"{error.filename}: {error.strerror}"
                 return CheckOutcome(name, wrong=wrong, code=BAD_INPUT)
         return CheckOutcome(name)
-    if not known:
+    if not recorded:
         return CheckOutcome(name, wrong=f"{expected_file}: {expected}", code=CHECK_FAILED)
-    different = find_differences(expected["result"], found, float(expected["tolerance"]))
+    different = find_differences(expected["result"], computed, float(expected["tolerance"]))
     return CheckOutcome(name, different=different, code=CHECK_FAILED if different else OK)
 
 

@@ -71,8 +71,8 @@ def draw_pictures(
     """Return pictures by file name; the drawing modules are imported only here. what: kind of drawings, `whole`
     for a run.
     """
-    found: Pictures = import_module("tmm_cli.cli.pictures").PICTURES[what](*of, **how)
-    return found
+    pictures: Pictures = import_module("tmm_cli.cli.pictures").PICTURES[what](*of, **how)
+    return pictures
 
 
 class _VisibleConsole(Console):

@@ -35,11 +35,11 @@ def run_on_all_cores(jobs: Sequence[Callable[[], JobResult]], *, quiet: bool = F
             pool.submit(speaking, course(), job) for job in reversed(jobs)
         ]  # before the bar has its thread: threads are not copied
         try:
-            with progress_bars(quiet) as shown:
-                task = shown.add_task(_("drawn"), total=len(jobs))
+            with progress_bars(quiet) as progress:
+                task = progress.add_task(_("drawn"), total=len(jobs))
                 for job, future in zip(jobs, reversed(futures), strict=True):
                     yield job() if future.cancel() else _fetch_result(future, job)
-                    shown.advance(task)
+                    progress.advance(task)
         finally:  # stopped: what is in work comes to its end
             pool.shutdown(wait=False, cancel_futures=True)
 

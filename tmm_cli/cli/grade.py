@@ -100,26 +100,26 @@ def _grade_group(
         for slip in tables_apart(task, table):
             warn(f"{task.problem.name}: {slip}")
     jobs = jobs or os.cpu_count() or 1
-    way = on_cluster(scheduler) if scheduler else in_processes(jobs)
-    with progress_bars() as shown, _stop_on_interrupt() as stopped:
-        reading = shown.add_task(_("read"), total=len(table.rows))
+    runner = on_cluster(scheduler) if scheduler else in_processes(jobs)
+    with progress_bars() as progress, _stop_on_interrupt() as stopped:
+        reading = progress.add_task(_("read"), total=len(table.rows))
         handed = []
-        for one in read_submissions(submissions, task, table.rows):
-            handed.append(one)
-            shown.advance(reading)
+        for submission in read_submissions(submissions, task, table.rows):
+            handed.append(submission)
+            progress.advance(reading)
         place = {student: n for n, student in enumerate(table.rows)}
-        handed.sort(key=lambda one: place.get(one.student, len(place)))
-        grading = shown.add_task(_("graded"), total=len(handed))
+        handed.sort(key=lambda submission: place.get(submission.student, len(place)))
+        grading = progress.add_task(_("graded"), total=len(handed))
         marks = graded(
-            task, table, handed, way, out / CACHE_FOLDER, lambda count: shown.advance(grading, count), stopped
+            task, table, handed, runner, out / CACHE_FOLDER, lambda count: progress.advance(grading, count), stopped
         )
     if len(marks) < len(handed):
-        told = _("stopped: {done} of {count} graded; the next run keeps them and grades the others")
-        say(told.format(done=len(marks), count=len(handed)))
+        text = _("stopped: {done} of {count} graded; the next run keeps them and grades the others")
+        say(text.format(done=len(marks), count=len(handed)))
         return CHECK_FAILED
     written(out, Gradebook(task.revealing() if reveal else task, marks, users=table.rows), names, jobs)
-    for found in statistics_tables(task, marks):
-        print_on_terminal(found, task.units, console())
+    for statistics in statistics_tables(task, marks):
+        print_on_terminal(statistics, task.units, console())
     return _print_summary(handed, marks, out)
 
 
@@ -145,8 +145,12 @@ def _stop_on_interrupt() -> Iterator[Callable[[], bool]]:
 def _print_summary(handed: Sequence[Submission], marks: Sequence[StudentMarks], out: Path) -> int:
     """Print the numbers of graded students; returns the exit code."""
     both = list(zip(handed, marks, strict=True))
-    left = sum(one.unread or own.problems != one.problems for one, own in both)
-    none = sum(not (one.unread or one.answers or one.by_angle) for one, own in both if own.problems == one.problems)
-    told = _("written: {folder}; graded: {count}, without an answer: {none}, could not be graded: {left}")
-    say(told.format(folder=printable(out), count=len(both) - none - left, none=none, left=left))
+    left = sum(submission.unread or grade.problems != submission.problems for submission, grade in both)
+    none = sum(
+        not (submission.unread or submission.answers or submission.by_angle)
+        for submission, grade in both
+        if grade.problems == submission.problems
+    )
+    text = _("written: {folder}; graded: {count}, without an answer: {none}, could not be graded: {left}")
+    say(text.format(folder=printable(out), count=len(both) - none - left, none=none, left=left))
     return CHECK_FAILED if left else OK

@@ -22,17 +22,17 @@ def new(
     ] = None,
 ) -> None:
     """Start a problem file from a commented template."""
-    known = list_templates(language())
+    templates = list_templates(language())
     if template is None:
-        for name, title in known.items():
+        for name, title in templates.items():
             typer.echo(f"{name:15} {title}")
         return
     with reporting_errors():
-        if template not in known:
+        if template not in templates:
             raise ProblemError(
                 _("no template is called '{template}'").format(template=template),
-                allowed=", ".join(known),
-                near=nearest_name(template, known),
+                allowed=", ".join(templates),
+                near=nearest_name(template, templates),
             )
         file = out or Path(f"{template}.yaml")
         named = None if str(file) == "-" else printable(file)

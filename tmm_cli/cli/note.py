@@ -30,7 +30,7 @@ def note(
     """Write the explanatory note of a course project, DIR/<problem>/note.html: formulas, numbers, results."""
 
     def work(file: str) -> int:
-        wanted = formats_of(formats)
+        formats_chosen = formats_of(formats)
         problem = open_problem(file, variant_settings(file, variants, variant, settings))
         refuse_excess_work(problem.whole, None, detail=count_detailed_positions(problem.whole))
         results = solve(problem)
@@ -39,7 +39,7 @@ def note(
         for warning in collect_warnings(results):
             warn(warning)
         written = note_of(results)
-        for name in wanted:
+        for name in formats_chosen:
             target = out / folder_name(results.problem.name) / f"note.{name}"
             write_atomically(target, FORMATS[name](written))
             say(_("written: {folder}").format(folder=printable(target)))

@@ -53,9 +53,9 @@ def open_problem(
 
 def variant_settings(file: str, variants: str | None, variant: str | None, settings: Sequence[str] | None) -> list[str]:
     """Return the settings of one variant of a table, and the given ones. Raises ProblemError."""
-    given = list(settings or ())
+    own_settings = list(settings or ())
     if variants is None and variant is None:
-        return given
+        return own_settings
     if variants is None or variant is None:
         raise ProblemError(_("give both the table of variants and the variant"), allowed="--variants FILE --variant 7")
     from tmm_cli.batch import read_task
@@ -65,7 +65,7 @@ def variant_settings(file: str, variants: str | None, variant: str | None, setti
         values = variant_in(read_table(variants, read_task(read_tree(file))), variant)
     except ProblemError as error:
         raise (error if error.file else error.located(variants)) from None
-    return [*(f"{name}={text}" for name, text in values.items()), *given]
+    return [*(f"{name}={text}" for name, text in values.items()), *own_settings]
 
 
 def refuse_excess_work(

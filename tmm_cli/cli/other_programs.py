@@ -44,7 +44,7 @@ def import_(
             build_any_problem(read_text(text, str(target)))  # what is written can be read
         except ProblemError as error:  # its lines are of a file that nobody sees
             told = _("the resulting problem file would be invalid: {reason}")
-            reason = ": ".join(part for part in (format_path(error.path), error.message) if part)
+            reason = ": ".join(piece for piece in (format_path(error.path), error.message) if piece)
             raise ProblemError(
                 told.format(reason=reason), found=error.found, allowed=error.allowed, file=file
             ) from None

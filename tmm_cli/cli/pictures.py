@@ -25,8 +25,8 @@ def _draw_run(results: Results, *, quiet: bool = False) -> Pictures:
     return draw.sheet_files(results, say, partial(run_on_all_cores, quiet=quiet))
 
 
-def _draw_sheets(made: Callable[..., NamedDrawings], *given: Any) -> Pictures:
-    return drawing_files(made(*given), say)
+def _draw_sheets(draw: Callable[..., NamedDrawings], *arguments: Any) -> Pictures:
+    return drawing_files(draw(*arguments), say)
 
 
 PICTURES: dict[str, Callable[..., Pictures]] = {  # by what is drawn: the files, by their names

@@ -69,8 +69,8 @@ def compute_file(
     if digits or drawings:
         whole = problem.whole
         single = positions is not None and len(positions) == 1
-        shown = 0 if stage == "structure" else 1 if single else count_detailed_positions(whole)
-        refuse_excess_work(whole, positions, digits=digits, detail=shown if drawings else None)
+        detailed = 0 if stage == "structure" else 1 if single else count_detailed_positions(whole)
+        refuse_excess_work(whole, positions, digits=digits, detail=detailed if drawings else None)
     return structure_of(problem) if drafted else solve(problem, stage, positions)
 
 
@@ -97,13 +97,13 @@ def report(
     """
     if not properties_met(results):
         names = {*names, "properties"}  # they end the command with an exit code
-    found = accuracy_of(results, digits, () if as_json or out is not None else names)
+    accuracy = accuracy_of(results, digits, () if as_json or out is not None else names)
     if as_json:
-        emit_results(results, found)
+        emit_results(results, accuracy)
     else:
-        show_tables(results, names, found)
+        show_tables(results, names, accuracy)
     if out is not None:
-        print_written(write_results(results, out, digits=found, people=people))
+        print_written(write_results(results, out, digits=accuracy, people=people))
     for warning in collect_warnings(results):
         warn(warning)
     return find_exit_code(results)
@@ -120,7 +120,7 @@ def find_exit_code(results: Results | ChainResults) -> int:
 
 def properties_met(results: Results | ChainResults) -> bool:
     """Return True if the shown properties have their expected values."""
-    return all(one.met for one in shown_properties(results))
+    return all(shown.met for shown in shown_properties(results))
 
 
 def emit_results(results: Results | ChainResults, digits: AccuracyReport | None = None) -> None:
@@ -138,12 +138,12 @@ def write_pictures(results: Results, out: Path | None, pictures: Mapping[str, by
     if out is not None:
         print_written(write_results(results, out, pictures.items(), part=part))
     elif pictures:
-        usual, own = (Path("outputs") / folder_name(f"{results.problem.name}{end}") for end in ("", "-drawings"))
+        usual, separate = (Path("outputs") / folder_name(f"{results.problem.name}{end}") for end in ("", "-drawings"))
         taken = not listed_files(usual).isdisjoint(pictures)
-        with StagedFolder(own if taken else usual) as staged:
+        with StagedFolder(separate if taken else usual) as staged:
             for name, content in pictures.items():
                 staged.write(name, (content,))
-        print_written(WrittenFolder(own if taken else usual, staged.removed, usual if taken else None))
+        print_written(WrittenFolder(separate if taken else usual, staged.removed, usual if taken else None))
 
 
 def write_sheets(results: Results, out: Path, pictures: Iterable[tuple[str, bytes]]) -> None:
@@ -174,14 +174,14 @@ def print_written(written: WrittenFolder) -> None:
         say(text.format(folder=printable(folder), files=", ".join(removed)))
 
 
-def show_tables(results: Results | ChainResults, names: Iterable[str], found: AccuracyReport | None = None) -> None:
+def show_tables(results: Results | ChainResults, names: Iterable[str], accuracy: AccuracyReport | None = None) -> None:
     """Print tables by name, of a chain all; of long ones only detailed positions."""
     screen = console()
-    shown = walk(results, () if isinstance(results, ChainResults) else set(names))
-    if found is not None:
-        shown = found.with_bounds(shown)
-        shown = map(with_bound_columns, shown) if found.full else shown
-    for table in shown:
+    tables = walk(results, () if isinstance(results, ChainResults) else set(names))
+    if accuracy is not None:
+        tables = accuracy.with_bounds(tables)
+        tables = map(with_bound_columns, tables) if accuracy.full else tables
+    for table in tables:
         print_table(table, results.problem.units, screen, detailed_rows(results, table))
 
 

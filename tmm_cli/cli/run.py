@@ -57,16 +57,16 @@ def run(
     """Compute a problem and write tables, drawings and result.json to DIR/<problem>/."""
 
     def work(file: str) -> int:
-        own = variant_settings(file, variants, variant, settings)
-        results = compute_file(file, "forces", position, settings=own, digits=digits, drawings=drawings)
+        values = variant_settings(file, variants, variant, settings)
+        results = compute_file(file, "forces", position, settings=values, digits=digits, drawings=drawings)
         moves = drawings and not isinstance(results, ChainResults)
         pictures = draw_pictures("whole", results, quiet=len(files) > 1) if moves else None
-        found = accuracy_of(results, digits)
-        written = write_results(results, out, pictures, found, tables)
+        accuracy = accuracy_of(results, digits)
+        written = write_results(results, out, pictures, accuracy, tables)
         if as_json:
-            emit_results(results, found)
+            emit_results(results, accuracy)
         elif len(files) == 1:
-            show_tables(results, SHOWN, found)
+            show_tables(results, SHOWN, accuracy)
         for warning in collect_warnings(results):
             warn(f"{results.problem.name}: {warning}")
         print_written(written)

@@ -67,9 +67,9 @@ def write_scheme(scheme: Scheme, title: str) -> SchemeFile | None:
     closed = all(group.type.grade == 2 for group in scheme.groups)
     best: SchemeFile | None = None
     for layout in find_layouts(scheme)[: CANDIDATES if closed else FEW_CANDIDATES]:
-        found = _try_layout(problem_text(scheme, layout, title), scheme, closed)
-        if found is not None and (best is None or found.badness < best.badness):
-            best = found
+        candidate = _try_layout(problem_text(scheme, layout, title), scheme, closed)
+        if candidate is not None and (best is None or candidate.badness < best.badness):
+            best = candidate
         if best is not None and best.badness == (False, 0):
             break
     return best
@@ -90,28 +90,30 @@ def _try_layout(text: str, scheme: Scheme, closed: bool) -> SchemeFile | None:
     return SchemeFile(text, True, sum(1 for __ in collect_warnings(results))) if results.lever_holds else None
 
 
-def write_scheme_files(found: Sequence[Scheme], folder: Path, each: Iterable[Scheme]) -> WrittenSchemes:
+def write_scheme_files(schemes: Sequence[Scheme], folder: Path, each: Iterable[Scheme]) -> WrittenSchemes:
     """Write one problem file per scheme into the folder. Raises ProblemError.
 
     Nothing is written before all files are ready, and no existing file with other contents is replaced. each:
     the schemes again, counted by a progress bar.
     """
-    if len(found) > MOST_FILES:
+    if len(schemes) > MOST_FILES:
         raise ProblemError(
             _("too many files"),
             path=("--out",),
-            found=_("{count} schemes").format(count=len(found)),
+            found=_("{count} schemes").format(count=len(schemes)),
             allowed=_("at most {most}; choose fewer links or fewer types of groups (--groups)").format(most=MOST_FILES),
         )
-    digits = max(2, len(str(len(found))))
+    digits = max(2, len(str(len(schemes))))
     texts: dict[Path, str] = {}
     written: list[tuple[Path, bool] | None] = []
     for number, scheme in enumerate(each, 1):
-        one = write_scheme(scheme, _("Scheme {number}, {formula}").format(number=number, formula=scheme.formula))
+        scheme_file = write_scheme(
+            scheme, _("Scheme {number}, {formula}").format(number=number, formula=scheme.formula)
+        )
         path = folder / f"scheme-{number:0{digits}d}-{scheme.name}.yaml"
-        written.append(None if one is None else (path, one.solved))
-        if one is not None:
-            texts[path] = one.text
+        written.append(None if scheme_file is None else (path, scheme_file.solved))
+        if scheme_file is not None:
+            texts[path] = scheme_file.text
     for path, text in texts.items():
         if path.exists() and path.read_bytes() != text.encode():
             raise ProblemError(
@@ -127,14 +129,14 @@ def write_scheme_files(found: Sequence[Scheme], folder: Path, each: Iterable[Sch
 
 def read_group_types(text: str) -> tuple[str, ...]:
     """Read a list of group types and classes, `RRR,RRP` or `II,III`. Raises ProblemError."""
-    found: list[str] = []
+    types: list[str] = []
     for word in text.split(","):
         name = word.strip().upper()
         if name not in GROUP_TYPES and name not in GROUP_CLASSES:
-            known = [*GROUP_CLASSES, *(name for name in GROUP_TYPES if name not in GROUP_CLASSES)]
-            raise unknown_name_error(word.strip(), known, _("no such group"), path=("--groups",))
-        found += GROUP_CLASSES.get(name, (name,))
-    return tuple(dict.fromkeys(found))
+            allowed = [*GROUP_CLASSES, *(name for name in GROUP_TYPES if name not in GROUP_CLASSES)]
+            raise unknown_name_error(word.strip(), allowed, _("no such group"), path=("--groups",))
+        types += GROUP_CLASSES.get(name, (name,))
+    return tuple(dict.fromkeys(types))
 
 
 def find_schemes(links: int, mobility: int, types: tuple[str, ...]) -> tuple[Scheme, ...]:
@@ -214,12 +216,12 @@ def schemes(
             say(_("written: {folder}").format(folder=printable(staged.folder)))
         elif links is not None and chains is None:
             types = read_group_types(groups)
-            found = find_schemes(links, mobility, types)
-            written = None if out is None else write_scheme_files(found, out, with_progress(found))
+            enumerated = find_schemes(links, mobility, types)
+            written = None if out is None else write_scheme_files(enumerated, out, with_progress(enumerated))
             if as_json:
-                emit_json(schemes_json(found, links, mobility, written, types))
+                emit_json(schemes_json(enumerated, links, mobility, written, types))
             else:
-                rows = schemes_table(found, links, mobility, written, types)
+                rows = schemes_table(enumerated, links, mobility, written, types)
                 print_on_terminal(rows, UnitSystem(), console(), more=MORE_ROWS_AS_JSON)
         elif chains is not None and links is None:
             if out is not None:
@@ -236,10 +238,12 @@ def schemes(
                     chains_table(all_chains, chains, mobility), UnitSystem(), console(), more=MORE_ROWS_AS_JSON
                 )
         else:
-            wanted = _("--links N for schemes, --chains N for kinematic chains, or --table for the table of groups")
+            alternatives = _(
+                "--links N for schemes, --chains N for kinematic chains, or --table for the table of groups"
+            )
             raise ProblemError(
                 _("neither schemes nor chains nor the table of groups were requested, or several of them"),
-                allowed=wanted,
+                allowed=alternatives,
             )
     if out is not None and written:
         count = sum(x is not None for x in written)

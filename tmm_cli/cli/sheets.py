@@ -37,7 +37,7 @@ def sheets(
     """Draw framed sheets to scale and write them to DIR/<problem>/."""
 
     def work(file: str) -> int:
-        wanted = parse_formats(formats)
+        formats_chosen = parse_formats(formats)
         problem = open_problem(file, variant_settings(file, variants, variant, settings))
         request = problem.whole.request
         detail, plans = (
@@ -51,8 +51,10 @@ def sheets(
             say(remark)
         for warning in collect_warnings(results):
             warn(warning)
-        way = partial(run_on_all_cores, quiet=len(files) > 1)
-        write_sheets(results, out, large_sheet_files(results, paper, wanted, say, way, every=positions == "all"))
+        runner = partial(run_on_all_cores, quiet=len(files) > 1)
+        write_sheets(
+            results, out, large_sheet_files(results, paper, formats_chosen, say, runner, every=positions == "all")
+        )
         return OK
 
     for_each_file(files, work, out=out, headed=False)

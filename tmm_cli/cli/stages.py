@@ -57,8 +57,10 @@ def structure(
     names = ("structure", "properties", "links", "pairs", "groups", "contours", "space", "replacements")
 
     def work(file: str) -> int:
-        own = variant_settings(file, variants, variant, settings)
-        results = compute_file(file, "structure", driver=driver, drafted=not drawings, settings=own, drawings=drawings)
+        values = variant_settings(file, variants, variant, settings)
+        results = compute_file(
+            file, "structure", driver=driver, drafted=not drawings, settings=values, drawings=drawings
+        )
         if isinstance(results, ChainResults) or not drawings:
             return report(results, names, as_json, out, people=tables)
         code = report(results, names, as_json, None)
@@ -106,20 +108,20 @@ def kinematics(
     tables: Tables = None,
 ) -> None:
     """Show positions, velocities, accelerations and transfer functions of points, links and prismatic pairs."""
-    asked = [name.strip() for name in of.split(",") if name.strip()]
+    requested = [name.strip() for name in of.split(",") if name.strip()]
     usual = ("quality", "properties", *INTERMITTENT, "pressure", "cycle", "points", "link-motion", "slides", "centres")
-    names = ("points", "link-motion") if asked else usual
+    names = ("points", "link-motion") if requested else usual
 
     def work(file: str) -> int:
-        own = variant_settings(file, variants, variant, settings)
+        values = variant_settings(file, variants, variant, settings)
 
         if assemblies:
-            return _list_assemblies(file, as_json, out, position, own)
-        problem = open_problem(file, own, position, digits)
+            return _list_assemblies(file, as_json, out, position, values)
+        problem = open_problem(file, values, position, digits)
         if centres or problem.whole.request.centres:
             number = len(position) if position else count_detailed_positions(problem.whole)
             refuse_excess_work(problem.whole, position, digits=digits, centres=number)
-        results = solve(problem, "kinematics", position, asked)
+        results = solve(problem, "kinematics", position, requested)
         if extremes:
             results = with_extremes(results)
         if centres:
@@ -144,13 +146,13 @@ def _list_assemblies(
     with translate_errors(problem):
         results = with_assemblies(inputs_of(problem), positions, problem)
     code = report(results, [stem for stem, *__ in name_assembly_files(results.assemblies or ())], as_json, None)
-    for here in results.assemblies or ():
-        if here.undecided is not None:
+    for listed in results.assemblies or ():
+        if listed.undecided is not None:
             text = _("the sketch does not determine the assembly of {group}; all assemblies are listed")
-            say(text.format(group=here.undecided.title))
-            if positions and here.number is None:
+            say(text.format(group=listed.undecided.title))
+            if positions and listed.number is None:
                 say(_("without a determined assembly positions have no numbers; listed for the sketched position"))
-        for group in here.lost:
+        for group in listed.lost:
             say(_("{group} is omitted: the links it depends on cannot be assembled here").format(group=group.title))
     write_pictures(results, out, dict(draw_pictures("assemblies", results)))
     return code
@@ -191,8 +193,8 @@ def forces(
     )
 
     def work(file: str) -> int:
-        own = variant_settings(file, variants, variant, settings)
-        results = solve(open_problem(file, own, position, digits), "forces", position)
+        values = variant_settings(file, variants, variant, settings)
+        results = solve(open_problem(file, values, position, digits), "forces", position)
         if extremes:
             results = with_extremes(results)
         code = report(

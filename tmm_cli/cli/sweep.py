@@ -82,25 +82,25 @@ def sweep(
         points = 1
         for axis in mechanisms.axes:
             points *= len(axis.values)
-        peaks = any(not one.whole for one in mechanisms.shown)
+        peaks = any(not quantity.whole for quantity in mechanisms.shown)
         refuse_points(problem, points, peaks=peaks, taped=taped, cores=None if scheduler else cores)
         _announce(points, taped)
         for doubt in find_unused_parameters(tree, mechanisms.names):
             say(_("warning: {warning}").format(warning=f"{problem.name}: {doubt}"))
-        way = on_cluster(scheduler) if scheduler else in_processes(cores)
-        with progress_bars() as shown:
-            work = shown.add_task(_("solved"), total=points)
-            found = run_sweep(mechanisms, way, lambda count: shown.advance(work, count))
-        for slip in warn_of_load_tables(problem.linkage, problem.units, found.reach):
+        runner = on_cluster(scheduler) if scheduler else in_processes(cores)
+        with progress_bars() as progress:
+            work = progress.add_task(_("solved"), total=points)
+            swept = run_sweep(mechanisms, runner, lambda count: progress.advance(work, count))
+        for slip in warn_of_load_tables(problem.linkage, problem.units, swept.reach):
             warn(f"{problem.name}: {slip}")
         if as_json:
-            emit_json(json_value(dict(sections(found, problem))))
+            emit_json(json_value(dict(sections(swept, problem))))
         else:
-            show_table(points_table(found, words=True), problem.units, console())
-            if found.marks:
-                show_table(borders_table(found, words=True), problem.units, console())
+            show_table(points_table(swept, words=True), problem.units, console())
+            if swept.marks:
+                show_table(borders_table(swept, words=True), problem.units, console())
         if out is not None:
-            _write(found, problem, out)
+            _write(swept, problem, out)
         raise typer.Exit(OK)
 
 
@@ -110,16 +110,16 @@ def _announce(points: int, taped: bool) -> None:
     say(text.format(points=points))
 
 
-def _write(found: SweepResults, problem: Problem, out: Path) -> None:
+def _write(swept: SweepResults, problem: Problem, out: Path) -> None:
     """Write all files at once, or none. Raises OSError."""
     folder = out / folder_name(f"{problem.name}-sweep")
     with StagedFolder(folder) as staged:
         with words_of_files():
-            staged.write("sweep.csv", csv_text(points_table(found), problem.units))
-            staged.write("borders.csv", csv_text(borders_table(found), problem.units))
-        for name, picture in drawings(sweep_sheets(problem.title, found, problem.units), say):
+            staged.write("sweep.csv", csv_text(points_table(swept), problem.units))
+            staged.write("borders.csv", csv_text(borders_table(swept), problem.units))
+        for name, picture in drawings(sweep_sheets(problem.title, swept, problem.units), say):
             staged.write(name, (picture,))
         names = sorted(staged.names)
         with words_of_files():
-            staged.write(RECORD, json_text([*sections(found, problem), ("files", names)]))
+            staged.write(RECORD, json_text([*sections(swept, problem), ("files", names)]))
     say(_("written: {files}").format(files=printable(folder)))

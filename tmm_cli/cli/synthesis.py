@@ -42,15 +42,15 @@ def synthesis(files: Files, as_json: Json = False, out: Out = None, settings: Se
 
 def _solve_and_report(file: str, as_json: bool, out: Path | None, settings: Sequence[str] | None) -> int:
     """Solve the synthesis of a file, show and write the results; returns the exit code. Raises ProblemError."""
-    name, title, found, units, results = _solve_task(file, settings)
+    name, title, synthesised, units, results = _solve_task(file, settings)
     measured = None if results is None else measure_problem(results)
     with words_of_files():
-        whole = {"problem": name, **synthesis_json(found, measured)}
+        whole = {"problem": name, **synthesis_json(synthesised, measured)}
     if as_json:
         emit_json(whole)
     else:
         screen = console()
-        for table in tables_of_synthesis(found, measured, units):
+        for table in tables_of_synthesis(synthesised, measured, units):
             if not table.long:
                 print_on_terminal(table, units, screen, most=None)
         if measured is None:
@@ -59,9 +59,11 @@ def _solve_and_report(file: str, as_json: bool, out: Path | None, settings: Sequ
         folder = out / folder_name(name if recorded_part(out / folder_name(name)) is None else f"{name}-synthesis")
         with StagedFolder(folder) as staged:
             with words_of_files():
-                for table in tables_of_synthesis(found, measured, units, 15):
+                for table in tables_of_synthesis(synthesised, measured, units, 15):
                     staged.write(f"{table.name}.csv", csv_text(table, units))
-            for drawing, picture in draw_pictures("synthesis", title, found.outcome, results, units, found.names):
+            for drawing, picture in draw_pictures(
+                "synthesis", title, synthesised.outcome, results, units, synthesised.names
+            ):
                 staged.write(drawing, (picture,))
             staged.write("synthesis.json", (json_bytes(whole),))
         say(_("written: {folder}").format(folder=printable(folder)))
@@ -80,11 +82,11 @@ def _solve_task(file: str, settings: Sequence[str] | None) -> tuple[str, str, Sy
         build_synthesised(tree)  # refuses a misspelt key
         raise ProblemError(_("the file has no block `synthesis`"), allowed="synthesis: {task: ...}", file=file)
     if "links" not in tree.data:
-        found = solve_alone(tree)
-        say(f"{found[0]}: {describe_units(found[3])}")
-        for doubt in find_bare_speeds(tree.data, ValueReader(TaskFile(tree).independent, found[3])):
-            warn(f"{found[0]}: {doubt}")
-        return (*found, None)
+        solution = solve_alone(tree)
+        say(f"{solution[0]}: {describe_units(solution[3])}")
+        for doubt in find_bare_speeds(tree.data, ValueReader(TaskFile(tree).independent, solution[3])):
+            warn(f"{solution[0]}: {doubt}")
+        return (*solution, None)
     problem = build_synthesised(tree)
     print_file_summary(problem)
     assert problem.synthesis is not None

@@ -58,12 +58,12 @@ def report_fault(error: Exception, words: Sequence[str]) -> int:
         return FAULT
     place = _program_line(error)
     command = next((word for word in words if not word.startswith("-")), "")
-    told = _(
+    text = _(
         "internal error: {name} at {place} (tmm {version}, command {command}): please report this line and "
         "the file; {variable}=1 prints the traceback"
     )
     name, version = type(error).__name__, tmm_cli.__version__
-    say(told.format(name=name, place=place, version=version, command=clean(command, 40), variable=TRACEBACK))
+    say(text.format(name=name, place=place, version=version, command=clean(command, 40), variable=TRACEBACK))
     return FAULT
 
 
@@ -73,12 +73,12 @@ def _program_line(error: Exception) -> str:
     frames = re.findall(r'File "([^"]+)", line (\d+)', remote if isinstance(remote, str) else "")
     frames = frames or [(frame.filename, frame.lineno) for frame in traceback.extract_tb(error.__traceback__)]
     home = Path(tmm_cli.__file__).parent
-    own = [
+    program_lines = [
         f"{Path(file).relative_to(home.parent).as_posix()}:{line}"
         for file, line in frames
         if home in Path(file).parents
     ]
-    return own[-1] if own else "?"
+    return program_lines[-1] if program_lines else "?"
 
 
 def refuse_addresses(named: Mapping[str, Any]) -> None:
@@ -87,8 +87,8 @@ def refuse_addresses(named: Mapping[str, Any]) -> None:
         path = named.get(name)
         if isinstance(path, Path) and ADDRESS.match(str(path)):
             address = re.sub(r"^([^:]+):[/\\]+", r"\1://", str(path))
-            told = _("error: {address} is a network address; give a local folder or file for the results")
-            say(told.format(address=printable(address)))
+            text = _("error: {address} is a network address; give a local folder or file for the results")
+            say(text.format(address=printable(address)))
             raise typer.Exit(BAD_INPUT)
 
 
@@ -105,11 +105,11 @@ def with_language_option(command: Callable[..., None]) -> Callable[..., None]:
         finally:
             _asked_for.reset(before)
 
-    known = signature(command, eval_str=True)
+    original = signature(command, eval_str=True)
     option = Parameter("lang", Parameter.KEYWORD_ONLY, default=None, annotation=Lang)
-    shape = known.replace(parameters=[*known.parameters.values(), option])
+    shape = original.replace(parameters=[*original.parameters.values(), option])
     vars(spoken_command).update(__signature__=shape, __wrapped__=None)  # typer reads the shape, and looks no further
-    spoken_command.__annotations__ = {name: one.annotation for name, one in shape.parameters.items()}
+    spoken_command.__annotations__ = {name: parameter.annotation for name, parameter in shape.parameters.items()}
     return spoken_command
 
 

@@ -83,8 +83,8 @@ def variants(
 def _print_drawn(variety: Variety, table: VariantTable) -> None:
     """Print how many variants were drawn and rejected."""
     rows = [(why, str(count)) for why, count in variety.thrown.most_common() if count]
-    told = _("variants: {count}, free parameters: {free}, candidates tried: {tried}")
-    say(told.format(count=len(table.rows), free=", ".join(table.names), tried=variety.tried))
+    text = _("variants: {count}, free parameters: {free}, candidates tried: {tried}")
+    say(text.format(count=len(table.rows), free=", ".join(table.names), tried=variety.tried))
     if rows:
         thrown = text_table("thrown", _("Rejected candidates"), (_("reason"), _("candidates")), rows)
         print_on_terminal(thrown, variety.task.units, console())

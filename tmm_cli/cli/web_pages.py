@@ -62,19 +62,19 @@ def gallery(
     """
     with reporting_errors():
         refuse_unwritable(out / "index.html", folder=False)
-    made = list(run_on_all_cores([partial(_try_card, str(file)) for file in problems_in(paths)]))
-    cards = [one for one in made if isinstance(one, Card)]
-    for one in made:
-        if isinstance(one, str):
-            say(_("error: {error}").format(error=one))
+    outcomes = list(run_on_all_cores([partial(_try_card, str(file)) for file in problems_in(paths)]))
+    cards = [outcome for outcome in outcomes if isinstance(outcome, Card)]
+    for outcome in outcomes:
+        if isinstance(outcome, str):
+            say(_("error: {error}").format(error=outcome))
     if not cards:
         raise typer.Exit(BAD_INPUT)
     with reporting_errors():
         target = out / "index.html"
         write_atomically(target, gallery_page(cards).encode())
         say(_("written: {folder}").format(folder=printable(target)))
-    if len(cards) < len(made):
-        say(_("omitted: {count}").format(count=len(made) - len(cards)))
+    if len(cards) < len(outcomes):
+        say(_("omitted: {count}").format(count=len(outcomes) - len(cards)))
         raise typer.Exit(CHECK_FAILED)
 
 

@@ -149,7 +149,7 @@ class SweptMechanisms:
             self._one_by_one(points, np.arange(count), solved)
             return solved
         parts = np.array_split(np.arange(count), -(-count // BLOCK))
-        left = [self._taped(points, part, solved, values) for part in parts]
+        left = [self._taped(points, indices, solved, values) for indices in parts]
         unsure, otherwise = (np.concatenate(rows) for rows in zip(*left, strict=True))
         for row in unsure[MOST_DOUBTFUL:]:
             solved.why[row] = _("the output moves differently from that of the problem file")

@@ -104,7 +104,9 @@ class _VariantScan:
                     slope_of = _curve_of_variants(self.turning, f"slope{k}", self.columns[rows])
                     ends[rows, k] = _stroke_ends(slope_of, self.at(low), self.at(low + 1))
         works = does == SCAN_WORKS
-        peaks = {one.name: np.where(works, self._peak(one.name, works), np.nan) for one in self.turning.limited}
+        peaks = {
+            limited.name: np.where(works, self._peak(limited.name, works), np.nan) for limited in self.turning.limited
+        }
         return ScanResults(does, sure | ~works, peaks, ends)
 
     def _assembled(self) -> tuple[Real, Real]:
@@ -141,8 +143,8 @@ class _VariantScan:
         rows, at = candidate_peaks(curve, level, works[:, None])
         if rows.size:
             close = VariantCurves(self.turning.part(name), self.columns[rows])
-            before, here, after = (curve[rows, (at + n) % self.places] for n in (-1, 0, 1))
-            peaks = refine_peaks(lambda q: close(q)[name], self.at(at), self.step, (before, here, after))
+            before, centre, after = (curve[rows, (at + n) % self.places] for n in (-1, 0, 1))
+            peaks = refine_peaks(lambda q: close(q)[name], self.at(at), self.step, (before, centre, after))
             np.maximum.at(top, rows, peaks)
         return top
 
@@ -150,17 +152,17 @@ class _VariantScan:
 def _nearly_reaches(curve: Real, where: Real) -> Real:
     """Variants whose negative curves may reach zero between two positions. where: positions that count."""
     rows, _at = candidate_peaks(curve, np.zeros(len(curve)), where)
-    found = np.zeros(len(curve), dtype=bool)
-    found[rows] = True
-    return found
+    reaching = np.zeros(len(curve), dtype=bool)
+    reaching[rows] = True
+    return reaching
 
 
 def _stroke_ends(slope: Callable[[Real], Real], low: Real, high: Real) -> Real:
     """Roots between scan positions; a root at a position itself may be lost by rounding, and is taken there."""
     at_low, at_high = slope(low), slope(high)
     outside = np.sign(at_low) == np.sign(at_high)
-    found = find_roots(slope, low, high)
-    return np.where(outside, np.where(np.abs(at_low) < np.abs(at_high), low, high), found)
+    roots = find_roots(slope, low, high)
+    return np.where(outside, np.where(np.abs(at_low) < np.abs(at_high), low, high), roots)
 
 
 def _curve_of_variants(turning: CrankVariants, name: str, columns: Real) -> Callable[[Real], Real]:
@@ -175,17 +177,17 @@ def _negated_curve(close: VariantCurves, name: str) -> Callable[[Real], Real]:
 
 def variant_strokes(turning: CrankVariants, columns: Real, looked: ScanResults, varied: Variant) -> Strokes | None:
     """Strokes of working variants, as arrays (variants, 1)."""
-    every = []
+    outputs = []
     for k, link in enumerate(turning.stroke_links):
         curve = _TracedOutputCurve(
             link, turning.linkage.output_swings(link), _curve_of_variants(turning, f"place{k}", columns)
         )
         if turning.strokes[k]:
             resists = resisted_direction(varied.linkage, link)
-            every.append(working_and_idle_strokes(turning.linkage, curve, looked.ends[:, k], resists))
+            outputs.append(working_and_idle_strokes(turning.linkage, curve, looked.ends[:, k], resists))
         else:
-            every.append(Strokes(link, curve.kind, (), ""))
-    return replace(every[0], others=tuple(every[1:])) if every else None
+            outputs.append(Strokes(link, curve.kind, (), ""))
+    return replace(outputs[0], others=tuple(outputs[1:])) if outputs else None
 
 
 @dataclass(frozen=True)

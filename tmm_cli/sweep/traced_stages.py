@@ -56,8 +56,8 @@ def candidate_peaks(curve: Real, level: Real, where: Real) -> tuple[Real, Real]:
     before, after = np.roll(curve, 1, axis=1), np.roll(curve, -1, axis=1)
     with np.errstate(invalid="ignore"):
         rise = np.maximum(curve - before, curve - after)
-        found = (curve >= before) & (curve > after) & (curve + 2 * rise >= level[:, None]) & where
-    row, place = np.nonzero(found)
+        candidates = (curve >= before) & (curve > after) & (curve + 2 * rise >= level[:, None]) & where
+    row, place = np.nonzero(candidates)
     return row, place
 
 
@@ -70,20 +70,20 @@ def refine_peaks(curve: Callable[[Real], Real], q: Real, step: float, values: tu
         step: distance of scan places.
         values: values of the curves before, at and after q.
     """
-    before, here, after = values
-    bend = 2 * here - before - after
+    before, centre, after = values
+    bend = 2 * centre - before - after
     with np.errstate(invalid="ignore", divide="ignore"):
         off = np.where(bend > 0, (after - before) / (2 * bend), 0.0)
     middle = q + step * np.clip(off, -1, 1)
     window = step / WINDOW_STEPS * np.arange(-(WINDOW_PLACES // 2), WINDOW_PLACES // 2 + 1)
     for _ in range(SHIFTS):
-        there = curve(middle[:, None] + window)
-        top = np.argmax(there, axis=1)
+        samples = curve(middle[:, None] + window)
+        top = np.argmax(samples, axis=1)
         edge = (top < WINDOW_SIDE) | (top >= WINDOW_PLACES - WINDOW_SIDE)
         if not np.any(edge):
             break
         middle = np.where(edge, middle + window[top], middle)
-    return np.maximum(here, window_peak(there))
+    return np.maximum(centre, window_peak(samples))
 
 
 # The stages on a tape, for variants of a linkage whose crank is to go all round, each at positions of its own.
@@ -165,9 +165,9 @@ class CrankVariants:
 
         Raises NoTapeError if the main output has more than two, or another link has not exactly two.
         """
-        places = self.linkage.sketch.at + 2 * np.pi * np.arange(FINE_SCAN) / FINE_SCAN
+        coordinates = self.linkage.sketch.at + 2 * np.pi * np.arange(FINE_SCAN) / FINE_SCAN
         names = [f"slope{k}" for k in range(len(self.stroke_links))]
-        slopes = self.scan.only(*names)(*(np.array([[x]]) for x in self.first), places)
+        slopes = self.scan.only(*names)(*(np.array([[x]]) for x in self.first), coordinates)
         counts = tuple(int(np.sum(sign_changes(slopes[name]))) for name in names)
         if any(count > 2 for count in counts) or any(count != 2 for count in counts[1:]):
             raise NoTapeError
@@ -181,20 +181,20 @@ class CrankVariants:
     def _states(self, *data: Any) -> Mapping[str, Any]:
         linkage, kernels = self._linkage(data[:-1])
         states = link_states(linkage, kernels, data[-1], 1, blank=False)
-        found: dict[str, Any] = {}
+        curves: dict[str, Any] = {}
         for k, at in enumerate(states.placements):
-            found |= {f"gap{k}": at.residual - at.slack, f"slack{k}": at.slack, f"det{k}": at.det}
+            curves |= {f"gap{k}": at.residual - at.slack, f"slack{k}": at.slack, f"det{k}": at.det}
         for k, link in enumerate(self.stroke_links):
-            found |= {f"slope{k}": output_slope(states, link), f"place{k}": output_coordinate(states, link)}
+            curves |= {f"slope{k}": output_slope(states, link), f"place{k}": output_coordinate(states, link)}
         leads = [(k, lead) for k, kernel in enumerate(kernels) for lead in driven_links(kernel.group)]
         for n, (k, lead) in enumerate(leads):
-            found[f"angle{n}"] = pressure_angle(states, kernels[k], states.placements[k], lead)
+            curves[f"angle{n}"] = pressure_angle(states, kernels[k], states.placements[k], lead)
         for n, slide in enumerate(self.slots):
-            own = linkage.slide(slide.name)
-            first, last = (linkage.local(own.carrier, name) for name in own.ends)
-            run, length = states.run(own), np.abs(last - first)
-            found |= {f"slot{n}.0": -run / length, f"slot{n}.1": run / length - 1}
-        return found
+            guide = linkage.slide(slide.name)
+            first, last = (linkage.local(guide.carrier, name) for name in guide.ends)
+            run, length = states.run(guide), np.abs(last - first)
+            curves |= {f"slot{n}.0": -run / length, f"slot{n}.1": run / length - 1}
+        return curves
 
     def _positions(
         self, data: Sequence[Any], read: Callable[[Motion, Reactions | None], Mapping[str, Any]], forces: bool
@@ -202,14 +202,14 @@ class CrankVariants:
         *columns, begin, q = data
         columns, ends = columns[: len(self.first)], columns[len(self.first) :]
         linkage, kernels = self._linkage(columns)
-        every = []
+        outputs = []
         for k, link in enumerate(self.stroke_links):
             start, length, low, run = ends[4 * k : 4 * k + 4]
             pair: tuple[Any, ...] = ()
             if self.strokes[k]:
                 pair = (Stroke(start, length, low, run, True), Stroke(start + length, length, low + run, -run, False))
-            every.append(Strokes(link, "swing" if linkage.output_swings(link) else "slide", pair, ""))
-        strokes = replace(every[0], others=tuple(every[1:])) if every else None
+            outputs.append(Strokes(link, "swing" if linkage.output_swings(link) else "slide", pair, ""))
+        strokes = replace(outputs[0], others=tuple(outputs[1:])) if outputs else None
         structure = self.structure.rebind(linkage)
         return solve_stages(linkage, structure, kernels, q, read, forces, strokes, blank=False, start=begin)
 
@@ -217,11 +217,11 @@ class CrankVariants:
         """Return the variants as one with arrays as numbers, and the mask of those that would be built differently."""
         otherwise: list[Any] = []
         both = zip(self.first, split_columns(columns), strict=True)
-        made = self.make([TracedNumber(x, column, otherwise) for x, column in both])
+        variant = self.make([TracedNumber(x, column, otherwise) for x, column in both])
         apart = np.zeros(len(columns), dtype=bool)
         for truth in otherwise:
             apart |= np.broadcast_to(np.asarray(truth), (len(columns), 1))[:, 0]
-        return replace(made, linkage=resolve_traced(made.linkage), request=resolve_traced(made.request)), apart
+        return replace(variant, linkage=resolve_traced(variant.linkage), request=resolve_traced(variant.request)), apart
 
     def over_cycle(
         self, columns: Real, strokes: Strokes | None
@@ -231,9 +231,9 @@ class CrankVariants:
 
         The function takes indices of variants (k,), places of each (k, n) and names.
         """
-        every = () if strokes is None else (strokes, *strokes.others)
-        firsts = [next(iter(x.strokes), Stroke(0.0, 0.0, 0.0, 0.0, True)) for x in every]
-        ends = (x for one in firsts for x in (one.start, one.length, one.low, one.run))
+        outputs = () if strokes is None else (strokes, *strokes.others)
+        firsts = [next(iter(x.strokes), Stroke(0.0, 0.0, 0.0, 0.0, True)) for x in outputs]
+        ends = (x for stroke in firsts for x in (stroke.start, stroke.length, stroke.low, stroke.run))
         numbers = [x + np.zeros((len(columns), 1)) for x in ends]
         start, sense = self.linkage.sketch.at, self.linkage.driver.sense
 
@@ -259,17 +259,17 @@ class VariantCurves:
 
     def __call__(self, q: Real) -> Mapping[str, Real]:
         shaped = q.reshape(len(self.columns), -1) if q.ndim > 1 else q.reshape(-1, len(self.columns)).T
-        found = self.program(*split_columns(self.columns), shaped)
-        return {name: value if q.ndim > 1 else value.T.reshape(-1) for name, value in found.items()}
+        curves = self.program(*split_columns(self.columns), shaped)
+        return {name: value if q.ndim > 1 else value.T.reshape(-1) for name, value in curves.items()}
 
 
 def sign_changes(slope: Real) -> Real:
     """Mask of the places of a revolution after which a slope changes its sign."""
     forward = slope >= 0
-    found: Real = forward != np.roll(forward, -1, axis=1)
-    return found
+    changes: Real = forward != np.roll(forward, -1, axis=1)
+    return changes
 
 
-def curve_limit(one: LimitedCurve, allowed: tuple[float, float]) -> float:
+def curve_limit(curve: LimitedCurve, allowed: tuple[float, float]) -> float:
     """Limit of a curve. allowed: pressure angles of sliding and of rotating links (rad)."""
-    return END_OF_SLOT if one.kind == "slot" else allowed[0 if one.sliding else 1]
+    return END_OF_SLOT if curve.kind == "slot" else allowed[0 if curve.sliding else 1]

@@ -211,8 +211,12 @@ def _stroke_name(linkage: Linkage, motion: Strokes | OutputTravel) -> str:
 
 
 def _shown_properties(results: Results | ChainResults) -> Iterable[Value]:
-    for shown in shown_properties(results):
-        yield shown.name, 0.0 if abs(shown.value) <= PROPERTY_TOLERANCE else shown.value, shown.dimension
+    for property_shown in shown_properties(results):
+        yield (
+            property_shown.name,
+            0.0 if abs(property_shown.value) <= PROPERTY_TOLERANCE else property_shown.value,
+            property_shown.dimension,
+        )
 
 
 def _format_facts(values: Iterable[Value], units: UnitSystem) -> Iterator[Fact]:
