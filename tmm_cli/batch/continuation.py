@@ -28,8 +28,8 @@ from tmm_cli.mechanics.groups import (
 from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import CONVERGED, SAME_STATE, Real
 
-TABLE_PIECES = 1440  # places of a table in a turn of the driver, or in its whole range
-TABLE_NEWTON_STEPS = 4  # of Newton's method from the trace's own nodes to places of a table
+TABLE_PIECES = 1440  # per revolution of the driver, or in its whole range
+TABLE_NEWTON_STEPS = 4  # Newton steps from the nodes of the trace to those of the table
 
 Placeholders = Sequence[Any]
 
@@ -199,22 +199,22 @@ def _unknowns_from_trace(kernel: UnrolledNewton, trace: BranchTrace, q: Real) ->
     return [parts[column % 3][:, column // 3] for column in kernel.free]
 
 
-# Where Newton's steps begin for many variants at once: each is followed from the first linkage, then along its way.
+# Initial guesses for many variants at once: each is continued from the first linkage, then along its driver range.
 #
-# At the place of the sketch numbers go from those of the first linkage to those of each variant; from there all
-# variants go along their driver ranges, up and down at once, predicted by their rates and these by the last two, and
-# closed on a tape. A step that corrects too much, or comes to another side of a dead position, is none: it is halved,
-# and a variant whose quarter steps lead nowhere either has come to its end.
+# At the sketched position the numbers change from those of the first linkage to those of each variant. From there all
+# variants are continued along their driver ranges, up and down at once: predicted from rates and their differences, and
+# corrected by replaying a trace. A step with too large a correction, or across a dead position, is halved; a variant
+# whose quarter steps fail too ends there.
 
 
-LARGEST_CORRECTION = 0.1  # rad, sizes of the group: a step that Newton's method corrects by more may lead elsewhere
-CORRECTOR_STEPS = 3  # of Newton's method, after which it has converged where CORRECTION was not too much
-MOST_ROUNDS = 12  # at most from the first linkage to a variant
-FIRST_SHARE = 1 / 16  # of that way, which tells where the rest leads; it is tried in one step then
-NODE_TOLERANCE = 1e-9  # of a step: so near to a node there is no need of the next one, which may be lost
-SHORTEST_STEP = 0.25  # of a step
-STEPS_PER_TURN, LEAST_TURNS = 24, 0.5  # steps of a way, up and down together, in a turn of the driver; turns at least
-VARIANT_NEWTON_STEPS = 2  # of Newton's method, from ways in such steps
+LARGEST_CORRECTION = 0.1  # rad, or sizes of the group: a larger Newton correction may lead to another assembly
+CORRECTOR_STEPS = 3  # Newton steps after which an acceptable correction has converged
+MOST_ROUNDS = 12  # steps from the first linkage to a variant
+FIRST_SHARE = 1 / 16  # first step towards a variant; the rest is then tried in one step
+NODE_TOLERANCE = 1e-9  # of a step: closer to a node the next node, which may be missing, is not needed
+SHORTEST_STEP = 0.25  # of a full step
+STEPS_PER_TURN, LEAST_TURNS = 24, 0.5  # continuation steps per revolution of the driver; least number of revolutions
+VARIANT_NEWTON_STEPS = 2  # Newton steps from initial guesses on such paths
 
 LinkageMaker = Callable[[Sequence[Any]], Linkage]  # a linkage for numbers, each (variants, 1)
 
@@ -372,7 +372,7 @@ class Continuation:
         n = -(-count // 2) if closed else count
         ends = np.stack([low[:, 0], high[:, 0]]) - self.at
         ends[0], ends[1] = np.minimum(ends[0], 0.0), np.maximum(ends[1], 0.0)
-        x, v = self._marched(numbers, self.sketched(numbers), ends / n, n)
+        x, v = self._continue_in_steps(numbers, self.sketched(numbers), ends / n, n)
         gain = None
         if closed:
             gain = x[:, :, -1:] - x[:, :, :1]
@@ -382,7 +382,7 @@ class Continuation:
             x[:, other] = np.nan  # a cycle later it is assembled otherwise
         return ContinuedPaths(self.at, x, v, (-ends[0][:, None] / n, ends[1][:, None] / n), gain)
 
-    def _marched(self, numbers: Real, sketched: Real, steps: Real, n: int) -> Real:
+    def _continue_in_steps(self, numbers: Real, sketched: Real, steps: Real, n: int) -> Real:
         """Unknowns and rates (2, unknowns, variants, 2 n + 1), from those at the sketch.
 
         steps: step lengths down and up, (2, variants).

@@ -128,12 +128,12 @@ def continue_groups(
 
 # Variants of a linkage as one linkage whose numbers are arrays, (variants, 1), with positions and strokes of each.
 #
-# All stages then run over (variants, positions) at once. What cannot be told for all alike (groups that no tape takes,
-# several drivers, drivers with a stroke, outputs of more than two strokes) is a family of one variant, found as a file
-# of its own.
+# All stages then run over (variants, positions) at once. A variant that cannot be treated together with the others
+# (groups that cannot be traced, several drivers, drivers with a stroke, outputs of more than two strokes) is a family
+# of its own and is solved as a separate file.
 
 
-SCAN = 72  # places in a turn of the driver: two ends of strokes nearer to one another than that are no task
+SCAN = 72  # positions per revolution; ends of strokes closer together than this are not separated
 
 
 @dataclass(frozen=True, eq=False)

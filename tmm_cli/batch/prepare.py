@@ -53,9 +53,9 @@ CHECKS = ("placed", "moving", "margin")
 CONVERGED, ANGLES_AGREE = (
     "sure",
     "wound",
-)  # where Newton's steps were enough on a tape, where wheels turn as its tables say
+)  # Newton steps of the trace converged; accumulated angles of gears agree with its tables
 CHECK_OUTPUTS = (*CHECKS, CONVERGED, ANGLES_AGREE)
-TIME_LAW = DriverMotion(0.0, 1.0, 0.0, 1)  # when the parameter of the motion is the time itself
+TIME_LAW = DriverMotion(0.0, 1.0, 0.0, 1)  # the parameter of the motion is time
 
 
 def read_all(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
@@ -101,7 +101,7 @@ class Batch:
         Results are (variants, positions), or (positions,) for one linkage. They are meaningless where `sound` is
         False.
         """
-        return self._one_by_one(q) if self.program is None else self._played(self.program, q)
+        return self._one_by_one(q) if self.program is None else self._replay(self.program, q)
 
     def sound(self, q: Real) -> TraceOutputs | Mapping[str, Real]:
         """Return where the linkages can be assembled (`placed`), where they are also not in a dead position
@@ -110,7 +110,7 @@ class Batch:
         `margin` is the least distance of a group from a dead position, at best 1: a result has lost about as many
         of its 16 digits as the margin has zeros. Error bounds are given by `solve`, not here.
         """
-        return self._one_by_one(q) if self.checks is None else self._played(self.checks, q)
+        return self._one_by_one(q) if self.checks is None else self._replay(self.checks, q)
 
     def closed(self, q: Real) -> Real:
         """Mask of positions q where the trace alone closes all groups."""
@@ -122,7 +122,7 @@ class Batch:
         )
         return outputs[CONVERGED] if CONVERGED in outputs else np.ones(outputs.several_shape, dtype=bool)
 
-    def _played(self, program: TraceProgram, q: Real) -> TraceOutputs:
+    def _replay(self, program: TraceProgram, q: Real) -> TraceOutputs:
         """Replay a program; positions that it does not close are solved by the ordinary stages."""
         q = np.asarray(q, dtype=float)
         outputs = program(*self.columns, q, *(self.starts(q) if self.starts else ()))
@@ -182,7 +182,7 @@ def prepare_batch(
         raise ValueError(f"load {by_stroke[0]}: a table by the strokes needs the strokes of one linkage")
     structure = analyse_mobile_structure(first)
     kernels = assemble(first, structure)
-    # several drivers pass through the places of the sketch together: a tape knows that of the first linkage
+    # several drivers pass through the sketched coordinates together: a trace holds those of the first linkage
     apart = bool(first.others) and any(linkage.sketch.at != first.sketch.at for linkage in linkages)
     alone = Batch(linkages, structure, kernels, read, forces, strokes, None)
     lines = None if apart or first.friction else traceable_groups(first, kernels)

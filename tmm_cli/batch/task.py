@@ -49,8 +49,8 @@ from tmm_cli.problem import (
     validate_shape,
 )
 
-MOST_VALUES = 10_000  # values of a parameter
-STEP_TOLERANCE = 1e-9  # of a step: what is left over by rounding
+MOST_VALUES = 10_000  # values per parameter
+STEP_TOLERANCE = 1e-9  # of a step: rounding
 
 Two = Annotated[list[Value], Field(min_length=2, max_length=2)]
 
@@ -141,7 +141,7 @@ class Blocks(Strict):
     grading: Grading | None = None
 
 
-# A task: a problem file some of whose parameters every student has other values of, and what is asked of them.
+# Task: a problem file in which some parameters differ from student to student, and the questions to them.
 
 
 SI = UnitSystem({"length": "m", "angle": "rad", "inertia": "kg*m^2"})
@@ -351,7 +351,7 @@ def _quantity_kind(name: str) -> tuple[str, bool]:
     return ("R" if kind.startswith("R_") else kind), " on " in thing
 
 
-LEAST_STEPS = 50  # at least so many between two bounds that were given without a step
+LEAST_STEPS = 50  # least number of steps between two bounds without a given step
 VARY_OPTION = re.compile(r"\s*([^=\s]+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*(?::\s*(.+?)\s*)?")
 NUMBER_WITH_UNIT = re.compile(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
 

@@ -77,13 +77,13 @@ class TraceOutputs(Mapping[str, Array]):
         return combined
 
 
-# A tape as a program: straight-line NumPy calls on registers that are there before the data come.
+# Trace as a program: straight-line NumPy calls on registers that are allocated before the data come.
 #
-# Memory is taken once, each call writes where its result is wanted, and long data go through in chunks that stay in the
-# processor's cache. Data of fewer positions than variants lie with the variants on the last axis, where NumPy is quick.
+# Memory is allocated once, each call writes its result in place, and long data are processed in chunks that fit into
+# the processor's cache. Data with fewer positions than variants have variants on the last axis, where NumPy is faster.
 
 
-CHUNK = 9000  # numbers in a register: shorter ones cost more calls, longer ones no fewer misses of the cache
+CHUNK = 9000  # numbers in a register: fewer cost more calls, more cost cache misses
 
 
 @dataclass(frozen=True)

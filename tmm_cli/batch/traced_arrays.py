@@ -222,10 +222,10 @@ def trace_function(
     return TraceProgram(tuple(tape.terms), axes, outputs)
 
 
-# Numbers that vary from linkage to linkage, for code that builds one: they branch like numbers, and are written down.
+# Numbers that vary between linkages, for code that builds a linkage: they branch like numbers and are recorded.
 #
-# Whatever is built of such numbers holds terms of a tape in their places; the checks and choices of the building code
-# are those of one linkage, the value.
+# Objects built from such numbers contain terms of a trace; checks and choices of the building code are those of one
+# linkage, the value.
 
 
 class TracedNumber(NDArrayOperatorsMixin):

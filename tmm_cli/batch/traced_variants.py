@@ -65,15 +65,15 @@ class TracedVariants:
         self.lines = _traceable_groups(self.linkage, self.kernels)
         self.turns = cycle_turns(self.linkage, self.kernels) or 1
         varied = make([TracedNumber(x, x) for x in first])
-        self.start = varied.start if forces else None  # nothing else hangs on where its law begins
-        # several drivers pass through the places of the sketch together: a tape knows that of the first linkage
+        self.start = varied.start if forces else None  # only forces depend on where its law begins
+        # several drivers pass through the sketched coordinates together: a trace holds those of the first linkage
         apart = bool(self.linkage.others) and isinstance(varied.linkage.sketch.at, TracedNumber)
         if apart or isinstance(self.start, TracedNumber):
             raise NoTapeError
         by_variant = any(isinstance(number, TracedNumber) for number in _extra_numbers(varied))
         self.ends = trace_function(self._ends, *[1] * len(first)) if by_variant else None
         self.program = self._program(read, forces, by_variant)
-        self.marches = (
+        self.continuation = (
             Continuation(self._varied, first, self.linkage, self.lines) if count_initial_guesses(self.lines) else None
         )
         self._last: tuple[bytes, ContinuedPaths] | None = None
@@ -126,30 +126,32 @@ class TracedVariants:
         """Return the sketch of one variant at the sketched position."""
         linkage = self.make([float(number) for number in numbers]).linkage
         kernels: Sequence[GroupSolver] = [kernel.rebind(linkage) for kernel in self.lines]
-        if self.marches is not None:
+        if self.continuation is not None:
             kernels = with_initial_guesses(
-                kernels, list(self.marches.sketched(np.array([numbers]))[0]), VARIANT_NEWTON_STEPS
+                kernels, list(self.continuation.sketched(np.array([numbers]))[0]), VARIANT_NEWTON_STEPS
             )
         return compute_sketch(linkage, kernels)
 
     def __call__(self, columns: Real, samples: DriverSamples) -> Mapping[str, Real]:
         ranges = self.driver_range(columns[:1] if self.ends is None else columns)
         q = ranges.at(samples)[0] if self.ends is None else ranges.at(samples)
-        replayed = self.program(*split_columns(columns), q, *(self._ways(columns, ranges)(q) if self.marches else ()))
+        replayed = self.program(
+            *split_columns(columns), q, *(self._ways(columns, ranges)(q) if self.continuation else ())
+        )
         outputs: Mapping[str, Real] = replayed.without(ANGLES_AGREE)
-        if not np.all(replayed[ANGLES_AGREE]):  # wheels have gone round otherwise than those of the first linkage
+        if not np.all(replayed[ANGLES_AGREE]):  # accumulated angles of gears differ from those of the first linkage
             outputs = {name: np.where(replayed[ANGLES_AGREE], value, np.nan) for name, value in outputs.items()}
         return {**outputs, WANTED: ranges.wanted_at(samples)} if self.variant.wanted else outputs
 
     def _ways(self, columns: Real, ranges: DriverRanges) -> ContinuedPaths:
         """Paths of variants over their ranges; those of the last call are kept."""
-        assert self.marches is not None
+        assert self.continuation is not None
         key = columns.tobytes()
         if self._last is None or self._last[0] != key:
             low = ranges.low + np.zeros((len(columns), 1))
             turns = float(np.max(ranges.span)) / (2 * np.pi) if self.linkage.driver.kind == "turn" else 1.0
             count = int(np.ceil(STEPS_PER_TURN * max(turns, LEAST_TURNS)))
-            self._last = key, self.marches(columns, low, low + ranges.span, count, closed=ranges.closed)
+            self._last = key, self.continuation(columns, low, low + ranges.span, count, closed=ranges.closed)
         return self._last[1]
 
 
@@ -170,13 +172,13 @@ def _extra_numbers(variant: Variant) -> tuple[Any, ...]:
     return (*(variant.ends or ()), *variant.asked, *variant.wanted)
 
 
-# Variants of a linkage one after another, each as a file of its own: for whatever no tape can be written of.
+# Variants of a linkage one after another, each as a separate file: for linkages that cannot be traced.
 #
-# Groups that are found by iteration are followed beside those of the variant nearest to it, or else anew: that takes a
-# hundred or a thousand times as long as by a tape.
+# Groups solved by iteration are continued from the nearest known variant, or else solved anew: this takes a hundred or
+# a thousand times as long as a trace.
 
 
-MOST_KEPT = 30  # variants
+MOST_KEPT = 30  # variants kept as initial guesses
 
 
 class SequentialVariants:

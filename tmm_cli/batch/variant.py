@@ -14,7 +14,7 @@ from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.linkage import Linkage, Request, Sketch
 from tmm_cli.mechanics.numerics import SAME_SKETCH, Real, map_record, record_leaves
 
-NOT_COMPARED = ("sketch",)  # what says how a linkage is assembled, not what it is
+NOT_COMPARED = ("sketch",)  # describes the assembly of a linkage, not the linkage
 
 
 class NotAlikeError(ValueError):
@@ -94,10 +94,10 @@ def split_real_columns(varying: Mapping[str, Real]) -> tuple[list[Real], Callabl
     return columns, together
 
 
-# A variant of a linkage: its numbers, where its driver goes, how it looks at the place of the sketch.
+# Variant of a linkage: its numbers, the range of its driver, its assembly at the sketched position.
 
 
-WANTED = "wanted"  # name of what is wanted at places asked about, among the outputs of variants
+WANTED = "wanted"  # output name of required numbers at requested positions
 
 
 class NoTapeError(ValueError):

@@ -22,8 +22,8 @@ import tmm_cli
 from tmm_cli.language import CourseNotation, _, course, speaking
 from tmm_cli.problem import ProblemError, quote
 
-RETRIES = 3  # of what a cluster failed at
-ANSWER_TIMEOUT = 10  # s within which a scheduler answers, and has a worker
+RETRIES = 3  # of a failed job of a cluster
+ANSWER_TIMEOUT = 10  # s for an answer of the scheduler, and for a worker to appear
 POLL = 0.02  # s
 SCHEDULER = re.compile(
     r"(?:tcp://)?(?:\[[\da-fA-F:.%]+\]|[\w.-]+):\d{1,5}"

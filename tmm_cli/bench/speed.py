@@ -436,7 +436,7 @@ def time_sweep(name: str, reduced: bool) -> SweepRate:
     start = perf_counter()
     tree = problem_tree(name)
     mechanisms = SweptMechanisms(tree, read_axes(Task(tree), [f"{SWEPT[name]}:{count}"]), SWEPT_QUANTITIES)
-    assert mechanisms.turning is not None
+    assert mechanisms.crank_variants is not None
     preparing = 1e3 * (perf_counter() - start)
     points = grid_points(mechanisms.axes)
 

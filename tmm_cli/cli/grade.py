@@ -96,7 +96,7 @@ def _grade_group(
     names = list(EXPORTS) if formats is None else parse_names(formats, EXPORTS, "--formats", reason)
     print_file_summary(task.problem)
     table = read_table(variants, task)
-    with suppress(ProblemError):  # a value that cannot be read is told to its student
+    with suppress(ProblemError):  # an unreadable value is reported to its student
         for slip in tables_apart(task, table):
             warn(f"{task.problem.name}: {slip}")
     jobs = jobs or os.cpu_count() or 1

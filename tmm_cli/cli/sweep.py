@@ -78,7 +78,7 @@ def sweep(
         print_file_summary(task.problem)
         problem = task.problem.whole
         mechanisms = SweptMechanisms(tree, read_axes(task, over), show or ())
-        taped, cores = mechanisms.turning is not None, jobs or os.cpu_count() or 1
+        taped, cores = mechanisms.crank_variants is not None, jobs or os.cpu_count() or 1
         points = 1
         for axis in mechanisms.axes:
             points *= len(axis.values)

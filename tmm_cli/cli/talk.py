@@ -28,7 +28,7 @@ Lang = Annotated[
     typer.Option("--lang", envvar="TMM_LANG", help="Language, overrides that of the file.", show_default=False),
 ]
 
-_asked_for: ContextVar[str | None] = ContextVar("asked_for", default=None)
+_requested_language: ContextVar[str | None] = ContextVar("asked_for", default=None)
 
 
 def say(text: str) -> None:
@@ -97,13 +97,13 @@ def with_language_option(command: Callable[..., None]) -> Callable[..., None]:
 
     @wraps(command)
     def spoken_command(*arguments: Any, lang: Language | None = None, **named: Any) -> None:
-        before = _asked_for.set(lang)
+        before = _requested_language.set(lang)
         try:
             with spoken(lang or ENGLISH):
                 refuse_addresses(named)
                 command(*arguments, **named)
         finally:
-            _asked_for.reset(before)
+            _requested_language.reset(before)
 
     original = signature(command, eval_str=True)
     option = Parameter("lang", Parameter.KEYWORD_ONLY, default=None, annotation=Lang)
@@ -115,7 +115,7 @@ def with_language_option(command: Callable[..., None]) -> Callable[..., None]:
 
 def use_file_language(language: object) -> None:
     """Use the language of a file from now on, unless --lang was given."""
-    if _asked_for.get() is None and language in get_args(Language):
+    if _requested_language.get() is None and language in get_args(Language):
         speak(str(language))
 
 

@@ -48,14 +48,14 @@ from tmm_cli.problem import UnitSystem, typeset_unit
 from tmm_cli.sweep.options import ShownQuantity, SweepAxis
 from tmm_cli.sweep.results import LIMIT, STATE_WORDS, STOPS, WORKS, Border, SweepResults
 
-PANELS = 4  # of a sheet
-LEVELS = 12  # lines of equal value at most
-MOST_NODES = 150  # of a grid that are drawn in each direction; of more of them a part
-PITCH = {True: 1.8, False: 3.2}  # mm of hatching: where no mechanism goes, where a limit is exceeded
+PANELS = 4  # per sheet
+LEVELS = 12  # largest number of contour lines
+MOST_NODES = 150  # grid nodes drawn in each direction; of a finer grid a part
+PITCH = {True: 1.8, False: 3.2}  # mm of hatching: no mechanism, limit exceeded
 COLOURS = {True: THIN_COLOUR, False: "#e3b27a"}
-LABELLED_BORDERS = 5  # borders that have their values written
-SAMPLE = 6.0  # mm of a field in the legend
-LEAST = 15.0  # mm of a line that gets its value
+LABELLED_BORDERS = 5  # borders that are labelled
+SAMPLE = 6.0  # mm: size of a field in the legend
+LEAST = 15.0  # mm: length of a line that is labelled
 
 
 def sweep_sheets(title: str, sweep: SweepResults, units: UnitSystem) -> Iterable[tuple[str, Drawing]]:

@@ -32,8 +32,8 @@ from tmm_cli.sweep.scan import (
 from tmm_cli.sweep.traced_stages import CYCLE, CrankVariants, curve_limit
 from tmm_cli.synthesis import inputs_of, measures
 
-MOST_DOUBTFUL = 200  # of a job by the tape that are looked at one by one
-BLOCK = 1_000  # variants at once: what all of them have at the places of a scan stays in the cache
+MOST_DOUBTFUL = 200  # points of a traced job that are solved again one by one
+BLOCK = 1_000  # variants at once: their scan stays in the cache
 
 
 class FirstLinkMotion(Motion):
@@ -95,7 +95,7 @@ class SweptMechanisms:
         return SweptMechanisms, self.given
 
     @cached_property
-    def turning(self) -> CrankVariants | None:
+    def crank_variants(self) -> CrankVariants | None:
         """Trace of variants with a rotating crank; None if there is none."""
         problem = self.task.problem.whole
         if "synthesis" in self.task.tree.data or problem.dynamics is not None:
@@ -111,15 +111,15 @@ class SweptMechanisms:
             }
 
         try:
-            crank = CrankVariants(
+            crank_variants = CrankVariants(
                 lambda numbers: self.task.make(self.names, self.dimensions, numbers),
                 file_numbers,
                 read,
                 forces=any(quantity.forces for quantity in at_positions),
             )
             with np.errstate(all="ignore"):
-                scanned = scan_variants(crank, np.array([file_numbers]), ScanRequest())
-            return crank if scanned.does[0] == SCAN_WORKS and scanned.sure[0] else None
+                scanned = scan_variants(crank_variants, np.array([file_numbers]), ScanRequest())
+            return crank_variants if scanned.does[0] == SCAN_WORKS and scanned.sure[0] else None
         except (NoTapeError, DependsOnData):
             return None
         except LinkageError as error:
@@ -128,11 +128,11 @@ class SweptMechanisms:
     @cached_property
     def limits(self) -> dict[str, float]:
         """Limits of limited curves, by their names in the trace."""
-        assert self.turning is not None
-        return {curve.name: curve_limit(curve, self.allowed) for curve in self.turning.limited}
+        assert self.crank_variants is not None
+        return {curve.name: curve_limit(curve, self.allowed) for curve in self.crank_variants.limited}
 
     @cached_property
-    def goes(self) -> bool:
+    def file_completes_range(self) -> bool:
         """True if the driver of the file's own variant rotates fully, or covers its whole stroke."""
         return measures.completes_range(pipeline.solve(inputs_of(self.task.problem.whole), "kinematics"))
 
@@ -145,11 +145,11 @@ class SweptMechanisms:
             np.full((count, len(self.shown)), np.nan),
             np.full((count, len(self.tables), 2), np.nan),
         )
-        if self.turning is None:
+        if self.crank_variants is None:
             self._one_by_one(points, np.arange(count), solved)
             return solved
         parts = np.array_split(np.arange(count), -(-count // BLOCK))
-        left = [self._taped(points, indices, solved, values) for indices in parts]
+        left = [self._solve_by_trace(points, indices, solved, values) for indices in parts]
         unsure, otherwise = (np.concatenate(rows) for rows in zip(*left, strict=True))
         for row in unsure[MOST_DOUBTFUL:]:
             solved.why[row] = _("the output moves differently from that of the problem file")
@@ -160,34 +160,36 @@ class SweptMechanisms:
             )
         self._one_by_one(points, otherwise[:MOST_DOUBTFUL], solved)
         for row in unsure[:MOST_DOUBTFUL]:
-            state, solved.why[row], solved.values[row], solved.reach[row] = self._alone(points[row])
-            solved.state[row] = solved.state[row] if state == REFUSED else state  # it goes, but lacks what is asked
+            state, solved.why[row], solved.values[row], solved.reach[row] = self._solve_point(points[row])
+            solved.state[row] = (
+                solved.state[row] if state == REFUSED else state
+            )  # it moves, but a required quantity is missing
         return solved
 
     def _one_by_one(self, points: Real, rows: Iterable[int], solved: SweepPoints) -> None:
         for row in rows:
-            solved.state[row], solved.why[row], solved.values[row], solved.reach[row] = self._alone(points[row])
+            solved.state[row], solved.why[row], solved.values[row], solved.reach[row] = self._solve_point(points[row])
 
-    def _taped(self, points: Real, indices: Real, solved: SweepPoints, values: bool) -> tuple[Real, Real]:
+    def _solve_by_trace(self, points: Real, indices: Real, solved: SweepPoints, values: bool) -> tuple[Real, Real]:
         """Solve the points `indices` by the trace and store them in `solved`.
 
         Returns:
             Rows that need the ordinary stages, and rows whose linkage is built differently.
         """
-        turning, nothing = self.turning, np.zeros(0, dtype=int)
-        assert turning is not None
+        crank_variants, nothing = self.crank_variants, np.zeros(0, dtype=int)
+        assert crank_variants is not None
         columns = points[indices] * self.factors
         with np.errstate(all="ignore"):
             try:
-                varied, otherwise = turning.varied(columns)
+                varied, otherwise = crank_variants.varied(columns)
             except (ProblemError, DependsOnData):
                 return nothing, indices
             looked = scan_variants(
-                turning, columns, ScanRequest(self._pressures() if values else (), self.limits, values)
+                crank_variants, columns, ScanRequest(self._pressures() if values else (), self.limits, values)
             )
             works = looked.does == SCAN_WORKS
             solved.state[indices] = np.select([looked.does == SCAN_STOPS, looked.does == SCAN_APART], [STOPS, APART])
-            for curve in turning.limited:
+            for curve in crank_variants.limited:
                 over = indices[works & (looked.peaks[curve.name] > self.limits[curve.name])]
                 for row in over[solved.state[over] == WORKS]:
                     solved.why[row] = f"{curve.kind} {curve.link}"
@@ -196,7 +198,7 @@ class SweptMechanisms:
             rows = np.flatnonzero(works & looked.sure & ~otherwise)
             if values and rows.size:
                 whole = len(rows) == len(indices)
-                kept = varied if whole else turning.varied(columns[rows])[0]
+                kept = varied if whole else crank_variants.varied(columns[rows])[0]
                 try:
                     solved.values[indices[rows]], solved.reach[indices[rows]] = self._values(
                         columns[rows], looked.take(rows), kept
@@ -207,18 +209,20 @@ class SweptMechanisms:
 
     def _pressures(self) -> list[str]:
         """Names of the limited curves whose largest peak is the pressure angle, if it is shown."""
-        assert self.turning is not None
+        assert self.crank_variants is not None
         if not any(curve.name == PRESSURE for curve in self.shown):
             return []
-        angles = [curve for curve in self.turning.limited if curve.kind == "pressure"]
-        return [curve.name for curve in angles if curve.link == self.turning.output] or [curve.name for curve in angles]
+        angles = [curve for curve in self.crank_variants.limited if curve.kind == "pressure"]
+        return [curve.name for curve in angles if curve.link == self.crank_variants.output] or [
+            curve.name for curve in angles
+        ]
 
     def _values(self, columns: Real, looked: ScanResults, varied: Any) -> tuple[Real, Real]:
         """Requested quantities of feasible variants, and the reach of their load tables."""
-        turning = self.turning
-        assert turning is not None
-        strokes = variant_strokes(turning, columns, looked, varied)
-        q, at = turning.over_cycle(columns, strokes)
+        crank_variants = self.crank_variants
+        assert crank_variants is not None
+        strokes = variant_strokes(crank_variants, columns, looked, varied)
+        q, at = crank_variants.over_cycle(columns, strokes)
         at_positions = [quantity.name for quantity in self.shown if not quantity.whole]
         rows = np.arange(len(columns))
         over = at(rows, np.broadcast_to(q, (len(columns), len(q))), at_positions) if at_positions else {}
@@ -242,7 +246,7 @@ class SweptMechanisms:
             reach[:, k, 0], reach[:, k, 1] = np.ravel(last), np.ravel(stroke)
         return reach
 
-    def _alone(self, point: Real) -> tuple[int, str, Real, Real]:
+    def _solve_point(self, point: Real) -> tuple[int, str, Real, Real]:
         """Solve one point by the ordinary stages: state, reason, quantities, reach of its load tables."""
         nothing = np.full(len(self.shown), np.nan), np.full((len(self.tables), 2), np.nan)
         texts = {axis.name: axis.text(float(value)) for axis, value in zip(self.axes, point, strict=True)}
@@ -256,7 +260,7 @@ class SweptMechanisms:
         except LinkageError as error:
             state = APART if isinstance(error, AssemblyError) else REFUSED
             return state, located_problem_error(error, problem).message, *nothing
-        if self.goes and not measures.completes_range(results):
+        if self.file_completes_range and not measures.completes_range(results):
             return STOPS, "", *nothing
         over = [f"pressure {check.link}" for check in results.pressure if not check.holds]
         over += [f"slot {check.slide.name}" for check in results.slots if check.ways]
@@ -267,11 +271,11 @@ class SweptMechanisms:
 
     def _as_own(self, problem: Problem) -> Problem:
         """Problem with the sketch computed for the assembly of the file's own variant, if a trace knows that."""
-        if self.turning is None:
+        if self.crank_variants is None:
             return problem
         linkage = problem.linkage
         with np.errstate(all="ignore"):
-            sketch = compute_sketch(linkage, [kernel.rebind(linkage) for kernel in self.turning.kernels])
+            sketch = compute_sketch(linkage, [kernel.rebind(linkage) for kernel in self.crank_variants.kernels])
         if not all(np.isfinite(place) for place in (*sketch.points.values(), *sketch.angles.values())):
             return problem
         return replace(problem, linkage=replace(linkage, sketch=sketch), extended=None)

@@ -17,8 +17,8 @@ from tmm_cli.mechanics.quantities import ANGLE, Dimension
 from tmm_cli.problem import ProblemError, quote, unknown_name_error
 
 OVER_OPTION = re.compile(r"\s*([^=\s]+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*(?::\s*(\S+)\s*)?")
-DEFAULT_COUNTS = (41, 21)  # values where none is given: of one parameter, of each of two
-MOST_VALUES = 1_000_000  # values of a parameter
+DEFAULT_COUNTS = (41, 21)  # default numbers of values: of one parameter, of each of two
+MOST_VALUES = 1_000_000  # values per parameter
 EXAMPLE = "--over OA=80..120:41"
 
 
@@ -115,9 +115,9 @@ def grid_points(axes: Sequence[SweepAxis]) -> Real:
     )
 
 
-PRESSURE = "pressure"  # the largest pressure angle on the output, over all the driver's way
-DEFAULT_QUANTITIES = ("H", "psi", "k", PRESSURE, "M_b", "F_b")  # where nothing is asked for
-MOST_QUANTITIES = 12  # quantities at once
+PRESSURE = "pressure"  # largest pressure angle on the output over the driver range
+DEFAULT_QUANTITIES = ("H", "psi", "k", PRESSURE, "M_b", "F_b")  # shown by default
+MOST_QUANTITIES = 12  # in one sweep
 
 
 @dataclass(frozen=True)

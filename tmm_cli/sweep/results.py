@@ -15,8 +15,8 @@ from tmm_cli.problem import Problem
 from tmm_cli.reports import Column, Table
 from tmm_cli.sweep.options import ShownQuantity, SweepAxis
 
-WORKS, LIMIT, STOPS, APART, REFUSED = range(5)  # how a mechanism goes
-STATES = ("works", "limit", "stops", "apart", "refused")  # in files
+WORKS, LIMIT, STOPS, APART, REFUSED = range(5)  # states of a mechanism
+STATES = ("works", "limit", "stops", "apart", "refused")  # words of the states in files
 STATE_WORDS = (
     N_("works"),
     N_("limit exceeded"),

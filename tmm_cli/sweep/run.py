@@ -18,14 +18,14 @@ from tmm_cli.sweep.results import STATES, Border, SweepResults
 from tmm_cli.sweep.scan import SCAN
 from tmm_cli.sweep.traced_stages import CYCLE
 
-CHUNK, SINGLE_CHUNK = 20_000, 20  # points of a job: by the tape, one by one
+CHUNK, SINGLE_CHUNK = 20_000, 20  # points per job: by trace, one by one
 TRACED_COST, SINGLE_COST = (
     1 / 1_200,
     1 / 4,
 )  # what a part at a position costs, against a run of one file (problem.budget)
-SEARCH_POSITIONS = 720  # positions more of a point that is solved alone: its range and strokes
-HALVINGS = 46  # of a step, by the tape: to the last digits
-SINGLE_HALVINGS = (20, 4)  # one by one: of one parameter, of two
+SEARCH_POSITIONS = 720  # extra positions of a point solved alone, for its range and strokes
+HALVINGS = 46  # of a grid step, by trace: to the last digits
+SINGLE_HALVINGS = (20, 4)  # of a grid step, one by one: with one parameter, with two
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +94,7 @@ def run_sweep(
         seen: called with the number of points after each chunk.
     """
     axes, points = mechanisms.axes, grid_points(mechanisms.axes)
-    taped = mechanisms.turning is not None
+    taped = mechanisms.crank_variants is not None
     chunk_size = CHUNK if taped else SINGLE_CHUNK
     chunks = [points[first : first + chunk_size] for first in range(0, len(points), chunk_size)]
     by_chunk: dict[int, SweepPoints] = {}
@@ -138,7 +138,7 @@ def _find_edges(axes: Sequence[SweepAxis], points: Real, state: Real, why: Seque
 
 def _find_borders(mechanisms: SweptMechanisms, edges: Sequence[GridEdge], runner: JobRunner) -> tuple[Border, ...]:
     """Borders on grid edges; one edge may contain several."""
-    taped = mechanisms.turning is not None
+    taped = mechanisms.crank_variants is not None
     halvings = HALVINGS if taped else SINGLE_HALVINGS[len(mechanisms.axes) - 1]
     chunk_size = CHUNK if taped else max(1, SINGLE_CHUNK // halvings)
     borders: list[Border] = []

@@ -24,9 +24,9 @@ from tmm_cli.sweep.traced_stages import (
     sign_changes,
 )
 
-SCAN = 72  # places in a turn of the driver
-BLOCK = 50  # variants that are looked at finely at once
-SCAN_WORKS, SCAN_STOPS, SCAN_APART = range(3)  # what a variant does
+SCAN = 72  # positions per revolution of the driver
+BLOCK = 50  # variants in one fine scan
+SCAN_WORKS, SCAN_STOPS, SCAN_APART = range(3)  # states of a variant
 
 
 @dataclass(frozen=True)
@@ -63,12 +63,12 @@ class ScanResults:
         return ScanResults(self.does[rows], self.sure[rows], peaks, self.ends[rows])
 
 
-def scan_variants(turning: CrankVariants, columns: Real, wish: ScanRequest) -> ScanResults:
+def scan_variants(crank_variants: CrankVariants, columns: Real, wish: ScanRequest) -> ScanResults:
     """Scan the variants whose numbers are the rows of columns (variants, n)."""
-    scanned = _VariantScan(turning, columns, wish, SCAN).looked
+    scanned = _VariantScan(crank_variants, columns, wish, SCAN).looked
     again = np.flatnonzero(~scanned.sure)
     for rows in np.array_split(again, -(-len(again) // BLOCK)) if again.size else ():
-        fine = _VariantScan(turning, columns[rows], wish, FINE_SCAN).looked
+        fine = _VariantScan(crank_variants, columns[rows], wish, FINE_SCAN).looked
         scanned.does[rows], scanned.sure[rows], scanned.ends[rows] = fine.does, fine.sure, fine.ends
         for name, peak in scanned.peaks.items():
             peak[rows] = fine.peaks[name]
@@ -78,34 +78,35 @@ def scan_variants(turning: CrankVariants, columns: Real, wish: ScanRequest) -> S
 class _VariantScan:
     """Variants at equally spaced driver positions of one revolution."""
 
-    def __init__(self, turning: CrankVariants, columns: Real, wish: ScanRequest, samples: int) -> None:
-        self.turning, self.columns, self.wish = turning, columns, wish
+    def __init__(self, crank_variants: CrankVariants, columns: Real, wish: ScanRequest, samples: int) -> None:
+        self.crank_variants, self.columns, self.wish = crank_variants, columns, wish
         self.places, self.step = samples, 2 * np.pi / samples
-        self.found = turning.scan(*split_columns(columns), self.at(np.arange(samples)))
+        self.found = crank_variants.scan(*split_columns(columns), self.at(np.arange(samples)))
 
     def at(self, numbers: Real) -> Real:
         """Return driver coordinates of scan positions."""
-        return self.turning.linkage.sketch.at + self.step * numbers
+        return self.crank_variants.linkage.sketch.at + self.step * numbers
 
     @property
     def looked(self) -> ScanResults:
         """Results of the scan."""
         does, sure = self._assembled()
-        ends = np.full((len(self.columns), len(self.turning.stroke_links), 2), np.nan)
+        ends = np.full((len(self.columns), len(self.crank_variants.stroke_links), 2), np.nan)
         if self.wish.strokes and np.any(does == SCAN_WORKS):
-            for k in range(len(self.turning.stroke_links)):
+            for k in range(len(self.crank_variants.stroke_links)):
                 slope = self.found[f"slope{k}"]
                 turns = sign_changes(slope)
-                sure &= np.sum(turns, axis=1) == self.turning.strokes[k]
+                sure &= np.sum(turns, axis=1) == self.crank_variants.strokes[k]
                 sure &= ~_nearly_reaches(-np.abs(slope), ~(turns | np.roll(turns, 1, axis=1)))
                 rows = np.flatnonzero((does == SCAN_WORKS) & sure)
-                if self.turning.strokes[k] and rows.size:
+                if self.crank_variants.strokes[k] and rows.size:
                     low = np.nonzero(turns[rows])[1].reshape(-1, 2)
-                    slope_of = _curve_of_variants(self.turning, f"slope{k}", self.columns[rows])
+                    slope_of = _curve_of_variants(self.crank_variants, f"slope{k}", self.columns[rows])
                     ends[rows, k] = _stroke_ends(slope_of, self.at(low), self.at(low + 1))
         works = does == SCAN_WORKS
         peaks = {
-            limited.name: np.where(works, self._peak(limited.name, works), np.nan) for limited in self.turning.limited
+            limited.name: np.where(works, self._peak(limited.name, works), np.nan)
+            for limited in self.crank_variants.limited
         }
         return ScanResults(does, sure | ~works, peaks, ends)
 
@@ -115,20 +116,20 @@ class _VariantScan:
         """
         does = np.full(len(self.columns), SCAN_WORKS)
         apart, lost, doubtful = np.zeros((3, len(does)), dtype=bool)
-        for k in range(len(self.turning.kernels)):
+        for k in range(len(self.crank_variants.kernels)):
             gap, slack, det = (self.found[f"{name}{k}"] for name in ("gap", "slack", "det"))
             missing = ~(gap <= 0)
             apart |= missing[:, 0]
             lost |= np.any(missing | (gap >= -2 * slack) | (np.sign(det) != np.sign(det[:, :1])), axis=1)
-            if k in self.turning.single:
+            if k in self.crank_variants.single:
                 doubtful |= _nearly_reaches(-np.abs(det), np.ones(det.shape, dtype=bool))
         does[lost], does[apart] = SCAN_STOPS, SCAN_APART
-        for k in range(len(self.turning.kernels)):
+        for k in range(len(self.crank_variants.kernels)):
             name = f"gap{k}"
             gap = self.found[name]
             rows, at = candidate_peaks(gap, np.zeros(len(gap)), (does == SCAN_WORKS)[:, None])
             if rows.size:
-                close = VariantCurves(self.turning.part(name, f"slack{k}"), self.columns[rows])
+                close = VariantCurves(self.crank_variants.part(name, f"slack{k}"), self.columns[rows])
                 q = self.at(at)
                 place, value = find_minima(_negated_curve(close, name), q - self.step, q + self.step)
                 does[rows[-value >= -2 * close(place)[f"slack{k}"]]] = SCAN_STOPS
@@ -142,7 +143,7 @@ class _VariantScan:
         level = top if name in self.wish.peaks or limit is None else np.maximum(top, limit)
         rows, at = candidate_peaks(curve, level, works[:, None])
         if rows.size:
-            close = VariantCurves(self.turning.part(name), self.columns[rows])
+            close = VariantCurves(self.crank_variants.part(name), self.columns[rows])
             before, centre, after = (curve[rows, (at + n) % self.places] for n in (-1, 0, 1))
             peaks = refine_peaks(lambda q: close(q)[name], self.at(at), self.step, (before, centre, after))
             np.maximum.at(top, rows, peaks)
@@ -165,9 +166,9 @@ def _stroke_ends(slope: Callable[[Real], Real], low: Real, high: Real) -> Real:
     return np.where(outside, np.where(np.abs(at_low) < np.abs(at_high), low, high), roots)
 
 
-def _curve_of_variants(turning: CrankVariants, name: str, columns: Real) -> Callable[[Real], Real]:
+def _curve_of_variants(crank_variants: CrankVariants, name: str, columns: Real) -> Callable[[Real], Real]:
     """One curve of variants, as a function of driver coordinates of each."""
-    close = VariantCurves(turning.part(name), columns)
+    close = VariantCurves(crank_variants.part(name), columns)
     return lambda q: close(q)[name]
 
 
@@ -175,16 +176,18 @@ def _negated_curve(close: VariantCurves, name: str) -> Callable[[Real], Real]:
     return lambda q: -close(q)[name]
 
 
-def variant_strokes(turning: CrankVariants, columns: Real, looked: ScanResults, varied: Variant) -> Strokes | None:
+def variant_strokes(
+    crank_variants: CrankVariants, columns: Real, looked: ScanResults, varied: Variant
+) -> Strokes | None:
     """Strokes of working variants, as arrays (variants, 1)."""
     outputs = []
-    for k, link in enumerate(turning.stroke_links):
+    for k, link in enumerate(crank_variants.stroke_links):
         curve = _TracedOutputCurve(
-            link, turning.linkage.output_swings(link), _curve_of_variants(turning, f"place{k}", columns)
+            link, crank_variants.linkage.output_swings(link), _curve_of_variants(crank_variants, f"place{k}", columns)
         )
-        if turning.strokes[k]:
+        if crank_variants.strokes[k]:
             resists = resisted_direction(varied.linkage, link)
-            outputs.append(working_and_idle_strokes(turning.linkage, curve, looked.ends[:, k], resists))
+            outputs.append(working_and_idle_strokes(crank_variants.linkage, curve, looked.ends[:, k], resists))
         else:
             outputs.append(Strokes(link, curve.kind, (), ""))
     return replace(outputs[0], others=tuple(outputs[1:])) if outputs else None

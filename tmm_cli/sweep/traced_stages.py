@@ -43,8 +43,8 @@ from tmm_cli.mechanics.kinematics import (
 from tmm_cli.mechanics.numerics import END_OF_SLOT, WINDOW_SIDE, Real, window_peak
 from tmm_cli.mechanics.structure import output_link, turns_of_cycle
 
-WINDOW_PLACES, WINDOW_STEPS = 17, 30  # places about a peak, and how many steps of them are one of the scan
-SHIFTS = 12  # of a window whose largest value lies at its edge
+WINDOW_PLACES, WINDOW_STEPS = 17, 30  # samples around a peak, and their number per scan step
+SHIFTS = 12  # largest number of shifts of a window whose peak lies at its edge
 
 
 def candidate_peaks(curve: Real, level: Real, where: Real) -> tuple[Real, Real]:
@@ -86,13 +86,13 @@ def refine_peaks(curve: Callable[[Real], Real], q: Real, step: float, values: tu
     return np.maximum(centre, window_peak(samples))
 
 
-# The stages on a tape, for variants of a linkage whose crank is to go all round, each at positions of its own.
+# Traced stages for variants of a linkage with a fully rotating crank, each at its own positions.
 #
-# Unlike variants.taped this knows loads that act by the strokes: where these begin and how far they go are inputs.
+# Unlike `traced_variants`, loads may act in strokes: the beginning and length of strokes are inputs of the trace.
 
 
-CYCLE = 180  # steps of a turn of the driver between which peaks of what has a value a position are searched for
-FINE_SCAN = 1440  # places in a turn of the driver, as the ordinary stages look at
+CYCLE = 180  # steps per revolution in the search for peaks of quantities at positions
+FINE_SCAN = 1440  # positions per revolution, as in the ordinary stages
 
 
 @dataclass(frozen=True)

@@ -106,8 +106,8 @@ def _frame_values(values: Real) -> FrameValues:
 APART, WIDEST, ROW = 26.0, 34.0, 27.0  # mm between links of the longest row, at most, and between rows
 HIGH, LETTER = 6.4, 4.6  # mm: a link's box, its name
 SHARE = 0.6  # of a letter's size: its width
-BOW = 9.0  # mm by which a pair of two links of a row goes round those between them
-NEAR = 0.64  # of a pair's way to the link above: its circle; most links hang on few others
+BOW = 9.0  # mm: bow of a pair of two links of one row around those between them
+NEAR = 0.64  # of the distance to the link above: place of the circle of a pair
 EDGE, LEAST = 4.0, 110.0  # mm: about the scheme, and its least width
 
 
@@ -151,7 +151,7 @@ def chain_places(chain: SpatialChain) -> dict[str, complex]:
         near = [pair.other(link) for link in rows[-1] for pair in chain.pairs if link in (pair.i, pair.j)]
         rows.append([link for link in dict.fromkeys(near) if link not in placed])
         placed.update(rows[-1])
-    rows[-1] = [link for link in chain.links if link not in placed]  # what does not hang on the frame
+    rows[-1] = [link for link in chain.links if link not in placed]  # links not connected to the frame
     wide = max(map(len, rows))
     centres = {FRAME: 0j}
     for number, row in enumerate(rows[1:], 1):

@@ -92,24 +92,23 @@ def as_double_doubles(record: Record) -> Record:
     return map_record(wide, record)
 
 
-# How far what was searched for goes with each length, without a search: from its function beside where it was found.
+# Derivatives of searched numbers by each length, without another search: from the function near the place found.
 #
-# An extreme (f' = 0) goes by -(df'/dp) / f'', and its value as f does where it is. At an end of the driver's way it
-# is the driver that turns back while the group that stops it goes on: the end goes as the driver does with that group
-# held.
+# An extreme (f' = 0) moves by -(df'/dp) / f'', and its value changes as f does there. At an end of the driver range the
+# driver reverses while the group that stops it moves on, so the end moves as the driver does with that group held.
 
 
 Function = Callable[[LinkStates], Real]  # (..., places)
 
-EXTREME_STEP = 1e-4  # rad, or of a slider's way: so far before and after it an extreme is looked at
-LENGTH_STEP = 1e-6  # of a length, beside an extreme
+EXTREME_STEP = 1e-4  # rad, or fraction of a slider range: distance of samples from an extreme
+LENGTH_STEP = 1e-6  # of a length, at an extreme
 END_DISTANCES = 1e-4 * np.array(
     [1, 4, 16]
 )  # of the way: so far from an end groups are looked at; they go as roots of it
-DRIVER_STEP_AT_END = 1e-3  # of what is left to an end: steps of the driver there
-LENGTH_STEP_AT_END = 1e-6  # likewise: steps of lengths
-AT_END = 2e-9  # of the way: a largest pressure angle that was found so near to its end is there
-FLAT_EXTREME = 64 * ROUNDOFF  # of its value: an extreme that bends less has no place of its own
+DRIVER_STEP_AT_END = 1e-3  # driver step, as a fraction of the distance to the end
+LENGTH_STEP_AT_END = 1e-6  # length step, likewise
+AT_END = 2e-9  # of the range: a largest pressure angle closer to an end lies at the end
+FLAT_EXTREME = 64 * ROUNDOFF  # of the value: an extreme with less curvature has no determined place
 LEAST_SYMMETRY = (
     0.9  # of the one side's bend the other has at least; else it is the edge of a dwell, which no length shifts
 )

@@ -54,13 +54,13 @@ from tmm_cli.mechanics.quantities import (
 )
 from tmm_cli.mechanics.structure import Structure
 
-LENGTH_CHANGE = 1e-3  # of each length: the change that sensitivities are told for
-PAPER_CHANGE = 0.5  # mm of paper, likewise
-STEP = 1e-7  # of a length, where the linkage is far from dead positions
-STEP_PER_MARGIN = 2.0**-7  # of the square of the margin, where it is near one
+LENGTH_CHANGE = 1e-3  # relative change of each length in the reported sensitivities
+PAPER_CHANGE = 0.5  # mm on paper: change of each length in the reported sensitivities
+STEP = 1e-7  # relative step of a length far from dead positions
+STEP_PER_MARGIN = 2.0**-7  # relative step of a length per squared margin, near a dead position
 DOUBLE_DOUBLE_ROUNDING = 2.0**-102  # rounding of double-doubles
-LEAST_STEP = 2.0**-90  # of a length: steps below that are rounding in double-doubles too
-POSITIONS_PER_CHUNK = 1500  # positions at once
+LEAST_STEP = 2.0**-90  # of a length: smaller steps are rounding even in double-doubles
+POSITIONS_PER_CHUNK = 1500  # positions computed together
 
 Cells = Mapping[Hashable, Real]  # one value a position
 
@@ -319,8 +319,8 @@ LOSS_FACTOR = (
 LOSS_MARGIN = (
     10.0  # times the margin at which a group is said to be near a dead position: from there on nothing is lost
 )
-DRIVER_ERROR_FACTOR = 4.0  # the same for a driver that is not where it was asked to be
-SIX_FIGURES = 0.5e-6  # of the largest value: where so much is open, six figures are not sure
+DRIVER_ERROR_FACTOR = 4.0  # factor for an uncertain driver coordinate
+SIX_FIGURES = 0.5e-6  # of the largest value: with a larger bound six figures are not certain
 
 
 def relative_bound(results: Results, blur: float = 0.0) -> Real:

@@ -37,15 +37,15 @@ from tmm_cli.mechanics.kinematics import (
 )
 from tmm_cli.mechanics.numerics import EPS, NO_PRESSURE, ROUNDOFF, DoubleDouble, Real, map_record, to_float
 
-DOUBLINGS = 46  # doublings of a bound that are tried: from the last bit to far beyond any use
-RANGE_SAMPLES = 65  # places over the driver's way that tell how large a function is
+DOUBLINGS = 46  # of a bound, from the last bit to far beyond any use
+RANGE_SAMPLES = 65  # positions over the driver range at which the largest value of a function is taken
 SLOPE_ERROR = (
     1e-9  # of the step with which a top is looked at: what the slope's five places leave of its fifth derivative
 )
-NOISE = 64  # roundings of a function's largest value: its sign is sure beyond
-MOST_NOISE = 1e-10  # of the largest value: more noise in float64, near a dead position, would blur all that was found
-FOLLOWED_END_ERROR = 1e-12  # of the way: ends of groups that were followed there
-DEAD_POSITION_ERROR = 1e-9  # of the way: dead positions where a margin is least
+NOISE = 64  # rounding errors of the largest value: beyond it the sign is certain
+MOST_NOISE = 1e-10  # of the largest value: with more noise near a dead position nothing would be certain
+FOLLOWED_END_ERROR = 1e-12  # of the range: error of limit positions of groups solved by continuation
+DEAD_POSITION_ERROR = 1e-9  # of the range: error of dead positions at a least margin
 
 
 class PreciseLinkage:
@@ -181,7 +181,7 @@ class PreciseLinkage:
             if not driver_range.full and abs(place - end) <= edge and float(peak - inside) > error:
                 return error, edge + 4 * ROUNDOFF * abs(place)
         bend = abs(float(2 * peak - b1 - a1)) / step**2  # of an extreme of either kind
-        if not bend * step**2 > error:  # no bend that could be told from rounding
+        if not bend * step**2 > error:  # the curvature is within rounding
             return error, np.inf
         slope = float(8 * (a1 - b1) - (a2 - b2)) / (12 * step)
         off = abs(slope / bend)  # where the slope of a smooth top is nothing
@@ -204,16 +204,17 @@ def _first_sure_step(sure: Real, steps: Real) -> Real:
     return np.where(sure.any(axis=1), steps[np.arange(len(steps)), sure.argmax(axis=1)], np.inf)
 
 
-# Bounds of what is searched for: ends of strokes, limits, dead positions, largest pressure angles.
+# Bounds of searched numbers: ends of strokes, limits, dead positions, largest pressure angles.
 #
-# A root is known as well as its function's sign: in double-doubles the nearest places beside it where the sign is
-# sure. What follows from several such numbers is shifted by the bound of each of them, one after the other.
+# A root is known as well as the sign of its function: the bound is the distance, in double-doubles, to the nearest
+# points on both sides where the sign is certain. A number that depends on several searched ones is computed with each
+# of them shifted by its bound in turn.
 
 
 Cells = Mapping[Hashable, Real]
 
-SHIFT_FACTOR = 2.0**20  # bounds in a shift, so that it is no rounding itself
-LARGEST_SHIFT = 1e-6  # rad or m: no shift is larger, so that it stays one to first order
+SHIFT_FACTOR = 2.0**20  # bounds per shift, so that the shift is well above rounding
+LARGEST_SHIFT = 1e-6  # rad or m: keeps a shift within first order
 
 
 class SearchedNumber(NamedTuple):
@@ -248,7 +249,7 @@ def judge_searched(
     bound = 2 * ROUNDOFF * np.abs(row)
     with np.errstate(all="ignore"):
         rates = {} if np.isnan(mu) or results.driver_range is None else search_sensitivities(results, data)
-        responses = np.zeros((len(row), len(data)))  # how far each number goes a metre of each length
+        responses = np.zeros((len(row), len(data)))  # derivative of each number by each length
         for searched in searched_numbers(results, wide):
             rate = rates.get(searched.path, 0.0)
             by = searched.sense * (

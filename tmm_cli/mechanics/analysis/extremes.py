@@ -15,9 +15,9 @@ from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import Real, to_float
 from tmm_cli.mechanics.quantities import ANGLE, FORCE, LENGTH, MOMENT, Dimension
 
-STEPS_PER_TURN = 720  # in a turn, or over the driver's way
-ROUNDS, PARTS = 5, 16  # of looking closer about each extreme place, and how many steps of it there are in the next one
-FULL_TURN = 2 * np.pi - 1e-6  # rad: what turns by that has no extreme angles
+STEPS_PER_TURN = 720  # steps per revolution, or over the driver range
+ROUNDS, PARTS = 5, 16  # refinements around each extreme, and subdivision of the step in each
+FULL_TURN = 2 * np.pi - 1e-6  # rad: an angle that varies by more has no extremes
 
 
 @dataclass(frozen=True)

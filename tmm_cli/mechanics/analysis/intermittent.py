@@ -60,14 +60,15 @@ class WheelTask:
     settings: tuple[WheelSetting, ...] = (WheelSetting(),)
 
 
-# Stage: the parts of a cycle in which a link takes a wheel along, and those in which the wheel stands.
+# Stage: parts of a cycle in which a link drives a wheel, and those in which the wheel rests.
 #
-# A ratchet, a one-way clutch, or a stone in the slots of a flange joins the wheel to the link while this goes one way;
-# what holds it in between is not asked. In each part the link goes one way only, between ends that are found exactly.
+# A ratchet, a one-way clutch, or a pin in the slots of a disc connects the wheel to the link while the link moves in
+# one direction; what holds the wheel in between is not modelled. Each part is a motion of the link in one direction
+# between exactly found ends.
 
 
-MOTION_SAMPLES = 181  # of a part in which the wheel is driven
-MOST_CYCLES = 1000  # that are looked at for whole turns of the wheel
+MOTION_SAMPLES = 181  # positions of a part in which the wheel is driven
+MOST_CYCLES = 1000  # largest number of cycles searched for whole turns of the wheel
 
 
 @dataclass(frozen=True)

@@ -294,7 +294,7 @@ def _read_slide(name: str, field: str, solution: SolvedState) -> Any:
 # Inertia forces and couples, reactions, what balances the driver.
 
 
-NEARLY_ZERO = 0.05  # of a reaction's largest size: then where it acts cannot be drawn
+NEARLY_ZERO = 0.05  # of the largest reaction: below it the point of application cannot be drawn
 
 
 def force_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:

@@ -94,7 +94,7 @@ def refine_near_dead(motion: Motion, linkage: Linkage, q: Real, law: LawOfMotion
     return replace(splice_positions(motion, closer, where), finer=closer, where=where)
 
 
-# What loads, positions and tables of a file rest on: refused where it is not there, not quietly done without.
+# Data that loads, positions and tables of a file need: missing data is refused, not silently ignored.
 
 
 def refuse_missing_data(mechanism: Mechanism) -> None:
@@ -165,7 +165,7 @@ def _refuse_short_speed_table(mechanism: Mechanism) -> None:
 # Only what is asked for is computed: the structure alone moves nothing, kinematics carries no loads.
 
 
-CYCLE_SAMPLES = 720  # places over which losses are summed up
+CYCLE_SAMPLES = 720  # positions over which losses are summed
 
 Stage = Literal["structure", "kinematics", "forces"]
 

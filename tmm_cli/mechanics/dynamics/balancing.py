@@ -90,18 +90,18 @@ class BalancingTask:
     rotor: UnbalancedShaft | None = None
 
 
-# Balancing: what shakes the frame over a cycle, and the counterweights that take it away.
+# Balancing: shaking loads on the frame over a cycle, and the counterweights that reduce them.
 #
-# The frame feels F = -sum m a of all links. It is nothing when the common centre of mass stands still, and a
-# counterweight on a link adds c z to sum m r, where c = mr exp(i angle) is given in its axes and z their direction:
-# what counterweights have to be is found linearly, for a linkage of any kind. R. S. Berkof, G. G. Lowen, A new method
+# The shaking force is F = -sum m a of all links. It vanishes when the common centre of mass stands still. A
+# counterweight on a link adds c z to sum m r, where c = mr exp(i angle) is given in the axes of the link and z is their
+# direction, so counterweights follow from linear equations for any linkage. R. S. Berkof, G. G. Lowen, A new method
 # for completely force balancing simple linkages, J. Eng. Ind. 91 (1969).
 
 
-NO_EFFECT = 1e-9  # of the largest singular value: counterweights that do the same as others are not told apart
-ROUNDS = 200  # of masses that move pivots, whose counterweights follow from them
-NO_ANGLE = 1e-12  # of a counterweight: less of it across the x axis of its link is rounding
-SETTLED = 1e-15  # of the largest counterweight
+NO_EFFECT = 1e-9  # of the largest singular value: counterweights with nearly the same effect are dependent
+ROUNDS = 200  # largest number of iterations for masses that load moving pivots
+NO_ANGLE = 1e-12  # of a counterweight: a smaller component across the x axis of its link is rounding
+SETTLED = 1e-15  # of the largest counterweight: convergence
 
 
 @dataclass(frozen=True)
@@ -256,7 +256,7 @@ def _direction_acceleration(motion: Motion, link: str) -> Vector:
 # Balancing of a mechanism: shaking over its cycle and at its positions, at the constant speed of the driver.
 
 
-STEPS_PER_TURN = 720  # in a turn
+STEPS_PER_TURN = 720  # positions per revolution
 
 
 @dataclass(frozen=True)

@@ -86,26 +86,26 @@ def constant_moment_law(machine: ReducedMachine, flywheel: float, energy: float,
     return SteadyLaw(machine, flywheel, work, driving, pace.summed())
 
 
-# Steady running of a machine that a motor drives by its characteristic: what it comes to, the same every cycle.
+# Steady running of a machine driven by a motor with a given characteristic: the motion that repeats every cycle.
 #
-# With the speed w = w0 (1 - s), w0 that of the motor without load, the slip s by the way x is what is found:
+# With the speed w = w0 (1 - s), w0 that of the motor without load, the unknown is the slip s as a function of travel x:
 #
 #     -w0 (Jf + J) w s' = M + Md(s) - J' w^2 / 2.
 #
-# In the slip no digit is lost where a motor is strong, and the equation is stiff: it is solved panel by panel, by
-# collocation in the nodes and Newton's method, and a panel ends with the value of its polynomial there, so that what
-# has died away within it does not come back (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II (1996),
-# IV.3). A panel on which the slip is no polynomial is halved: after a jump of the load that is as often as the motor
-# is strong.
+# Solving for the slip loses no digits for a strong motor, but makes the equation stiff: it is solved panel by panel, by
+# collocation and Newton's method, and a panel ends with the value of its polynomial there, so that components that
+# have decayed within it do not return (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II (1996),
+# IV.3). A panel on which the slip is no polynomial is halved; after a jump of the load a strong motor needs many
+# halvings.
 
 
-NEWTON_STEPS = 60  # of Newton's method, at most
-TAIL = 1e-13  # of the largest slip: the last coefficients are less, and a panel begins where the one before ends
-SLIP_ROUNDED = 64 * 2.0**-53  # of the largest slip: a change over the cycle below that is rounding
-MOST_LOST_DIGITS = 1e-6  # of the slip: where rounding leaves more of it open there is no answer
-RUNAWAY = -1.0  # mean slip: a machine that turns twice as fast as its motor without load has run away
-WORK_IMBALANCE = 1e-6  # of a motor's largest moment: by more the works of a cycle are not in balance
-NARROWEST = 1e-13  # of a cycle: where a panel as narrow as that has no solution the machine stands
+NEWTON_STEPS = 60  # largest number
+TAIL = 1e-13  # of the largest slip: tolerance of the last coefficients and of the initial value of a panel
+SLIP_ROUNDED = 64 * 2.0**-53  # of the largest slip: a smaller change over the cycle is rounding
+MOST_LOST_DIGITS = 1e-6  # of the slip: with a larger rounding error there is no solution
+RUNAWAY = -1.0  # mean slip: the machine rotates twice as fast as its motor without load
+WORK_IMBALANCE = 1e-6  # of the largest motor moment: tolerance of the work balance over a cycle
+NARROWEST = 1e-13  # of a cycle: if so narrow a panel has no solution, the machine stands still
 IDENTITY = np.eye(NODES)
 VALUES_TO_ENDS: Real = (
     chebyshev.chebvander(np.array([-1.0, 1.0]), NODES - 1) @ VALUES_TO_COEFFICIENTS
@@ -181,7 +181,7 @@ class MotorCycle:
                 break
             if slope < 1 and abs(step) * (1 - slope) <= SLIP_ROUNDED * largest:  # the rest of the step is rounding
                 if MOST_LOST_DIGITS * (1 - slope) < SLIP_ROUNDED:
-                    raise self._lost(values, 1 - slope)
+                    raise self._lost_digits_error(values, 1 - slope)
                 break
         else:
             raise self._unsteady(values)
@@ -193,7 +193,9 @@ class MotorCycle:
             for node_values in (inertia * speed**2 / 2, self.motor.at_slip(values)[0], 1 / speed)
         )
         if abs(driving.total + self.machine.work_of_cycle) > WORK_IMBALANCE * energy.length * self.motor.most:
-            raise self._lost(values, 1 - slope)  # so heavy a flywheel that a cycle's change of its energy is rounding
+            raise self._lost_digits_error(
+                values, 1 - slope
+            )  # so heavy a flywheel that a cycle's change of its energy is rounding
         # on the rising branch of the characteristic it is a good beginning for the next flywheel
         self.slip = slip if np.all(self.motor.at_slip(values)[1] > 0) else 0.0
         return SteadyLaw(self.machine, flywheel, energy, driving, pace.summed())
@@ -207,7 +209,7 @@ class MotorCycle:
             return RunawayError(pushing, self.motor.holds, self.motor.idle, float(x[quickest]), speed)
         return StandstillError(float(x[np.argmax(slips)]))
 
-    def _lost(self, values: Real, share: float) -> LinkageError:
+    def _lost_digits_error(self, values: Real, share: float) -> LinkageError:
         """Error for a slip with too few digits left by rounding, or for a machine that runs away."""
         return self._unsteady(values) if np.mean(values) < RUNAWAY else LostDigitsError(share)
 
@@ -278,7 +280,7 @@ def _is_rough(values: Real, begin: float, largest_slip: float) -> bool:
 # constant acceleration from row to row.
 
 
-LEAST_SQUARE = 1e-9  # of the largest square of the speed: with less somewhere the time of a way is not told
+LEAST_SQUARE = 1e-9  # of the largest squared speed: below it the travel time is not determined
 
 
 @dataclass(frozen=True)
@@ -309,7 +311,10 @@ class SpeedTableLaw:
 
     def time(self, q: Real) -> Real:
         """Time since the start, s; nan beyond the table, or if the table contains a rest."""
-        (laps, inner), (first, begun) = self._passed(to_float(q)), self._passed(to_float(self.start) + np.zeros(1))
+        (laps, inner), (first, begun) = (
+            self._laps_and_time(to_float(q)),
+            self._laps_and_time(to_float(self.start) + np.zeros(1)),
+        )
         period = float(self._times(np.array([self._length]))[0]) if self.table.squares.closed else float("nan")
         return inner - begun + np.where(laps == first, 0.0, (laps - first) * period)
 
@@ -348,7 +353,7 @@ class SpeedTableLaw:
             return PanelCurve(np.array([0.0, self._length]), np.full((1, 1), np.nan))
         return fit_curves(pace, edges)[0].summed()
 
-    def _passed(self, q: Real) -> tuple[Real, Real]:
+    def _laps_and_time(self, q: Real) -> tuple[Real, Real]:
         """Whole cycles since the first end of the table, and the time in the current one, s."""
         travel = self.sense * (q - self._first)
         laps = np.floor((travel + SEAM * (1 + np.abs(travel))) / self.cycle)

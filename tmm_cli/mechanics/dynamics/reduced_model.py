@@ -16,11 +16,11 @@ from numpy.polynomial import chebyshev
 
 from tmm_cli.mechanics.numerics import Real
 
-NODES = 16  # of a panel
-WIDEST_PANEL = np.pi / 6  # rad, and of a slider's way this share of pi: a panel at the beginning
-TAIL = 1e-14  # of the largest value of a function: its last coefficients are less
-MOST_HALVINGS = 12  # of halving: what still has a tail then has a jump within a panel
-MOST_PANELS = 2000  # when so many still have tails, these are rounding errors
+NODES = 16  # per panel
+WIDEST_PANEL = np.pi / 6  # rad, or this fraction of pi of a slider range: initial panel width
+TAIL = 1e-14  # of the largest value of a function: last coefficients of a resolved panel are smaller
+MOST_HALVINGS = 12  # a panel that is still not resolved then contains a jump
+MOST_PANELS = 2000  # with more unresolved panels the tails are rounding errors
 NODE_POINTS: Real = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)[::-1]
 VALUES_TO_COEFFICIENTS: Real = np.linalg.inv(
     chebyshev.chebvander(NODE_POINTS, NODES - 1)
@@ -133,7 +133,7 @@ def _rough_panels(values: Real) -> Real:
     return rough
 
 
-# The machine reduced to its driver: inertia, its slope, and the moment of all loads, along the driver's way.
+# Machine reduced to its driver: inertia, its slope, and the moment of all loads as functions of the driver travel.
 #
 # I. I. Artobolevsky, Theory of Mechanisms and Machines (1988), ch. 15 and 16: T = J w^2 / 2, J w' + J' w^2 / 2 = M.
 

@@ -28,12 +28,12 @@ if TYPE_CHECKING:
     from tmm_cli.mechanics.analysis import Mechanism
 
 
-TOLERANCE = 1e-12  # of a step, relative
-STIFF_RATIO = 100.0  # times that a motor could change the speed on the way: from there on a stiff method is quicker
-MOST_EVALUATIONS = 50_000  # evaluations of a run, some five seconds: those of the bank take 3 000 at the most
-NO_JUMP = 1e-9  # of the largest moment: pieces of a curve that meet within it have no jump between them
+TOLERANCE = 1e-12  # relative, per integration step
+STIFF_RATIO = 100.0  # speed changes by the motor per run above which a stiff method is faster
+MOST_EVALUATIONS = 50_000  # of a run, about five seconds; the runs of the bank take 3 000 at most
+NO_JUMP = 1e-9  # of the largest moment: a smaller step between two pieces of a curve is no jump
 
-END_OFFSET = 1e-6  # of a piece: so far inside its ends nothing has jumped yet
+END_OFFSET = 1e-6  # of a piece: distance from its ends at which no jump has occurred yet
 RunEnding = Literal["way", "standstill", "time"]
 
 

@@ -49,9 +49,9 @@ if TYPE_CHECKING:
     from tmm_cli.mechanics.analysis import Mechanism
 
 
-STANDSTILL_FLUCTUATION = 2.0  # fluctuation of a machine that comes to rest on its way: no larger one is possible
-DOUBLINGS = 60  # of a flywheel, in search of one that is heavy enough
-FLUCTUATION_TOLERANCE = 1e-12  # of a fluctuation: it is as wanted
+STANDSTILL_FLUCTUATION = 2.0  # fluctuation of a machine that stops: the largest possible value
+DOUBLINGS = 60  # of the flywheel in the search for an upper bound
+FLUCTUATION_TOLERANCE = 1e-12  # relative tolerance of the fluctuation
 
 
 @dataclass(frozen=True)
@@ -265,7 +265,7 @@ def _search_flywheel(delta: float, delta_of: Callable[[float], float], low: floa
 # The machine reduced to its driver, and its steady running, from a mechanism with its loads.
 
 
-CONSTANT_SAMPLES = 97  # positions of a cycle at which the reduced inertia of a link is compared
+CONSTANT_SAMPLES = 97  # positions of a cycle at which the reduced inertias of links are compared
 
 
 def reduce_mechanism(mechanism: Mechanism, start: float) -> ReducedMachine:

@@ -57,7 +57,7 @@ class RimFlywheel:
 FlywheelForm = DiskFlywheel | RimFlywheel
 
 
-# What is asked of the law of motion: numbers alone, as a problem file gives them.
+# Tasks for the law of motion: numbers alone, as given in a problem file.
 
 
 @dataclass(frozen=True)

@@ -111,14 +111,15 @@ def _sum_along_guide(
         yield ForceSum(link, guide.name, u, tuple(parts), sought[0])
 
 
-# Equations of moments of a position: those that the force plan of each group needs, and those of the driving links.
+# Moment equations of a position: those that the force plan of each group needs, and those of the driving links.
 #
-# Leads of a group: moments about the inner hinge of a lead give the tangential part of its reaction; of a group with
-# three leads, moments about a special point of L. V. Assur, where what is open of two of them meets, give the third.
-# Guides: moments of the link that runs in it say where a guide's reaction acts.
+# External pairs: moments about the internal hinge of a link give the tangential part of its external reaction; in a
+# group with three external pairs, moments about the Assur point, where the unknown parts of two reactions meet, give
+# the third.
+# Guides: moments of the sliding link give the arm of the guide's reaction.
 
 
-ASSUR_POINT = "W"  # the special point of a group with three leads
+ASSUR_POINT = "W"  # Assur point of a group with three external pairs
 MARKS = {"tangential": "τ", "normal": "n"}
 
 

@@ -91,9 +91,9 @@ def balance_symbol(link: str, several: bool, *, turns: bool = False) -> Symbol:
     return course_symbol("M_b", index) if turns else course_symbol("F_b", index)
 
 
-FARTHEST_ARM = 2.0  # sizes of the linkage: a guide's force that acts farther away is told as a force and a couple
+FARTHEST_ARM = 2.0  # sizes of the linkage: beyond it a guide reaction is given as a force and a couple
 DRIVE = "drive"
-LONGEST_INDEX = 2  # letters after the first one of a name that is an index of it: Fc, Fcut is a word
+LONGEST_INDEX = 2  # letters after the first one that form an index: Fc; Fcut is a word
 
 
 @dataclass(frozen=True)
@@ -293,10 +293,10 @@ def symbol_of_name(name: str, letter: str) -> Symbol:
     return symbol.primed if name != base else symbol
 
 
-# Leads of a group: the outer hinges and guides by which it hangs on other links; the point of Assur of three leads.
+# External pairs of a group, through which it is connected to other links; Assur point of three of them.
 
 
-LEAST_SINE = 0.02  # sine: lines that meet under less have their special point off any paper
+LEAST_SINE = 0.02  # lines at a smaller angle meet too far away to be drawn
 
 
 @dataclass(frozen=True)

@@ -30,10 +30,10 @@ from tmm_cli.mechanics.numerics import (
 )
 from tmm_cli.mechanics.structure import Structure
 
-STAGES = 8  # friction is let in by so many equal parts, so that the answer belongs to that without it
-NEWTON_STEPS = 40  # of Newton's method in each
-HALVINGS = 16  # of the distance between two positions, in which a locked range ends
-OUTER_ROUNDS = 30  # times that the plan is drawn again where it does not follow friction in proportion (teeth)
+STAGES = 8  # equal increments of friction, so that the solution continues the one without friction
+NEWTON_STEPS = 40  # largest number of Newton steps per increment
+HALVINGS = 16  # bisections between two positions for the end of a locked range
+OUTER_ROUNDS = 30  # largest number of repeated force plans where friction is not linear (gear teeth)
 
 
 @dataclass(frozen=True)

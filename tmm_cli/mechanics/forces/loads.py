@@ -81,8 +81,8 @@ def _torsion_moment(spring: Spring, motion: Motion) -> Real:
 # The loads of the task: what they are tabulated against, where they act, and what resists a motion.
 
 
-BEFORE_END = 1e-3  # of the stroke: a table that ends before its end by less is rounded
-BEYOND_END = 0.02  # of the stroke: likewise beyond it
+BEFORE_END = 1e-3  # of the stroke: a table that ends earlier by less than this counts as complete (rounding)
+BEYOND_END = 0.02  # of the stroke: tolerance for a table that ends later
 
 
 def problem_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLoad]:
@@ -237,7 +237,7 @@ def _angle_in_cycle(angle: Real, cycle: Real | float) -> Real:
 # All that acts on the links besides reactions: weights, inertia, the loads of the task.
 
 
-BALANCING = ("Mb", "M_b", "Fb", "F_b")  # as the balancing moment and force are written
+BALANCING = ("Mb", "M_b", "Fb", "F_b")  # symbols of the balancing moment and force
 
 
 def collect_loads(motion: Motion, strokes: Strokes | None) -> tuple[AppliedLoad, ...]:

@@ -332,7 +332,7 @@ def _crank_end(linkage: Linkage, driver: Driver) -> complex:
     return next((p for name, p in points.items() if name != driver.joint and np.any(p != pivot)), pivot + 1.0)
 
 
-# The part of the driving force that moves a driven link: Q = P cos(pressure angle).
+# Component of the driving force that moves a driven link: Q = P cos(pressure angle).
 
 
 @dataclass(frozen=True)

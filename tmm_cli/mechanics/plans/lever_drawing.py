@@ -38,8 +38,8 @@ from tmm_cli.mechanics.plans.motion_plans import absolute_vectors, links_with_ma
 from tmm_cli.mechanics.plans.named_vectors import NamedVector, sheet_scale
 
 LEVER_POLE = "p"
-ROTATED = -1j  # clockwise: the line of the crank comes to lie along the crank, and couples keep their sense
-MOST_FORCES = 22  # forces on a lever, those of couples among them; with more of them couples stay couples
+ROTATED = -1j  # clockwise: velocities of the crank lie along the crank, and couples keep their sense
+MOST_FORCES = 22  # largest number of forces on a lever; with more, couples are not replaced by forces
 
 
 @dataclass(frozen=True)
@@ -191,13 +191,13 @@ def _point_transfer_function(motion: Motion, link: str, place: complex, k: int) 
     return complex(motion.point(link, complex((place - pose.x[k]) / pose.z[k])).first[k])
 
 
-# What a student finds on paper for what balances the driver: by the force plan and by the Zhukovsky lever.
+# Graphical determination of the balancing moment: by the force plan and by the Zhukovsky lever.
 #
-# Arms and segments are measured on the drawings, to half a millimetre; loads are calculated. The difference of both
-# ways is then one of drawing, some 0.1 to 2 %, while the one of `forces.lever` is exact.
+# Arms and segments are measured on the drawings to half a millimetre; loads are calculated. The difference of the two
+# results is then a drawing error of about 0.1 to 2 %, while that of `forces.lever` is exact.
 
 
-READING_STEP = 0.5  # mm: what can be read off paper
+READING_STEP = 0.5  # mm: resolution of a reading from paper
 
 
 @dataclass(frozen=True)

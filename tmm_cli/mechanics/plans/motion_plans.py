@@ -249,7 +249,7 @@ def _segment_letters(vector: NamedVector, lettered: Mapping[str, complex], least
     )
 
 
-# What is read off a plan: each vector once with its segment and size, and what links turn with.
+# Readings of a plan: each vector once with its segment and magnitude, and angular velocities of links.
 
 
 PART_KINDS = ("normal", "tangential")

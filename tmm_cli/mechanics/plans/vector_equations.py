@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from tmm_cli.mechanics.linkage import FRAME, Driver, Linkage, Mesh, Slide
 from tmm_cli.mechanics.structure import Group
 
-MOST_UNKNOWNS = 2  # unknown magnitudes on known lines that a polygon gives
+MOST_UNKNOWNS = 2  # unknown magnitudes that one vector polygon can give
 
 
 @dataclass(frozen=True)

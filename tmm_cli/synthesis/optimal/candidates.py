@@ -176,7 +176,7 @@ class Candidates:
 
     def evaluate(self, x: Real) -> tuple[Real, Real]:
         """Return objective and constraint violation of candidates, computed in blocks that fit the cache."""
-        block = FOLLOWED if isinstance(self.program, TracedVariants) and self.program.marches else BLOCK
+        block = FOLLOWED if isinstance(self.program, TracedVariants) and self.program.continuation else BLOCK
         blocks = [self._evaluate(chunk) for chunk in np.array_split(x, -(-len(x) * self.turns // block))]
         return np.concatenate([f for f, __ in blocks]), np.concatenate([v for __, v in blocks])
 
