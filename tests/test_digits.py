@@ -323,7 +323,7 @@ def test_a_position_near_a_dead_one_blurs_no_extreme_and_a_largest_angle_at_an_e
     told = dict(zip(quality.columns[0].values, shown(quality.columns[1], units, range(quality.rows)), strict=True))
     stretched = mp.degrees(mp.pi - mp.acos((1 + mp.mpf("0.36") - mp.mpf("2.25")) / mp.mpf("1.2")))  # crank and coupler
     assert told["driver can go to"] == f"{float(mp.degrees(end)):.6g}"
-    swing = float(told["swing angle ψ of link 3 over the requested positions"])
+    swing = float(told["swing psi of link 3 over the positions asked"])
     assert float(told["extreme position of link 3"]) - swing == pytest.approx(float(stretched), abs=1e-3)
     place = next(column for column in pressure.columns if column.header == "driver there at")
     assert shown(place, units, [0]) == [f"{float(mp.degrees(-end)):.6g}"]  # it is the same at both ends of the way

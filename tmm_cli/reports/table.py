@@ -65,7 +65,7 @@ class Column:
         return self.shown_in(units).from_si(self.array.astype(float))
 
     def true_figures(self, units: UnitSystem) -> Any:
-        """Return the number of true significant figures of each value, -1 if unknown; None if the column has no bounds."""
+        """Return the number of true figures of each value, -1 if unknown; None if the column has no bounds."""
         if self.dimension is None or self.bound is None:
             return None
         numbers, bound = self.numbers(units), np.asarray(self.bound) * self.shown_in(units).from_si(1.0)
