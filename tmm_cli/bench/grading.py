@@ -313,7 +313,7 @@ def measure_carried_errors(group: StudentGroup) -> GradingFigure:
             answer.quantity, wrong_values[:, None], solve(subfamily).motion, right.value[rows, k][:, None]
         )
         later = group.drawn(predicted(subfamily, right.asked, [mistake] if mistake else []), rows)
-        same = [j for j, answer in enumerate(right.asked) if answer.position == answer.position]
+        same = [j for j, other in enumerate(right.asked) if other.position == answer.position]
         drawn[rows[:, None], same] = later[:, same]
         drawn[rows, k], source[rows] = wrong_values, k
     written = Written(drawn, np.zeros(drawn.shape, dtype=bool))
