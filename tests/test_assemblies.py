@@ -398,7 +398,7 @@ def test_the_command_lists_and_draws_every_assembly(tmp_path):
     assert "</svg>" in (folder / "assemblies-III-2-3-4-5.svg").read_text(encoding="utf-8")
     with open(folder / "assemblies-III-2-3-4-5.csv", encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
-    assert [row["that of"] for row in rows].count("sketch") == 1
+    assert [row["source"] for row in rows].count("sketch") == 1
     assert {"angle of 2, deg", "P x, mm", "P y, mm", "margin"} <= set(rows[0])
     files = json.loads((folder / "result.json").read_text(encoding="utf-8"))["files"]
     assert "assemblies-III-2-3-4-5.png" in files

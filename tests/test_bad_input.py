@@ -286,8 +286,8 @@ def test_a_crank_that_cannot_turn_fully_gives_its_range_and_results_there(tmp_pa
     done = tmm("forces", file)
     assert done.returncode == 0
     assert (
-        "driving link 1 cannot turn fully: it can go from -63.14933 deg to 63.14933 deg; there II(2,3) comes to its "
-        "dead position; results are given for that range"
+        "driving link 1 cannot make a full turn: it moves from -63.14933 deg to 63.14933 deg, where "
+        "II(2,3) reaches a dead position; the results are for this range"
     ) in done.stderr
     results = solve(load(str(file)))
     assert bool(results.motion.moving.all())  # all twelve positions lie inside the range
@@ -302,8 +302,8 @@ def test_a_dead_position_inside_the_cycle_is_reported_and_its_neighbours_compute
     done = tmm("forces", file)
     assert done.returncode == 0
     assert (
-        "position 6 (180 deg): II(2,3) is in a change point, which it passes smoothly; velocities and accelerations "
-        "are limits, reactions have none there"
+        "position 6 (180 deg): II(2,3) passes a change point smoothly; velocities and accelerations are "
+        "limit values, reactions have no limit there"
     ) in done.stderr
     results = solve(load(str(file)))
     assert [k for k in range(12) if not results.motion.moving[k]] == [0, 6]

@@ -230,7 +230,7 @@ def test_balancing_is_told_and_written(tmp_path):
     text = (PROBLEMS / "crank-rocker.yaml").read_text(encoding="utf-8")
     file.write_text(f"{text}\nbalancing: {{counterweights: {{1: {{}}, 3: {{radius: 80}}}}}}\n", encoding="utf-8")
     shown = tmm("dynamics", file, "-o", tmp_path)
-    assert shown.returncode == 0 and "largest shaking force, balanced" in shown.stdout
+    assert shown.returncode == 0 and "largest shaking force with counterweights" in shown.stdout
     folder = next(tmp_path.glob("four*/"))
     whole = json.loads((folder / "result.json").read_text(encoding="utf-8"))["balancing"]
     assert whole["left"] < 1e-12 and [w["link"] for w in whole["counterweights"]] == ["1", "3"]

@@ -81,7 +81,7 @@ def process(*arguments, cwd=None):
 def after_the_echo(stderr):
     """What a command says on stderr after the three lines of what it understood, which come first."""
     lines = stderr.splitlines(keepends=True)
-    assert [line.split(": ")[1] for line in lines[:3]] == ["bare numbers", "driver", "sizes"]
+    assert [line.split(": ")[1] for line in lines[:3]] == ["numbers without a unit", "driver", "lengths"]
     return "".join(lines[3:])
 
 
@@ -250,7 +250,7 @@ def test_above_the_limit_of_the_lever_the_run_says_so_and_exits_1(tmp_path):
     done = tmm("run", problem, "-o", tmp_path, "--no-drawings")
     assert done.returncode == 1
     assert re.search(
-        r"the lever differs from the force plan by .* % at position \d+, more than the limit of 1e-20 %", done.stderr
+        r"the Zhukovsky lever differs from the force plan by .* % at position \d+; the limit is 1e-20 %", done.stderr
     )
 
 
@@ -369,7 +369,7 @@ def test_schema_knows_every_key_of_the_problems():
 def test_explain_says_what_is_computed_by_which_group_and_what_is_skipped():
     told = tmm("explain", ROOT / "problems" / "crank-slider.yaml").stdout
     assert "II(2,3) RRP" in told
-    assert "sign +1 of two, from the sketch" in told
+    assert "sign +1 of two, as in the sketch" in told
     assert "inertia couples of links 3" in told
 
 

@@ -42,7 +42,7 @@ def test_the_frame_is_printed_by_its_number_in_the_course(tmp_path):
     assert not re.findall(r"R_\d*0\d*", forces)
     structure = tmm("structure", file).stdout
     assert "I(6,1) → II(2,3) → II(4,5)" in structure
-    assert "slotted-lever 6-1-2-3-6, crank-slider 6-3-4-5-6" in structure
+    assert "slotted-link 6-1-2-3-6, crank-slider 6-3-4-5-6" in structure
     assert re.search(r"x +6 – 5 ", structure)
     drawn = tmm("structure", file, "-o", str(tmp_path / "out"))
     assert drawn.returncode == 0
@@ -220,13 +220,13 @@ def test_on_finer_and_finer_paper_both_ways_come_to_the_exact_value(name, monkey
 
 def test_forces_show_the_drawn_difference_beside_the_exact_one():
     text = tmm("forces", "problems/course-1.yaml", "--position", "3").stdout
-    assert "The force plan and the lever as drawn" in text
+    assert "The force plan and the Zhukovsky lever as drawn" in text
     row = next(line for line in text.partition("as drawn")[2].splitlines() if line.startswith(" 3 "))
     *__, plan, lever, drawn, exact = (float(number) for number in row.split())
     assert [plan, lever] == pytest.approx([186.437, 186.437], rel=0.01)
     assert drawn == pytest.approx(100 * abs(plan - lever) / 192.3, abs=0.03)
     assert exact == 0
-    assert "arms and segments are read off drawings on A4 to 0.5 mm" in re.sub(r"\s+", " ", text)
+    assert "arms and segments are read from drawings on A4 to 0.5 mm" in re.sub(r"\s+", " ", text)
 
 
 def test_the_frame_inside_is_still_link_0():

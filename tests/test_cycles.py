@@ -65,7 +65,7 @@ def test_many_at_once_are_as_one_alone():
 def test_a_load_of_the_working_stroke_is_told_to_act_in_each_of_them():
     results = solved("cycle: 2 turns\nloads: {f: {on: 3, force: [-9, 0], when: working stroke}}")
     assert list(find_slips(results.problem)) == [
-        "load f acts in every working stroke of the 2 turns: `when: [from, to]` picks one of them"
+        ("load f acts in every working stroke of the cycle (turns: 2): select one of them with `when: [from, to]`")
     ]
 
 

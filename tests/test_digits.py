@@ -325,14 +325,14 @@ def test_a_position_near_a_dead_one_blurs_no_extreme_and_a_largest_angle_at_an_e
     assert told["driver can go to"] == f"{float(mp.degrees(end)):.6g}"
     swing = float(told["swing psi of link 3 over the positions asked"])
     assert float(told["extreme position of link 3"]) - swing == pytest.approx(float(stretched), abs=1e-3)
-    place = next(column for column in pressure.columns if column.header == "driver there at")
+    place = next(column for column in pressure.columns if column.header == "driver position at the largest angle")
     assert shown(place, units, [0]) == [f"{float(mp.degrees(-end)):.6g}"]  # it is the same at both ends of the way
 
 
 def test_a_pressure_angle_that_is_the_same_everywhere_has_no_place_of_its_largest():
     results = moved("gear-doubling")
     (pressure,) = assess_accuracy(results).with_bounds(tables_of(results, ("pressure",)))
-    place = next(column for column in pressure.columns if column.header == "driver there at")
+    place = next(column for column in pressure.columns if column.header == "driver position at the largest angle")
     assert "-" in shown(place, results.problem.units, range(pressure.rows))
 
 
@@ -407,8 +407,8 @@ def test_digits_stand_beside_the_values():
     quality = [re.sub(r"\S+e-1[3-9]", "tiny", line) for line in lines[start + 2 : start + 12]]
     assert quality == [
         "stroke H of link 3 120 tiny 0.12 2 mm",
-        "time ratio k 1 tiny 0 0",
-        "1/k = T_idle/T_working 1 tiny 0 0",
+        "time ratio k (advance to return) 1 tiny 0 0",
+        "1/k = T_return/T_working 1 tiny 0 0",
         "stroke angle theta = 180 deg (k − 1)/(k + 1) 0 tiny 0 0 deg",
         "working stroke starts at 180 tiny 0 0 deg",
         "link 3 is then at 160 tiny 0.28 2 mm",

@@ -178,9 +178,9 @@ def test_letters_of_the_law_of_motion_are_those_of_the_course():
 def test_the_data_of_the_motor_are_told():
     (table,) = (one for one in input_data_tables(problem("shaper-motor")) if one.name == "machine")
     rows = dict(zip(table.columns[0].values, table.columns[1].values, strict=True))
-    assert rows["its largest moment"] == "281.358 N*m"  # 2.2 * 7.35 N m * 17.4
-    assert rows["its synchronous speed"] == "9.02757 rad/s"  # 1500 rpm / 17.4
-    assert rows["its slip at the largest moment"] == "0.1941"  # (1 - 1430/1500) (2.2 + (2.2^2 - 1)^0.5)
+    assert rows["breakdown torque"] == "281.358 N*m"  # 2.2 * 7.35 N m * 17.4
+    assert rows["synchronous speed"] == "9.02757 rad/s"  # 1500 rpm / 17.4
+    assert rows["slip at breakdown torque"] == "0.1941"  # (1 - 1430/1500) (2.2 + (2.2^2 - 1)^0.5)
 
 
 @pytest.mark.parametrize(("name", "told"), [("shaper", False), ("shaper-motor", True)])

@@ -189,8 +189,8 @@ def test_the_driver_and_every_group_have_colours_of_their_own():
 @pytest.mark.parametrize(
     "name, redundant_links, mark",
     [
-        ("parallel-couplers", [("4",)], "link 4 is redundant, adds q = 1"),
-        ("settings/breaking-rod", [], "links 2, 3 are rigid to one another and count as one, add q = 1"),
+        ("parallel-couplers", [("4",)], "link 4 is redundant; redundant constraints q = 1"),
+        ("settings/breaking-rod", [], "links 2, 3 are rigidly connected and count as one; redundant constraints q = 1"),
     ],
 )
 def test_what_the_formula_leaves_out_is_drawn_and_marked(name, redundant_links, mark):

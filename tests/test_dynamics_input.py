@@ -118,7 +118,7 @@ def test_rest_in_a_table_of_speeds_needs_no_unit_and_other_bare_rows_are_told_by
         for speed in ("90 rpm", "90")
     )
     assert not any("no unit" in text for text in named)
-    assert any("write `90 rad/s`, or `90 rpm` if turns a minute are meant" in text for text in bare)
+    assert any("write `90 rad/s`, or `90 rpm` for revolutions per minute" in text for text in bare)
 
 
 def test_positions_that_a_run_does_not_come_to_are_named():
@@ -126,8 +126,10 @@ def test_positions_that_a_run_does_not_come_to_are_named():
     results = solve(build_problem(read_text(MACHINE + CRANK + run, "x.yaml")))
     stops = [text for text in collect_warnings(results) if "stops" in text]
     assert stops == [
-        "driver 1 slows down and stops on its way: no velocities and forces in positions 0, 1, 5, which "
-        "it does not come to"
+        (
+            "driver 1 slows down and stops on its way: no velocities and forces in positions 0, 1, 5, which it "
+            "does not reach"
+        )
     ]
     assert np.isfinite(results.motion.rate).tolist() == [False, False, True, True, True, False]
 

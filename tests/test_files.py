@@ -186,7 +186,7 @@ def test_what_a_killed_run_left_is_removed_by_the_next(tmp_path):
 def test_a_device_is_not_replaced_by_a_file(tmp_path):
     os.mkfifo(tmp_path / "device")
     (tmp_path / "one.json").symlink_to("device")
-    with pytest.raises(FileExistsError, match="this is no file but a device"):
+    with pytest.raises(FileExistsError, match="this is a device, not a file"):
         write_atomically(tmp_path / "one.json", b"{}")
     assert (tmp_path / "device").is_fifo()
 

@@ -468,7 +468,9 @@ def test_no_file_is_overwritten_and_what_pylinkage_does_not_know_is_refused(tmp_
     assert (tmp_path / "it.yaml").read_text(encoding="utf-8") == "mine\n"
     done = tmm("export", str(ROOT / "problems" / "shaper.yaml"), "--to", "pylinkage", "-o", "-", cwd=tmp_path)
     assert done.returncode == 2 and done.stdout == ""
-    assert done.stderr.endswith("error: pylinkage knows sliders with one hinge on a line of the frame only\n")
+    assert done.stderr.endswith(
+        "error: pylinkage supports only sliders with one hinge on a straight guide of the frame\n"
+    )
 
 
 def test_what_cannot_be_a_problem_file_is_said_of_the_file_that_was_read(tmp_path):

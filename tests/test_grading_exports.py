@@ -198,7 +198,7 @@ def test_where_nothing_writes_workbooks_the_rest_is_written_and_it_is_said(own, 
     write(tmp_path, Gradebook(own, [marks("Ann")]), ("xlsx", "moodle"), told.append)
     assert os.listdir(tmp_path) == ["moodle.csv"]
     assert told == [
-        "marks.xlsx is written by xlsxwriter, which is not installed\n  allowed: pip install 'tmm-cli[excel]'"
+        ("writing marks.xlsx requires xlsxwriter, which is not installed\n  allowed: pip install 'tmm-cli[excel]'")
     ]
 
 

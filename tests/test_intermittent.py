@@ -178,10 +178,10 @@ def test_properties_read_the_wheels():
 def test_one_run_tells_tables_course_json_and_a_drawing(tmp_path):
     done = tmm("kinematics", PROBLEMS / "gear-lever/ratchet-feed.yaml", "-o", tmp_path)
     assert done.returncode == 0
-    assert "Intermittent motion over a cycle" in done.stdout and "2: R = 125" in done.stdout
+    assert "Intermittent motion: values per cycle" in done.stdout and "2: R = 125" in done.stdout
     folder = tmp_path / "ratchet-feed"
     course = (folder / "intermittent-course.csv").read_text(encoding="utf-8").splitlines()
-    assert course[0] == 'wheel,"way of the driver, mm","angle, deg","omega, rad/s","epsilon, rad/s^2"'
+    assert course[0] == 'wheel,"travel of the driver, mm","angle, deg","omega, rad/s","epsilon, rad/s^2"'
     (found,) = json.loads((folder / "result.json").read_text(encoding="utf-8"))["intermittent"]
     assert found["settings"] == [{}, {"R": "125"}] and len(found["parts"]) == 4
     assert "intermittent-shaft" in drawn("gear-lever/ratchet-feed")
@@ -196,7 +196,7 @@ def test_the_drawing_names_the_parts_and_the_speeds_at_jumps():
 def test_tables_come_with_their_notes():
     found = {table.name: table for table in tables(moved("gear-lever/ratchet-feed"))}
     assert any("shock" in note for note in found["intermittent-cycle"].notes)
-    assert "turn back at once" in found["intermittent"].notes[0]
+    assert "reverse instantly" in found["intermittent"].notes[0]
     assert "turn back" not in {t.name: t for t in tables(moved("slotted/intermittent"))}["intermittent"].notes[0]
 
 

@@ -147,8 +147,10 @@ def test_a_law_of_many_pieces_is_looked_up():
 def test_a_jump_of_the_followers_speed_is_named():
     text = changed(blocks.CAM, "{over: 120 deg, rise: 20}", "{over: 120 deg, rise: 20, law: linear}")
     assert list(words(solved_text(text))) == [
-        "the law of cam 1 lets the speed of follower 2 jump (0, 120 deg of the cam): a hard impact, the acceleration "
-        "there is not finite and is not in the tables"
+        (
+            "the law of cam 1 makes the speed of follower 2 jump (cam angle 0, 120 deg): a hard impact; the "
+            "acceleration there is infinite and not in the tables"
+        )
     ]
 
 
@@ -159,8 +161,8 @@ def test_a_torsion_spring_past_half_a_turn_is_named():
     spring = "springs: {t: {between: [0, 1], torsion: 2 N*m/rad, free: 30 deg}}\ndriver:"
     results = solved_text(changed(blocks.SLIDER, "driver:", spring))
     assert (
-        "torsion spring t is turned by more than half a turn from its free angle at 209.5 deg: its moment jumps there, "
-        "as angles are counted within half a turn"
+        "torsion spring t is twisted by more than half a turn from its free angle at 209.5 deg: its moment "
+        "jumps there, because angles are measured within half a turn"
     ) in list(words(results))
 
 
@@ -175,8 +177,8 @@ def test_a_spring_whose_ends_meet_between_the_positions_is_named(turns):
     x, y = 50 * math.cos(math.radians(40)), 50 * math.sin(math.radians(40))
     at = f"at: [[{x:.9f}, {y:.9f}], A]"
     told = (
-        "the ends of spring s meet at 40 deg: its force reverses its direction there. Write other points in "
-        "between, or a torsion spring"
+        "the ends of spring s meet at 40 deg: its force reverses its direction there. Give other points in "
+        "between, or use a torsion spring"
     )
     assert spring_warnings(f"{{between: [0, 1], {at}, rate: 800 N/m, free: 90}}", turns=turns) == [told]
     assert spring_warnings(f"{{between: [0, 1], {at}, rate: 800 N/m, free: 0}}", turns=turns) == []  # F = c r
@@ -195,18 +197,18 @@ def test_a_guide_locks_where_its_friction_is_more_than_the_rod_can_overcome(coef
     friction = f"{{pairs: {{x: {{coefficient: {coefficient}}}}}}}"
     results = solved_text(changed(blocks.SLIDER, "{coefficient: 0.1, radius: 5}", friction))
     assert bool(results.locked[9]) is locks
-    said = [word for word in words(results) if "locks itself" in word]
+    said = [word for word in words(results) if "locks by friction" in word]
     moment = results.reactions.balance.moment[9]
     if locks:
         half = 90 - math.degrees(math.asin(3 * math.sin(math.atan(1 / coefficient))))
         numbers = {2.85: "position 9", 10: "positions 7, 8, 9, 10, 11"}[coefficient]
         assert said == [
-            f"the mechanism locks itself by friction from {270 - half:.5g} to {270 + half:.5g} deg ({numbers}), most "
-            "of all in pair x of links 0 and 3; no forces are given there. Write smaller coefficients in friction, or "
-            "let another link drive"
+            f"the mechanism locks by friction from {270 - half:.5g} to {270 + half:.5g} deg ({numbers}), "
+            "mainly in pair x of links 0 and 3; no forces are computed there. Reduce the coefficients in friction, or "
+            "choose another input link"
         ]
         assert math.isnan(moment)
-        assert to_json(results)["positions"]["state"][9] == "locks by friction"
+        assert to_json(results)["positions"]["state"][9] == "self-locking by friction"
     else:
         lean = math.asin(1 / 3)
         push = 1000 / (math.cos(lean) - coefficient * math.sin(lean))
@@ -226,13 +228,13 @@ def test_self_locking_between_the_positions_is_told_with_its_range(tmp_path, tur
     (found,) = results.losses.ranges
     degrees = np.mod(np.degrees([found.start, found.end]), 360)
     assert degrees == pytest.approx([middle - half, middle + half], abs=1e-4)
-    assert [w for w in words(results) if f"locks itself by friction {told}" in w]
+    assert [w for w in words(results) if f"locks by friction {told}" in w]
     file = tmp_path / "x.yaml"
     file.write_text(text, encoding="utf-8")
     for command in ("forces", "run"):
         done = tmm(command, file, *(["--no-drawings", "-o", tmp_path / "out"] if command == "run" else []))
-        assert f"the mechanism locks itself by friction {told}" in done.stderr
-    assert f"locks itself {told}" in tmm("forces", file).stdout
+        assert f"the mechanism locks by friction {told}" in done.stderr
+    assert f"self-locking {told}" in tmm("forces", file).stdout
     note = [block for block in losses(Subject(results, drawn=False)) if isinstance(block, Paragraph)]
     assert told in str(note[0].line)
 
@@ -255,8 +257,8 @@ def test_a_locked_position_in_detail_is_no_crash(tmp_path, monkeypatch):
     file.write_text(text, encoding="utf-8")
     done = tmm("run", file, "-o", tmp_path / "out")
     assert (done.returncode, "Traceback" in done.stderr, "RuntimeWarning" in done.stderr) == (0, False, False)
-    assert "the mechanism locks itself by friction from " in done.stderr
-    assert "locks by friction" in (tmp_path / "out" / "locked" / "cycle.csv").read_text(encoding="utf-8")
+    assert "the mechanism locks by friction from " in done.stderr
+    assert "self-locking by friction" in (tmp_path / "out" / "locked" / "cycle.csv").read_text(encoding="utf-8")
 
 
 # ---------------------------------------------------------------- drivers
@@ -269,7 +271,7 @@ def test_a_cylinder_driven_beyond_its_range_says_how_far():
     assert results.motion.moving.tolist() == [False, True, False, False]
     said = [word for word in words(results) if "cannot be assembled" in word]
     assert said == [
-        f"position {number} ({place}): II(1,2,3) cannot be assembled, {short} short"
+        f"position {number} ({place}): II(1,2,3) cannot be assembled, gap {short}"
         for number, place, short in ((0, "140 mm", "10 mm"), (2, "460 mm", "10 mm"), (3, "1000 mm", "550 mm"))
     ]
 
@@ -278,7 +280,7 @@ def test_where_the_first_of_two_drivers_stops_its_way_ends():
     text = changed(blocks.TWO, "1 rad/s}", "1 rad/s, acceleration: -1 rad/s^2}")
     results = solved_text(text)
     assert results.driver_range.end == pytest.approx(math.pi / 2 + 0.5, abs=1e-7)
-    assert "driving link 1 goes from -90 deg to 118.64789 deg only: it slows down and stops there" in " ".join(
+    assert "driving link 1 moves from -90 deg to 118.64789 deg only: there it slows down and stops" in " ".join(
         words(results)
     )
     assert np.isfinite(results.motion.named("B").a[:-1]).all()
@@ -312,7 +314,7 @@ def test_positions_of_a_cylinder_do_not_start_somewhere():
 def test_positions_out_of_reach_are_not_named_one_by_one_without_end():
     text = changed(blocks.CYLINDER, "at: [200, 250, 300, 350, 400]", f"at: {[300, *range(500, 900)]}")
     said = [word for word in words(solved_text(text)) if "cannot be" in word]
-    assert (len(said), said[-1]) == (101, "... and 300 positions more that cannot be reached or are dead")
+    assert (len(said), said[-1]) == (101, "... and further positions that cannot be reached or are dead: 300")
 
 
 # ---------------------------------------------------------------- groups
@@ -438,6 +440,6 @@ def test_without_masses_and_loads_all_forces_are_zero_and_finite(name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_no_problem_of_the_bank_has_a_load_or_a_spring_or_a_friction_to_be_warned_of(name):
-    told = ("in the direction of motion", "does no work in", "the ends of spring", "locks itself")
+    told = ("in the direction of motion", "does no work in", "the ends of spring", "locks by friction")
     assert not [w for w in words(solved(name)) if any(phrase in w for phrase in told)]
     assert not [w for w in find_slips(problem(name).whole) if "move as one slider" in w]

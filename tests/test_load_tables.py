@@ -107,8 +107,8 @@ def test_a_table_against_the_stroke_that_goes_on_beyond_it_is_warned_of(tmp_path
     ended = forces(tmp_path, against="stroke", table=f"[[0, 0], [{last}, 5 kN]]")
     assert ended.returncode == 0
     assert ended.stderr.endswith(
-        f"warning: the table of load gas goes on to {last} mm, but the stroke is 100 mm: its last rows are never "
-        "reached. Is the unit right? Rows in shares fit every stroke (against: share of stroke)\n"
+        f"warning: the table of load gas extends to {last} mm, but the stroke is 100 mm: its last rows are never "
+        "reached. Is the unit correct? Rows given in fractions fit any stroke (against: share of stroke)\n"
     )
 
 
@@ -116,13 +116,14 @@ def test_a_table_against_the_stroke_that_goes_on_beyond_it_is_warned_of(tmp_path
 def test_a_table_that_ends_with_the_stroke_has_no_warning(last, short, long):
     results = slider("stroke", [("0", 0), (last, 900)])
     said = list(collect_warnings(results))
-    assert sum("its end value is held; rows in shares" in one for one in said) == short
-    assert sum(f"goes on to {last} mm, but the stroke is 100 mm" in one for one in said) == long
+    assert sum("the end value is used; rows given in fractions" in one for one in said) == short
+    assert sum(f"extends to {last} mm, but the stroke is 100 mm" in one for one in said) == long
 
 
 MANY = (
-    "warning: x: the table of load gas does not end with the stroke in 2 of 3 mechanisms: its last row is 100 mm, "
-    "their strokes are 80 mm to 120 mm. Rows in shares fit every stroke (against: share of stroke)\n"
+    "warning: x: the table of load gas does not end with the stroke in 2 of 3 mechanisms: its last row "
+    "is 100 mm, the strokes are 80 mm to 120 mm. Rows given in fractions fit any stroke (against: "
+    "share of stroke)\n"
 )
 
 
@@ -146,8 +147,11 @@ def test_a_setting_that_makes_a_table_too_short_or_too_long_is_warned_of(tmp_pat
     text = CRANK_SLIDER.format(against="stroke", table="[[0, 0], [100, 900]]").replace("length: 50", "length: OA")
     (tmp_path / "x.yaml").write_text(text.replace("tmm: 1", "tmm: 1\nparameters: {OA: 50}"))
     short, long = (tmm("forces", "x.yaml", "--set", f"OA={crank}", cwd=tmp_path).stderr for crank in (60, 40))
-    assert "the table of load gas does not reach as far as the stroke goes: its end value is held; rows" in short
-    assert "the table of load gas goes on to 100 mm, but the stroke is 80 mm: its last rows are never" in long
+    assert (
+        "the table of load gas does not cover the whole range of its argument (stroke): beyond its ends, "
+        "the end value is used; rows"
+    ) in short
+    assert "the table of load gas extends to 100 mm, but the stroke is 80 mm: its last rows are never" in long
 
 
 def test_variants_tell_of_tables_that_do_not_fit_all_their_strokes(tmp_path):
@@ -180,7 +184,7 @@ def test_a_table_is_told_in_full_as_it_is_on_a_task_sheet():
     *_, told = input_data_tables(load(str(ROOT / "problems/toggle-press.yaml")))
     rows = list(zip(*(column.values for column in told.columns), strict=True))
     assert rows == [("0 mm", "0 N"), ("30 mm", "0 N"), ("36 mm", "5000 N"), ("39.5 mm", "40000 N")]
-    assert told.title == "press against the stroke" and told.notes == ("Its direction is 90 deg.",)
+    assert told.title == "Load press; argument: stroke" and told.notes == ("Direction of the force: 90 deg.",)
 
 
 @pytest.mark.parametrize("against", ["crank angle", "crank turn"])
@@ -308,7 +312,7 @@ def test_shares_are_told_as_they_are_written():
     *_, told = input_data_tables(build_any_problem(read_text(text, "x.yaml")))
     rows = list(zip(*(column.values for column in told.columns), strict=True))
     assert rows == [("0", "0 N"), ("0.05", "5000 N"), ("1", "2000 N")]
-    assert told.title == "gas against the share of the stroke"
+    assert told.title == "Load gas; argument: fraction of the stroke"
 
 
 SAW = [("0", 0), ("20", 0), ("20", 1500), ("80", 900), ("80", 300), ("100", 300)]  # N against mm of a stroke of 100 mm

@@ -209,7 +209,7 @@ def test_a_curve_that_swings_beyond_its_rows_is_told_of():
         "[[0, 5 kN], [5, 5 kN], [10, 0], [100, 0]]}}}"
     )
     assert any(
-        text.startswith("load f: between rows 3 and 4 of its table the smooth curve goes beyond all rows by ")
+        text.startswith("load f: between rows 3 and 4 of its table the smooth curve exceeds all rows by ")
         for text in find_slips(results.problem)
     )
 
@@ -231,7 +231,7 @@ def test_what_was_understood_of_loads_is_told():
     table = next(table for table in input_data_tables(results.problem) if table.name == "loads")
     assert [column.values[0] for column in table.columns] == [
         "f",
-        "2 from 3",
+        "2 relative to 3",
         "",
         "2 N*m, opposite to the motion",
         "crank angle from 0 deg to 90 deg",
@@ -361,7 +361,8 @@ positions: {{from: working stroke}}
     when = f"when: [{window[0]:.10g} deg, {window[1]:.10g} deg]"
     assert [w for w in collect_warnings(driving) if w.startswith("load gas")] == [
         "load gas acts in the direction of motion during the whole working stroke. Reverse its sign, or choose the "
-        f"other stroke: output: {{link: 3, working: forward}}. In an engine, where the gas drives the piston: {when}"
+        "other stroke: output: {link: 3, working: forward}. In an engine, in which the gas pressure drives the piston: "
+        f"{when}"
     ]
     windowed = solve(build_any_problem(read_text(text.format(turns=turns, when=when.removeprefix("when: ")), "x.yaml")))
     assert not [w for w in collect_warnings(windowed) if w.startswith("load gas")]
@@ -392,20 +393,24 @@ def test_a_load_along_the_motion_in_its_working_stroke_is_told_both_ways_out():
     [
         (
             "on: 3, force: [0, -100]",
-            "its force is perpendicular to the motion of its point. "
-            "Write it against the motion: force: {size: 100 N, angle: 180 deg}",
+            (
+                "its force is perpendicular to the motion of its point. Direct it against the motion: force: "
+                "{size: 100 N, angle: 180 deg}"
+            ),
         ),
         (
             "on: 3, axes: link, force: [0, 100]",
-            "its force is perpendicular to the motion of its point. "
-            "Write it against the motion: force: {size: 100 N, angle: 180 deg}",
+            (
+                "its force is perpendicular to the motion of its point. Direct it against the motion: force: "
+                "{size: 100 N, angle: 180 deg}"
+            ),
         ),
         (
             "on: 3, force: {angle: 90, against: stroke, table: [[0, 50], [100, 100]]}",
-            "its force is perpendicular to the motion of its point. Write it against the motion: angle: 180 deg",
+            ("its force is perpendicular to the motion of its point. Direct it against the motion: angle: 180 deg"),
         ),
-        ("on: 3, moment: 5", "link 3 does not rotate. Write a force"),
-        ("on: 1, force: [100, 0]", "its point is at rest. Write the link or the point that moves"),
+        ("on: 3, moment: 5", "link 3 does not rotate. Give a force instead of a moment"),
+        ("on: 1, force: [100, 0]", "its point is at rest. Give a link or a point that moves"),
     ],
 )
 def test_a_load_that_does_no_work_in_its_working_stroke_is_told_what_to_write(load, told):

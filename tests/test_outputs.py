@@ -88,7 +88,7 @@ def test_tables_and_result_json_say_them(tmp_path):
 
 def test_of_an_output_that_turns_on_it_is_said_by_how_much():
     told = tmm("kinematics", "problems/double-crank.yaml").stdout
-    assert "link 3 turns in a cycle by     360   deg" in told
+    assert "rotation of link 3 per cycle     360   deg" in told
 
 
 def test_loads_in_the_working_stroke_of_a_coupler_are_understood():

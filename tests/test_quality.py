@@ -53,8 +53,8 @@ def test_a_rocker_has_a_stroke_along_its_arc_and_k_both_ways():
     swing, theta = at_d[0] - at_d[1], abs(at_o[0] - at_o[1])
     k = (math.pi + theta) / (math.pi - theta)
     assert rows["stroke H = psi l of point B"] == (pytest.approx(swing * 0.25, rel=1e-12), "m")
-    assert rows["1/k = T_idle/T_working"][0] == pytest.approx(1 / k, rel=1e-12)
-    assert rows["stroke angle theta = 180 deg (k - 1)/(k + 1)"][0] == pytest.approx(theta, rel=1e-11)
+    assert rows["1/k = T_return/T_working"][0] == pytest.approx(1 / k, rel=1e-12)
+    assert rows["angle theta = 180 deg (k - 1)/(k + 1)"][0] == pytest.approx(theta, rel=1e-11)
 
 
 def crank_slider(r, rod, e, at, B, driver="1"):
@@ -307,7 +307,7 @@ def test_strokes_of_a_four_stroke_engine_are_counted_from_position_0_on():
         results = solve(build_any_problem(read_text(text.replace("from: 0", f"from: {start}"), "engine.yaml")))
         (table,) = walk(results, ("quality",))
         rows = dict(zip(table.columns[0].values, table.columns[1].values, strict=True))
-        assert [rows[f"stroke {n} starts at"] for n in (1, 2, 3, 4)] == pytest.approx(
+        assert [rows[f"driver position at the start of stroke {n}"] for n in (1, 2, 3, 4)] == pytest.approx(
             np.mod(first + 180 * np.arange(4), 720), abs=1e-6
         )
         assert not any("working" in name or "idle" in name for name in rows)

@@ -104,7 +104,7 @@ def test_a_dwell_within_the_rise_makes_one_stroke_of_it_and_one_at_the_top_is_to
     assert (back.run, forth.run) == pytest.approx((-0.04, 0.04), abs=1e-15)
     quality = next(table for table in tables(results) if table.name == "quality")
     told = dict(zip(quality.columns[0].values, quality.columns[1].values, strict=True))
-    assert told["dwell after the idle stroke"] == pytest.approx(20, abs=1e-9)
+    assert told["dwell after the return stroke"] == pytest.approx(20, abs=1e-9)
     assert "dwell after the working stroke" not in told
 
 

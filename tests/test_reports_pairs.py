@@ -23,9 +23,9 @@ def rows(found):
 @pytest.mark.parametrize(
     ("name", "roles"),
     [
-        ("gear", ["toothed wheel", "toothed wheel", "coupler", "slider"]),
+        ("gear", ["gear", "gear", "coupler", "slider"]),
         ("planet", ["carrier", "planet", "coupler", "slider"]),
-        ("rack", ["crank", "coupler", "rack", "toothed wheel"]),
+        ("rack", ["crank", "coupler", "rack", "gear"]),
         ("flat follower", ["cam", "follower", "coupler", "rocker"]),
         ("swinging follower", ["cam", "follower", "coupler", "slider"]),
         ("cylinder", ["cylinder", "piston", "rocker"]),
@@ -39,9 +39,9 @@ def test_links_have_the_names_of_the_field(name, roles):
 @pytest.mark.parametrize(
     ("name", "kind", "words"),
     [
-        ("gear", "1 of toothed wheels", "toothed wheels (G)"),
-        ("rack", "1 of wheel and rack", "wheel and rack (K)"),
-        ("flat follower", "1 of cam and follower", "cam and follower (C)"),
+        ("gear", "gears: 1", "gears (G)"),
+        ("rack", "gear and rack: 1", "gear and rack (K)"),
+        ("flat follower", "cam and follower: 1", "cam and follower (C)"),
     ],
 )
 def test_higher_pairs_are_counted_and_named(name, kind, words):
@@ -64,12 +64,12 @@ def test_the_cycle_has_every_driver_every_output_and_what_both_ways_give():
     assert np.allclose(np.degrees(np.float64(found["phi of 4"])), np.mod(90 - 2 * (np.arange(0, 360, 30) - 30), 360))
     total = np.float64(found["M_b of 1"]) - 2 * np.float64(found["M_b of 4"])
     assert np.allclose(total, np.float64(found["reduced to 1, force plan"]))
-    assert np.allclose(total, np.float64(found["reduced to 1, lever"]))
+    assert np.allclose(total, np.float64(found["reduced to 1, Zhukovsky lever"]))
 
 
 def test_with_one_driver_the_cycle_says_plainly_what_balances_it():
     headers = [c.header for c in table("cycle", "gear").columns]
-    assert headers[-3:] == ["M_b, force plan", "M_b, lever", "difference, %"]
+    assert headers[-3:] == ["M_b, force plan", "M_b, Zhukovsky lever", "difference, %"]
 
 
 def told(name):
@@ -78,10 +78,10 @@ def told(name):
 
 def test_explain_lists_wheels_with_their_law_and_pitch_radii():
     assert told("planet")["meshes"] == [
-        ("g", "inner mesh", "frame, 2", "1", "phi_2 = 3 phi_0", "180 mm, 60 mm", "20 deg")
+        ("g", "internal gearing", "frame, 2", "1", "phi_2 = 3 phi_0", "180 mm, 60 mm", "20 deg")
     ]
     assert told("gear")["meshes"][0][4:6] == ("phi_2 = -0.5 phi_1", "60 mm, 120 mm")
-    assert told("rack")["meshes"] == [("k", "wheel and rack", "4, 3", "frame", "s_3 = 50 phi_4", "50 mm", "20 deg")]
+    assert told("rack")["meshes"] == [("k", "gear and rack", "4, 3", "frame", "s_3 = 50 phi_4", "50 mm", "20 deg")]
 
 
 def test_explain_lists_the_law_of_a_cam_piece_by_piece():
@@ -98,7 +98,7 @@ def test_explain_lists_springs_friction_and_all_drivers():
         ("O", "0.1", "15 mm"),
         ("A", "0.1", "15 mm"),
         ("B", "0.1", "15 mm"),
-        ("x", "0.1", "a guide"),
+        ("x", "0.1", "guide"),
     ]
     assert told("two cranks")["drivers"][1] == (
         "4",
@@ -155,5 +155,8 @@ positions: {at: [0]}
     assert (ccw.motion.link("1").omega[0], cw.motion.link("1").omega[0]) == (10, -10)
     told = {table.name: " ".join(table.notes) for table in tables(cw)}
     for name in ("cycle", "balance", "link-motion"):
-        assert "positive counterclockwise, however the driver turns: a negative M_b drives it clockwise" in told[name]
+        assert (
+            "positive counterclockwise, whatever the direction of rotation of the driver: a negative M_b acts clockwise"
+            in told[name]
+        )
     assert "Powers are positive that speed the mechanism up" in told["energy"] and "positive that" in told["lever"]

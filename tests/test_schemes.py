@@ -264,7 +264,7 @@ def test_the_command_writes_a_problem_a_scheme_and_nothing_else(tmp_path):
     assert done.returncode == 0, done.stderr
     names = sorted(path.name for path in out.iterdir())
     assert names == ["scheme-01-II-RRR.yaml", "scheme-02-II-RRP.yaml", "scheme-03-II-RRP.yaml"]
-    assert all(name in done.stdout for name in names) and "3 schemes" in done.stdout
+    assert all(name in done.stdout for name in names) and "schemes: 3" in done.stdout
     assert [path.name for path in tmp_path.iterdir()] == ["in"]
     assert tmm("structure", *sorted(out.iterdir())).stdout.count("I(0,1) → II(2,3)") == 3
     run = tmm("run", out / names[1], "-o", tmp_path / "out", "--no-drawings")
@@ -338,8 +338,9 @@ def test_schemes_of_more_freedoms_get_as_many_drivers_and_run(links, mobility):
 
 def test_the_list_of_schemes_says_which_groups_it_does_not_enumerate():
     missing = (
-        "Not enumerated: groups of classes III and IV with six links or more (order 4 of class III is one) or with "
-        "sliding pairs, and groups of class V and higher. Listed are those with four links and turning pairs only."
+        "Not enumerated: groups of classes III and IV with six links or more (e.g. class III of order 4) "
+        "or with prismatic pairs, and groups of class V and higher. Only groups with four links and "
+        "revolute pairs are listed."
     )
     written = json.loads(tmm("schemes", "-n", "7", "--groups", "III", "--json").stdout)
     assert (written["count"], written["not_enumerated"]) == (0, [missing])

@@ -33,8 +33,9 @@ def test_a_stone_beyond_the_end_of_its_slot_is_warned_of_with_lengths_and_places
     # OC + OA = 500; CA = CD where sin(phi) = (CD^2 - OA^2 - OC^2)/(2 OA OC)
     start = math.degrees(math.asin((490**2 - 150**2 - 350**2) / (2 * 150 * 350)))
     assert ended.stderr.endswith(
-        "warning: link 2 leaves its slot CD of link 3, which is 490 mm long: it is up to 10 mm beyond D (driver from "
-        "64.91966 deg to 115.08034 deg); a longer slot, or slides: {..., unbounded: true} where it is meant\n"
+        "warning: link 2 leaves its slot CD in link 3 (length 490 mm): it moves up to 10 mm beyond D "
+        "(driver from 64.91966 deg to 115.08034 deg); lengthen the slot, or write slides: {..., unbounded: "
+        "true} if this is intended\n"
     )
     [excess] = [e for e in solve(load(str(tmp_path / "x.yaml"))).slots if e.ways]
     assert excess.far == pytest.approx(0.010, rel=1e-12)

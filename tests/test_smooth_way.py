@@ -69,8 +69,9 @@ def test_an_antiparallelogram_stays_one_too():
 def test_the_warning_says_what_is_done_and_how_to_ask_for_the_other():
     said = list(collect_warnings(moved(PARALLELOGRAM)))
     assert said[0] == (
-        "change point of II(2,3) inside the cycle at 0 deg (margin 0): there the group may go over into another "
-        "assembly; the results go smoothly through, as a machine that runs does (the other: `change points: keep side`)"
+        "change point of II(2,3) in the cycle at 0 deg (margin 0): here the group can change to another "
+        "assembly; the results continue smoothly, as in a running machine (for the other branch: `change "
+        "points: keep side`)"
     )
 
 
@@ -79,9 +80,9 @@ def test_it_keeps_to_the_side_of_the_sketch_when_asked_and_becomes_an_antiparall
     motion = everywhere(results)
     half = np.mod(motion.q, 2 * np.pi) < np.pi
     assert np.allclose(motion.first["3"].w[half], 1) and np.all(motion.first["3"].w[~half] < 0)
-    assert "the results keep to the side of the sketch" in next(iter(collect_warnings(results)))
+    assert "the results are for the assembly of the sketch" in next(iter(collect_warnings(results)))
     (quality,) = quality_tables.quality_tables(results)
-    assert (quality.columns[0].values[0], quality.columns[1].values[0]) == ("link 3 turns in a cycle by", 0)
+    assert (quality.columns[0].values[0], quality.columns[1].values[0]) == ("rotation of link 3 per cycle", 0)
 
 
 def test_another_word_there_is_refused():
@@ -138,8 +139,8 @@ def test_a_kite_whose_hinges_meet_has_its_rotation_in_the_table():
     results = moved(at_places(KITE, "[0, 360 deg]"))
     (quality,) = quality_tables.quality_tables(results)
     rows = dict(zip(quality.columns[0].values, quality.columns[1].values, strict=True))
-    assert rows["turns of the driver in a cycle"] == 2
-    assert rows["link 3 turns in a cycle by"] == pytest.approx(360, abs=1e-9)  # deg
+    assert rows["turns of the driver per cycle"] == 2
+    assert rows["rotation of link 3 per cycle"] == pytest.approx(360, abs=1e-9)  # deg
     assert results.motion.first["3"].w == pytest.approx([0.7, 0.3], rel=1e-9)
 
 
@@ -188,7 +189,7 @@ def test_where_the_side_of_the_sketch_is_kept_velocities_jump_and_have_no_limit(
     text = PARALLELOGRAM.replace("driver:", "change points: keep side\ndriver:")
     results = moved(at_places(text, "[0, 60]"))
     assert results.motion.limits is None and results.motion.moving.tolist() == [False, True]
-    assert "position 0 (0 deg): II(2,3) is in its dead position; no velocities and forces" in list(
+    assert "position 0 (0 deg): II(2,3) is in a dead position; velocities and forces are not determined" in list(
         collect_warnings(results)
     )
 
@@ -211,6 +212,6 @@ def test_the_balancing_moment_has_its_limit_by_the_lever_and_reactions_have_none
     assert np.isnan(results.reactions.balance.moment[0]) and results.lever_holds
     said = list(collect_warnings(results))
     assert (
-        "position 0 (0 deg): II(2,3) is in a change point, which it passes smoothly; velocities and accelerations are "
-        "limits, reactions have none there"
+        "position 0 (0 deg): II(2,3) passes a change point smoothly; velocities and accelerations are "
+        "limit values, reactions have no limit there"
     ) in said

@@ -190,12 +190,13 @@ def test_the_report_says_that_a_chain_cannot_move_and_how_to_count_its_redundant
     file.write_text(f"tmm: 1\nstructure: {{spatial: {{pairs: {pairs}}}}}\n", encoding="utf-8")
     shown = " ".join(tmm("structure", file).stdout.split())
     assert (
-        "W - Wm < 1: by the count links 1, 2, 3 cannot move. If they do, by special dimensions such as parallel axes, "
-        "give the mobility that is meant (wanted: 1): the redundant constraints q are then counted."
+        "W - Wm < 1: by this count links 1, 2, 3 cannot move. If they move owing to special dimensions, "
+        "for example parallel axes, give the required mobility (wanted: 1): then the redundant constraints "
+        "q are counted."
     ) in shown
     file.write_text(f"tmm: 1\nstructure: {{spatial: {{pairs: {pairs}, wanted: 1}}}}\n", encoding="utf-8")
     shown = " ".join(tmm("structure", file).stdout.split())
-    assert "q = 3: the chain moves with exact dimensions only, by the count it cannot." in shown
+    assert "q = 3: the chain moves only if its dimensions are exact; by the count it cannot move." in shown
 
 
 def test_contours_are_short_and_start_near_the_frame():
@@ -641,7 +642,7 @@ def test_untrusted_chains_are_bounded():
 def test_tmm_structure_shows_chains_and_tells_planar_linkages_their_redundant_constraints():
     told = tmm("structure", "problems/spatial-six-bar.yaml").stdout
     assert "6·5 − 5·3 − 4·1 − 3·3 = 2" in told and "1 + 1 − 2 = 0" in told
-    assert "turns about the line of both centres" in told
+    assert "rotates about the line through both centres" in told
     told = tmm("structure", "problems/six-bar.yaml").stdout
     assert "1 + 0 − (−5) = 6" in told and "0-3-4-5-0" in told
     assert "complex: the driver and several groups" in told

@@ -143,7 +143,7 @@ def test_accelerations_may_jump_but_speeds_may_not():
 def test_what_was_understood_of_it_is_told():
     driver = "speed: {against: crank angle, between: linear, table: [[0, 4], [180, 8], [360, 4]]}"
     told = next(one for one in input_data_tables(solved(driver).problem) if one.name == "speeds")
-    assert told.notes == ("Between rows: constant acceleration from row to row.",)
+    assert told.notes == ("Between rows: constant acceleration between rows.",)
     assert [column.values[0] for column in told.columns] == ["0 deg", "4 rad/s", "7.63944 rad/s^2"]
 
 

@@ -238,8 +238,10 @@ def test_a_table_that_ends_before_the_stroke_does_gets_a_warning():
     )
     said = list(collect_warnings(solve(build_problem(read_text(text, "x.yaml")))))
     assert said == [
-        "the table of load F does not reach as far as the stroke goes: its end value is held; rows in shares reach "
-        "over every stroke (against: share of stroke)"
+        (
+            "the table of load F does not cover the whole range of its argument (stroke): beyond its ends, the "
+            "end value is used; rows given in fractions of the stroke cover any stroke (against: share of stroke)"
+        )
     ]
 
 
@@ -338,19 +340,19 @@ def test_a_contour_closed_by_a_redundant_link_is_dependent(name, dependent):
 def test_motion_of_a_link_names_its_axis_or_its_guide():
     results = moved("sine")
     words = [describe_link_motion(results, link) for link in results.linkage.moving]
-    assert words == ["turns about O", "translation", "slides along guide x"]
+    assert words == ["rotates about O", "translation", "slides along guide x"]
 
 
 def test_explain_gives_the_structure_in_the_words_of_a_note():
     text = tmm("explain", "problems/shaper.yaml").stdout
-    assert "slotted-lever 0-1-2-3-0, crank-slider 0-3-4-5-0, six-bar: Watt II." in text
+    assert "slotted-link 0-1-2-3-0, crank-slider 0-3-4-5-0, six-bar: Watt II." in text
     assert "type RPR (ВПВ, 3)" in text
     assert "1: turns about O; 2: plane motion; 3: turns about C; 4: plane motion; 5: slides along guide x." in text
 
 
 def test_a_roller_is_a_link_with_a_local_freedom(tmp_path):
     """By hand: 4 links and the roller, 5 hinges and the guide, cam and roller: 3*5 - 2*6 - 1 = 2, of which Wm = 1."""
-    wanted = "3·5 − 2·6 − 1 = 2, of which Wm = 1 is local: the turning of rollers (5) moves nothing else"
+    wanted = "3·5 − 2·6 − 1 = 2, of which Wm = 1 is local: the rotation of rollers (5) does not move other links"
     for command in ("structure", "explain"):
         assert wanted in re.sub(r"\s+", " ", tmm(command, "problems/cam-lever.yaml").stdout)
     text = Path("problems/cam-lever.yaml").read_text(encoding="utf-8").replace("roller: 5", "roller: 4")
@@ -394,7 +396,7 @@ def test_the_result_names_the_motion_that_the_table_names():
 
 def test_several_primary_mechanisms_have_as_many_freedoms_together():
     text = re.sub(r"\s+", " ", tmm("structure", "problems/five-bar.yaml").stdout)
-    assert "primary mechanisms I(0,1), I(0,4); together W = 2" in text
+    assert "primary mechanisms I(0,1), I(0,4); total W = 2" in text
     assert "primary mechanisms" not in tmm("structure", "problems/shaper.yaml").stdout
 
 
@@ -405,17 +407,18 @@ def test_several_primary_mechanisms_have_as_many_freedoms_together():
         (
             "shaper",
             (
-                "Type of chain and of structure: closed, complex: the driver and several groups, of several types.",
+                "Type of chain and of structure: closed, complex: the driver and "
+                "several groups, groups of several types.",
                 "Number of independent loops K = p − n: 2.",
             ),
         ),
         # p = 6 hinges on n = 4 links; the contour through the second coupler repeats the first
-        ("parallel-couplers", ("Number of independent loops K = p − n: 2, of which dependent: 1.",)),
+        ("parallel-couplers", ("Number of independent loops K = p − n: 2, including dependent ones: 1.",)),
         # five hinges on four links, 3*4 - 2*5 = 2
         (
             "five-bar",
             (
-                "Primary mechanisms: I(0,1), I(0,4); together W = 2.",
+                "Primary mechanisms: I(0,1), I(0,4); total W = 2.",
                 "Type of chain and of structure: closed, simple: the driver and one group.",
             ),
         ),

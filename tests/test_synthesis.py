@@ -181,7 +181,7 @@ def test_the_command_shows_what_was_asked_found_and_measured_and_draws_the_const
     done, folder = press
     assert done.returncode == 0, done.stderr
     for part in (
-        "Asked: crank-slider",
+        "Task: crank-slider",
         "stroke H                     120",
         "58.80621953",
         "relative difference",
@@ -205,7 +205,7 @@ def test_a_mechanism_that_does_something_else_fails(tmp_path):
     bad.write_text(text.replace("length: AB}", "length: AB + 1 mm}"), encoding="utf-8")
     done = tmm("synthesis", bad)
     assert done.returncode == 1
-    assert "warning: k: wanted 1.08, measured 1.07" in done.stderr
+    assert "warning: k: required 1.08, measured 1.07" in done.stderr
 
 
 def test_a_file_without_a_linkage_is_for_the_synthesis_alone(tmp_path):
@@ -232,7 +232,7 @@ def test_numbers_of_what_is_found_are_numbers_in_the_table_and_texts_are_no_form
 
 def test_explain_says_where_parameters_come_from():
     told = tmm("explain", ROOT / "problems" / "press-synthesis.yaml").stdout
-    assert "Parameters found by synthesis" in told and "Asked: crank-slider" in told
+    assert "Parameters found by synthesis" in told and "Task: crank-slider" in told
 
 
 def test_a_task_is_solved_when_its_problem_is_first_asked_for_a_number_and_only_then():
@@ -278,7 +278,7 @@ def test_every_task_stands_in_the_documentation(task):
 def test_a_run_tells_the_synthesis_with_the_rest(tmp_path):
     done = tmm("run", ROOT / "problems" / "press-synthesis.yaml", "-o", tmp_path, "--no-drawings")
     assert done.returncode == 0, done.stderr
-    assert "Found" in done.stdout and "measured on the mechanism" in done.stdout
+    assert "Solution" in done.stdout and "measured on the mechanism" in done.stdout
     folder = tmp_path / "press-synthesis"
     result = json.loads((folder / "result.json").read_text(encoding="utf-8"))
     assert result["synthesis"]["met"] is True and set(result["synthesis"]["parameters"]) == {"OA", "AB", "e"}

@@ -159,7 +159,7 @@ def _told(table: Table) -> Table:
     if table.name != "facts":
         return table
     rows = zip(*(column.values for column in table.columns), strict=True)
-    kept = [row for row in rows if row[0] in (_("driver"), _("gravity"), _("positions"))]
+    kept = [row for row in rows if row[0] in (_("driver"), _("gravitational acceleration"), _("positions"))]
     return text_table(table.name, _("Driver, positions"), [translated(column.header) for column in table.columns], kept)
 
 

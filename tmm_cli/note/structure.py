@@ -91,7 +91,7 @@ def _pairs(structure: Structure) -> Rows:
     )
     return Rows(
         _("Kinematic pairs"),
-        cells(_("pair"), _("links"), _("kind"), _("freedoms"), _("class"), _("code")),
+        cells(_("pair"), _("links"), _("kind"), _("degrees of freedom"), _("class"), _("code")),
         rows,
         "pairs",
     )

@@ -168,7 +168,7 @@ def _masses(subject: Subject) -> Rows:
 
 def _loads(subject: Subject) -> Rows:
     linkage = subject.results.linkage
-    head = cells(_("load"), _("on link"), _("point of action"), _("size"), _("when"))
+    head = cells(_("load"), _("on link"), _("point of action"), _("magnitude"), _("acts"))
     return Rows(_("Loads"), head, tuple(_load(subject, load) for load in linkage.loads), "loads")
 
 

@@ -103,7 +103,7 @@ def _series_scales(series: dict[Path, list[Any]]) -> dict[Path, float]:
 
 def difference_table(different: Mapping[str, Sequence[ResultDifference]]) -> Table:
     """Return a table of the differences, problem by problem."""
-    headers = (_("problem"), _("quantity"), _("position"), _("expected"), _("found"), _("relative"))
+    headers = (_("problem"), _("quantity"), _("position"), _("expected"), _("actual"), _("relative"))
     rows = [
         (
             name,
@@ -116,7 +116,7 @@ def difference_table(different: Mapping[str, Sequence[ResultDifference]]) -> Tab
         for name, here in different.items()
         for d in here
     ]
-    return text_table("check", _("What differs from the expected values"), headers, rows)
+    return text_table("check", _("Differences from the expected values"), headers, rows)
 
 
 def brief_value(value: Any) -> str:

@@ -46,12 +46,12 @@ def sign_convention(linkage: Linkage) -> str:
     """Return the sign convention of positions, speeds and moments as a note below a table."""
     if linkage.driver.kind == "slide":
         return _(
-            "A driven slider's place, speed and F_b are positive along its guide, however it moves; angles and moments "
-            "counterclockwise."
+            "Displacement, speed and F_b of a driving slider are positive along its guide, whatever its "
+            "direction of motion; angles and moments are positive counterclockwise."
         )
     return _(
-        "Angles, angular speeds and moments are positive counterclockwise, however the driver turns: a negative M_b "
-        "drives it clockwise."
+        "Angles, angular speeds and moments are positive counterclockwise, whatever the direction of "
+        "rotation of the driver: a negative M_b acts clockwise."
     )
 
 
@@ -115,10 +115,10 @@ def _balance_columns(results: Results) -> Iterable[Column]:
         balance = reactions.balance
         if balance.kind == "moment":
             yield Column(N_("M_b, force plan"), balance.moment, MOMENT)
-            yield Column(N_("M_b, lever"), lever.balancing, MOMENT)
+            yield Column(N_("M_b, Zhukovsky lever"), lever.balancing, MOMENT)
         else:
             yield Column(N_("F_b, force plan"), balance.force, FORCE)
-            yield Column(N_("F_b, lever"), lever.balancing / balance.arm, FORCE)
+            yield Column(N_("F_b, Zhukovsky lever"), lever.balancing / balance.arm, FORCE)
         yield difference
         return
     for balance in reactions.balances:
@@ -130,7 +130,7 @@ def _balance_columns(results: Results) -> Iterable[Column]:
     yield Column(
         Phrase("reduced to {link}, force plan", link=first.link), reduced_driving_moment(motion, reactions), size
     )
-    yield Column(Phrase("reduced to {link}, lever", link=first.link), lever.balancing, size)
+    yield Column(Phrase("reduced to {link}, Zhukovsky lever", link=first.link), lever.balancing, size)
     yield difference
 
 
@@ -146,9 +146,11 @@ def _flywheel_note(results: Results) -> Iterable[str]:
     if results.reactions is None or not has_flywheel(results):
         return
     if results.linkage.driver.kind == "turn":
-        yield _("The flywheel is not a link: M_b moves the links alone, and what drives is M_d = M_b + J_f epsilon.")
+        yield _(
+            "The flywheel is not a link: M_b drives the links alone; the driving moment is M_d = M_b + J_f epsilon."
+        )
     else:
-        yield _("The flywheel is not a link: F_b moves the links alone, and what drives is F_d = F_b + m_f a.")
+        yield _("The flywheel is not a link: F_b drives the links alone; the driving force is F_d = F_b + m_f a.")
 
 
 def position_states(results: Results) -> list[str]:
@@ -156,9 +158,9 @@ def position_states(results: Results) -> list[str]:
     motion = results.motion
     assert motion is not None
     limits = np.zeros(np.shape(motion.q), dtype=bool) if motion.limits is None else motion.limits
-    told = np.where(motion.moving, "", _("the driver has stopped before")).astype(object)
-    told[results.locked & motion.moving] = _("locks by friction")
-    told[limits] = _("change point: limits")
+    told = np.where(motion.moving, "", _("not reached: the driver has stopped")).astype(object)
+    told[results.locked & motion.moving] = _("self-locking by friction")
+    told[limits] = _("change point: limit values")
     for text, groups in ((_("{group} is dead"), motion.dead), (_("{group} cannot be assembled"), motion.missing)):
         for group, lost in reversed(list(groups.items())):
             told[lost & (~motion.moving | results.locked) & ~limits] = text.format(group=group)
@@ -266,7 +268,7 @@ def extremes_tables(results: Results) -> Iterable[Table]:
         "s": _("s in {name}"),
         "R": _("R in {name}"),
         "M": _("couple in {name}"),
-        "R pin": _("force of the pin on the link, {name}"),
+        "R pin": _("pin force on the link, {name}"),
         "M_b": _("M_b of {name}"),
         "F_b": _("F_b of {name}"),
     }
@@ -280,16 +282,16 @@ def extremes_tables(results: Results) -> Iterable[Table]:
 
     low, high = [one.low for one in found], [one.high for one in found]
     columns = (
-        Column(N_("what"), [words[one.kind].format(name=one.name) for one in found]),
+        Column(N_("quantity"), [words[one.kind].format(name=one.name) for one in found]),
         Column(N_("least"), shown(low), NUMBER),
-        Column(N_("least, with the driver at"), places([one.low_at for one in found]), place),
-        Column(N_("largest"), shown(high), NUMBER),
-        Column(N_("largest, with the driver at"), places([one.high_at for one in found]), place),
+        Column(N_("driver position at the least value"), places([one.low_at for one in found]), place),
+        Column(N_("largest angle"), shown(high), NUMBER),
+        Column(N_("driver position at the largest value"), places([one.high_at for one in found]), place),
         Column(N_("range"), shown([most - least for most, least in zip(high, low, strict=True)]), NUMBER),
         Column(N_("unit"), [units.spelt(one.dimension) for one in found]),
     )
-    title = _("Largest and smallest forces") if results.reactions is not None else _("Extreme places")
-    yield Table("extremes", title, columns, notes=(_("Over the whole cycle, between the positions too."),))
+    title = _("Largest and smallest forces") if results.reactions is not None else _("Extreme positions")
+    yield Table("extremes", title, columns, notes=(_("Over the whole cycle, also between the positions."),))
 
 
 # Instantaneous centres in the positions in detail, and the mechanical advantage over the cycle.
@@ -314,9 +316,9 @@ def centres_tables(results: Results) -> Iterable[Table]:
         Column(N_("x"), [None if p is None else p.real for p in places], LENGTH),
         Column(N_("y"), [None if p is None else p.imag for p in places], LENGTH),
         Column(N_("at infinity, at an angle of"), away, ANGLE),
-        Column(N_("found by"), [_centre_method(centre) for __, centre in found]),
+        Column(N_("located by"), [_centre_method(centre) for __, centre in found]),
     )
-    note = _("P13 is the point in which links 1 and 3 move alike; 0 is the frame.")
+    note = _("P13 is the point at which links 1 and 3 have equal velocities; 0 is the frame.")
     yield Table("centres", _("Instantaneous centres"), columns, notes=(note,))
     yield from _advantage_table(results)
 
@@ -325,7 +327,7 @@ def _centre_method(centre: InstantCentre) -> str:
     if centre.pair:
         return _("pair {pair}").format(pair=centre.pair)
     if centre.place is None and centre.direction is None:
-        return _("the links do not move beside one another")
+        return _("the links have no relative motion")
     if not centre.lines:
         return _("velocities")
     lines = [" ".join(map(centre_name, line)) for line in centre.lines]
@@ -341,11 +343,11 @@ def _advantage_table(results: Results) -> Iterable[Table]:
         slope = np.abs(output_run(motion, link)[1])
         bounded = slope > NO_SPEED * np.max(slope, where=np.isfinite(slope), initial=0.0)
         gained = np.where(bounded, 1 / np.where(bounded, slope, 1.0), np.nan)
-        columns.append(Column(Phrase(N_("of {link}, SI"), link=link), gained, NUMBER))
+        columns.append(Column(Phrase(N_("link {link}, SI"), link=link), gained, NUMBER))
     if columns:
         note = _(
-            "What an output can overcome, by the moment or force of the driver: N*m or N for one N*m or N; without "
-            "weights, inertia and friction. At the ends of a stroke it has no bound."
+            "Load moment or force that an output can overcome per unit moment or force of the driver (N*m or N "
+            "per N*m or N), without weights, inertia and friction. It has no limit at the ends of a stroke."
         )
         table = (*driver_columns(results), *columns)
         yield Table("advantage", _("Mechanical advantage"), table, notes=(note,))

@@ -217,7 +217,11 @@ UNSELECTED_FIELDS = (
     "structure",
 )  # fields that hold no array over positions
 MOST_JUDGED = 720  # positions: of a longer cycle only so many are judged, and all that are near dead ones
-BOUND_HEADERS = {"bound": N_("± rounding"), "lengths": N_("± lengths"), "paper": N_("± paper")}
+BOUND_HEADERS = {
+    "bound": N_("± rounding error"),
+    "lengths": N_("± change of lengths"),
+    "paper": N_("± change on paper"),
+}
 
 
 @dataclass(frozen=True)
@@ -292,15 +296,15 @@ class AccuracyReport:
         """Return the table of the largest bound, the number of true digits and the sensitivities of each column."""
         words = (_("table"), _("column"))
         figures = (
-            _("bound by rounding"),
+            _("bound of the rounding error"),
             _("true digits"),
-            _("change by 0.1 % of lengths, %"),
-            _("change by 0.5 mm on paper, %"),
+            _("change if lengths change by 0.1 %, %"),
+            _("change if the drawing is 0.5 mm off, %"),
         )
         columns = [Column(header, [row[k] for row in rows]) for k, header in enumerate(words)]
         for k, header in enumerate(figures, len(words)):
             columns.append(Column(header, [float(f"{row[k]:.2g}") for row in rows], NUMBER, digits=2))
-        title = _("Digits to be trusted: the worst of each column, relative to its largest value")
+        title = _("Reliable digits: the least accurate value of each column, relative to its largest value")
         return Table("digits", title, tuple(columns), notes=(_sensitivity_note(self.digits.mu),))
 
     def json(self) -> dict[str, Any] | None:
@@ -391,10 +395,12 @@ def _accuracy_note(rows: Sequence[tuple[str, float, float, float, float]]) -> st
     """Return a note on the least accurate columns of a table."""
     bound, share, paper = (max(rows, key=lambda row: 0.0 if np.isnan(row[k]) else row[k]) for k in (1, 3, 4))
     if not share[3] > 0:
-        return _("Rounding: at most {bound} of the largest value of a column.").format(bound=numeral(bound[1], ".1e"))
+        return _("Rounding error: at most {bound} of the largest value of a column.").format(
+            bound=numeral(bound[1], ".1e")
+        )
     return _(
-        "Rounding: at most {bound} of the largest value of a column. Lengths 0.1 % off: up to "
-        "{lengths} % ({by_lengths}); 0.5 mm on paper: up to {paper} % ({by_paper})."
+        "Rounding error: at most {bound} of the largest value of a column. If lengths change by 0.1 %: up "
+        "to {lengths} % ({by_lengths}); if the drawing is 0.5 mm off: up to {paper} % ({by_paper})."
     ).format(
         bound=numeral(bound[1], ".1e"),
         lengths=numeral(share[3], ".2g"),
@@ -406,9 +412,9 @@ def _accuracy_note(rows: Sequence[tuple[str, float, float, float, float]]) -> st
 
 def _sensitivity_note(mu: float) -> str:
     return _(
-        "± lengths: when every length is 0.1 % off; ± paper: when every coordinate is {mm} mm "
-        "off on paper at {mu} m a mm, where the mechanism fits on A4. Worst cases, to first "
-        "order."
+        "± change of lengths: if every length is 0.1 % off; ± change on paper: if every coordinate is {mm} "
+        "mm off on paper at a scale of {mu} m per mm, at which the mechanism fits on A4. First-order "
+        "estimates of the worst case."
     ).format(mm=PAPER_CHANGE, mu=numeral(mu, ".10g"))
 
 

@@ -47,7 +47,7 @@ def dynamics_tables(results: Results) -> Iterable[Table]:
         return
     steady = running.steady
     yield Table(
-        "dynamics", _("Steady running"), value_columns([*_steady_rows(steady), *_flywheel_rows(steady)], results)
+        "dynamics", _("Steady motion"), value_columns([*_steady_rows(steady), *_flywheel_rows(steady)], results)
     )
     if results.motion is not None:
         yield _law_table(results)
@@ -55,37 +55,40 @@ def dynamics_tables(results: Results) -> Iterable[Table]:
 
 def _steady_rows(steady: SteadySolution) -> Iterable[ValueRow]:
     low, high = steady.speeds
-    yield _("work of the loads in a cycle, J"), steady.machine.work_of_cycle, NUMBER
+    yield _("work of the loads per cycle, J"), steady.machine.work_of_cycle, NUMBER
     if steady.moment < 0 and steady.task.motor is None:
-        yield _("mean moment of resistance"), -steady.moment, MOMENT
+        yield _("mean load moment"), -steady.moment, MOMENT
     else:
         yield _("mean driving moment"), steady.moment, MOMENT
     yield _("least speed of the driver"), low, ANGULAR_SPEED
     yield _("largest speed of the driver"), high, ANGULAR_SPEED
-    yield _("mean of both"), (low + high) / 2, ANGULAR_SPEED
+    yield _("mean of the least and largest speed"), (low + high) / 2, ANGULAR_SPEED
     yield _("time of a cycle, s"), steady.law.period, NUMBER
     if not np.isnan(steady.own) and steady.law.flywheel != steady.task.flywheel:
-        yield _("fluctuation delta without it"), steady.own, NUMBER
-    yield _("fluctuation delta"), steady.delta, NUMBER
+        yield _("coefficient of fluctuation delta without the computed flywheel"), steady.own, NUMBER
+    yield _("coefficient of fluctuation delta"), steady.delta, NUMBER
 
 
 def _flywheel_rows(steady: SteadySolution) -> Iterable[ValueRow]:
     if steady.law.flywheel == 0:
         return
-    yield _("flywheel, reduced to the driver"), steady.law.flywheel, INERTIA
+    yield _("inertia of the flywheel, reduced to the driver"), steady.law.flywheel, INERTIA
     if steady.found is not None:
-        ways = (_("by Wittenbauer"), steady.wittenbauer), (_("by Mertsalov"), steady.mertsalov)
+        ways = (
+            (_("flywheel by Wittenbauer's method"), steady.wittenbauer),
+            (_("flywheel by Mertsalov's method"), steady.mertsalov),
+        )
         for (name, inertia), error in zip(ways, steady.errors, strict=True):
             yield name, inertia, INERTIA
-            yield _("{way}, off by, %").format(way=name), 100 * error, NUMBER
-        yield _("first group J_I by Mertsalov, flywheel included"), steady.first_group, INERTIA
-        yield _("links of constant speed ratio in it"), steady.machine.constant, INERTIA
+            yield _("{way}, error, %").format(way=name), 100 * error, NUMBER
+        yield _("first group J_I by Mertsalov's method, with the flywheel"), steady.first_group, INERTIA
+        yield _("links with a constant speed ratio in the first group"), steady.machine.constant, INERTIA
     if steady.task.ratio != 1:
-        yield _("flywheel, on its shaft"), steady.on_shaft, INERTIA
+        yield _("inertia of the flywheel on its own shaft"), steady.on_shaft, INERTIA
     shape = steady.task.size.shape
-    yield _("diameter of a disk") if shape == "disk" else _("mean diameter of a rim"), steady.diameter, LENGTH
-    yield _("its width"), steady.width, LENGTH
-    yield _("its mass"), steady.mass, MASS
+    yield _("diameter of the disk") if shape == "disk" else _("mean diameter of the rim"), steady.diameter, LENGTH
+    yield _("width of the flywheel"), steady.width, LENGTH
+    yield _("mass of the flywheel"), steady.mass, MASS
 
 
 def _law_table(results: Results) -> Table:
@@ -93,7 +96,11 @@ def _law_table(results: Results) -> Table:
     assert motion is not None and isinstance(running, SteadyRunning)
     driving, work = running.sense * running.driving(motion.q), running.work(motion.q)
     resists = running.steady.moment < 0 and running.task.motor is None
-    notes = (_("The loads do work; the driving moment is that of the resistance which takes it."),) if resists else ()
+    notes = (
+        (_("The loads drive the machine: the driving moment is a resisting moment that absorbs their work."),)
+        if resists
+        else ()
+    )
     return Table(
         "law-of-motion",
         _("Law of motion of the driver"),
@@ -112,24 +119,24 @@ def _law_table(results: Results) -> Table:
 def _run_tables(results: Results, single: SingleRun) -> Iterable[Table]:
     """Yield the main quantities of a single run, and its law of motion in RUN_STEPS steps."""
     run, turns = single.run, results.linkage.driver.kind == "turn"
-    time = _("the time of {time} s is over before its way is gone").format(time=numeral(run.time[-1], ".6g"))
-    endings = {"way": _("the way is gone"), "standstill": _("the machine stands"), "time": time}
+    time = _("the time of {time} s is over before the travel is completed").format(time=numeral(run.time[-1], ".6g"))
+    endings = {"way": _("the travel is completed"), "standstill": _("the machine has stopped"), "time": time}
     place, speed = (ANGLE, ANGULAR_SPEED) if turns else (LENGTH, SPEED)
     rows: list[ValueRow] = [
-        (_("begins at"), single.first, place),
-        (_("ends at"), single.first + single.sense * run.way[-1], place),
-        (_("lasts, s"), run.time[-1], NUMBER),
-        (_("speed at its end"), run.speed[-1], speed),
-        (_("work of what drives, J"), run.driven[-1], NUMBER),
+        (_("driver position at the beginning"), single.first, place),
+        (_("driver position at the end"), single.first + single.sense * run.way[-1], place),
+        (_("duration, s"), run.time[-1], NUMBER),
+        (_("speed at the end"), run.speed[-1], speed),
+        (_("work of the driving forces, J"), run.driven[-1], NUMBER),
         (_("work of the loads, J"), run.loaded[-1], NUMBER),
         (_("work of the brake, J"), run.braked[-1], NUMBER),
         (_("kinetic energy at the beginning, J"), run.kinetic[0], NUMBER),
         (_("kinetic energy at the end, J"), run.kinetic[-1], NUMBER),
     ]
-    balance = _("what works and energies leave of one another: {share} of the largest").format(
+    balance = _("imbalance of work and energy: {share} of the largest of them").format(
         share=numeral(run.balance, ".1g")
     )
-    note = _("the run ends: {why}").format(why=endings[run.ending])
+    note = _("end of the run: {why}").format(why=endings[run.ending])
     yield Table("dynamics", _("Single run"), value_columns(rows, results), notes=(note, balance))
     at = single.evenly(RUN_STEPS)
     rate = single.speed(at)
@@ -167,9 +174,9 @@ def _counterweight_rows(found: BalancingResults) -> Iterable[ValueRow]:
     for weight in found.cycle.counterweights:
         link = weight.place.link
         yield _("counterweight on link {link}: mass times radius, kg*m").format(link=link), weight.size, NUMBER
-        yield _("its angle from the x axis of link {link}").format(link=link), weight.angle, ANGLE
+        yield _("angle of the counterweight from the x axis of link {link}").format(link=link), weight.angle, ANGLE
         if weight.mass is not None:
-            yield _("its mass at the radius of the file"), weight.mass, MASS
+            yield _("mass at the specified radius"), weight.mass, MASS
 
 
 def _shaking_rows(found: BalancingResults) -> Iterable[ValueRow]:
@@ -178,11 +185,11 @@ def _shaking_rows(found: BalancingResults) -> Iterable[ValueRow]:
     before, after = found.cycle.before, found.cycle.after
     yield _("largest shaking force"), np.nanmax(np.abs(before.force)), FORCE
     if found.cycle.counterweights:
-        yield _("largest shaking force, balanced"), np.nanmax(np.abs(after.force)), FORCE
-        yield _("share that is left, %"), 100 * found.cycle.left, NUMBER
+        yield _("largest shaking force with counterweights"), np.nanmax(np.abs(after.force)), FORCE
+        yield _("remaining shaking force, %"), 100 * found.cycle.left, NUMBER
     yield _("largest shaking moment"), np.nanmax(np.abs(before.moment)), MOMENT
     if found.cycle.counterweights:
-        yield _("largest shaking moment, balanced"), np.nanmax(np.abs(after.moment)), MOMENT
+        yield _("largest shaking moment with counterweights"), np.nanmax(np.abs(after.moment)), MOMENT
 
 
 def _rotor_rows(results: Results, found: BalancingResults) -> Iterable[ValueRow]:
@@ -190,31 +197,44 @@ def _rotor_rows(results: Results, found: BalancingResults) -> Iterable[ValueRow]
     if rotor is None:
         return
     rate = results.linkage.driver.rate
-    for words, added in ((_("shaft"), None), (_("shaft, balanced"), found.corrections)):
+    for words, added in ((_("shaft"), None), (_("balanced shaft"), found.corrections)):
         force, couple = (abs(part) * rate**2 for part in rotor.unbalance(added))
         yield _("{shaft}: centrifugal force").format(shaft=words), force, FORCE
-        yield _("{shaft}: couple about the first plane").format(shaft=words), couple, MOMENT
+        yield _("{shaft}: moment about the first plane").format(shaft=words), couple, MOMENT
     for number, (plane, size) in enumerate(zip(rotor.planes, found.corrections.tolist(), strict=True), 1):
-        yield _("mass in plane {number}: mass times radius, kg*m").format(number=number), abs(size), NUMBER
-        yield _("its angle"), float(np.mod(np.angle(size), 2 * np.pi)), ANGLE
+        yield _("correction in plane {number}: mass times radius, kg*m").format(number=number), abs(size), NUMBER
+        yield _("angle of this mass"), float(np.mod(np.angle(size), 2 * np.pi)), ANGLE
         if plane.radius:
-            yield _("its mass at the radius of the file"), abs(size) / plane.radius, MASS
+            yield _("mass at the specified radius"), abs(size) / plane.radius, MASS
 
 
 def _balancing_notes(found: BalancingResults) -> Iterable[str]:
     if found.cycle.shakes:
-        yield _("Shaking: forces of inertia of all links on the frame, over the cycle at constant speed of the driver.")
+        yield _(
+            "Shaking force and moment: inertia forces of all links, transmitted to the frame, over the cycle "
+            "at constant speed of the driver."
+        )
     if found.cycle.alike:
-        yield _("Some counterweights could do what others do: of all ways to balance the least masses are shown.")
+        yield _("Some counterweights can replace others: of all solutions the one with the least masses is shown.")
     if any(weight.mass is None for weight in found.cycle.counterweights):
-        yield _("Where no radius is told, the counterweight's own moment of inertia is left out of the shaking moment.")
+        yield _(
+            "If no radius is specified, the shaking moment does not include the counterweight's own moment of inertia."
+        )
 
 
 def _shaking_table(results: Results, found: BalancingResults) -> Table:
     columns = driver_columns(results)
     told = [(found.before, "F x", "F y", "F", "M")]
     if found.cycle.counterweights:
-        told.append((found.after, N_("F x, balanced"), N_("F y, balanced"), N_("F, balanced"), N_("M, balanced")))
+        told.append(
+            (
+                found.after,
+                N_("F x, with counterweights"),
+                N_("F y, with counterweights"),
+                N_("F, with counterweights"),
+                N_("M, with counterweights"),
+            )
+        )
     least = NO_FORCE * float(np.nanmax(np.abs(found.cycle.before.force)))
     for shaking, *headers in told:
         force = np.where(np.abs(shaking.force) < least, 0, shaking.force)  # rounding is none
@@ -222,7 +242,7 @@ def _shaking_table(results: Results, found: BalancingResults) -> Table:
         columns += [
             Column(h, v, MOMENT if v is shaking.moment else FORCE) for h, v in zip(headers, values, strict=True)
         ]
-    note = _("M is about {pivot}, counterclockwise.").format(pivot=found.pivot or _("the origin"))
+    note = _("M is taken about {pivot}, positive counterclockwise.").format(pivot=found.pivot or _("the origin"))
     return Table("shaking", _("Shaking force and moment on the frame"), tuple(columns), notes=(note,))
 
 
@@ -240,7 +260,10 @@ def intermittent_tables(results: Results) -> Iterable[Table]:
     rows = [row for wheel in wheels for row in _wheel_cycle_rows(wheel, place)]
     notes = [note for wheel in wheels for note in _wheel_notes(wheel)]
     yield Table(
-        "intermittent-cycle", _("Intermittent motion over a cycle"), value_columns(rows, results), notes=tuple(notes)
+        "intermittent-cycle",
+        _("Intermittent motion: values per cycle"),
+        value_columns(rows, results),
+        notes=tuple(notes),
     )
     yield _wheel_motion_table(wheels, place)
 
@@ -251,23 +274,23 @@ def _wheel_period_table(wheels: Iterable[IntermittentMotion], place: Dimension, 
     parts = [part for __, part, ___ in rows]
     columns = [
         Column(N_("wheel"), [wheel.task.name for wheel, __, ___ in rows]),
-        Column(N_("state"), [_("driven") if part.ride.driven else _("stands") for part in parts]),
+        Column(N_("state"), [_("driven") if part.ride.driven else _("at rest") for part in parts]),
     ]
     if any(len(wheel.task.settings) > 1 for wheel in wheels):
         columns.append(Column(N_("setting"), [_setting_text(wheel, part) for wheel, part, __ in rows]))
     columns += [
-        Column(N_("driver from"), [part.ride.start for part in parts], place),
-        Column(N_("driver to"), [part.ride.end for part in parts], place),
-        Column(N_("way of the driver"), [part.ride.way for part in parts], place),
+        Column(N_("initial driver position"), [part.ride.start for part in parts], place),
+        Column(N_("final driver position"), [part.ride.end for part in parts], place),
+        Column(N_("travel of the driver"), [part.ride.way for part in parts], place),
         Column(N_("t"), [part.time for part in parts], TIME),
-        Column(N_("wheel from"), [part.angles[0] for part in parts], ANGLE),
-        Column(N_("wheel to"), [part.angles[-1] for part in parts], ANGLE),
+        Column(N_("initial wheel angle"), [part.angles[0] for part in parts], ANGLE),
+        Column(N_("final wheel angle"), [part.angles[-1] for part in parts], ANGLE),
         Column(N_("step"), [part.step for part in parts], ANGLE),
         Column(N_("jump of omega at the beginning"), [jump for __, ___, jump in rows], ANGULAR_SPEED),
     ]
-    note = _("A wheel's angle is counted from the beginning of the cycle, counterclockwise.")
+    note = _("The angle of a wheel is measured from the beginning of the cycle, positive counterclockwise.")
     if back:
-        note = f"{note} {_('The driver is taken to turn back at once, and to be as fast on its way back.')}"
+        note = f"{note} {_('The driver is assumed to reverse instantly and to move back at the same speed.')}"
     return Table("intermittent", _("Intermittent motion"), tuple(columns), notes=(note,))
 
 
@@ -280,27 +303,27 @@ def _setting_text(wheel: IntermittentMotion, part: WheelMotion) -> str:
 
 def _wheel_cycle_rows(wheel: IntermittentMotion, place: Dimension) -> Iterable[ValueRow]:
     name = wheel.task.name
-    yield _("wheel {name} turns in a cycle by").format(name=name), wheel.turn, ANGLE
+    yield _("rotation of wheel {name} per cycle").format(name=name), wheel.turn, ANGLE
     if wheel.cycles is not None:
-        yield _("cycles in which it makes whole turns"), wheel.cycles, NUMBER
-    yield _("way of the driver in a cycle"), wheel.way, place
-    yield _("share of it on which the wheel stands"), wheel.standing, NUMBER
-    for words, driven in ((_("time in which it is driven"), True), (_("time in which it stands"), False)):
+        yield _("number of cycles for a whole number of turns"), wheel.cycles, NUMBER
+    yield _("travel of the driver per cycle"), wheel.way, place
+    yield _("fraction of it with the wheel at rest"), wheel.standing, NUMBER
+    for words, driven in ((_("time of motion"), True), (_("time at rest"), False)):
         if np.isfinite(wheel.time(driven=driven)):
             yield words, wheel.time(driven=driven), TIME
     yield _("largest angular speed"), wheel.omega, ANGULAR_SPEED
-    yield _("largest angular acceleration while it is driven"), wheel.epsilon, ANGULAR_ACCELERATION
-    yield _("largest jump of omega where it is taken up and let go"), wheel.shock, ANGULAR_SPEED
+    yield _("largest angular acceleration during motion"), wheel.epsilon, ANGULAR_ACCELERATION
+    yield _("largest jump of omega at the beginning and end of motion"), wheel.shock, ANGULAR_SPEED
 
 
 def _wheel_notes(wheel: IntermittentMotion) -> Iterable[str]:
     name = wheel.task.name
     if wheel.shock == 0:
-        yield _("Wheel {name} is taken up and let go without shock: its angular speed does not jump.").format(name=name)
+        yield _("Wheel {name} starts and stops without shock: its angular speed does not jump.").format(name=name)
     else:
-        yield _("Wheel {name} is taken up or let go with a shock: its angular speed jumps.").format(name=name)
+        yield _("Wheel {name} starts or stops with a shock: its angular speed jumps.").format(name=name)
     if wheel.cycles is None and wheel.turn:
-        text = _("Wheel {name} makes no whole number of turns in {most} cycles or fewer.")
+        text = _("Wheel {name} does not complete a whole number of turns within {most} cycles.")
         yield text.format(name=name, most=MOST_CYCLES)
 
 
@@ -308,7 +331,7 @@ def _wheel_motion_table(wheels: Iterable[IntermittentMotion], place: Dimension) 
     every = [(wheel.task.name, part) for wheel in wheels for part in wheel.parts]
     columns = [Column(N_("wheel"), [name for name, part in every for __ in part.ways])]
     told = (
-        (N_("way of the driver"), "ways", place),
+        (N_("travel of the driver"), "ways", place),
         (N_("angle"), "angles", ANGLE),
         (N_("omega"), "omegas", ANGULAR_SPEED),
         (N_("epsilon"), "epsilons", ANGULAR_ACCELERATION),
@@ -316,4 +339,4 @@ def _wheel_motion_table(wheels: Iterable[IntermittentMotion], place: Dimension) 
     for header, name, dimension in told:
         values = np.concatenate([getattr(part, name) for __, part in every])
         columns.append(Column(header, values, dimension))
-    return Table("intermittent-course", _("Course of intermittent motion"), tuple(columns), long=True)
+    return Table("intermittent-course", _("Intermittent motion of the wheels"), tuple(columns), long=True)

@@ -50,15 +50,15 @@ def narrate_structure(results: Results) -> Iterable[str]:
     if any(pair.mesh is not None and pair.mesh.roller for pair in structure.pairs):
         yield _("If rollers are counted as links, W = {count}.").format(count=mobility_with_rollers(structure))
     if structure.passive:
-        yield _("The rank of its equations shows passive constraints: {count}; the true mobility is W = {w}.").format(
-            count=structure.redundant, w=structure.mobility + structure.redundant
-        )
+        yield _(
+            "The rank of the constraint equations shows redundant constraints: {count}; the true mobility is W = {w}."
+        ).format(count=structure.redundant, w=structure.mobility + structure.redundant)
     yield _("Pairs, with their classes and codes: {pairs}.").format(pairs=", ".join(map(_pair_text, structure.pairs)))
     for driver in results.linkage.drivers:
-        yield _("Link {link} ({role}) is a driving link: {motion}.").format(
+        yield _("Link {link} ({role}) is an input link: {motion}.").format(
             link=driver.link, role=_(ROLES[results.roles[driver.link]]), motion=describe_driver_motion(driver)
         )
-    yield _("The formula of structure is {formula}; the mechanism is of class {number}.").format(
+    yield _("The structural formula is {formula}; the mechanism is of class {number}.").format(
         formula=structure.formula, number=structure.roman
     )
     if len(structure.drivers) > 1:
@@ -71,9 +71,9 @@ def narrate_structure(results: Results) -> Iterable[str]:
     motions = (f"{link}: {describe_link_motion(results, link)}" for link in structure.links)
     yield _("Motion of the links: {motions}.").format(motions="; ".join(motions))
     for sentence in reduction_sentences(structure):
-        yield _("For the formula: {what}.").format(what=sentence)
+        yield _("In the structural formula: {what}.").format(what=sentence)
     for group in structure.groups:
-        text = _("The group {group} is of class {number}, order {order}, type {type}; its outer pairs are {outer}.")
+        text = _("Group {group} is of class {number}, order {order} and type {type}; its external pairs are {outer}.")
         kind = f"{group.type} ({group.letters}, {group.type_number})" if group.type_number else group.type
         yield text.format(
             group=group.title,
@@ -82,13 +82,13 @@ def narrate_structure(results: Results) -> Iterable[str]:
             type=kind,
             outer=_external_pairs(group),
         )
-        yield _("For the group {group}, 3n - 2 p1 - p2 = {count}.").format(
+        yield _("For group {group}, 3n - 2 p1 - p2 = {count}.").format(
             group=group.title, count=mobility_equation(group.count)
         )
     if structure.groups:
         yield _(
-            "Positions, velocities and accelerations are found group by group in this order, reactions in the opposite "
-            "one; {balance}, and Zhukovsky's lever checks it."
+            "Positions, velocities and accelerations are determined group by group in this order, reactions in "
+            "the reverse order; {balance}, which is checked by the Zhukovsky lever."
         ).format(balance=_balance_text(results.linkage))
 
 
@@ -97,14 +97,15 @@ def _mobility_sentence(structure: Structure) -> str:
     lower = len(structure.pairs) - higher
     turning = sum(pair.kind == "R" for pair in structure.pairs)
     text = _(
-        "The mechanism has n = {n} moving links and p1 = {lower} lower pairs (turning: {turning}, sliding: {sliding}); "
-        "by Chebyshev's formula its mobility is W = 3n - 2 p1 = 3*{n} - 2*{lower} = {w}."
+        "The mechanism has n = {n} moving links and p1 = {lower} lower pairs (revolute: {turning}, "
+        "prismatic: {sliding}); by Chebyshev's formula its mobility is W = 3n - 2 p1 = 3*{n} - 2*{lower} = "
+        "{w}."
     )
     if higher:
         text = _(
-            "The mechanism has n = {n} moving links, p1 = {lower} lower pairs (turning: {turning}, sliding: {sliding}) "
-            "and p2 = {higher} higher pairs; by Chebyshev's formula its mobility is "
-            "W = 3n - 2 p1 - p2 = 3*{n} - 2*{lower} - {higher} = {w}."
+            "The mechanism has n = {n} moving links, p1 = {lower} lower pairs (revolute: {turning}, prismatic: "
+            "{sliding}) and p2 = {higher} higher pairs; by Chebyshev's formula its mobility is W = 3n - 2 p1 - "
+            "p2 = 3*{n} - 2*{lower} - {higher} = {w}."
         )
     return text.format(n=n, lower=lower, turning=turning, sliding=lower - turning, higher=higher, w=w)
 
@@ -125,7 +126,7 @@ def _external_pairs(group: Group) -> str:
 def _balance_text(linkage: Linkage) -> str:
     driver = linkage.driver
     if linkage.others:
-        return _("moments and forces on the driving links balance it")
+        return _("moments and forces on the input links balance the mechanism")
     text = _("the balancing moment acts on link {link}")
     if driver.kind == "slide" or driver.balance == "force":
         text = _("the balancing force acts on link {link}")
@@ -153,7 +154,9 @@ def step_table(results: Results) -> Table:
     """Return the table of drivers and groups in solving order, with the assembly of each group."""
     linkage = results.linkage
     drivers = " + ".join(map(results.structure.driver_title, linkage.drivers))
-    given = _("the drivers: their places are given") if linkage.others else _("the driver: its place is given")
+    given = (
+        _("the drivers: their coordinates are given") if linkage.others else _("the driver: its coordinate is given")
+    )
     rows = [("1", drivers, given, "", _("in closed form"))]
     solved = {link: kernel for kernel in results.kernels for link in kernel.group.links}
     for number, group in enumerate(results.structure.solved, 2):
@@ -170,7 +173,7 @@ def step_table(results: Results) -> Table:
     return text_table(
         "way",
         _("What is computed, in this order; forces in the opposite one"),
-        (_("step"), _("group"), _("hangs on"), _("assembly"), _("solved")),
+        (_("step"), _("group"), _("connected to"), _("assembly"), _("solution")),
         rows,
         (note,),
     )
@@ -186,24 +189,24 @@ def _known_links(group: Group) -> str:
 
 def _assembly_text(kernel: GroupSolver | None) -> str:
     if kernel is None:
-        return _("not decided: see tmm kinematics")
+        return _("ambiguous: see `tmm kinematics`")
     if not isinstance(kernel, ClosedFormSolver):
-        return _("that of the sketch, followed")
+        return _("that of the sketch, by continuation")
     if kernel.assemblies == 1:
         return _("the only one")
-    return _("sign {sign} of two, from the sketch").format(sign=f"{kernel.sign:+d}")
+    return _("sign {sign} of two, as in the sketch").format(sign=f"{kernel.sign:+d}")
 
 
 def _method_text(kernel: GroupSolver) -> str:
     if isinstance(kernel, ClosedFormSolver):
-        return _("in closed form") if kernel.winding is None else _("in closed form, turns followed")
-    return _("by Newton") if kernel.followed is None else _("by Newton, followed")
+        return _("in closed form") if kernel.winding is None else _("in closed form, with accumulated angle")
+    return _("by Newton's method") if kernel.followed is None else _("by Newton's method, with continuation")
 
 
 def stage_table(results: Results) -> Table:
     """Return a table with a row for each stage of the calculation."""
-    headers = (_("stage"), _("groups"), _("places"), _("of the motion"), _("note"))
-    return text_table("stages", _("What each stage computes, when it is asked for"), headers, describe_stages(results))
+    headers = (_("stage"), _("groups"), _("positions"), _("quantities"), _("note"))
+    return text_table("stages", _("What each stage computes when it is requested"), headers, describe_stages(results))
 
 
 def describe_stages(results: Results) -> Iterable[StageRow]:
@@ -211,22 +214,26 @@ def describe_stages(results: Results) -> Iterable[StageRow]:
     assembles.
     """
     driver_range, linkage, request = results.driver_range, results.linkage, results.problem.request
-    yield _("structure"), "-", "-", "-", _("by counting; a crank and a rocker are told apart by the range")
+    yield _("structure"), "-", "-", "-", _("by counting; crank and rocker are distinguished by the range of motion")
     if driver_range is None:
         return
     kernels, scan = results.kernels, SCAN * driver_range.turns + 1
     asked = str(len(request.places) or request.count)
     every = _group_titles(kernels, kernels)
-    places, velocities, accelerations = _("places"), _("and velocities"), _("and accelerations")
+    places, velocities, accelerations = (
+        _("positions"),
+        _("positions, velocities"),
+        _("positions, velocities, accelerations"),
+    )
 
-    yield _("range of the driver"), every, str(scan), places, _("at once, then at what ends it")
+    yield _("range of the driver"), every, str(scan), places, _("in one scan, then refined at its limits")
     for link in results.mechanism.outputs:
         what = _("strokes of link {link}").format(link=link)
         if not driver_range.full:
-            note = _("over the places asked: the driver does not turn fully")
+            note = _("over the requested positions: the driver does not rotate fully")
             yield what, every, str(SCAN + 1), velocities, note
             continue
-        note = _("position 0 hangs on it") if request.start == "working stroke" and not request.places else ""
+        note = _("position 0 depends on it") if request.start == "working stroke" and not request.places else ""
         yield (
             what,
             _group_titles(solvers_towards(kernels, [linkage.output_carrier(link)]), kernels),
@@ -235,20 +242,20 @@ def describe_stages(results: Results) -> Iterable[StageRow]:
             note,
         )
     yield _("dead positions"), every, str(scan), places, ""
-    yield _("pressure angles"), every, str(scan), places, _("from statics")
+    yield _("pressure angles"), every, str(scan), places, _("from force equilibrium")
     if results.inputs.dynamics is not None:
-        note = _("and more, until sums along the way are exact; then kinematics and forces with it")
+        note = _("more positions until the integrals are accurate; then kinematics and forces with this law")
         yield _("law of motion"), every, str(LAW_POSITIONS * driver_range.turns), accelerations, note
     if results.inputs.balancing is not None:
-        note = _("what shakes the frame, at constant speed of the driver")
+        note = _("shaking force and moment at constant speed of the driver")
         yield _("balancing"), every, str(CYCLE_SAMPLES * driver_range.turns), accelerations, note
-    note = _("--position: these only; --of: groups on the way only")
+    note = _("--position: only these positions; --of: only the groups that are needed")
     yield _("kinematics"), every, asked, accelerations, note
     yield _("forces"), every, asked, _("reactions"), f"{_inertia_text(linkage)}; {_load_text(linkage)}"
-    yield _("lever"), "-", asked, velocities, _("of the same loads; solves nothing anew")
+    yield _("Zhukovsky lever"), "-", asked, velocities, _("with the same loads; no further equations are solved")
     if linkage.friction:
-        yield _("losses by friction"), every, str(CYCLE_SAMPLES + 1), accelerations, _("over the whole cycle")
-    drawn = _("only where drawings are asked for")
+        yield _("friction losses"), every, str(CYCLE_SAMPLES + 1), accelerations, _("over the whole cycle")
+    drawn = _("only if drawings are requested")
     yield _("trajectories"), every, str(POSITIONS_PER_TURN), places, drawn
     diagrams = min((POSITIONS_PER_TURN - 1) * driver_range.turns, SCAN) + 1
     yield _("diagrams"), every, str(diagrams), accelerations, drawn

@@ -63,11 +63,11 @@ def _coordinates(z: complex) -> list[float]:
 def _refuse_unsupported(linkage: Linkage) -> None:
     reason = None
     if linkage.driver.kind != "turn" or linkage.driver.base != FRAME or linkage.others:
-        reason = _("pylinkage drives one crank on the frame")
+        reason = _("pylinkage supports a single driver only: a crank on the frame")
     elif linkage.meshes:
-        reason = _("pylinkage has no wheels and cams in its mechanisms")
+        reason = _("pylinkage does not support gears and cams")
     elif any(slide.carrier != FRAME or len(linkage.links[slide.runner].points) > 1 for slide in linkage.slides):
-        reason = _("pylinkage knows sliders with one hinge on a line of the frame only")
+        reason = _("pylinkage supports only sliders with one hinge on a straight guide of the frame")
     if reason:
         raise ProblemError(reason)
 

@@ -56,13 +56,15 @@ def summarise_file(task: Problem | TaskProblem) -> Iterable[str]:
     yield describe_units(task.units)
     problem = task.whole
     if problem.source is not None and problem.source.given:
-        yield _("in place of the file's: {settings}").format(settings=", ".join(problem.source.given.values()))
+        yield _("values that replace those of the file: {settings}").format(
+            settings=", ".join(problem.source.given.values())
+        )
     linkage = problem.linkage
     for driver in linkage.drivers:
         yield _("driver: link {link}, {motion}").format(link=driver.link, motion=describe_driver_motion(driver))
     sizes = "; ".join(_size_ranges(problem))
     yield (
-        _("sizes: {sizes}; {gravity}").format(sizes=sizes, gravity=describe_gravity(linkage.gravity))
+        _("lengths: {sizes}; {gravity}").format(sizes=sizes, gravity=describe_gravity(linkage.gravity))
         if sizes
         else describe_gravity(linkage.gravity)
     )
@@ -122,7 +124,7 @@ def _pressures(problem: Problem) -> Iterator[tuple[Path, float]]:
 def describe_units(units: UnitSystem) -> str:
     """Return a sentence on the units of numbers that are given without a unit."""
     names = [units.spelt(dimension) for dimension in (LENGTH, ANGLE, MASS, FORCE, MOMENT, INERTIA)]
-    return _("bare numbers: {units}; a bare speed: {angular} or {linear}").format(
+    return _("numbers without a unit: {units}; speed without a unit: {angular} or {linear}").format(
         units=", ".join(names), angular=units.spelt(ANGULAR_SPEED), linear=units.spelt(SPEED)
     )
 
@@ -130,12 +132,16 @@ def describe_units(units: UnitSystem) -> str:
 def describe_driver_motion(driver: Driver) -> str:
     """Return the speed of a driver: `70 rad/s = 668 rpm, counterclockwise`."""
     if driver.kind == "slide":
-        text = _("{speed} m/s, along its guide") if driver.sense > 0 else _("{speed} m/s, against its guide")
+        text = (
+            _("{speed} m/s, in the direction of its guide")
+            if driver.sense > 0
+            else _("{speed} m/s, opposite to the direction of its guide")
+        )
         return text.format(speed=_short_number(driver.rate))
     if driver.law is not None:
-        text = _("{low} to {high} rad/s = {least} to {most} rpm by the rows of a table, counterclockwise; {between}")
+        text = _("{low} to {high} rad/s = {least} to {most} rpm in the rows of the table, counterclockwise; {between}")
         if driver.sense < 0:
-            text = _("{low} to {high} rad/s = {least} to {most} rpm by the rows of a table, clockwise; {between}")
+            text = _("{low} to {high} rad/s = {least} to {most} rpm in the rows of the table, clockwise; {between}")
         speeds = np.sqrt([float(to_float(square)) for square in driver.law.squares.values])
         low, high = float(speeds.min()), float(speeds.max())
         return text.format(
@@ -154,15 +160,15 @@ def describe_driver_motion(driver: Driver) -> str:
 def describe_interpolation(law: SpeedTable) -> str:
     """Return how speeds are interpolated between rows of a table, and where the accelerations come from."""
     if law.squares.between == "linear":
-        text = _("constant acceleration from row to row")
+        text = _("constant acceleration between rows")
     elif law.squares.closed:
-        text = _("a cubic spline of squares of speeds that closes, accelerations from its slope")
+        text = _("periodic cubic spline of the squared speed, accelerations from its slope")
     else:
-        text = _("a natural cubic spline of squares of speeds, accelerations from its slope")
+        text = _("natural cubic spline of the squared speed, accelerations from its slope")
     if law.accelerations is not None:
-        text = _("a spline of squares of speeds; accelerations by a table of their own")
+        text = _("spline of the squared speed; accelerations from a separate table")
         if law.squares.between == "linear":
-            text = _("squares of speeds linear from row to row; accelerations by a table of their own")
+            text = _("squared speed linear between rows; accelerations from a separate table")
     return text
 
 
@@ -187,7 +193,7 @@ def find_slips(problem: Problem) -> Iterable[str]:
         yield from _small_fluctuation(data, problem.values)
     for driver in problem.linkage.drivers:
         if driver.rate > (FAST_TURN if driver.kind == "turn" else FAST_SLIDE):
-            yield _("the driver's speed, {motion}, is more than machines have: is the unit right?").format(
+            yield _("the speed of the driver, {motion}, is higher than in real machines: is the unit correct?").format(
                 motion=describe_driver_motion(driver)
             )
     yield from _unusual_sizes(problem)
@@ -199,13 +205,13 @@ def find_slips(problem: Problem) -> Iterable[str]:
     yield from _several_strokes(problem)
     positions = data.get("positions", {})
     if "at" in positions and "count" in positions:
-        yield _("positions: `count` is not used beside `at`, which gives the places one by one: remove one of them")
+        yield _("positions: `count` has no effect, because `at` lists the positions: remove one of them")
 
 
 def find_unused_parameters(tree: Tree, names: Iterable[Any]) -> Iterable[str]:
     """Yield a warning for each of the parameters `names` that the file does not use."""
     for name in unused_parameters(tree, names):
-        yield _("parameter {name} is used nowhere in the file, and its value changes nothing").format(name=name)
+        yield _("parameter {name} is not used in the file; its value has no effect").format(name=name)
 
 
 def _bare_driver_speed(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
@@ -217,13 +223,13 @@ def _bare_driver_speed(problem: Problem, data: Mapping[str, Any]) -> Iterable[st
     fastest = driver.rate if driver.law is None else math.sqrt(max(driver.law.squares.values))  # that stands in a row
     if driver.kind == "turn" and units.factor(ANGLE) != 1 and "angular speed" not in named:
         yield _(
-            "the driver's speed has no unit and is taken as {motion}, though angles are in {angle}: "
-            "write `{speed} rad/s`, or `{speed} rpm` if turns a minute are meant"
+            "the speed of the driver has no unit and is read as {motion}, although angles are in {angle}: "
+            "write `{speed} rad/s`, or `{speed} rpm` for revolutions per minute"
         ).format(motion=describe_driver_motion(driver), angle=units.spelt(ANGLE), speed=numeral(fastest, ".6g"))
     if driver.kind == "slide" and units.factor(LENGTH) != 1 and "speed" not in named:
         yield _(
-            "the driver's speed has no unit and is taken as {speed} m/s, though lengths are in {length}: "
-            "write `{speed} m/s`, or `{speed} {length}/s` if that is meant"
+            "the speed of the driver has no unit and is read as {speed} m/s, although lengths are in {length}: "
+            "write `{speed} m/s`, or `{speed} {length}/s` if that is intended"
         ).format(length=units.spelt(LENGTH), speed=numeral(driver.rate, ".6g"))
 
 
@@ -253,13 +259,13 @@ def find_bare_speeds(data: Mapping[str, Any], values: ValueReader, drivers: Sequ
         if not speed:  # rest is rest in any unit
             continue
         text = _(
-            "{key} has no unit and is taken as {speed} rad/s = {turns} rpm, though angles are in {unit}: "
-            "write `{written} rad/s`, or `{written} rpm` if turns a minute are meant"
+            "{key} has no unit and is read as {speed} rad/s = {turns} rpm, although angles are in {unit}: "
+            "write `{written} rad/s`, or `{written} rpm` for revolutions per minute"
         )
         if linear:
             text = _(
-                "{key} has no unit and is taken as {speed} m/s, though lengths are in {unit}: "
-                "write `{written} m/s`, or `{written} {unit}/s` if that is meant"
+                "{key} has no unit and is read as {speed} m/s, although lengths are in {unit}: write `{written} "
+                "m/s`, or `{written} {unit}/s` if that is intended"
             )
         yield text.format(
             key=format_path(path),
@@ -279,8 +285,9 @@ def _conflicting_speeds(problem: Problem, data: Mapping[str, Any]) -> Iterator[s
     mean = float(to_float(mean))
     if abs(mean / speed - 1) > SAME_SPEED:
         yield _(
-            "dynamics.mean speed is {mean} rad/s = {mean_rpm} rpm, but the driver's speed is {speed} rad/s = "
-            "{speed_rpm} rpm: the law of motion takes the mean speed; write one of them, or both the same"
+            "dynamics.mean speed is {mean} rad/s = {mean_rpm} rpm, but the speed of the driver is {speed} "
+            "rad/s = {speed_rpm} rpm: the law of motion uses the mean speed; give only one of them, or equal "
+            "values"
         ).format(
             mean=_short_number(mean),
             mean_rpm=_short_number(mean * 30 / math.pi),
@@ -297,8 +304,8 @@ def _small_fluctuation(data: Mapping[str, Any], values: ValueReader) -> Iterator
     delta = float(to_float(values.number(written, NUMBER, ("dynamics", "delta"))))
     if delta < LEAST_FLUCTUATION:
         yield _(
-            "dynamics.delta is {written} = 1/{parts}: machines have 1/5 to 1/300; write `{hundredfold}`, or "
-            "`{per_cent} %`, if that is meant"
+            "dynamics.delta is {written} = 1/{parts}; usual values are 1/5 to 1/300: write `{hundredfold}`, or "
+            "`{per_cent} %`, if that is intended"
         ).format(
             written=written,
             parts=f"{1 / delta:.0f}",
@@ -322,8 +329,9 @@ def _distant_points(problem: Problem) -> Iterator[str]:
         distance = min(distances, default=0.0)
         if distance > FAR * size:
             sentence = _(
-                "{key}: this place is {distance} from every point of link {link}, farther than the mechanism is long "
-                "(its largest link, {points}, is {size}): is the unit right? a bare length is in {unit}"
+                "{key}: this point is {distance} from every point of link {link}, which is more than the size of "
+                "the mechanism (its largest link, {points}, has {size}): is the unit correct? A length without a "
+                "unit is in {unit}"
             ).format(
                 key=key,
                 distance=with_unit(problem.units, distance, LENGTH),
@@ -333,7 +341,7 @@ def _distant_points(problem: Problem) -> Iterator[str]:
                 unit=problem.units.spelt(LENGTH),
             )
             names = "".join(list(linkage.links[link].points)[:2])
-            share = _("{slip}, a share is written {{on: {points}, at: 50 %}}").format(slip=sentence, points=names)
+            share = _("{slip}; a fraction is written {{on: {points}, at: 50 %}}").format(slip=sentence, points=names)
             yield share if len(distances) > 1 else sentence
 
 
@@ -342,8 +350,7 @@ def _high_pressures(problem: Problem) -> Iterator[str]:
     for path, pressure in _pressures(problem):
         if pressure > HIGH_PRESSURE:
             yield _(
-                "{key} comes to {pressure}, more than 1000 MPa: is the unit right? write `{number} Pa` if pascals are "
-                "meant"
+                "{key} is {pressure}, more than 1000 MPa: is the unit correct? Write `{number} Pa` for pascals"
             ).format(
                 key=format_path(path),
                 pressure=with_unit(problem.units, pressure, PRESSURE),
@@ -355,9 +362,9 @@ def _unusual_sizes(problem: Problem) -> Iterable[str]:
     for link, (span, points) in _link_spans(problem).items():
         size = with_unit(problem.units, span, LENGTH)
         if span > LARGE:
-            yield _("{points} is {size}, more than 50 m: is the unit right?").format(points=points, size=size)
+            yield _("{points} is {size}, more than 50 m: is the unit correct?").format(points=points, size=size)
         elif span < SMALL and link != FRAME:
-            yield _("{points} is {size}, less than 5 mm: is the unit right?").format(points=points, size=size)
+            yield _("{points} is {size}, less than 5 mm: is the unit correct?").format(points=points, size=size)
 
 
 def _unusual_masses(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
@@ -376,15 +383,15 @@ def _unusual_masses(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
         allowed = HEAVY_CRANK * largest if name in cranks else spans[name][0] if name in spans else math.inf
         if name in spans and name not in wheels and radius > allowed:
             yield _(
-                "masses.{link}: the radius of gyration sqrt(I/m) is {radius}, more than the link itself "
-                "({points}, {size}): are the units of inertia right?"
+                "masses.{link}: the radius of gyration sqrt(I/m) is {radius}, larger than the link itself "
+                "({points}, {size}): is the unit of the moment of inertia correct?"
             ).format(
                 link=name, radius=told, points=spans[name][1], size=with_unit(problem.units, spans[name][0], LENGTH)
             )
         elif name in spans and radius < SLENDER * spans[name][0] <= SLENDER * LARGE:
             yield _(
-                "masses.{link}: the radius of gyration sqrt(I/m) is {radius}, less than 1/50 of the link ({points}, "
-                "{size}): are the units of inertia right? a uniform rod has I = {inertia}"
+                "masses.{link}: the radius of gyration sqrt(I/m) is {radius}, less than 1/50 of the link "
+                "({points}, {size}): is the unit of the moment of inertia correct? For a uniform rod I = {inertia}"
             ).format(
                 link=name,
                 radius=told,
@@ -394,8 +401,8 @@ def _unusual_masses(problem: Problem, data: Mapping[str, Any]) -> Iterable[str]:
             )
         elif name not in spans and name in runners and given.get("centre") is None and radius > BULKY * largest:
             yield _(
-                "masses.{link}: without a centre the mass is put in {point}, though its radius of gyration "
-                "sqrt(I/m) is {radius}: write centre: [x, y], or centre: {point} if that is meant"
+                "masses.{link}: no centre is given, so the mass is placed at {point}, although its radius of "
+                "gyration sqrt(I/m) is {radius}: write centre: [x, y], or centre: {point} if that is intended"
             ).format(link=name, point=next(iter(link.points)), radius=told)
 
 
@@ -410,8 +417,8 @@ def _coincident_sliders(problem: Problem) -> Iterator[str]:
             points = [h.point for h in linkage.hinges if links[0] != links[1] and set(links) <= set(h.links)]
             if points and abs(math.sin(angles[0] - angles[1])) < PARALLEL:
                 yield _(
-                    "links {a} and {b} move as one slider: both have point {point} and slide in one direction on "
-                    "{base}. Remove one of them"
+                    "links {a} and {b} move as one slider: both contain point {point} and slide in the same direction "
+                    "on {base}. Remove one of them"
                 ).format(
                     a=links[0],
                     b=links[1],
@@ -426,8 +433,8 @@ def _overshooting_tables(problem: Problem) -> Iterable[str]:
         row, share = load.table.overshoot if load.table is not None else (0, 0.0)
         if share > OVERSHOOT:
             yield _(
-                "load {load}: between rows {row} and {next} of its table the smooth curve goes beyond all rows by "
-                "{share} % of their range: write `between: linear`, or give more rows there"
+                "load {load}: between rows {row} and {next} of its table the smooth curve exceeds all rows by "
+                "{share} % of their range: write `between: linear`, or add rows there"
             ).format(load=load.name, row=row + 1, next=row + 2, share=numeral(100 * share, ".3g"))
 
 
@@ -437,7 +444,8 @@ def _several_strokes(problem: Problem) -> Iterable[str]:
     for load in problem.linkage.loads if turns > 1 else ():
         if load.working_stroke_only:
             yield _(
-                "load {load} acts in every working stroke of the {turns} turns: `when: [from, to]` picks one of them"
+                "load {load} acts in every working stroke of the cycle (turns: {turns}): select one of them with "
+                "`when: [from, to]`"
             ).format(load=load.name, turns=turns)
 
 

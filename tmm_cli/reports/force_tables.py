@@ -49,7 +49,7 @@ def forces_tables(results: Results) -> Iterable[Table]:
         N_("pair"): [r.pair.name for r in reactions.all],
         N_("name"): [reaction_name(r.by, r.on) for r in reactions.all],
     }
-    note = _("R_ik acts from link i on link k; `acts at`: along the guide from its running point.")
+    note = _("R_ik acts from link i on link k; `acts at` is the distance along the guide from its sliding point.")
     note = " ".join([note, *indeterminate_reactions(results.structure)])
     values = [quantity_columns(REACTION, reaction) for reaction in reactions.directed]
     yield long_table(results, "reactions", _("Reactions"), words, values, note)
@@ -60,16 +60,16 @@ def forces_tables(results: Results) -> Iterable[Table]:
             N_("link"): [pin.link for pin in pins],
             N_("pairs"): [", ".join(pin.pairs) for pin in pins],
         }
-        title = _("Compound hinges: the force of the pin on each of its links")
+        title = _("Compound hinges: force of the pin on each of its links")
         note = _(
-            "The link named with all pairs, to which the others are attached, bears the force of the whole pin; the "
+            "The link listed with all pairs, to which the others are attached, carries the full pin force; the "
             "forces on all links add up to zero."
         )
         yield long_table(results, "pins", title, words, [quantity_columns(LOAD[:1], pin) for pin in pins], note)
     loads = reactions.applied
     if loads:
         words = {N_("link"): [x.link for x in loads], N_("name"): [load_names(x)[0] for x in loads]}
-        title = _("Loads: weights {G}, inertia forces {U} and couples {M}, and those of the task").format(
+        title = _("Loads: weights {G}, inertia forces {U}, inertia couples {M}, and the given loads").format(
             G=symbol("G"), U=symbol("U"), M=symbol("M")
         )
         yield long_table(results, "loads", title, words, [quantity_columns(LOAD, load) for load in loads])
@@ -113,7 +113,7 @@ def _balance_table(results: Results) -> Table:
             name = reaction_name(frame.by, frame.on)
             found.append(Column(Phrase("{name} x", name=name), frame.force.real, FORCE))
             found.append(Column(Phrase("{name} y", name=name), frame.force.imag, FORCE))
-    return Table("balance", _("Driving link"), tuple(found), notes=(sign_convention(results.linkage),))
+    return Table("balance", _("Input link"), tuple(found), notes=(sign_convention(results.linkage),))
 
 
 # The Zhukovsky lever: every force and couple with its arm and moment, a row for each at every position.
@@ -136,8 +136,8 @@ def lever_tables(results: Results) -> Iterable[Table]:
         own |= {load.couple_name: couple, load.name: force}
     words = {N_("name"): [own[i.name] for i in lever.items], N_("link"): [i.link for i in lever.items]}
     note = _(
-        "Arms are those of the lever drawn for a crank that turns counterclockwise with 1 rad/s, 1 m for 1 m/s; "
-        "moments are positive that drive it so."
+        "Arms are measured on the Zhukovsky lever, drawn for a crank rotating counterclockwise at 1 rad/s, "
+        "to the scale 1 m for 1 m/s. Moments in this sense are positive."
     )
     items = [_lever_columns(item, slider) for item in lever.items]
     yield long_table(results, "lever", _("Zhukovsky lever"), words, items, note)
@@ -174,15 +174,16 @@ def drawn_tables(results: Results) -> Iterable[Table]:
     exact = [100 * float(lever.difference[k]) for k in chosen]
     columns = [
         Column(Phrase("{name} by the force plan", name=name), [abs(c.plan) for __, c in checked], dimension, 4),
-        Column(Phrase("{name} by the lever", name=name), [abs(c.lever) for __, c in checked], dimension, 4),
+        Column(Phrase("{name} by the Zhukovsky lever", name=name), [abs(c.lever) for __, c in checked], dimension, 4),
         Column(N_("difference, %"), [100 * c.difference for __, c in checked], NUMBER, 2),
         Column(N_("exact difference, %"), [0.0 if x < 100 * NO_DIFFERENCE else x for x in exact], NUMBER, 2),
     ]
     note = _(
-        "As drawn: arms and segments are read off drawings on A4 to 0.5 mm, so this difference is one of drawing; the "
-        "limit `checks: lever` is for the exact difference, of what is calculated by both ways."
+        "As drawn: arms and segments are read from drawings on A4 to 0.5 mm, so this difference is a "
+        "drawing error; the limit `checks: lever` applies to the exact difference of the values computed "
+        "by both methods."
     )
-    yield Table("lever-drawn", _("The force plan and the lever as drawn"), (*head, *columns), notes=(note,))
+    yield Table("lever-drawn", _("The force plan and the Zhukovsky lever as drawn"), (*head, *columns), notes=(note,))
 
 
 # Power balance, reduced inertia and reduced moment at every position; friction over the cycle.
@@ -197,13 +198,13 @@ def energy_tables(results: Results) -> Iterable[Table]:
     table = [
         *driver_columns(results),
         *(Column(header, values, dimension) for header, values, dimension in columns_of),
-        Column(N_("left over, %"), 100 * np.abs(found.balance), NUMBER, digits=2),
+        Column(N_("imbalance, %"), 100 * np.abs(found.balance), NUMBER, digits=2),
     ]
     note = _(
-        "Powers are positive that speed the mechanism up. What is reduced to the driver is by its place, which grows "
-        "counterclockwise, or along the guide, however it moves."
+        "A power that accelerates the mechanism is positive. Quantities are reduced to the driver "
+        "coordinate, which increases counterclockwise or along the guide, whatever the direction of motion."
     )
-    yield Table("energy", _("Power balance and the mechanism reduced to its driver"), tuple(table), notes=(note,))
+    yield Table("energy", _("Power balance and reduction of the mechanism to its driver"), tuple(table), notes=(note,))
     if results.friction is not None:
         yield _friction_table(results)
 
@@ -212,10 +213,10 @@ def _friction_table(results: Results) -> Table:
     rubbed, lost = results.friction, results.losses
     assert rubbed is not None
     given = results.linkage.friction
-    notes = [_("no efficiency over the cycle: the driver is locked somewhere, or does no work")]
+    notes = [_("no efficiency over the cycle: the mechanism locks by friction somewhere, or the driver does no work")]
     if lost is not None and lost.efficiency is not None:
         notes = [_("efficiency over the cycle: {share} %").format(share=numeral(100 * lost.efficiency, ".4g"))]
-    notes += [_("locks itself {range}").format(range=text) for text in describe_locked_ranges(results)]
+    notes += [_("self-locking {range}").format(range=text) for text in describe_locked_ranges(results)]
     return Table(
         "friction",
         _("Friction"),
@@ -223,7 +224,7 @@ def _friction_table(results: Results) -> Table:
             Column(N_("pair"), [f.pair for f in given]),
             Column(N_("mu"), [f.coefficient for f in given], NUMBER),
             Column(N_("journal radius"), [f.radius if f.radius else float("nan") for f in given], LENGTH),
-            Column(N_("work in the cycle, J"), [lost.pairs[f.pair] if lost else float("nan") for f in given], NUMBER),
+            Column(N_("work per cycle, J"), [lost.pairs[f.pair] if lost else float("nan") for f in given], NUMBER),
         ),
         notes=tuple(notes),
     )
@@ -247,17 +248,11 @@ def describe_locked_ranges(results: Results) -> list[str]:
         start, end = (numeral(float(units.from_si(q, measure)), ".5g") for q in ends)
         pair = results.structure.pair(locked.pair)
         if not numbers:
-            text = _(
-                "from {start} to {end} {unit}, between the positions, most of all in pair {pair} of links {i} and {j}"
-            )
+            text = _("from {start} to {end} {unit}, between the positions, mainly in pair {pair} of links {i} and {j}")
         elif len(numbers) == 1:
-            text = _(
-                "from {start} to {end} {unit} (position {numbers}), most of all in pair {pair} of links {i} and {j}"
-            )
+            text = _("from {start} to {end} {unit} (position {numbers}), mainly in pair {pair} of links {i} and {j}")
         else:
-            text = _(
-                "from {start} to {end} {unit} (positions {numbers}), most of all in pair {pair} of links {i} and {j}"
-            )
+            text = _("from {start} to {end} {unit} (positions {numbers}), mainly in pair {pair} of links {i} and {j}")
         found.append(
             text.format(
                 start=start,

@@ -42,8 +42,8 @@ def locked_positions(results: Results) -> Iterable[str]:
     ranges = describe_locked_ranges(results)
     if ranges:
         yield _(
-            "the mechanism locks itself by friction {ranges}; no forces are given there. Write smaller coefficients in "
-            "friction, or let another link drive"
+            "the mechanism locks by friction {ranges}; no forces are computed there. Reduce the coefficients "
+            "in friction, or choose another input link"
         ).format(ranges="; ".join(ranges))
 
 
@@ -59,8 +59,8 @@ def twisted_springs(results: Results) -> Iterable[str]:
             jumps = np.flatnonzero(np.abs(np.diff(twist_angle(spring, motion))) > np.pi)
         if jumps.size:
             yield _(
-                "torsion spring {spring} is turned by more than half a turn from its free angle at "
-                "{place}: its moment jumps there, as angles are counted within half a turn"
+                "torsion spring {spring} is twisted by more than half a turn from its free angle at {place}: its "
+                "moment jumps there, because angles are measured within half a turn"
             ).format(spring=spring.name, place=_coordinate_in_cycle(results, float(motion.q[jumps[0]])))
 
 
@@ -83,8 +83,8 @@ def springs_of_zero_length(results: Results) -> Iterable[str]:
         if nearest[k] <= COINCIDENT_ENDS * np.nanmax(np.abs(apart)):
             q = float(motion.q[k] + share[k] * (motion.q[k + 1] - motion.q[k]))
             yield _(
-                "the ends of spring {spring} meet at {place}: its force reverses its direction there. Write other "
-                "points in between, or a torsion spring"
+                "the ends of spring {spring} meet at {place}: its force reverses its direction there. Give other "
+                "points in between, or use a torsion spring"
             ).format(spring=spring.name, place=_coordinate_in_cycle(results, q))
 
 
@@ -146,7 +146,9 @@ def _driving_load_text(results: Results, load: Load) -> str:
     turns = np.floor(high / 360) * 360  # a window that begins before the zero begins at a negative angle
     low, high = np.floor((low - turns) * 1000) / 1000, np.ceil((high - turns) * 1000) / 1000  # holds both ends
     window = f"when: [{low:.10g} deg, {high:.10g} deg]"
-    return _("{text}. In an engine, where the gas drives the piston: {window}").format(text=text, window=window)
+    return _("{text}. In an engine, in which the gas pressure drives the piston: {window}").format(
+        text=text, window=window
+    )
 
 
 def _idle_load_text(results: Results, load: Load, motion: Motion, applied: AppliedLoad) -> str:
@@ -155,13 +157,13 @@ def _idle_load_text(results: Results, load: Load, motion: Motion, applied: Appli
     acting = motion.moving & (np.abs(applied.force) > 0)
     k = int(np.argmax(np.where(acting, np.abs(velocity), -1.0)))
     if not np.any(acting):
-        return _("load {load} does no work in the working stroke: link {link} does not rotate. Write a force").format(
-            load=load.name, link=load.link
-        )
+        return _(
+            "load {load} does no work in the working stroke: link {link} does not rotate. Give a force instead "
+            "of a moment"
+        ).format(load=load.name, link=load.link)
     if not abs(velocity[k]):
         return _(
-            "load {load} does no work in the working stroke: its point is at rest. Write the link or the point "
-            "that moves"
+            "load {load} does no work in the working stroke: its point is at rest. Give a link or a point that moves"
         ).format(load=load.name)
     turned = motion.poses[load.link].z[k] if load.follows else 1.0
     angle = round(float(np.angle(-velocity[k] / turned)), 6) + 0.0  # no signed zero
@@ -169,8 +171,8 @@ def _idle_load_text(results: Results, load: Load, motion: Motion, applied: Appli
     if load.table is None:
         written = f"force: {{size: {results.problem.units.format_value(abs(load.force), FORCE)}, {written}}}"
     return _(
-        "load {load} does no work in the working stroke: its force is perpendicular to the motion of its point. "
-        "Write it against the motion: {written}"
+        "load {load} does no work in the working stroke: its force is perpendicular to the motion of its "
+        "point. Direct it against the motion: {written}"
     ).format(load=load.name, written=written)
 
 
@@ -179,12 +181,13 @@ def short_tables(results: Results) -> Iterable[str]:
     for load in results.linkage.loads if results.loads else ():
         if load.table is not None and _ends_early(results, load, load.table):
             sentence = _(
-                "the table of load {load} does not reach as far as the {against} goes: its end value is held"
+                "the table of load {load} does not cover the whole range of its argument ({against}): beyond its "
+                "ends, the end value is used"
             ).format(load=load.name, against=_(load.table.against))
             if load.table.against == "stroke" and not load.table.shares:
-                sentence = _("{slip}; rows in shares reach over every stroke (against: share of stroke)").format(
-                    slip=sentence
-                )
+                sentence = _(
+                    "{slip}; rows given in fractions of the stroke cover any stroke (against: share of stroke)"
+                ).format(slip=sentence)
             yield sentence
 
 
@@ -196,8 +199,8 @@ def long_tables(results: Results) -> Iterable[str]:
         if last > stroke and not ends_with_stroke(last, stroke):
             measure = argument_dimension(results.linkage, load.table)
             yield _(
-                "the table of load {load} goes on to {last}, but the stroke is {stroke}: its last rows are never "
-                "reached. Is the unit right? Rows in shares fit every stroke (against: share of stroke)"
+                "the table of load {load} extends to {last}, but the stroke is {stroke}: its last rows are never "
+                "reached. Is the unit correct? Rows given in fractions fit any stroke (against: share of stroke)"
             ).format(load=load.name, last=with_unit(units, last, measure), stroke=with_unit(units, stroke, measure))
 
 
@@ -217,9 +220,9 @@ def warn_of_load_tables(
         if load.table is not None and np.any(apart):
             measure = argument_dimension(linkage, load.table)
             yield _(
-                "the table of load {load} does not end with the stroke in {apart} of {count} mechanisms: its last row "
-                "is {last}, their strokes are {least} to {largest}. Rows in shares fit every stroke (against: share of "
-                "stroke)"
+                "the table of load {load} does not end with the stroke in {apart} of {count} mechanisms: its last "
+                "row is {last}, the strokes are {least} to {largest}. Rows given in fractions fit any stroke "
+                "(against: share of stroke)"
             ).format(
                 load=load.name,
                 apart=np.count_nonzero(apart),
@@ -239,8 +242,8 @@ def open_tables(results: Results) -> Iterable[str]:
                 for value in (load.table.values[0], load.table.values[-1])
             )
             yield _(
-                "the table of load {load} does not close over the cycle: it begins with {first} and ends with {last}, "
-                "and the load jumps there; with the same value in both rows it would not"
+                "the table of load {load} does not close over the cycle: it begins with {first} and ends with "
+                "{last}, so the load jumps there; give the same value in both rows to avoid this"
             ).format(load=load.name, first=first, last=last)
 
 
@@ -249,8 +252,8 @@ def loads_without_strokes(results: Results) -> Iterable[str]:
     for load in results.linkage.loads:
         if load.working_stroke_only and always_acts(load, results.strokes):
             yield _(
-                "load {load} is one of the working stroke, but there are no whole strokes on this way of "
-                "the driver: it acts always"
+                "load {load} is specified for the working stroke, but the driver's range contains no complete "
+                "stroke: it acts all the time"
             ).format(load=load.name)
 
 
@@ -289,7 +292,7 @@ def lever_disagreement(results: Results) -> Iterable[str]:
     worst = np.where(motion.moving & ~results.locked, results.lever.difference, 0.0)
     k = int(np.argmax(worst))
     yield _(
-        "the lever differs from the force plan by {difference} % at position {number}, more than the limit of {limit} %"
+        "the Zhukovsky lever differs from the force plan by {difference} % at position {number}; the limit is {limit} %"
     ).format(
         number=results.numbers[k],
         difference=numeral(100 * float(worst[k]), ".3g"),

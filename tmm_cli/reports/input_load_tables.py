@@ -28,9 +28,9 @@ FILE_WORDS: Final = {  # that a file may say, where they are shown
     "always": N_("always"),
     "working stroke": N_("working stroke"),
     "stroke": N_("stroke"),
-    "share of stroke": N_("share of the stroke"),
+    "share of stroke": N_("fraction of the stroke"),
     "crank angle": N_("crank angle"),
-    "crank turn": N_("crank turn"),
+    "crank turn": N_("crank rotation"),
 }
 
 
@@ -46,7 +46,7 @@ def mass_table(problem: Problem) -> Table:
     return text_table(
         "masses",
         _("Masses"),
-        (_("link"), _("mass"), _("inertia about S"), _("S in the link's axes")),
+        (_("link"), _("mass"), _("moment of inertia about S"), _("S in the link's axes")),
         [
             (
                 x.name,
@@ -64,7 +64,7 @@ def load_tables(problem: Problem) -> Iterable[Table]:
     yield text_table(
         "loads",
         _("Loads"),
-        (_("name"), _("link"), _("acts at (link's axes)"), _("size"), _("when")),
+        (_("name"), _("link"), _("point of application (in axes of the link)"), _("magnitude"), _("acts")),
         [_load_row(problem, load) for load in problem.linkage.loads],
     )
     for load in problem.linkage.loads:
@@ -75,7 +75,7 @@ def load_tables(problem: Problem) -> Iterable[Table]:
 def _load_row(problem: Problem, load: Load) -> tuple[str, ...]:
     dimension, value = (FORCE, load.force) if load.force else (MOMENT, load.moment)
     if load.table is not None:
-        size = _("table of {rows} rows against the {against}").format(
+        size = _("table of {rows} rows, argument: {against}").format(
             rows=len(load.table.values), against=_argument_name(load.table)
         )
     elif load.resists:
@@ -85,7 +85,7 @@ def _load_row(problem: Problem, load: Load) -> tuple[str, ...]:
     else:
         size = format_value(problem, load.moment, MOMENT)
     place = format_vector(problem, load.at) if load.force else ""
-    link = load.link if load.base == FRAME else _("{link} from {base}").format(link=load.link, base=load.base)
+    link = load.link if load.base == FRAME else _("{link} relative to {base}").format(link=load.link, base=load.base)
     when = _(FILE_WORDS[load.when])
     if load.stroke_link:
         when = _("working stroke of link {link}").format(link=load.stroke_link)
@@ -116,12 +116,12 @@ def _load_table(problem: Problem, load: Load, table: LoadTable) -> Table:
         for at, size in zip(table.arguments, table.values, strict=True)
     ]
     direction = format_value(problem, np.angle(load.force), ANGLE)
-    notes = [_("Its direction is {direction}.").format(direction=direction)] if load.force else []
+    notes = [_("Direction of the force: {direction}.").format(direction=direction)] if load.force else []
     if table.between == "step":
-        notes.append(_("Each row holds up to the next one."))
+        notes.append(_("Each value holds until the next row."))
     elif table.between == "smooth":
-        closed, natural = _("Between rows: a cubic spline that closes."), _("Between rows: a natural cubic spline.")
+        closed, natural = _("Between rows: periodic cubic spline."), _("Between rows: natural cubic spline.")
         notes.append(closed if table.closed else natural)
-    title = _("{load} against the {against}").format(load=load.name, against=_argument_name(table))
+    title = _("Load {load}; argument: {against}").format(load=load.name, against=_argument_name(table))
     name = f"load_table_{linkage.loads.index(load) + 1}"
-    return text_table(name, title, (_argument_name(table), _("size")), rows, tuple(notes))
+    return text_table(name, title, (_argument_name(table), _("magnitude")), rows, tuple(notes))

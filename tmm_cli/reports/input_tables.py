@@ -47,7 +47,7 @@ def input_data_tables(problem: Problem) -> Iterable[Table]:
     yield _point_table(problem)
     if problem.linkage.slides:
         yield _prismatic_pair_table(problem)
-    yield text_table("facts", _("Driver, positions, limits"), (_("what"), _("value")), _fact_rows(problem))
+    yield text_table("facts", _("Driver, positions, limits"), (_("quantity"), _("value")), _fact_rows(problem))
     if problem.linkage.driver.law is not None:
         yield speed_table(problem, problem.linkage.driver.law)
     yield from component_tables(problem)
@@ -65,11 +65,11 @@ def _point_table(problem: Problem) -> Table:
         for name, link in problem.linkage.links.items()
         for point, local in link.points.items()
     ]
-    note = _("Lengths in {unit}. A point on two links is a hinge; on three and more, a compound hinge.")
+    note = _("Lengths in {unit}. A point that belongs to two links is a hinge; to three or more, a compound hinge.")
     return text_table(
         "points",
-        _("Points, each in the axes of its link"),
-        (_("link"), _("point"), _("place")),
+        _("Points, in the axes of their links"),
+        (_("link"), _("point"), _("coordinates")),
         rows,
         (note.format(unit=problem.units.spelt(LENGTH)),),
     )
@@ -78,8 +78,16 @@ def _point_table(problem: Problem) -> Table:
 def _prismatic_pair_table(problem: Problem) -> Table:
     return text_table(
         "slides",
-        _("Sliding pairs"),
-        (_("pair"), _("link"), _("point"), _("slides on"), _("guide through"), _("guide's angle"), _("turned by")),
+        _("Prismatic pairs"),
+        (
+            _("pair"),
+            _("link"),
+            _("point"),
+            _("slides on"),
+            _("guide passes through"),
+            _("angle of the guide"),
+            _("rotated by"),
+        ),
         [
             (
                 s.name,
@@ -99,18 +107,18 @@ def _fact_rows(problem: Problem) -> Iterable[tuple[str, str]]:
     linkage, units = problem.linkage, problem.units
     driver, measure = linkage.driver, coordinate_dimension(linkage.driver.kind)
     dimensions = (LENGTH, ANGLE, MASS, FORCE, MOMENT, INERTIA)
-    yield _("bare numbers are in"), ", ".join(units.spelt(dimension) for dimension in dimensions)
-    yield _("a bare speed is in"), units.spelt(ANGULAR_SPEED if driver.kind == "turn" else SPEED)
+    yield _("units of numbers without a unit"), ", ".join(units.spelt(dimension) for dimension in dimensions)
+    yield _("unit of a speed without a unit"), units.spelt(ANGULAR_SPEED if driver.kind == "turn" else SPEED)
     if driver.kind == "slide":
         text = _("link {link}, {speed}")
     elif driver.sense > 0:
-        text = _("link {link}, {speed} counterclockwise")
+        text = _("link {link}, {speed}, counterclockwise")
     else:
-        text = _("link {link}, {speed} clockwise")
+        text = _("link {link}, {speed}, clockwise")
     yield _("driver"), text.format(link=driver.link, speed=driver_speed(driver))
-    yield _("gravity"), f"[{linkage.gravity.real:.6g}, {linkage.gravity.imag:.6g}] {spelt('m/s^2')}"
+    yield _("gravitational acceleration"), f"[{linkage.gravity.real:.6g}, {linkage.gravity.imag:.6g}] {spelt('m/s^2')}"
     if linkage.turns > 1:
-        yield _("loads come again after"), _("{turns} turns of the crank").format(turns=linkage.turns)
+        yield _("period of the loads"), _("turns of the crank: {turns}").format(turns=linkage.turns)
     for wheel in problem.wheels:
         yield _("wheel {name}").format(name=wheel.name), _wheel_text(wheel)
     yield _("positions"), _positions_text(problem, measure)
@@ -118,24 +126,24 @@ def _fact_rows(problem: Problem) -> Iterable[tuple[str, str]]:
     places = [format_value(problem, sketch.at, measure)]
     places += [f"{name} {format_vector(problem, place)}" for name, place in sketch.points.items()]
     places += [f"{name} {format_value(problem, angle, ANGLE)}" for name, angle in sketch.angles.items()]
-    yield _("sketch, driver at"), ", ".join(places)
+    yield _("sketch: driver position and points"), ", ".join(places)
     yield from ((_("law of motion") if not row else "", told) for row, told in enumerate(_law_of_motion_lines(problem)))
-    yield _("limit of the lever check"), f"{numeral(100 * problem.lever_limit, '.6g')} %"
+    yield _("limit of the Zhukovsky lever check"), f"{numeral(100 * problem.lever_limit, '.6g')} %"
 
 
 def _wheel_text(wheel: WheelTask) -> str:
     """Return which link moves an intermittent wheel, in which strokes, and its settings."""
     words = {
-        "forward": _("moves with link {link} while that turns counterclockwise, and stands else"),
-        "backward": _("moves with link {link} while that turns clockwise, and stands else"),
-        "working stroke": _("moves with link {link} in the working stroke, and stands else"),
-        "idle stroke": _("moves with link {link} in the idle stroke, and stands else"),
+        "forward": _("moves with link {link} while the link rotates counterclockwise; otherwise at rest"),
+        "backward": _("moves with link {link} while the link rotates clockwise; otherwise at rest"),
+        "working stroke": _("moves with link {link} in the working stroke; otherwise at rest"),
+        "idle stroke": _("moves with link {link} in the return stroke; otherwise at rest"),
     }
     told = [words[wheel.when].format(link=wheel.link)]
     if len(wheel.settings) > 1:
         settings = [", ".join(f"{name} = {value}" for name, value in s.values.items()) for s in wheel.settings]
-        text = _("settings take turns, one a cycle of the driver: {settings}")
-        told.append(text.format(settings="; ".join(own or _("as the file says") for own in settings)))
+        text = _("settings alternate, one for each cycle of the driver: {settings}")
+        told.append(text.format(settings="; ".join(own or _("as in the file") for own in settings)))
     return "; ".join(told)
 
 
@@ -143,25 +151,23 @@ def _law_of_motion_lines(problem: Problem) -> Iterable[str]:
     """Yield how the law of motion is determined, line by line."""
     task = problem.dynamics
     if task is None:
-        yield _("given; without a block `dynamics` nothing of it is computed")
+        yield _("given; not computed without a `dynamics` block")
         return
     if not task.cyclic:
-        yield _("of a single run, integrated by time")
+        yield _("single run, integrated over time")
         return
-    yield _("of steady running, from the reduced inertia and the reduced moment over the cycle")
+    yield _("steady motion, from the reduced inertia and the reduced moment over the cycle")
     if task.motor is not None:
-        yield _("driven by the characteristic of its motor")
+        yield _("driving moment from the motor characteristic")
     else:
         speed = format_value(problem, task.mean, ANGULAR_SPEED)
-        yield _("driven by a constant moment that leaves no work over the cycle, mean speed {speed}").format(
-            speed=speed
-        )
+        yield _("constant driving moment with zero total work over the cycle; mean speed {speed}").format(speed=speed)
     if task.flywheel:
         given = format_value(problem, task.flywheel, INERTIA)
-        yield _("with a flywheel of {inertia}, reduced to the driver").format(inertia=given)
+        yield _("flywheel {inertia}, reduced to the driver").format(inertia=given)
     if task.delta is not None:
-        yield _("a flywheel is found that keeps delta = {delta}").format(delta=numeral(task.delta, ".4g"))
-    yield _("forces with the speeds and accelerations of this law")
+        yield _("a flywheel is designed for delta = {delta}").format(delta=numeral(task.delta, ".4g"))
+    yield _("forces are computed with the speeds and accelerations of this law")
 
 
 def _positions_text(problem: Problem, measure: Dimension) -> str:
@@ -172,7 +178,7 @@ def _positions_text(problem: Problem, measure: Dimension) -> str:
         a, b = (format_value(problem, q, measure) for q in driver.stroke)
         return _("{count} from {a} to {b}").format(count=request.count, a=a, b=b)
     if driver.kind == "slide":
-        return _("{count} from one end of its way to the other").format(count=request.count)
+        return _("{count}, over the whole travel").format(count=request.count)
     start = (
         _(FILE_WORDS[request.start])
         if isinstance(request.start, str)
@@ -187,7 +193,7 @@ def _positions_text(problem: Problem, measure: Dimension) -> str:
 def driver_speed(driver: Driver) -> str:
     """Return the speed of a driver as text, with its acceleration if it has one."""
     if driver.law is not None:
-        return _("by a table against the crank angle")
+        return _("by a table, argument: crank angle")
     turns = driver.kind == "turn"
     told = f"{numeral(driver.rate, '.6g')} {spelt('rad/s' if turns else 'm/s')}"
     if driver.acceleration:
@@ -212,7 +218,7 @@ def speed_table(problem: Problem, law: SpeedTable) -> Table:
     ]
     head = (_("crank angle"), _("speed"), _("acceleration"))
     note = _("Between rows: {between}.").format(between=describe_interpolation(law))
-    return text_table("speeds", _("Speed of the driver, in its sense"), head, rows, (note,))
+    return text_table("speeds", _("Speed of the driver, positive in its direction of motion"), head, rows, (note,))
 
 
 def component_tables(problem: Problem) -> Iterable[Table]:
@@ -221,45 +227,53 @@ def component_tables(problem: Problem) -> Iterable[Table]:
     if linkage.others or linkage.driver.base != FRAME:
         yield text_table(
             "drivers",
-            _("Drivers; they pass through the places of the sketch together"),
-            (_("link"), _("driven from"), _("in pair"), _("it"), _("speed"), _("sense"), _("in the sketch at")),
+            _("Drivers; they reach the positions of the sketch simultaneously"),
+            (
+                _("link"),
+                _("driven relative to"),
+                _("driven pair"),
+                _("motion"),
+                _("speed"),
+                _("direction"),
+                _("coordinate in the sketch"),
+            ),
             [_driver_row(problem, driver) for driver in linkage.drivers],
         )
     wheels = [_gear_row(problem, mesh) for mesh in linkage.meshes if mesh.kind != "cam"]
     if wheels:
-        note, title = _("Angles are those of the wheels from the link that holds them."), _("Toothed wheels")
+        note, title = _("Angles of the gears are measured relative to the carrier of the pair."), _("Gears")
         if any(mesh.kind == "rack" for mesh in linkage.meshes):
-            title = _("Toothed wheels and racks")
+            title = _("Gears and racks")
             note = _(
-                "Angles are those of the wheels from the link that holds them; a rack's run is in {unit} "
-                "for an angle in rad."
+                "Angles of the gears are measured relative to the carrier of the pair; the displacement of a rack "
+                "is in {unit} per radian of the gear."
             )
         yield text_table(
             "meshes",
             title,
-            (_("pair"), _("kind"), _("links"), _("held by"), _("law"), _("pitch radii"), _("pressure angle")),
+            (_("pair"), _("kind"), _("links"), _("carrier"), _("law of motion"), _("pitch radii"), _("pressure angle")),
             wheels,
             (note.format(unit=problem.units.spelt(LENGTH)),),
         )
     cams = [row for mesh in linkage.meshes if mesh.kind == "cam" for row in _cam_rows(problem, mesh)]
     if cams:
         note = _(
-            "Of a sliding follower the force is taken as that of a flat face: along the guide, ds/da "
-            "from the cam's axis. A swinging one is loaded by a couple."
+            "The force on a translating follower is taken as for a flat face: along the guide, at the distance "
+            "ds/da from the cam axis. An oscillating follower is loaded by a couple."
         )
         yield text_table(
             "cams",
-            _("Cams, by the law of the follower"),
+            _("Cams, by the motion of the follower"),
             (
                 _("pair"),
                 _("cam"),
                 _("follower"),
-                _("piece"),
-                _("cam from"),
-                _("to"),
+                _("segment"),
+                _("cam angle from"),
+                _("cam angle to"),
                 _("rise"),
-                _("law"),
-                _("follower then at"),
+                _("law of motion"),
+                _("follower position at the end"),
             ),
             cams,
             (note,),
@@ -268,7 +282,15 @@ def component_tables(problem: Problem) -> Iterable[Table]:
         yield text_table(
             "springs",
             _("Springs"),
-            (_("name"), _("between"), _("ends"), _("stiffness"), _("free at"), _("preload"), _("damping")),
+            (
+                _("name"),
+                _("between links"),
+                _("points of attachment"),
+                _("stiffness"),
+                _("free length or angle"),
+                _("preload"),
+                _("damping"),
+            ),
             [_spring_row(problem, spring) for spring in linkage.springs],
         )
     if linkage.friction:
@@ -276,12 +298,12 @@ def component_tables(problem: Problem) -> Iterable[Table]:
         yield text_table(
             "friction",
             _("Friction"),
-            (_("pair"), _("coefficient"), _("journal's radius")),
+            (_("pair"), _("coefficient"), _("journal radius")),
             [
                 (
                     f.pair,
                     numeral(f.coefficient, ".6g"),
-                    _("a guide") if f.pair in slides else format_value(problem, f.radius, LENGTH),
+                    _("guide") if f.pair in slides else format_value(problem, f.radius, LENGTH),
                 )
                 for f in linkage.friction
             ],
@@ -289,13 +311,13 @@ def component_tables(problem: Problem) -> Iterable[Table]:
 
 
 def _driver_row(problem: Problem, driver: Driver) -> tuple[str, ...]:
-    senses = {"turn": (_("clockwise"), _("counterclockwise")), "slide": (_("in"), _("out"))}
+    senses = {"turn": (_("clockwise"), _("counterclockwise")), "slide": (_("retracting"), _("extending"))}
     at = problem.linkage.sketch.at if driver is problem.linkage.driver else driver.at
     return (
         driver.link,
         link_name(driver.base),
         driver.joint,
-        _("turns") if driver.kind == "turn" else _("slides"),
+        _("rotates") if driver.kind == "turn" else _("slides"),
         driver_speed(driver),
         senses[driver.kind][driver.sense > 0],
         format_value(problem, at, coordinate_dimension(driver.kind)),
@@ -306,12 +328,12 @@ def _gear_row(problem: Problem, mesh: Mesh) -> tuple[str, ...]:
     """Return the row of a gear pair, or of a gear and rack, with the equation of its motion."""
     linkage = problem.linkage
     if mesh.kind == "rack":
-        kind = _("wheel and rack")
+        kind = _("gear and rack")
         step = problem.units.from_si(mesh.ratio, LENGTH)
         law, offset = f"s_{mesh.j} = {numeral(step, '.6g')} phi_{mesh.i}", format_value(problem, mesh.offset, LENGTH)
         radii = format_value(problem, abs(mesh.ratio), LENGTH)
     else:
-        kind = _("inner mesh") if mesh.ratio > 0 else _("outer mesh")
+        kind = _("internal gearing") if mesh.ratio > 0 else _("external gearing")
         law, offset = (
             f"phi_{mesh.j} = {numeral(mesh.ratio, '.6g')} phi_{mesh.i}",
             format_value(problem, mesh.offset, ANGLE),
@@ -379,8 +401,11 @@ Fact = tuple[str, str]
 def law_of_motion_tables(problem: Problem, task: SteadyTask | RunTask) -> Iterable[Table]:
     """Yield the table of motor and flywheel, and the rows of a driving moment that is given by a table."""
     rows = [*(_steady_rows(problem, task) if task.cyclic else _run_rows(problem, task))]
-    title, note = _("Data of the law of motion"), _("Moments, inertia and speeds are reduced to the driver.")
-    yield text_table("machine", title, (_("what"), _("value")), rows, (note,))
+    title, note = (
+        _("Input data for the law of motion"),
+        _("Moments, moments of inertia and speeds are reduced to the driver."),
+    )
+    yield text_table("machine", title, (_("quantity"), _("value")), rows, (note,))
     drive = None if task.cyclic else _drive_profile(task)
     if drive is not None and len(drive.arguments) > 1:
         yield _drive_table(problem, drive)
@@ -392,32 +417,32 @@ def _steady_rows(problem: Problem, task: SteadyTask) -> Iterable[Fact]:
     else:
         yield from _motor_rows(problem, task.motor, turns=True)
     if task.delta is not None:
-        yield _("fluctuation delta that is wanted"), numeral(task.delta, ".4g")
+        yield _("required coefficient of fluctuation delta"), numeral(task.delta, ".4g")
     if task.flywheel:
-        yield _("given flywheel"), format_value(problem, task.flywheel, INERTIA)
+        yield _("specified flywheel"), format_value(problem, task.flywheel, INERTIA)
     if task.ratio != 1:
-        yield _("speed of the flywheel's shaft over that of the driver"), numeral(task.ratio, ".6g")
+        yield _("ratio of the speed of the flywheel shaft to that of the driver"), numeral(task.ratio, ".6g")
     size = task.size
     told = {"density": format_value(problem, size.density, DENSITY), "width": numeral(size.width, ".4g")}
-    text = _("disk, {density}, width {width} of its diameter")
+    text = _("disk, {density}, width {width} of the diameter")
     if size.shape == "rim":
-        text = _("rim, {density}, width {width} and height {height} of its mean diameter")
+        text = _("rim, {density}, width {width} and height {height} of the mean diameter")
     if task.flywheel or task.delta is not None:
-        yield _("form of the flywheel"), text.format(**told, height=numeral(size.height, ".4g"))
+        yield _("shape of the flywheel"), text.format(**told, height=numeral(size.height, ".4g"))
 
 
 def _run_rows(problem: Problem, task: RunTask) -> Iterable[Fact]:
     turns = problem.linkage.driver.kind == "turn"
-    yield _("speed at the beginning"), format_value(problem, task.speed, ANGULAR_SPEED if turns else SPEED)
+    yield _("initial speed"), format_value(problem, task.speed, ANGULAR_SPEED if turns else SPEED)
     if task.motor is not None:
         yield from _motor_rows(problem, task.motor, turns=turns)
     drive = _drive_profile(task)
     if drive is not None and len(drive.arguments) == 1:
-        yield _("what drives"), format_value(problem, drive.values[0], MOMENT if turns else FORCE)
+        yield _("driving moment or force"), format_value(problem, drive.values[0], MOMENT if turns else FORCE)
     if task.brake:
         yield _("brake"), format_value(problem, task.brake, MOMENT if turns else FORCE)
     if task.flywheel:
-        yield _("given flywheel"), format_value(problem, task.flywheel, INERTIA if turns else MASS)
+        yield _("specified flywheel"), format_value(problem, task.flywheel, INERTIA if turns else MASS)
 
 
 def _drive_profile(task: RunTask) -> DriveProfile | None:
@@ -429,23 +454,23 @@ def _motor_rows(problem: Problem, motor: MotorCharacteristic, *, turns: bool) ->
     speed, size = (ANGULAR_SPEED, MOMENT) if turns else (SPEED, FORCE)
     match motor:
         case KlossMotor():
-            yield _("motor"), _("asynchronous, by the formula of Kloss")
-            yield _("its synchronous speed"), format_value(problem, motor.synchronous, speed)
-            yield _("its largest moment"), format_value(problem, motor.breakdown, size)
-            yield _("its slip at the largest moment"), numeral(motor.slip, ".4g")
+            yield _("motor"), _("asynchronous, by Kloss's formula")
+            yield _("synchronous speed"), format_value(problem, motor.synchronous, speed)
+            yield _("breakdown torque"), format_value(problem, motor.breakdown, size)
+            yield _("slip at breakdown torque"), numeral(motor.slip, ".4g")
         case LinearMotor():
             yield _("motor"), _("with a linear characteristic")
-            yield _("its moment at rest"), format_value(problem, motor.stall, size)
-            yield _("its speed without load"), format_value(problem, motor.free, speed)
+            yield _("stall torque or force"), format_value(problem, motor.stall, size)
+            yield _("no-load speed"), format_value(problem, motor.free, speed)
 
 
 def _drive_table(problem: Problem, drive: DriveProfile) -> Table:
     """Return the rows of a driving moment or force of a single run."""
     turns = problem.linkage.driver.kind == "turn"
     place, size = (ANGLE, MOMENT) if turns else (LENGTH, FORCE)
-    head, measure = (_("time, s"), NUMBER) if drive.against == "time" else (_("way of the driver"), place)
+    head, measure = (_("time, s"), NUMBER) if drive.against == "time" else (_("travel of the driver"), place)
     rows = [
         (format_value(problem, at, measure), format_value(problem, value, size))
         for at, value in zip(drive.arguments, drive.values, strict=True)
     ]
-    return text_table("drive", _("What drives the run"), (head, _("size")), rows)
+    return text_table("drive", _("Driving moment or force of the run"), (head, _("magnitude")), rows)

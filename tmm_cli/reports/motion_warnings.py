@@ -45,21 +45,22 @@ def limited_driver(results: Results) -> Iterable[str]:
     said = []
     if groups and driver.kind == "turn":
         text = _(
-            "driving link {link} cannot turn fully: it can go from {start} to {end}; there {groups} "
-            "comes to its dead position"
+            "driving link {link} cannot make a full turn: it moves from {start} to {end}, where {groups} "
+            "reaches a dead position"
         )
         said.append(text.format(link=driver.link, start=start, end=end, groups=groups))
     if any(limit.driver for limit in driver_range.limits):
-        text = _("driving link {link} goes from {start} to {end} only: it slows down and stops there")
+        text = _("driving link {link} moves from {start} to {end} only: there it slows down and stops")
         said.append(text.format(link=driver.link, start=start, end=end))
     for what in said:
         if request.places:
             yield what
         elif isinstance(request.start, str) or not request.start:
-            yield _("{what}; results are given for that range").format(what=what)
+            yield _("{what}; the results are for this range").format(what=what)
         else:
             yield _(
-                "{what}; results are given for that range; positions.from ({start}) is for a driver that turns fully"
+                "{what}; the results are for this range, and positions.from ({start}), which requires full "
+                "rotation, is not used"
             ).format(what=what, start=format_driver_coordinate(results, request.start))
 
 
@@ -70,8 +71,8 @@ def far_from_sketch(results: Results) -> Iterable[str]:
     for point, off in sketch_deviations(linkage, there.poses).items():
         if off > SKETCH_DEVIATION:
             yield _(
-                "in the sketch {point} is {share} % of the mechanism's size from its place with the "
-                "driver at {place}: is sketch.at right?"
+                "in the sketch, point {point} is {share} % of the mechanism's size away from its computed position "
+                "for the driver at {place}: is sketch.at correct?"
             ).format(point=point, share=f"{100 * off:.0f}", place=format_driver_coordinate(results, linkage.sketch.at))
 
 
@@ -81,20 +82,20 @@ def dead_positions(results: Results) -> Iterable[str]:
     for dead in results.dead:
         text = (
             _(
-                "change point of {group} inside the cycle at {place} (margin {margin}): there the group may go over "
-                "into another assembly; the results go smoothly through, as a machine that runs does (the other: "
+                "change point of {group} in the cycle at {place} (margin {margin}): here the group can change to "
+                "another assembly; the results continue smoothly, as in a running machine (for the other branch: "
                 "`change points: keep side`)"
             )
             if dead.passed and dead.group in closed
             else _(
-                "dead position of {group} inside the cycle at {place} (margin {margin}): there the group "
-                "may leave its way for that of another assembly; the results go on along the smooth one"
+                "dead position of {group} in the cycle at {place} (margin {margin}): here the group can pass to "
+                "the branch of another assembly; the results follow the smooth branch"
             )
             if dead.passed
             else _(
-                "dead position of {group} inside the cycle at {place} (margin {margin}): velocities and "
-                "forces grow without bound there, and the group may leave it either way; the results "
-                "keep to the side of the sketch"
+                "dead position of {group} in the cycle at {place} (margin {margin}): velocities and forces become "
+                "infinite here, and the group can continue on two branches; the results are for the assembly of "
+                "the sketch"
             )
         )
         yield text.format(
@@ -112,21 +113,23 @@ def unreached_positions(results: Results) -> Iterable[str]:
         for at, (group, lost) in zip(motion.placements, motion.missing.items(), strict=True):
             if lost[k]:
                 gap = with_unit(units, float(at.residual[k]), LENGTH)
-                yield _("position {number} ({place}): {group} cannot be assembled, {gap} short").format(
+                yield _("position {number} ({place}): {group} cannot be assembled, gap {gap}").format(
                     number=number, place=place, group=group, gap=gap
                 )
         for group, dead in motion.dead.items():
             if dead[k] and motion.limits is not None and motion.limits[k]:
                 yield _(
-                    "position {number} ({place}): {group} is in a change point, which it passes smoothly; velocities "
-                    "and accelerations are limits, reactions have none there"
+                    "position {number} ({place}): {group} passes a change point "
+                    "smoothly; velocities and accelerations "
+                    "are limit values, reactions have no limit there"
                 ).format(number=number, place=place, group=group)
             elif dead[k]:
                 yield _(
-                    "position {number} ({place}): {group} is in its dead position; no velocities and forces"
+                    "position {number} ({place}): {group} is in a dead position; "
+                    "velocities and forces are not determined"
                 ).format(number=number, place=place, group=group)
     if len(unreached) > MOST_POSITIONS:
-        yield _("... and {count} positions more that cannot be reached or are dead").format(
+        yield _("... and further positions that cannot be reached or are dead: {count}").format(
             count=len(unreached) - MOST_POSITIONS
         )
 
@@ -139,14 +142,11 @@ def stopped_driver(results: Results) -> Iterable[str]:
     if stopped.size:
         said = [str(results.numbers[k]) for k in stopped[:NAMED_POSITIONS]] + ["..."] * (stopped.size > NAMED_POSITIONS)
         text = _(
-            "driver {link} slows down and stops on its way: no velocities and forces in positions {numbers}, which "
-            "it does not come to"
+            "driver {link} slows down and stops on its way: no velocities and forces in positions {numbers}, "
+            "which it does not reach"
         )
         if results.single is not None and results.single.run.ending != "standstill":
-            text = _(
-                "the run of driver {link} ends before positions {numbers}: no velocities and forces there, as it does "
-                "not come to them"
-            )
+            text = _("the run of driver {link} ends before positions {numbers}: no velocities and forces there")
         yield text.format(link=results.linkage.driver.link, numbers=", ".join(said))
 
 
@@ -159,7 +159,7 @@ def opposite_run(results: Results) -> Iterable[str]:
     first, last = (format_driver_coordinate(results, end) for end in ends)
     if driver.kind == "turn":
         yield _(
-            "the run goes from {first} to {last}, {sense}: write turns: {turns} for driver {link}, or exchange "
+            "the run is from {first} to {last}, {sense}: write turns: {turns} for driver {link}, or exchange "
             "from and to"
         ).format(
             first=first,
@@ -171,8 +171,8 @@ def opposite_run(results: Results) -> Iterable[str]:
         return
     speed = f"{'-' if single.sense < 0 else ''}{with_unit(results.problem.units, driver.rate, SPEED)}"
     yield _(
-        "the run goes from {first} to {last}, against the speed of driver {link}: write speed: {speed} there, or "
-        "exchange from and to"
+        "the run is from {first} to {last}, opposite to the speed of driver {link}: write speed: {speed} "
+        "there, or exchange from and to"
     ).format(first=first, last=last, link=driver.link, speed=speed)
 
 
@@ -191,13 +191,13 @@ def short_drive(results: Results) -> Iterable[str]:
         return f"{numeral(value, '.6g')} s" if by_time else with_unit(results.problem.units, value, measure)
 
     if first > SAME_END * reached and drive.values[0] != 0:
-        yield _("the table of the drive begins at {first}: its first value is held before; write a row at 0").format(
+        yield _("the driving table begins at {first}: before it, the first value is used; add a row at 0").format(
             first=argument(first)
         )
     if reached - last > SAME_END * reached and drive.values[-1] != 0:
         yield _(
-            "the table of the drive ends at {last}: its last value is held to {reached}, the end of the run; write a "
-            "row there"
+            "the driving table ends at {last}: its last value is used up to {reached}, the end of the run; add "
+            "a row there"
         ).format(last=argument(last), reached=argument(reached))
 
 
@@ -210,14 +210,14 @@ def near_dead(results: Results) -> Iterable[str]:
         if margin.size and np.min(margin) < kernel.near:
             k = int(np.argmin(margin))
             yield _(
-                "position {number} is near a dead position of {group}: sine of the transmission angle {margin}"
+                "position {number} is near a dead position of {group}: the sine of the transmission angle is {margin}"
             ).format(number=results.numbers[k], group=kernel.group.title, margin=numeral(float(margin[k]), ".2g"))
 
 
 def unrepeated_cycle(results: Results) -> Iterable[str]:
     """Warn of a motion for which no period was found."""
     if results.driver_range is not None and not results.driver_range.repeats:
-        yield _("no number of turns was found after which all repeats: of the cycle, one turn is shown")
+        yield _("no number of turns was found after which the motion repeats: one turn of the cycle is shown")
 
 
 def passive_pairs(results: Results) -> Iterable[str]:
@@ -225,9 +225,9 @@ def passive_pairs(results: Results) -> Iterable[str]:
     for passive in results.structure.passive:
         i, j = passive.links
         yield _(
-            "pair {pair} holds link {j} on link {i} where it would be without it: this works with "
-            "exact dimensions only, and the reactions of links {among} are indeterminate (given: the "
-            "least ones)"
+            "the constraints of pair {pair} between links {i} and {j} are redundant: the mechanism moves only "
+            "with exact dimensions, and the reactions of links {among} are indeterminate (the least ones are "
+            "given)"
         ).format(pair=passive.pair, i=i, j=j, among=", ".join(passive.among))
 
 
@@ -253,8 +253,9 @@ def left_slots(results: Results) -> Iterable[str]:
             )
         if ways:
             yield _(
-                "link {runner} leaves its slot {slot} of link {carrier}, which is {length} long: it is up to {far} "
-                "beyond {point} (driver {ways}); a longer slot, or slides: {{..., unbounded: true}} where it is meant"
+                "link {runner} leaves its slot {slot} in link {carrier} (length {length}): it moves up to {far} "
+                "beyond {point} (driver {ways}); lengthen the slot, or write slides: {{..., unbounded: true}} if "
+                "this is intended"
             ).format(
                 runner=slide.runner,
                 slot="".join(slide.ends or ()),
@@ -278,11 +279,11 @@ def excessive_pressure_angles(results: Results) -> Iterable[str]:
             continue
         largest, allowed = (with_unit(units, angle, ANGLE, 4) for angle in (pressure.largest, pressure.allowed))
         text = (
-            _("the pressure angle on link {link} comes to {largest}, the file allows {allowed}")
+            _("the pressure angle on link {link} reaches {largest}; the file allows {allowed}")
             if said
             else _(
-                "the pressure angle on link {link} comes to {largest}; usual is at most {allowed} "
-                "(another limit: checks: {{{check}: ...}})"
+                "the pressure angle on link {link} reaches {largest}; usually at most {allowed} is allowed (for "
+                "another limit: checks: {{{check}: ...}})"
             )
         )
         check = "pressure_sliding" if pressure.slides else "pressure_turning"
@@ -306,6 +307,6 @@ def cam_impacts(results: Results) -> Iterable[str]:
         if jumps:
             places = ", ".join(numeral(units.from_si(a, ANGLE), ".6g") for a in jumps)
             yield _(
-                "the law of cam {cam} lets the speed of follower {follower} jump ({places} of the cam): "
-                "a hard impact, the acceleration there is not finite and is not in the tables"
+                "the law of cam {cam} makes the speed of follower {follower} jump (cam angle {places}): a hard "
+                "impact; the acceleration there is infinite and not in the tables"
             ).format(cam=mesh.i, follower=mesh.j, places=f"{places} {units.spelt(ANGLE)}")

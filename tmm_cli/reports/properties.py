@@ -97,7 +97,7 @@ def _chain_property(name: str, task: ShownKeys, results: ChainResults) -> ShownP
     if value is None or not isinstance(task.expected, int | None):
         key, raw = ("of", task.of) if value is None else ("expected", task.expected)
         allowed = ", ".join(k for k, v in known.items() if v is not None) if value is None else _("a number")
-        message = _("a chain without dimensions shows whole numbers")
+        message = _("only whole numbers can be shown for a chain without dimensions")
         error = ProblemError(message, path=(*path, key), found=quote(raw), allowed=allowed)
         raise error.located(results.problem.name, results.problem.source)
     return ShownProperty(name, float(value), NUMBER, None if task.expected is None else float(task.expected))
@@ -119,17 +119,17 @@ def _linkage_property(name: str, task: ShownKeys, results: Results) -> ShownProp
         **relative_angles(linkage),
     }
     if task.of not in known:
-        raise unknown_name_error(task.of, known, _("there is no quantity of that name"), path=("of",))
+        raise unknown_name_error(task.of, known, _("unknown quantity"), path=("of",))
     quantity = known[task.of]
     if task.without is not None and quantity.stage != "structure":
-        raise ProblemError(_("without a hinge only the structure is known"), path=("of",), found=quote(task.of))
+        raise ProblemError(_("without a hinge only the structure can be computed"), path=("of",), found=quote(task.of))
     if not _has_run(quantity, results):
         return None
     by = known.get(task.per) if isinstance(task.per, str) else None
     ratio = by is not None and task.over in ("largest", "least")
     if by is not None:
         if by.dimension != quantity.dimension or (ratio and by.dimension == ANGLE):
-            raise ProblemError(_("a quantity of the same kind is wanted"), path=("per",), found=quote(task.per))
+            raise ProblemError(_("expected a quantity of the same dimension"), path=("per",), found=quote(task.per))
         if not _has_run(by, results):
             return None
     value = _property_value(quantity, task, results, by if ratio else None)
@@ -189,7 +189,7 @@ def _with_settings(task: ShownKeys, results: Results) -> Results:
         with translate_errors(other):
             return pipeline.solve(inputs, stage, (0,), problem=other)  # further places are found when they are read
     except ProblemError as error:  # its place is that of what the parameters spoil
-        told = _("with these parameters the file would be refused: {reason}")
+        told = _("the file is not valid with these parameters: {reason}")
         reason = ": ".join(part for part in (format_path(error.path), error.message) if part)
         raise ProblemError(
             told.format(reason=reason), path=("set",), found=error.found, allowed=error.allowed
@@ -213,11 +213,11 @@ def _property_value(
     ways = [key for key in ("at", "between", "over") if getattr(task, key) is not None]
     if quantity.whole:
         if ways or task.within is not None:
-            message = _("this belongs to the mechanism, and to no position")
+            message = _("this is a property of the whole mechanism, not of a position")
             raise ProblemError(message, path=((*ways, "within")[0],), found=quote(task.of))
         return float(np.asarray(quantity.read(results)).ravel()[0])
     if len(ways) != 1 or (task.within is not None and ways != ["at"]):
-        wanted = _("in one position, between two, or over the way of the driver")
+        wanted = _("expected one position, two positions, or the whole travel of the driver")
         raise ProblemError(wanted, path=("of",), found=quote(task.of), allowed="at, between, over, at + within")
     read = partial(_read_quantity, quantity, results) if per is None else partial(_read_ratio, quantity, per, results)
     if task.over is not None:

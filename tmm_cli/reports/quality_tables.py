@@ -32,16 +32,19 @@ def quality_tables(results: Results) -> Iterable[Table]:
     place = coordinate_dimension(results.linkage.driver.kind)
     rows: list[ValueRow] = []
     if driver_range.turns > 1:
-        rows.append((_("turns of the driver in a cycle"), driver_range.turns, NUMBER))
+        rows.append((_("turns of the driver per cycle"), driver_range.turns, NUMBER))
     if not driver_range.full:
-        rows += [(_("driver can go from"), driver_range.start, place), (_("driver can go to"), driver_range.end, place)]
+        rows += [
+            (_("least driver coordinate"), driver_range.start, place),
+            (_("largest driver coordinate"), driver_range.end, place),
+        ]
     for strokes in (results.strokes, *results.further):
         if strokes is not None and strokes.strokes:
             rows += _stroke_rows(results, strokes, place)
         elif strokes is not None and driver_range.full and results.linkage.output_swings(strokes.link):
             rows.append(
                 (
-                    _("link {link} turns in a cycle by").format(link=strokes.link),
+                    _("rotation of link {link} per cycle").format(link=strokes.link),
                     _rotation_angle(results, strokes),
                     ANGLE,
                 )
@@ -50,9 +53,12 @@ def quality_tables(results: Results) -> Iterable[Table]:
         rows += _travel_rows(results.linkage, travel, place)
     if results.losses is not None and results.losses.efficiency is not None:
         rows.append((_("efficiency over the cycle"), results.losses.efficiency, NUMBER))
-    rows += [(_("dead position of {group}").format(group=dead.group), dead.place, place) for dead in results.dead]
+    rows += [
+        (_("driver position at the dead position of {group}").format(group=dead.group), dead.place, place)
+        for dead in results.dead
+    ]
     if rows:
-        yield Table("quality", _("Quality"), value_columns(rows, results))
+        yield Table("quality", _("Performance"), value_columns(rows, results))
 
 
 def _stroke_rows(results: Results, strokes: Strokes, place: Dimension) -> Iterable[ValueRow]:
@@ -71,15 +77,15 @@ def _stroke_rows(results: Results, strokes: Strokes, place: Dimension) -> Iterab
         yield _("stroke H = psi l of point {point}").format(point=arm[0]), strokes.travel * arm[1], LENGTH
     yield _("time ratio k"), strokes.k, NUMBER
     if len(strokes.strokes) == 2:
-        yield _("1/k = T_idle/T_working"), 1 / strokes.k, NUMBER
-        yield _("stroke angle theta = 180 deg (k - 1)/(k + 1)"), np.pi * (strokes.k - 1) / (strokes.k + 1), ANGLE
+        yield _("1/k = T_return/T_working"), 1 / strokes.k, NUMBER
+        yield _("angle theta = 180 deg (k - 1)/(k + 1)"), np.pi * (strokes.k - 1) / (strokes.k + 1), ANGLE
     every: list[tuple[int, Stroke]] = [(0, stroke) for stroke in strokes.strokes]
     if results.counts_strokes:
         every = list(enumerate(_strokes_in_order(results, strokes), 1))
     for number, stroke in every:
         starts, lasts, dwell = _stroke_names(stroke, number)
         yield starts, stroke.start, place
-        then = _("link {link} is then at") if point is None else _("{link} is then at")
+        then = _("position of link {link} at this moment") if point is None else _("{link} at this moment")
         yield then.format(link=link), stroke.low, run
         yield lasts, stroke.length, place
         if stroke.rest:
@@ -100,12 +106,24 @@ def _strokes_in_order(results: Results, strokes: Strokes) -> list[Stroke]:
 def _stroke_names(stroke: Stroke, number: int) -> tuple[str, str, str]:
     """Return the row names of start, length and dwell of a stroke; number: 0 if strokes are not numbered."""
     if number:
-        names = _("stroke {number} starts at"), _("stroke {number} lasts"), _("dwell after stroke {number}")
+        names = (
+            _("driver position at the start of stroke {number}"),
+            _("driver travel during stroke {number}"),
+            _("dwell after stroke {number}"),
+        )
         starts, lasts, dwell = (name.format(number=number) for name in names)
         return starts, lasts, dwell
     if stroke.working:
-        return _("working stroke starts at"), _("working stroke lasts"), _("dwell after the working stroke")
-    return _("idle stroke starts at"), _("idle stroke lasts"), _("dwell after the idle stroke")
+        return (
+            _("driver position at the start of the working stroke"),
+            _("driver travel during the working stroke"),
+            _("dwell after the working stroke"),
+        )
+    return (
+        _("driver position at the start of the return stroke"),
+        _("driver travel during the return stroke"),
+        _("dwell after the return stroke"),
+    )
 
 
 def _rotation_angle(results: Results, strokes: Strokes) -> float:
@@ -125,25 +143,28 @@ def _travel_rows(linkage: Linkage, travel: OutputTravel, place: Dimension) -> It
     """Yield the travel of an output over the requested positions."""
     link, run = travel.link, coordinate_dimension(travel.kind)
     point, guide = linkage.output_point(link), linkage.output_guide(link)
-    name, extremes = _("swing psi of link {link} over the positions asked"), _("extreme position of link {link}")
+    name, extremes = (
+        _("swing angle psi of link {link} over the requested positions"),
+        _("extreme position of link {link}"),
+    )
     if point is not None:
-        name, extremes = _("travel of {link} over the positions asked"), _("extreme of {link}")
+        name, extremes = _("travel of {link} over the requested positions"), _("extreme position of {link}")
     elif guide is not None and FRAME not in (guide.carrier, guide.runner):
-        name = _("stroke H of link {link} along link {carrier} over the positions asked")
+        name = _("stroke H of link {link} along link {carrier} over the requested positions")
     elif guide is not None:
-        name = _("stroke H of link {link} over the positions asked")
+        name = _("stroke H of link {link} over the requested positions")
     carrier = guide.carrier if guide is not None else ""
     yield name.format(link=link, carrier=carrier), travel.high - travel.low, run
     for extreme, at in ((travel.low, travel.low_at), (travel.high, travel.high_at)):
         yield extremes.format(link=link), extreme, run
-        yield _("with the driver at"), at, place
+        yield _("driver position at this extreme"), at, place
 
 
 def value_columns(rows: Sequence[ValueRow], results: Results) -> tuple[Column, ...]:
     """Return the columns name, value and unit of rows with different dimensions."""
     units = results.problem.units
     return (
-        Column(N_("what"), [name for name, __, __ in rows]),
+        Column(N_("quantity"), [name for name, __, __ in rows]),
         Column(N_("value"), [units.from_si(float(value), dim) for __, value, dim in rows], NUMBER),
         Column(N_("unit"), [units.spelt(dim) for __, __, dim in rows]),
     )
@@ -164,9 +185,9 @@ def pressure_tables(results: Results) -> Iterable[Table]:
         places = [place % (2 * math.pi * driver_range.turns) for place in places]
         others = [place % (2 * math.pi * driver_range.turns) for place in others]
     note = (
-        _("Allowed: as the file says.")
+        _("Allowed: values of the file.")
         if any(results.problem.limits_set)
-        else _("Allowed where the file says nothing: 30 deg on a sliding link, 45 deg on a turning one.")
+        else _("Allowed, if not specified in the file: 30 deg on a sliding link, 45 deg on a rotating one.")
     )
     yield Table(
         "pressure",
@@ -174,16 +195,16 @@ def pressure_tables(results: Results) -> Iterable[Table]:
         (
             Column(N_("group"), [p.group for p in found]),
             Column(N_("driven link"), [p.link for p in found]),
-            Column(N_("it"), [_("slides") if p.slides else _("turns") for p in found]),
+            Column(N_("motion"), [_("slides") if p.slides else _("rotates") for p in found]),
             Column(N_("driven through pair"), [p.pair for p in found]),
-            Column(N_("largest"), [p.largest for p in found], ANGLE),
-            Column(N_("driver there at"), places, coordinate_dimension(driver.kind)),
+            Column(N_("largest angle"), [p.largest for p in found], ANGLE),
+            Column(N_("driver position at the largest angle"), places, coordinate_dimension(driver.kind)),
             Column(N_("other extreme"), [p.other for p in found], ANGLE),
-            Column(N_("driver then at"), others, coordinate_dimension(driver.kind)),
+            Column(N_("driver position at the other extreme"), others, coordinate_dimension(driver.kind)),
             Column(N_("smallest transmission angle"), [p.transmission for p in found], ANGLE),
-            Column(N_("force increase"), [p.gain for p in found], NUMBER),
+            Column(N_("force amplification"), [p.gain for p in found], NUMBER),
             Column(N_("allowed"), [p.allowed for p in found], ANGLE),
-            Column(N_("verdict"), [_("within") if p.holds else _("exceeds") for p in found]),
+            Column(N_("assessment"), [_("within the limit") if p.holds else _("above the limit") for p in found]),
         ),
         notes=(note,),
     )
@@ -214,11 +235,15 @@ def properties_tables(results: Results | ChainResults) -> Iterable[Table]:
 def checks_tables(results: Results) -> Iterable[Table]:
     """Yield the table of checks, with value, limit and verdict."""
     rows = [
-        (*_check_texts(check, results), _check_coordinate(check, results), _("ok") if check.holds else _("warn"))
+        (
+            *_check_texts(check, results),
+            _check_coordinate(check, results),
+            _("OK") if check.holds else _("above the limit"),
+        )
         for check in run_checks(results)
     ]
     if rows:
-        headers = (_("check"), _("of"), _("found"), _("limit"), _("at driver position"), _("verdict"))
+        headers = (_("check"), _("object"), _("actual"), _("limit"), _("driver position"), _("assessment"))
         yield text_table("checks", _("Checks"), headers, rows)
 
 
@@ -241,31 +266,41 @@ def _check_texts(check: Check, results: Results) -> tuple[str, str, str, str]:
             slot = _("link {runner} in slot {slot} of link {carrier}").format(
                 runner=slide.runner, slot="".join(slide.ends or ()), carrier=slide.carrier
             )
-            found = _("{far} left before {point}") if check.holds else _("{far} beyond {point}")
+            found = _("{far} before {point}") if check.holds else _("{far} beyond {point}")
             far = with_unit(units, abs(check.value), LENGTH, 4)
-            return _("stone in its slot"), slot, found.format(far=far, point=check.detail), _("its ends")
+            return (
+                _("sliding block in its slot"),
+                slot,
+                found.format(far=far, point=check.detail),
+                _("ends of the slot"),
+            )
         case "pressure":
             link = _("link {link} of {group}").format(link=check.of, group=check.detail)
             most = _("at most {angle}").format(angle=with_unit(units, check.limit, ANGLE, 4))
             return _("pressure angle"), link, with_unit(units, check.value, ANGLE, 4), most
         case "load":
-            found = _("one way")
+            found = _("acts in one direction only")
             if not check.holds:
                 found = (
-                    _("drives in the working stroke ({work} J), resists in the idle one")
+                    _("drives in the working stroke ({work} J), resists in the return stroke")
                     if check.detail == "working"
-                    else _("resists in the working stroke, drives in the idle one ({work} J)")
+                    else _("resists in the working stroke, drives in the return stroke ({work} J)")
                 ).format(work=numeral(check.value, ".6g"))
-            wanted = _("one way; or when: working stroke")
+            wanted = _("resist in both strokes; or write when: working stroke")
             return _("load without `when`"), _("load {load}").format(load=check.of), found, wanted
         case "near dead":
             limit = _("at least {margin}").format(margin=numeral(check.limit, ".6g"))
             found = numeral(check.value if check.value > 1e-12 else 0.0, ".3g")
-            return _("margin to dead and change points"), check.of, found, limit
+            return _("margin to dead positions and change points"), check.of, found, limit
         case "lever":
             limit = _("at most {share} %").format(share=numeral(100 * check.limit, ".6g"))
             value = 100 * check.value
-            return _("lever against force plan"), "", f"{numeral(0.0 if check.at is None else value, '.3g')} %", limit
+            return (
+                _("Zhukovsky lever and force plan"),
+                "",
+                f"{numeral(0.0 if check.at is None else value, '.3g')} %",
+                limit,
+            )
 
 
 # All real assemblies of each group at a place of the driver; a table a group, a row an assembly.
@@ -284,7 +319,9 @@ def describe_position(problem: Problem, q: float, number: int | None) -> str:
     value = problem.units.from_si(q % math.tau if crank else q, measure)
     at = f"{numeral(round(value, 9) + 0.0, '.6g')} {problem.units.spelt(measure)}"
     if number is None:
-        text = _("place of the sketch, crank at {place}") if crank else _("place of the sketch, driver at {place}")
+        text = (
+            _("position of the sketch, crank at {place}") if crank else _("position of the sketch, driver at {place}")
+        )
         return text.format(place=at)
     text = _("position {number}, crank at {place}") if crank else _("position {number}, driver at {place}")
     return text.format(number=number, place=at)
@@ -294,21 +331,21 @@ def assembly_notes(group: GroupAssemblies) -> Iterable[str]:
     """Yield notes on whether the list of assemblies is proved complete, and on special cases."""
     number = len(group.assemblies)
     if group.moves:
-        yield _("The group moves by itself at this place: it has assemblies without end, one of them is shown.")
+        yield _("The group is movable in this position: it has infinitely many assemblies, one of them is shown.")
     elif group.method == "polynomial":
-        yield _("There are no others: they are the real roots of a polynomial of degree {most}.").format(
+        yield _("The list is complete: the assemblies are the real roots of a polynomial of degree {most}.").format(
             most=group.most
         )
     elif group.method == "closed form" and group.most == 2:
-        yield _("There are no others: a group of class II is solved in closed form.")
+        yield _("The list is complete: a group of class II is solved in closed form.")
     elif group.method in ("closed form", "angles"):
-        yield _("There are no others: its equations have one solution.")
+        yield _("The list is complete: the equations of the group have a single solution.")
     else:
-        yield _("Found by Newton's method from many starts: it is not proved that there are no others.")
+        yield _("Found by Newton's method from many initial guesses: the list is not proved complete.")
     if number == 0 and group.complete:
-        yield _("At this place of the driver the group cannot be assembled.")
+        yield _("The group cannot be assembled in this position of the driver.")
     if group.dead and not group.moves:
-        yield _("Where the margin is 0 the group is dead: two assemblies meet in one.")
+        yield _("Where the margin is 0, the group is in a dead position: two assemblies coincide.")
 
 
 def _assembly_table(stem: str, here: Assemblies, group: GroupAssemblies, results: Results) -> Table:
@@ -317,7 +354,7 @@ def _assembly_table(stem: str, here: Assemblies, group: GroupAssemblies, results
     columns = [
         Column(N_("group"), [group.group.title] * len(every)),
         Column(N_("assembly"), [str(k + 1) for k in range(len(every))]),
-        Column(N_("that of"), [_("sketch") if a.of_sketch else "" for a in every]),
+        Column(N_("source"), [_("sketch") if a.of_sketch else "" for a in every]),
         Column(N_("margin"), [a.margin for a in every], NUMBER, digits=3),
         *(Column(Phrase("angle of {link}", link=n), [a.angles[n] for a in every], ANGLE) for n in group.group.links),
     ]

@@ -56,7 +56,7 @@ def choose_folder(out: Path, name: str, part: str) -> tuple[Path, Path | None]:
     if not part or recorded_part(usual) in (None, part):
         return usual, None
     if recorded_part(own) not in (None, part):
-        raise FileExistsError(errno.EEXIST, _("other results are there"), str(own))
+        raise FileExistsError(errno.EEXIST, _("the folder contains other results"), str(own))
     return own, usual
 
 
@@ -80,7 +80,7 @@ def write_atomically(path: Path, content: bytes) -> None:
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     if path.exists() and not path.is_file():  # a device of the system would be gone after the renaming
-        raise FileExistsError(errno.EEXIST, _("this is no file but a device"), str(path))
+        raise FileExistsError(errno.EEXIST, _("this is a device, not a file"), str(path))
     path.parent.mkdir(parents=True, exist_ok=True)
     for left in _abandoned_paths(path, "new"):
         left.unlink(missing_ok=True)

@@ -42,32 +42,32 @@ def space_tables(results: Results) -> Iterable[Table]:
     ]
     if found.replacements:
         q = redundancy_equation(found.wanted, found.rank.local, found.proposed.mobility, found.redundant_then)
-        facts += [(_("W by Somov-Malyshev, with the pairs below"), found.proposed.count)]
-        facts += [(_("redundant constraints q = Wo + Wm - W, with the pairs below"), q)]
+        facts += [(_("W by Somov-Malyshev, with the replacements below"), found.proposed.count)]
+        facts += [(_("redundant constraints q = Wo + Wm - W, with the replacements below"), q)]
     note = _(
-        "No replacement of turning pairs by cylindrical or spherical ones and of sliding pairs "
-        "by cylindrical or planar ones was found that leaves q = 0."
+        "No replacement of revolute pairs by cylindrical or spherical ones and of prismatic pairs by "
+        "cylindrical or planar ones was found for which q = 0."
     )
     yield text_table(
         "space",
-        _("The same pairs in space: redundant constraints"),
-        (_("what"), _("value")),
+        _("The linkage counted in space: redundant constraints"),
+        (_("quantity"), _("value")),
         facts,
         () if found.replacements is not None else (note,),
     )
     if found.replacements:
         note = _(
-            "Pairs on the frame stay, they position shafts and guides. Out of the plane, the "
-            "conditions of these pairs are independent (checked by rank)."
+            "Pairs on the frame are kept, because they position shafts and guides. The out-of-plane "
+            "constraints of these pairs are independent (checked by rank)."
         )
-        title, notes = _("Pairs that leave no redundant constraints"), [note]
+        title, notes = _("Replacements without redundant constraints"), [note]
         if found.redundant_then:
-            title = _("Pairs that leave no redundant constraints out of the plane")
+            title = _("Replacements without redundant out-of-plane constraints")
             notes.append(_("In the plane: {redundant}.").format(redundant="; ".join(reduction_sentences(structure))))
         yield text_table(
             "replacements",
             title,
-            (_("pair"), _("links"), _("is"), _("becomes"), _("freedoms")),
+            (_("pair"), _("links"), _("present kind"), _("replacement"), _("degrees of freedom")),
             [
                 (r.pair.name, f"{printed(r.pair.i)} - {printed(r.pair.j)}", _(r.was), _(r.kind), str(r.freedoms))
                 for r in found.replacements
@@ -78,13 +78,13 @@ def space_tables(results: Results) -> Iterable[Table]:
 
 def contour_table(found: Sequence[Contour], structure: Structure | None = None) -> Table:
     """Return the table of contours; structure: a planar linkage, in which contours may be dependent."""
-    headers, rows = [_("contour"), _("pairs")], [[contour.title, ", ".join(contour.pairs)] for contour in found]
+    headers, rows = [_("loop"), _("pairs")], [[contour.title, ", ".join(contour.pairs)] for contour in found]
     if structure is None or not any(is_dependent(contour, structure) for contour in found):
-        return text_table("contours", _("Independent contours"), headers, rows)
+        return text_table("contours", _("Independent loops"), headers, rows)
     kinds = [_("dependent") if is_dependent(contour, structure) else _("independent") for contour in found]
     rows = [[*row, kind] for row, kind in zip(rows, kinds, strict=True)]
-    note = _("A dependent contour repeats another one: the links or pairs that close it are redundant.")
-    return text_table("contours", _("Contours"), [*headers, _("kind")], rows, (note,))
+    note = _("A dependent loop repeats another one: the links or pairs that close it are redundant.")
+    return text_table("contours", _("Loops"), [*headers, _("kind")], rows, (note,))
 
 
 def redundancy_equation(wanted: int, local: int, mobility: int, redundant: int) -> str:
@@ -99,11 +99,11 @@ def redundancy_equation(wanted: int, local: int, mobility: int, redundant: int) 
 def chain_tables(results: ChainResults) -> Iterable[Table]:
     """Yield the tables of a chain given by its pairs: mobility, pairs, contours and local freedoms."""
     found = results.chain
-    yield text_table("structure", _("Structure"), (_("what"), _("value")), _chain_rows(found), _chain_notes(found))
+    yield text_table("structure", _("Structure"), (_("quantity"), _("value")), _chain_rows(found), _chain_notes(found))
     yield text_table(
         "pairs",
         _("Kinematic pairs"),
-        (_("pair"), _("links"), _("kind"), _("freedoms"), _("class")),
+        (_("pair"), _("links"), _("kind"), _("degrees of freedom"), _("class")),
         [(p.name, f"{p.i} - {p.j}", _(p.kind), str(p.freedoms), ROMAN[p.pair_class]) for p in found.chain.pairs],
     )
     if found.contours:
@@ -111,8 +111,8 @@ def chain_tables(results: ChainResults) -> Iterable[Table]:
     if found.local:
         yield text_table(
             "local",
-            _("Local freedoms"),
-            (_("links"), _("freedoms"), _("between pairs"), _("what it does")),
+            _("Local degrees of freedom"),
+            (_("links"), _("degrees of freedom"), _("between pairs"), _("motion")),
             [
                 (", ".join(x.links), str(x.freedoms), ", ".join(p.name for p in x.ends), _local_freedom_text(x))
                 for x in found.local
@@ -123,47 +123,48 @@ def chain_tables(results: ChainResults) -> Iterable[Table]:
 def _chain_rows(found: ChainCount) -> Iterable[tuple[str, str]]:
     chain = found.chain
     yield _("moving links n"), str(len(chain.links))
-    yield _("pairs with 1 to 5 freedoms"), ", ".join(f"p{i} = {chain.p(i)}" for i in range(1, 6))
+    yield _("numbers of pairs with 1 to 5 degrees of freedom"), ", ".join(f"p{i} = {chain.p(i)}" for i in range(1, 6))
     yield _("W by Somov-Malyshev"), chain.count
-    yield _("independent contours K = p - n"), str(len(chain.pairs) - len(chain.links))
+    yield _("independent loops K = p - n"), str(len(chain.pairs) - len(chain.links))
     yield _("chain"), _chain_form(found)
-    yield _("local freedoms Wm"), str(found.local_mobility)
-    yield _("without them, W - Wm"), str(found.effective)
+    yield _("local degrees of freedom Wm"), str(found.local_mobility)
+    yield _("mobility without local degrees of freedom, W - Wm"), str(found.effective)
     if found.wanted is not None and found.redundant is not None:
         q = redundancy_equation(found.wanted, found.local_mobility, found.mobility, found.redundant)
         yield _("redundant constraints q = Wo + Wm - W"), q
     if found.output is not None:
-        yield _("manoeuvrability m: W with link {link} held").format(link=found.output), chain.held(found.output).count
+        yield _("manoeuvrability m: W with link {link} fixed").format(link=found.output), chain.held(found.output).count
 
 
 def _chain_form(found: ChainCount) -> str:
     if found.form == "mixed":
         return _("closed, with open branches (links {links})").format(links=", ".join(found.branches))
-    return _("open") if found.form == "open" else _("closed: every link lies in a contour")
+    return _("open") if found.form == "open" else _("closed: every link lies in a loop")
 
 
 def _chain_notes(found: ChainCount) -> Iterable[str]:
     seen = sum(x.freedoms for x in found.local)
     if found.given_local is not None and found.given_local < seen:
-        yield _("{given} local freedoms are given, the pairs show {found}.").format(given=found.given_local, found=seen)
+        yield _("Local degrees of freedom: {given} are given, {found} follow from the kinds of pairs.").format(
+            given=found.given_local, found=seen
+        )
     if found.immobile:
         yield _(
-            "W - Wm < 1: by the count links {links} cannot move. If they do, by special dimensions such as parallel "
-            "axes, give the mobility that is meant (wanted: 1): the redundant constraints q are then counted."
+            "W - Wm < 1: by this count links {links} cannot move. If they move owing to special dimensions, "
+            "for example parallel axes, give the required mobility (wanted: 1): then the redundant constraints "
+            "q are counted."
         ).format(links=", ".join(found.immobile))
     if found.redundant is not None and found.redundant > 0 and found.effective < 1:
-        yield _("q = {q}: the chain moves with exact dimensions only, by the count it cannot.").format(
+        yield _("q = {q}: the chain moves only if its dimensions are exact; by the count it cannot move.").format(
             q=found.redundant
         )
     if found.redundant is not None and found.redundant < 0:
-        yield _("q < 0: the chain has {many} freedoms more than are wanted.").format(many=-found.redundant)
+        yield _("q < 0: the mobility exceeds the required one by {many}.").format(many=-found.redundant)
     m, idle = found.manoeuvrability, found.idle_manoeuvrability
     if m is not None and m < 1:
-        yield _("m = {m}: with the output held the chain cannot move; m >= 1 is wanted.").format(m=m)
+        yield _("m = {m}: with the output link fixed the chain cannot move; m >= 1 is required.").format(m=m)
     elif m is not None and m - idle < 1:
-        yield _("m = {m}, but {local} of it are local freedoms: the arm cannot go round an obstacle.").format(
-            m=m, local=idle
-        )
+        yield _("m = {m}, of which local: {local}; the arm cannot move around an obstacle.").format(m=m, local=idle)
 
 
 def _local_freedom_text(part: LocalFreedom) -> str:
@@ -171,14 +172,14 @@ def _local_freedom_text(part: LocalFreedom) -> str:
     if kinds & CONTACT_PAIRS and kinds & {*AXLE_FREEDOMS}:
         return _("rotates about its own axis as a roller")
     if part.freedoms == 1 and kinds == {"cylindrical", "spherical"}:
-        return _("rotates about its own axis if the ball lies on it")
+        return _("rotates about its own axis if the ball centre lies on it")
     if part.freedoms == 1 and len(part.ends) == 2 and kinds <= {"spherical", "planar"}:
         if kinds == {"spherical"}:
-            return _("turns about the line of both centres")
+            return _("rotates about the line through both centres")
         if kinds == {"planar"}:
             return _("slides along both planes")
-        return _("turns about the normal of the plane through the centre")
-    return _("moves with its neighbours held")
+        return _("rotates about the normal to the plane through the centre")
+    return _("moves while its neighbours are fixed")
 
 
 # Schemes and kinematic chains as tables and as plain data.
@@ -196,18 +197,18 @@ def schemes_table(
     """Return the table of schemes: formula, groups, links and pairs, file. types: group types that were enumerated."""
     columns = [
         Column(N_("scheme"), [str(k + 1) for k in range(len(found))]),
-        Column(N_("formula of structure"), [s.formula for s in found]),
+        Column(N_("structural formula"), [s.formula for s in found]),
         Column(N_("groups"), [", ".join(s.types) for s in found]),
         Column(N_("links/pairs"), [f"{s.links}/{len(s.joints)}" for s in found]),
-        Column(N_("turning pairs"), [_scheme_pairs(s, "R") for s in found]),
-        Column(N_("sliding pairs"), [_scheme_pairs(s, "P") for s in found]),
+        Column(N_("revolute pairs"), [_scheme_pairs(s, "R") for s in found]),
+        Column(N_("prismatic pairs"), [_scheme_pairs(s, "P") for s in found]),
     ]
     if written is not None:
-        none = _("none: no pose was found that assembles")
+        none = _("none: no position was found in which it can be assembled")
         columns.append(Column(N_("file"), [one[0].name if one else none for one in written]))
     title = _("Schemes with {links} moving links, W = {mobility}").format(links=links, mobility=mobility)
     return Table(
-        "schemes", title, tuple(columns), notes=(_("{count} schemes").format(count=len(found)), *not_enumerated(types))
+        "schemes", title, tuple(columns), notes=(_("schemes: {count}").format(count=len(found)), *not_enumerated(types))
     )
 
 
@@ -215,8 +216,9 @@ def not_enumerated(types: Iterable[str]) -> Iterable[str]:
     """Yield a sentence on the missing groups if a class higher than II was requested."""
     if any(GROUP_TYPES[name].grade > 2 for name in types):
         yield _(
-            "Not enumerated: groups of classes III and IV with six links or more (order 4 of class III is one) or with "
-            "sliding pairs, and groups of class V and higher. Listed are those with four links and turning pairs only."
+            "Not enumerated: groups of classes III and IV with six links or more (e.g. class III of order 4) "
+            "or with prismatic pairs, and groups of class V and higher. Only groups with four links and "
+            "revolute pairs are listed."
         )
 
 
@@ -231,11 +233,14 @@ def chains_table(found: Sequence[KinematicChain], links: int, mobility: int) -> 
     names = [_(DEGREES[k]) if k < len(DEGREES) else _("with {pairs} pairs").format(pairs=k + 2) for k in range(most)]
     columns = [Column(name, [a[k] if k < len(a) else 0 for a in counts], NUMBER) for k, name in enumerate(names)]
     columns.append(Column(N_("chains"), [all_ for all_, __ in counts.values()], NUMBER))
-    columns.append(Column(N_("of them fractionated"), [parts for __, parts in counts.values()], NUMBER))
+    columns.append(Column(N_("including fractionated"), [parts for __, parts in counts.values()], NUMBER))
     title = _("Kinematic chains of {links} links, W = {mobility}: {count}").format(
         links=links, mobility=mobility, count=len(found)
     )
-    note = _("Turning pairs, no compound hinges, no rigid part. Fractionated: falls apart without one of its links.")
+    note = _(
+        "Revolute pairs, no compound hinges, no rigid subchains. A fractionated chain falls apart when one "
+        "of its links is removed."
+    )
     return Table("chains", title, tuple(columns), notes=(note,))
 
 

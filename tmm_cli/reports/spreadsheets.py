@@ -46,7 +46,7 @@ def open_workbook(
         from xlsxwriter import Workbook
     except ImportError:
         raise ProblemError(
-            _("{file} is written by xlsxwriter, which is not installed").format(file=file), allowed=allowed
+            _("writing {file} requires xlsxwriter, which is not installed").format(file=file), allowed=allowed
         ) from None
     return Workbook(stream, dict(options))
 

@@ -28,11 +28,11 @@ ROLES = {
     "rocker": N_("rocker"),
     "coupler": N_("coupler"),
     "slider": N_("slider"),
-    "stone": N_("stone"),
+    "stone": N_("sliding block"),
     "slotted link": N_("slotted link"),
     "rod": N_("rod"),
     "rocking slider": N_("rocking slider"),
-    "wheel": N_("toothed wheel"),
+    "wheel": N_("gear"),
     "planet": N_("planet"),
     "carrier": N_("carrier"),
     "rack": N_("rack"),
@@ -45,22 +45,22 @@ COMMON_LABELS = {
     *ROLES.values(),
     N_("connecting rod"),
     N_("crankshaft"),
-    N_("lever"),
+    N_("Zhukovsky lever"),
     N_("piston rod"),
     N_("ram"),
     N_("wheel"),
 }  # names that files give to links and that every language has
 PAIRS = {
-    "R": N_("turning (R)"),
-    "P": N_("sliding (P)"),
-    "G": N_("toothed wheels (G)"),
-    "K": N_("wheel and rack (K)"),
+    "R": N_("revolute (R)"),
+    "P": N_("prismatic (P)"),
+    "G": N_("gears (G)"),
+    "K": N_("gear and rack (K)"),
     "C": N_("cam and follower (C)"),
 }
 HIGHER_PAIRS = {
-    "G": N_("{count} of toothed wheels"),
-    "K": N_("{count} of wheel and rack"),
-    "C": N_("{count} of cam and follower"),
+    "G": N_("gears: {count}"),
+    "K": N_("gear and rack: {count}"),
+    "C": N_("cam and follower: {count}"),
 }
 CLASSIFICATIONS = {
     "open": N_("open"),
@@ -68,9 +68,9 @@ CLASSIFICATIONS = {
     "elementary": N_("elementary: the driver alone"),
     "simple": N_("simple: the driver and one group"),
     "complex": N_("complex: the driver and several groups"),
-    "same type": N_("of the same type"),
-    "several types": N_("of several types"),
-    "combined": N_("combined: some groups alike, others not"),
+    "same type": N_("groups of the same type"),
+    "several types": N_("groups of several types"),
+    "combined": N_("combined: some groups of the same type, others not"),
 }
 SIX_BARS = {
     "Watt I": N_("Watt I"),
@@ -82,7 +82,7 @@ SIX_BARS = {
 SCHEMES = {
     "hinged four-bar": N_("hinged four-bar"),
     "crank-slider": N_("crank-slider"),
-    "slotted-lever": N_("slotted-lever"),
+    "slotted-lever": N_("slotted-link"),
     "sine": N_("sine (Scotch yoke)"),
     "tangent": N_("tangent"),
     "double slotted-link": N_("double slotted-link (Oldham)"),
@@ -93,13 +93,13 @@ SCHEMES = {
 def structure_tables(results: Results) -> Iterable[Table]:
     """Yield the tables of mobility, links, pairs and Assur groups."""
     structure, linkage = results.structure, results.linkage
-    yield text_table("structure", _("Structure"), (_("what"), _("value")), _structure_rows(structure))
+    yield text_table("structure", _("Structure"), (_("quantity"), _("value")), _structure_rows(structure))
     links, roles = [linkage.links[name] for name in structure.links], results.roles
-    note = _("A crank is told from a rocker by moving the linkage.")
+    note = _("Crank and rocker are distinguished only after the motion is computed.")
     yield text_table(
         "links",
         _("Links"),
-        (_("link"), _("is a"), _("called"), _("points"), _("motion")),
+        (_("link"), _("role"), _("name"), _("points"), _("motion")),
         [
             (
                 x.name,
@@ -115,7 +115,7 @@ def structure_tables(results: Results) -> Iterable[Table]:
     yield text_table(
         "pairs",
         _("Kinematic pairs"),
-        (_("pair"), _("links"), _("kind"), _("where"), _("freedoms"), _("class"), _("code")),
+        (_("pair"), _("links"), _("kind"), _("location"), _("degrees of freedom"), _("class"), _("code")),
         [
             (
                 p.name,
@@ -167,7 +167,9 @@ def mobility_with_rollers(structure: Structure) -> str:
     rollers = [pair.mesh.roller for pair in structure.pairs if pair.mesh is not None and pair.mesh.roller]
     n, higher = len(structure.links) + len(rollers), structure.higher
     mobility = mobility_equation((n, len(structure.pairs) - higher + len(rollers), higher))
-    text = _("{mobility}, of which Wm = {local} is local: the turning of rollers ({rollers}) moves nothing else")
+    text = _(
+        "{mobility}, of which Wm = {local} is local: the rotation of rollers ({rollers}) does not move other links"
+    )
     return text.format(mobility=mobility, local=len(rollers), rollers=", ".join(rollers))
 
 
@@ -176,23 +178,25 @@ def reduction_sentences(structure: Structure) -> Iterable[str]:
     for rigid in structure.reduction.rigid:
         links = ", ".join(link for link in rigid.links if link != FRAME)
         if FRAME in rigid.links:
-            text = _("rigid to the frame, and part of it: {links}")
+            text = _("rigidly attached to the frame and counted as part of it: {links}")
             if rigid.constraints:
-                text = _("rigid to the frame, and part of it: {links}, adds q = {q}")
+                text = _(
+                    "rigidly attached to the frame and counted as part of it: {links}; redundant constraints q = {q}"
+                )
         else:
-            text = _("links {links} are rigid to one another and count as one")
+            text = _("links {links} are rigidly connected and count as one")
             if rigid.constraints:
-                text = _("links {links} are rigid to one another and count as one, add q = {q}")
+                text = _("links {links} are rigidly connected and count as one; redundant constraints q = {q}")
         yield text.format(links=links, q=rigid.constraints)
     for link in structure.reduction.links:
-        text = _("link {links} is redundant, adds q = {q}")
+        text = _("link {links} is redundant; redundant constraints q = {q}")
         if len(link.links) > 1:
-            text = _("links {links} are redundant, add q = {q}")
+            text = _("links {links} are redundant; redundant constraints q = {q}")
         yield text.format(links=", ".join(link.links), q=link.constraints)
     for pair in structure.reduction.pairs:
-        text = _("pair {pair} is redundant, adds q = {q}")
+        text = _("pair {pair} is redundant; redundant constraints q = {q}")
         if pair.left:
-            text = _("pair {pair} counts as a higher pair: one of its two constraints is redundant, adds q = {q}")
+            text = _("pair {pair} counts as a higher pair, because one of its two constraints is redundant: q = {q}")
         yield text.format(pair=pair.pair, q=pair.constraints)
 
 
@@ -201,8 +205,8 @@ def indeterminate_reactions(structure: Structure) -> Iterable[str]:
     among = dict.fromkeys(link for passive in structure.passive for link in passive.among)
     if among:
         yield _(
-            "Redundant constraints make the reactions of links {links} with one another statically indeterminate: the "
-            "least ones are given. The balancing load is exact."
+            "Redundant constraints make the reactions between links {links} statically indeterminate: the "
+            "least ones are given. The balancing load is not affected."
         ).format(links=", ".join(among))
 
 
@@ -247,7 +251,7 @@ def describe_link_motion(results: Results, name: str) -> str:
     linkage = results.linkage
     motion = motion_of_link(results, name)
     if motion == "rotation":
-        return _("turns about {point}").format(point=linkage.shared(FRAME, name))
+        return _("rotates about {point}").format(point=linkage.shared(FRAME, name))
     guides = [slide.name for slide in linkage.slides if {slide.carrier, slide.runner} == {FRAME, name}]
     if guides:
         return _("slides along guide {guide}").format(guide=guides[0])
@@ -285,13 +289,13 @@ def describe_contours(structure: Structure) -> str:
     dependent = sum(is_dependent(contour, structure) for contour in find_contours(structure.pairs, structure.links))
     if not dependent:
         return str(structure.contours)
-    return _("{count}, of which dependent: {dependent}").format(count=structure.contours, dependent=dependent)
+    return _("{count}, including dependent ones: {dependent}").format(count=structure.contours, dependent=dependent)
 
 
 def describe_primary_mechanisms(structure: Structure) -> str:
     """Return the primary mechanisms, one for each driver, and their total mobility."""
     names = ", ".join(map(structure.driver_title, structure.drivers))
-    return _("{names}; together W = {w}").format(names=names, w=len(structure.drivers))
+    return _("{names}; total W = {w}").format(names=names, w=len(structure.drivers))
 
 
 def translate_label(label: str) -> str:
@@ -306,7 +310,7 @@ def _structure_rows(structure: Structure) -> Iterable[tuple[str, str]]:
     yield _("moving links n"), str(n)
     yield (
         _("lower pairs p1"),
-        _("{all} ({r} turning, {p} sliding)").format(all=lower, r=turning, p=lower - turning),
+        _("{all} (revolute: {r}, prismatic: {p})").format(all=lower, r=turning, p=lower - turning),
     )
     if higher:
         kinds: Counter[str] = Counter(pair.kind for pair in structure.pairs)
@@ -316,28 +320,28 @@ def _structure_rows(structure: Structure) -> Iterable[tuple[str, str]]:
     else:
         yield _("mobility W = 3n - 2 p1"), f"3*{n} - 2*{lower} = {w}"
     count = (n, lower, higher)
-    yield _("by classes, W = 3n - 2 p5 - p4"), mobility_by_classes(count)
+    yield _("by pair classes, W = 3n - 2 p5 - p4"), mobility_by_classes(count)
     yield _("generalised formula W = Hn - sum((H - i) p_i), H = 3"), generalised_mobility(count)
     if higher:
-        text = _("{mobility} (each by a link with two turning pairs)")
+        text = _("{mobility} (each higher pair replaced by a link with two revolute pairs)")
         yield (
-            _("W with links in place of higher pairs"),
+            _("W with higher pairs replaced by links"),
             text.format(mobility=mobility_with_replacements(count)),
         )
     if any(pair.mesh is not None and pair.mesh.roller for pair in structure.pairs):
-        yield _("W with rollers as links"), mobility_with_rollers(structure)
+        yield _("W with rollers counted as links"), mobility_with_rollers(structure)
     if structure.passive:
-        yield _("W in truth, by rank"), str(w + structure.redundant)
-    yield _("independent contours K = p - n"), describe_contours(structure)
-    yield _("formula of structure"), structure.formula
+        yield _("true W, by rank"), str(w + structure.redundant)
+    yield _("independent loops K = p - n"), describe_contours(structure)
+    yield _("structural formula"), structure.formula
     if len(structure.drivers) > 1:
         yield _("primary mechanisms"), describe_primary_mechanisms(structure)
     for sentence in reduction_sentences(structure):
         yield "", sentence
     if structure.reduction:
-        yield _("W of the formula of structure"), mobility_equation(structure.count)
-    yield _("chain, and kind of structure"), describe_classification(structure)
+        yield _("W of the structural formula"), mobility_equation(structure.count)
+    yield _("type of chain and of structure"), describe_classification(structure)
     yield _("class of the mechanism"), structure.roman
     schemes = describe_schemes(structure)
     if schemes:
-        yield _("basic schemes"), schemes
+        yield _("basic mechanisms"), schemes

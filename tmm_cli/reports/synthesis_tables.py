@@ -24,7 +24,7 @@ DIGITS = 10  # on a terminal; files have 15
 VALUE_COLUMNS = (("quantity", N_("quantity"), "word"), ("value", N_("value"), "mixed"), ("kind", N_("unit"), "unit"))
 MEASURED_COLUMNS = (
     ("quantity", N_("quantity"), "word"),
-    ("asked", N_("by"), "by"),
+    ("asked", N_("origin"), "by"),
     ("wanted", N_("required"), "mixed"),
     ("measured", N_("measured"), "mixed"),
     ("kind", N_("unit"), "unit"),
@@ -48,11 +48,11 @@ def tables_of_synthesis(
     outcome = found.outcome
     bounded = found.names if found.names and set(found.names) <= {v.name for v in outcome.asked} else None
     title, source = (
-        _("Asked: {task}").format(task=found.task),
+        _("Task: {task}").format(task=found.task),
         _("Source: {source}").format(source=translated(outcome.source)),
     )
     yield _listing_table(_value_listing("asked", title, outcome.asked, bounded), units, digits)
-    given = _value_listing("found", N_("Found"), outcome.found, found.names or None)
+    given = _value_listing("found", N_("Solution"), outcome.found, found.names or None)
     yield _listing_table(given, units, digits, (*outcome.notes, source))
     for listing in outcome.listings:
         yield _listing_table(listing, units, digits)
@@ -65,7 +65,7 @@ def parameter_table(found: Synthesised, units: UnitSystem) -> Table:
     values = tuple(found.outcome.parameters[name] for name in found.names if name in found.outcome.parameters)
     listing, note = (
         _value_listing("", N_("Parameters found by synthesis"), values, found.names or None),
-        _("Asked: {task}"),
+        _("Task: {task}"),
     )
     return _listing_table(listing, units, DIGITS, (note.format(task=found.task),))
 
@@ -75,11 +75,12 @@ def unmet_demand_sentences(measured: Sequence[MeasuredDemand], units: UnitSystem
     for m in measured:
         if m.open:
             yield _(
-                "{quantity}: the output all but rests where a stroke ends, and rounding leaves {by} of it open"
+                "{quantity}: the output is almost at rest at the end of the stroke, so rounding leaves an "
+                "uncertainty of {by}"
             ).format(quantity=translated(m.demand.text), by=numeral(m.open, ".2g"))
         if not m.met:
             wanted, on = (_value_text(value, m.demand.kind, units, DIGITS) for value in (m.demand.value, m.value))
-            yield _("{quantity}: wanted {wanted}, measured {found}").format(
+            yield _("{quantity}: required {wanted}, measured {found}").format(
                 quantity=translated(m.demand.text),
                 wanted=f"{wanted} {_unit_text(m.demand.kind, units)}".rstrip(),
                 found=on,
@@ -118,7 +119,7 @@ def _measured_listing(measured: Sequence[MeasuredDemand]) -> Listing:
         (m.demand.text, m.demand.asked, m.demand.value, m.value, m.demand.kind, m.difference, m.open, m.met)
         for m in measured
     )
-    return Listing("measured", N_("What was asked and foretold, measured on the mechanism"), MEASURED_COLUMNS, rows)
+    return Listing("measured", N_("Required and predicted values, measured on the mechanism"), MEASURED_COLUMNS, rows)
 
 
 def _listing_table(listing: Listing, units: UnitSystem, digits: int, notes: tuple[str, ...] = ()) -> Table:
@@ -132,7 +133,7 @@ def _listing_table(listing: Listing, units: UnitSystem, digits: int, notes: tupl
         elif kind == "unit":
             values = [_unit_text(own, units) for own in values]
         elif kind == "by":
-            values = [_("asked") if value else _("foretold") for value in values]
+            values = [_("required") if value else _("predicted") for value in values]
         elif kind == "share":
             values = [numeral(0.0 if abs(value) < ROUNDING else value, ".2g") for value in values]
         else:

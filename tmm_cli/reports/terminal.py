@@ -18,8 +18,8 @@ from tmm_cli.reports.table import Column, Table
 MOST_ROWS = 120  # on a terminal; files have them all
 GAP = 3  # between columns
 ROUNDING = 1e-13  # of the largest number of a column: less is rounding, and would print untrue digits
-MORE_ROWS = N_("... and {rows} rows more: -o DIR writes them all, --json too")
-MORE_ROWS_AS_JSON = N_("... and {rows} rows more: --json prints them all")
+MORE_ROWS = N_("... further rows: {rows}; all rows are written with -o DIR and with --json")
+MORE_ROWS_AS_JSON = N_("... further rows: {rows}; --json prints all rows")
 
 
 def terminal_cells(column: Column, units: UnitSystem, rows: Sequence[int]) -> list[str]:

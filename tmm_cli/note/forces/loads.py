@@ -196,7 +196,7 @@ def table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
             rows.append(cells(couple, load.link, told, sense(moment)))
     if rows:
         text = _("Table {table} lists everything that acts on the links in this position except the reactions.")
-        head = cells(_("force or couple"), _("on link"), _("size"), _("angle to the x axis, or sense"))
+        head = cells(_("force or couple"), _("on link"), _("magnitude"), _("angle to the x axis, or sense"))
         yield from tabled(text, Rows(caption, head, tuple(rows), f"loads-{k}"))
 
 

@@ -321,7 +321,7 @@ def _source(candidates: Candidates, best: BestCandidate) -> str:
 def _tabulate_constraints(candidates: Candidates, best: BestCandidate, kinds: list[str]) -> Listing:
     """Tabulate the objective and every constraint: bound, value, margin, state."""
     linkage, objective, target = candidates.linkage, candidates.task.objective, candidates.task.target
-    side = N_("near") if target is not None else N_("largest") if objective.lowest else N_("least")
+    side = N_("near") if target is not None else N_("largest angle") if objective.lowest else N_("least")
     first = (
         objective.title(linkage),
         _subject(objective),
