@@ -322,8 +322,8 @@ def test_a_position_near_a_dead_one_blurs_no_extreme_and_a_largest_angle_at_an_e
     units = results.problem.units
     told = dict(zip(quality.columns[0].values, shown(quality.columns[1], units, range(quality.rows)), strict=True))
     stretched = mp.degrees(mp.pi - mp.acos((1 + mp.mpf("0.36") - mp.mpf("2.25")) / mp.mpf("1.2")))  # crank and coupler
-    assert told["driver can go to"] == f"{float(mp.degrees(end)):.6g}"
-    swing = float(told["swing psi of link 3 over the positions asked"])
+    assert told["largest driver coordinate"] == f"{float(mp.degrees(end)):.6g}"
+    swing = float(told["swing angle ψ of link 3 over the requested positions"])
     assert float(told["extreme position of link 3"]) - swing == pytest.approx(float(stretched), abs=1e-3)
     place = next(column for column in pressure.columns if column.header == "driver position at the largest angle")
     assert shown(place, units, [0]) == [f"{float(mp.degrees(-end)):.6g}"]  # it is the same at both ends of the way
@@ -403,7 +403,7 @@ def test_digits_stand_beside_the_values():
     done = tmm("kinematics", ROOT / "problems" / "crank-slider.yaml", "--digits", "--position", "3")
     lines = [" ".join(line.split()) for line in done.stdout.splitlines()]
     assert done.returncode == 0
-    start = lines.index("what value ± rounding ± lengths ± paper unit")
+    start = lines.index("quantity value ± rounding error ± change of lengths ± change on paper unit")
     quality = [re.sub(r"\S+e-1[3-9]", "tiny", line) for line in lines[start + 2 : start + 12]]
     assert quality == [
         "stroke H of link 3 120 tiny 0.12 2 mm",

@@ -159,4 +159,7 @@ positions: {at: [0]}
             "positive counterclockwise, whatever the direction of rotation of the driver: a negative M_b acts clockwise"
             in told[name]
         )
-    assert "Powers are positive that speed the mechanism up" in told["energy"] and "positive that" in told["lever"]
+    assert (
+        "A power that accelerates the mechanism is positive" in told["energy"]
+        and "in this sense are positive" in told["lever"]
+    )

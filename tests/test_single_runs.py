@@ -208,7 +208,7 @@ def test_a_moment_of_a_crank_is_positive_counterclockwise_in_a_clockwise_run_too
 
 
 def of_the_run(results):
-    return [text for text in collect_warnings(results) if "run " in text or "the drive" in text]
+    return [text for text in collect_warnings(results) if "run " in text or "the driving table" in text]
 
 
 def test_a_run_against_the_driver_s_sense_is_warned_of():

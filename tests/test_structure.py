@@ -347,7 +347,7 @@ def test_explain_gives_the_structure_in_the_words_of_a_note():
     text = tmm("explain", "problems/shaper.yaml").stdout
     assert "slotted-link 0-1-2-3-0, crank-slider 0-3-4-5-0, six-bar: Watt II." in text
     assert "type RPR (ВПВ, 3)" in text
-    assert "1: turns about O; 2: plane motion; 3: turns about C; 4: plane motion; 5: slides along guide x." in text
+    assert "1: rotates about O; 2: plane motion; 3: rotates about C; 4: plane motion; 5: slides along guide x." in text
 
 
 def test_a_roller_is_a_link_with_a_local_freedom(tmp_path):

@@ -180,7 +180,7 @@ def test_a_short_h_asks_for_help(command):
 def test_explain_says_the_structure_in_sentences_for_a_note():
     told = tmm("explain", SHAPER).stdout
     assert told.splitlines()[1:16] == [
-        "The mechanism has n = 5 moving links and p1 = 7 lower pairs (turning: 5, sliding: 2); by Chebyshev's "
+        "The mechanism has n = 5 moving links and p1 = 7 lower pairs (revolute: 5, prismatic: 2); by Chebyshev's "
         "formula its mobility is W = 3n − 2 p1 = 3·5 − 2·7 = 1.",
         "In terms of the classes of pairs, W = 3n − 2 p5 − p4 = 3·5 − 2·7 − 0 = 1.",
         "The generalised formula W = Hn − sum((H − i) p_i) with H = 3 gives 3·5 − 2·7 − 1·0 = 1.",
@@ -191,12 +191,12 @@ def test_explain_says_the_structure_in_sentences_for_a_note():
         "Type of chain and of structure: closed, complex: the driver and several groups, groups of several types.",
         "Number of independent loops K = p − n: 2.",
         "Basic mechanisms it contains: slotted-link 0-1-2-3-0, crank-slider 0-3-4-5-0, six-bar: Watt II.",
-        "Motion of the links: 1: turns about O; 2: plane motion; 3: turns about C; 4: plane motion; 5: slides "
+        "Motion of the links: 1: rotates about O; 2: plane motion; 3: rotates about C; 4: plane motion; 5: slides "
         "along guide x.",
         ("Group II(2,3) is of class II, order 2 and type RPR (ВПВ, 3); its external pairs are A (link 1), C (frame)."),
-        "For the group II(2,3), 3n − 2 p1 − p2 = 3·2 − 2·3 = 0.",
+        "For group II(2,3), 3n − 2 p1 − p2 = 3·2 − 2·3 = 0.",
         ("Group II(4,5) is of class II, order 2 and type RRP (ВВП, 2); its external pairs are D (link 3), x (frame)."),
-        "For the group II(4,5), 3n − 2 p1 − p2 = 3·2 − 2·3 = 0.",
+        "For group II(4,5), 3n − 2 p1 − p2 = 3·2 − 2·3 = 0.",
         (
             "Positions, velocities and accelerations are determined group by group in this order, reactions in "
             "the reverse order; the balancing moment acts on link 1, which is checked by the Zhukovsky lever."

@@ -281,7 +281,7 @@ def skipped_tables(problem: Problem) -> Iterable[Table]:
     """Yield the table of what is not computed, with reasons; no table if everything is computed."""
     rows = list(_skipped_rows(problem))
     if rows:
-        yield text_table("skipped", _("What is skipped"), (_("what"), _("reason")), rows)
+        yield text_table("skipped", _("What is skipped"), (_("item"), _("reason")), rows)
 
 
 def _skipped_rows(problem: Problem) -> Iterable[tuple[str, str]]:

@@ -144,7 +144,7 @@ def _travel_rows(linkage: Linkage, travel: OutputTravel, place: Dimension) -> It
     link, run = travel.link, coordinate_dimension(travel.kind)
     point, guide = linkage.output_point(link), linkage.output_guide(link)
     name, extremes = (
-        _("swing angle psi of link {link} over the requested positions"),
+        _("swing angle ψ of link {link} over the requested positions"),
         _("extreme position of link {link}"),
     )
     if point is not None:
@@ -238,7 +238,7 @@ def checks_tables(results: Results) -> Iterable[Table]:
         (
             *_check_texts(check, results),
             _check_coordinate(check, results),
-            _("OK") if check.holds else _("above the limit"),
+            _("OK") if check.holds else _("exceeded"),
         )
         for check in run_checks(results)
     ]
