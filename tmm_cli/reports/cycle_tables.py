@@ -282,7 +282,7 @@ def extremes_tables(results: Results) -> Iterable[Table]:
 
     low, high = [one.low for one in found], [one.high for one in found]
     columns = (
-        Column(N_("quantity"), [words[one.kind].format(name=one.name) for one in found]),
+        Column(N_("item"), [words[one.kind].format(name=one.name) for one in found]),
         Column(N_("least"), shown(low), NUMBER),
         Column(N_("driver position at the least value"), places([one.low_at for one in found]), place),
         Column(N_("largest angle"), shown(high), NUMBER),

@@ -164,7 +164,7 @@ def value_columns(rows: Sequence[ValueRow], results: Results) -> tuple[Column, .
     """Return the columns name, value and unit of rows with different dimensions."""
     units = results.problem.units
     return (
-        Column(N_("quantity"), [name for name, __, __ in rows]),
+        Column(N_("item"), [name for name, __, __ in rows]),
         Column(N_("value"), [units.from_si(float(value), dim) for __, value, dim in rows], NUMBER),
         Column(N_("unit"), [units.spelt(dim) for __, __, dim in rows]),
     )
@@ -195,7 +195,7 @@ def pressure_tables(results: Results) -> Iterable[Table]:
         (
             Column(N_("group"), [p.group for p in found]),
             Column(N_("driven link"), [p.link for p in found]),
-            Column(N_("motion"), [_("slides") if p.slides else _("rotates") for p in found]),
+            Column(N_("motion of the link"), [_("slides") if p.slides else _("rotates") for p in found]),
             Column(N_("driven through pair"), [p.pair for p in found]),
             Column(N_("largest angle"), [p.largest for p in found], ANGLE),
             Column(N_("driver position at the largest angle"), places, coordinate_dimension(driver.kind)),

@@ -51,7 +51,7 @@ def space_tables(results: Results) -> Iterable[Table]:
     yield text_table(
         "space",
         _("The linkage counted in space: redundant constraints"),
-        (_("quantity"), _("value")),
+        (_("item"), _("value")),
         facts,
         () if found.replacements is not None else (note,),
     )
@@ -99,7 +99,7 @@ def redundancy_equation(wanted: int, local: int, mobility: int, redundant: int) 
 def chain_tables(results: ChainResults) -> Iterable[Table]:
     """Yield the tables of a chain given by its pairs: mobility, pairs, contours and local freedoms."""
     found = results.chain
-    yield text_table("structure", _("Structure"), (_("quantity"), _("value")), _chain_rows(found), _chain_notes(found))
+    yield text_table("structure", _("Structure"), (_("item"), _("value")), _chain_rows(found), _chain_notes(found))
     yield text_table(
         "pairs",
         _("Kinematic pairs"),
@@ -112,7 +112,7 @@ def chain_tables(results: ChainResults) -> Iterable[Table]:
         yield text_table(
             "local",
             _("Local degrees of freedom"),
-            (_("links"), _("degrees of freedom"), _("between pairs"), _("motion")),
+            (_("links"), _("degrees of freedom"), _("between pairs"), _("local motion")),
             [
                 (", ".join(x.links), str(x.freedoms), ", ".join(p.name for p in x.ends), _local_freedom_text(x))
                 for x in found.local

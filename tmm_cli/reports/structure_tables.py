@@ -32,7 +32,7 @@ ROLES = {
     "slotted link": N_("slotted link"),
     "rod": N_("rod"),
     "rocking slider": N_("rocking slider"),
-    "wheel": N_("gear"),
+    "wheel": N_("gear wheel"),
     "planet": N_("planet"),
     "carrier": N_("carrier"),
     "rack": N_("rack"),
@@ -93,13 +93,13 @@ SCHEMES = {
 def structure_tables(results: Results) -> Iterable[Table]:
     """Yield the tables of mobility, links, pairs and Assur groups."""
     structure, linkage = results.structure, results.linkage
-    yield text_table("structure", _("Structure"), (_("quantity"), _("value")), _structure_rows(structure))
+    yield text_table("structure", _("Structure"), (_("item"), _("value")), _structure_rows(structure))
     links, roles = [linkage.links[name] for name in structure.links], results.roles
     note = _("Crank and rocker are distinguished only after the motion is computed.")
     yield text_table(
         "links",
         _("Links"),
-        (_("link"), _("role"), _("name"), _("points"), _("motion")),
+        (_("link"), _("role"), _("name of the link"), _("points"), _("motion")),
         [
             (
                 x.name,

@@ -133,7 +133,7 @@ def _listing_table(listing: Listing, units: UnitSystem, digits: int, notes: tupl
         elif kind == "unit":
             values = [_unit_text(own, units) for own in values]
         elif kind == "by":
-            values = [_("required") if value else _("predicted") for value in values]
+            values = [_("as required") if value else _("predicted") for value in values]
         elif kind == "share":
             values = [numeral(0.0 if abs(value) < ROUNDING else value, ".2g") for value in values]
         else:
