@@ -403,11 +403,11 @@ def test_digits_stand_beside_the_values():
     done = tmm("kinematics", ROOT / "problems" / "crank-slider.yaml", "--digits", "--position", "3")
     lines = [" ".join(line.split()) for line in done.stdout.splitlines()]
     assert done.returncode == 0
-    start = lines.index("quantity value ± rounding error ± change of lengths ± change on paper unit")
+    start = lines.index("item value ± rounding error ± change of lengths ± change on paper unit")
     quality = [re.sub(r"\S+e-1[3-9]", "tiny", line) for line in lines[start + 2 : start + 12]]
     assert quality == [
         "stroke H of link 3 120 tiny 0.12 2 mm",
-        "time ratio k (advance to return) 1 tiny 0 0",
+        "time ratio k 1 tiny 0 0",
         "1/k = T_return/T_working 1 tiny 0 0",
         "stroke angle theta = 180 deg (k − 1)/(k + 1) 0 tiny 0 0 deg",
         "working stroke starts at 180 tiny 0 0 deg",

@@ -218,7 +218,7 @@ def test_feedback_says_what_was_read_what_was_allowed_and_why(own, tmp_path):
 
 **Ann**: 2.1 of 4.1 points (51.2 %)
 
-| asked | your answer | right value | off by | allowed | score | result |
+| quantity | your answer | right value | off by | allowed | score | result |
 | --- | --- | --- | --- | --- | --- | --- |
 | H | 0.41 m † | 420 mm | 2.4 % | 3 % | 1 / 1 | right |
 | class | - | 2 | - | exact | 0 / 1 | no answer |

@@ -181,7 +181,7 @@ def test_one_run_tells_tables_course_json_and_a_drawing(tmp_path):
     assert "Intermittent motion: values per cycle" in done.stdout and "2: R = 125" in done.stdout
     folder = tmp_path / "ratchet-feed"
     course = (folder / "intermittent-course.csv").read_text(encoding="utf-8").splitlines()
-    assert course[0] == 'wheel,"travel of the driver, mm","angle, deg","omega, rad/s","epsilon, rad/s^2"'
+    assert course[0] == 'wheel,"way of the driver, mm","angle, deg","omega, rad/s","epsilon, rad/s^2"'
     (found,) = json.loads((folder / "result.json").read_text(encoding="utf-8"))["intermittent"]
     assert found["settings"] == [{}, {"R": "125"}] and len(found["parts"]) == 4
     assert "intermittent-shaft" in drawn("gear-lever/ratchet-feed")

@@ -23,9 +23,9 @@ def rows(found):
 @pytest.mark.parametrize(
     ("name", "roles"),
     [
-        ("gear", ["gear", "gear", "coupler", "slider"]),
+        ("gear", ["gear wheel", "gear wheel", "coupler", "slider"]),
         ("planet", ["carrier", "planet", "coupler", "slider"]),
-        ("rack", ["crank", "coupler", "rack", "gear"]),
+        ("rack", ["crank", "coupler", "rack", "gear wheel"]),
         ("flat follower", ["cam", "follower", "coupler", "rocker"]),
         ("swinging follower", ["cam", "follower", "coupler", "slider"]),
         ("cylinder", ["cylinder", "piston", "rocker"]),
@@ -104,12 +104,12 @@ def test_explain_lists_springs_friction_and_all_drivers():
         "4",
         "frame",
         "E",
-        "turns",
+        "rotates",
         "12.5664 rad/s",
         "clockwise",
         "90 deg",
     )
-    assert told("cylinder")["drivers"] == [("2", "1", "A'", "slides", "0.1 m/s", "out", "260 mm")]
+    assert told("cylinder")["drivers"] == [("2", "1", "A'", "slides", "0.1 m/s", "extending", "260 mm")]
 
 
 @pytest.mark.parametrize("name", PROBLEMS)

@@ -51,7 +51,7 @@ def sheets(book: Gradebook) -> Iterator[StudentSheet]:
     """Yield the feedback sheets in the order of the marks."""
     reveal = book.task.rules.reveal
     right = (_("right value"),) if reveal else ()
-    headers = (_("required"), _("your answer"), *right, _("off by"), _("allowed"), _("score"), _("result"))
+    headers = (_("quantity"), _("your answer"), *right, _("off by"), _("allowed"), _("score"), _("result"))
     title, general = shown(book.title), _notes(book)
     for student in book.marks:
         both = list(zip(book.answers, student.marks, strict=True))
