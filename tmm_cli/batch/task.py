@@ -1,4 +1,6 @@
-"""Tasks for a group of students: a problem file with its blocks `variants` and `grading`."""
+"""Tasks for a group of students: a problem file with its blocks `variants` (free parameters) and `grading` (requested
+answers, points, tolerances as shares of the largest value).
+"""
 
 from __future__ import annotations
 
