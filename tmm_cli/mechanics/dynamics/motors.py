@@ -1,5 +1,5 @@
-"""Motor characteristics: driving moment as a function of the speed of the input link. A new kind is a class
-here.
+"""Motor characteristics (linear, asynchronous by Kloss, ...): driving moment as a function of the speed of the input
+link. A new kind is a class here.
 
 S. A. Popov, G. A. Timofeev, Course project in the theory of mechanisms (2017), ch. 5: characteristics of
 motors.
