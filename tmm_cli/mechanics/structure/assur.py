@@ -1,4 +1,4 @@
-"""Mobility, pairs (also of compound hinges) and Assur groups of a linkage, from the connections between its links alone.
+"""Mobility, pairs (also of compound hinges) and Assur groups of a linkage, from the connections of its links alone.
 
 The order of a group is the number of its external pairs; for its class see `group_class`. The structural report lists
 the groups of the linkage without its redundant links and pairs (see Reduction); kinematics solves groups of all links.
