@@ -409,7 +409,7 @@ def test_digits_stand_beside_the_values():
         "stroke H of link 3 120 tiny 0.12 2 mm",
         "time ratio k 1 tiny 0 0",
         "1/k = T_return/T_working 1 tiny 0 0",
-        "stroke angle theta = 180 deg (k − 1)/(k + 1) 0 tiny 0 0 deg",
+        "angle theta = 180 deg (k − 1)/(k + 1) 0 tiny 0 0 deg",
         "working stroke starts at 180 tiny 0 0 deg",
         "link 3 is then at 160 tiny 0.28 2 mm",
         "working stroke lasts 180 tiny 0 0 deg",
