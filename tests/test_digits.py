@@ -410,12 +410,12 @@ def test_digits_stand_beside_the_values():
         "time ratio k 1 tiny 0 0",
         "1/k = T_return/T_working 1 tiny 0 0",
         "angle theta = 180 deg (k − 1)/(k + 1) 0 tiny 0 0 deg",
-        "working stroke starts at 180 tiny 0 0 deg",
-        "link 3 is then at 160 tiny 0.28 2 mm",
-        "working stroke lasts 180 tiny 0 0 deg",
-        "idle stroke starts at 0 tiny 0 0 deg",
-        "link 3 is then at 280 tiny 0.28 2 mm",
-        "idle stroke lasts 180 tiny 0 0 deg",
+        "driver position at the start of the working stroke 180 tiny 0 0 deg",
+        "position of link 3 at this moment 160 tiny 0.28 2 mm",
+        "driver travel during the working stroke 180 tiny 0 0 deg",
+        "driver position at the start of the return stroke 0 tiny 0 0 deg",
+        "position of link 3 at this moment 280 tiny 0.28 2 mm",
+        "driver travel during the return stroke 180 tiny 0 0 deg",
     ]
     assert any(line.startswith("cycle s of 3 ") for line in lines)
 
