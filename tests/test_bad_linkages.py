@@ -257,8 +257,8 @@ CASES = {
         "[0, 0]",
         "k:",
         (
-            "racks.k.side: the axis of the gear lies on the line of the guide: on which side of the "
-            "rack the gear is must be given\n"
+            "racks.k.side: the axis of the gear lies on the line of the guide: specify on which side of the "
+            "rack the gear lies\n"
             "  allowed: side: left or right, looking along the guide"
         ),
     ),

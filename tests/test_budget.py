@@ -76,9 +76,9 @@ def test_what_options_add_is_refused_before_anything_is_computed(tmp_path, monke
             "--centres",
             *(word for k in range(6) for word in ("-p", str(k))),
         ): (
-            "--centres: too many instantaneous centres for so many links and positions found: detailed positions: "
-            "6; links: 5, points: 508, loads: 1 allowed: at most 3 detailed positions, "
-            "or without instantaneous centres"
+            "--centres: too many instantaneous centres for so many links and positions found: detailed "
+            "positions: 6; links: 5, points: 508, loads: 1 allowed: draw at most 3 detailed positions, or omit "
+            "the instantaneous centres"
         ),
         **{
             (name, "--digits"): (

@@ -119,7 +119,7 @@ def test_keys_in_another_language(key: str, word: str, place: str, allowed: str)
             "length: 100",
             "length: (40 + 60) mm",
             (
-                "x.yaml:4:31: links.1.length: a unit may stand only after a number; write * 1 mm here\n"
+                "x.yaml:4:31: links.1.length: a unit is allowed only after a number; write * 1 mm here\n"
                 "  found:   '(40 + 60) mm', the error is at 'mm'"
             )
             + ARITHMETIC,

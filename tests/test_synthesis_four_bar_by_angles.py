@@ -411,8 +411,8 @@ REFUSED = {
         "synthesis.function: unknown function\n  found:   ''\n  allowed: log10(x), ln(x), exp(x), "
     ),
     "pairs: [[0, 0], [10, 12], [20, 22], [30, 34], [40, 42], [50, 55]], psi0: 20, l4: 100": (
-        "synthesis.pairs: no four-bar has the smallest error for these pairs: it keeps decreasing "
-        "as the links become longer, or as the input link comes closer to locking\n"
+        "synthesis.pairs: for these pairs of angles the error has no minimum: it keeps decreasing as the "
+        "links become longer, or as the input link approaches locking\n"
         "  found:   a list, number of items: 6"
     ),
     "pairs: [[20, 35], [35, 45], [50, 60]], l4: 100, l3: 80, phi0: 5": (

@@ -193,7 +193,7 @@ def _table_coordinates(trace: BranchTrace, *, turns: bool) -> Real:
 
 
 def _unknowns_from_trace(kernel: UnrolledNewton, trace: BranchTrace, q: Real) -> list[Real]:
-    """Free unknowns of a group at driver coordinates on its path."""
+    """Return the free unknowns of a group at driver coordinates along its traced path."""
     state, _ = trace.start(q)
     parts = [state.x.real, state.x.imag, state.unwrapped]
     return [parts[column % 3][:, column // 3] for column in kernel.free]

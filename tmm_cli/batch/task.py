@@ -113,7 +113,7 @@ class AnswerRule(Strict):
         max_length=120,
         description="numbers of positions, as the students count them; omit for H, k, W, class",
     )
-    points: Value = Field(default=1, description="points for each position")
+    points: Value = Field(default=1, description="marks for each position")
     tolerance: Value | None = Field(
         default=None, description="tolerance, as a fraction of the largest value in the cycle, e.g. 3 %"
     )

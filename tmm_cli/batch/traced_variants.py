@@ -205,7 +205,7 @@ class SequentialVariants:
         return DriverRanges.of(self.variant, len(columns), self.turns)
 
     def without(self, fragment: str) -> SequentialVariants:
-        """Return itself: unused results cost little here."""
+        """Return self, because results that are not used cost little here."""
         return self
 
     def sketch(self, numbers: Real) -> Sketch:

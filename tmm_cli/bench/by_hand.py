@@ -304,7 +304,9 @@ class HandCodedMechanism:
         return prepare_batch(linkages, asked)
 
     def by_hand(self, linkages: Sequence[Linkage]) -> Callable[[Real], dict[str, Any]]:
-        """Return the code by hand with its arguments: numbers, or arrays (variants, 1)."""
+        """Return the hand-written code for these linkages as a function of q; numbers that vary become arrays
+        (variants, 1).
+        """
         each = [self.arguments(linkage) for linkage in linkages]
         first = each[0]
         arguments = {

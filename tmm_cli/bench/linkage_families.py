@@ -85,7 +85,7 @@ class LinkageScene:
 
 @dataclass(frozen=True)
 class LinkageFamily:
-    """Scenes of one kind.
+    """A family of linkages that approach a critical position.
 
     Attributes:
         distances: distances from the critical position, from the harmless one to the worst.

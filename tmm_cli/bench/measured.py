@@ -111,7 +111,7 @@ class TimedResult(Protocol):
     """A result of timing, with or without a target."""
 
     def missed(self, slack: float) -> str:
-        """Describe the target missed, widened by the factor `slack`; empty if it is met."""
+        """Describe the target if it is missed, with its limit widened by the factor `slack`; empty if it is met."""
 
 
 AnyTimedResult = TypeVar("AnyTimedResult", bound=TimedResult)

@@ -263,7 +263,7 @@ def _fits(value: Real, size: Real, right: Real, scale: Real, allowed: Real) -> R
 
 
 def _arrays(found: Sequence[StudentMarks]) -> tuple[Real, Real, Real, Real, Real]:
-    """Return values, whether only magnitudes, right values, scales, tolerances: each (students, answers)."""
+    """Return arrays (students, answers): values, True where only magnitudes count, right values, scales, tolerances."""
 
     def of(part: str, kind: type) -> Real:
         rows = [[getattr(mark, part) for mark in marks.marks] for marks in found]

@@ -262,7 +262,7 @@ class _Replaced:
         return True
 
     def _carry(self, weight: CounterweightSolution, pivot: str, masses: list[Leaf]) -> None:
-        """Lump a link with its counterweight at its moving pivot."""
+        """Replace a link and its counterweight by a point mass at the moving pivot of the link."""
         name = weight.place.link
         every = [*(one for one in masses if one.value), Leaf(Symbol("m", f"c{name}"), weight.mass or 0.0)]
         total = Leaf(Symbol("m", f"{name}{pivot}"), sum(one.value for one in every))

@@ -187,7 +187,7 @@ def _bracketed(line: Sequence[Node]) -> Node:
 
 
 def _terms(nodes: Sequence[Node]) -> list[list[Node]]:
-    """Split a row into terms, each with its sign."""
+    """Split a formula into its terms, each with its sign."""
     terms: list[list[Node]] = [[]]
     for node in nodes:
         if node in TERMS and terms[-1] and terms[-1][-1] not in OPENING:

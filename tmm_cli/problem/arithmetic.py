@@ -92,7 +92,7 @@ class Parser:
         quantity = self.sum()
         rest = self.text[self.at :].strip()
         if rest and _UNIT.fullmatch(rest) and all(find_unit(symbol_text) for symbol_text in _SYMBOL.findall(rest)):
-            raise self.fault(_("a unit may stand only after a number; write * 1 {unit} here").format(unit=rest))
+            raise self.fault(_("a unit is allowed only after a number; write * 1 {unit} here").format(unit=rest))
         if rest:
             raise self.fault(_("this is not a valid arithmetic expression"))
         return quantity

@@ -1,4 +1,4 @@
-"""Types of which the models of a problem file are built: names, values with units, positions on a link."""
+"""Field types of the models of a problem file: names, values with units, positions on a link."""
 
 from __future__ import annotations
 

@@ -101,7 +101,7 @@ def refuse_options(
             found=_("detailed positions: {count}; {linkage}").format(count=centres, linkage=_describe_linkage(linkage)),
             allowed=_("without instantaneous centres")
             if most < 1
-            else _("at most {most} detailed positions, or without instantaneous centres").format(most=most),
+            else _("draw at most {most} detailed positions, or omit the instantaneous centres").format(most=most),
         )
     if detail is not None and SHEET_POSITIONS * (
         _count_sheets(detail, large) + PLAN_SHEETS * plans

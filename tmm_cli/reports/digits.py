@@ -268,8 +268,9 @@ class AccuracyReport:
         return replace(table, columns=tuple(columns))
 
     def _parts(self, table: Table, k: int, keys: list[Hashable] | None) -> dict[str, Any]:
-        """Return the bounds of column k, and its sensitivities if `full`. keys: of its rows at one position; None: not
-        positions.
+        """Return the bounds of column k and, if `full`, its sensitivities.
+
+        keys: keys of the rows at one position; None if rows are not positions.
         """
         column, single = table.columns[k], (False, table.name, k)
         if column.dimension is None or (keys is None and single not in self.found().bound):

@@ -200,7 +200,7 @@ def _rotor_rows(results: Results, found: BalancingResults) -> Iterable[ValueRow]
     for words, added in ((_("shaft"), None), (_("balanced shaft"), found.corrections)):
         force, couple = (abs(part) * rate**2 for part in rotor.unbalance(added))
         yield _("{shaft}: centrifugal force").format(shaft=words), force, FORCE
-        yield _("{shaft}: moment about the first plane").format(shaft=words), couple, MOMENT
+        yield _("{shaft}: moment of the unbalances about the first plane").format(shaft=words), couple, MOMENT
     for number, (plane, size) in enumerate(zip(rotor.planes, found.corrections.tolist(), strict=True), 1):
         yield _("correction in plane {number}: mass times radius, kg*m").format(number=number), abs(size), NUMBER
         yield _("angle of this mass"), float(np.mod(np.angle(size), 2 * np.pi)), ANGLE

@@ -166,9 +166,9 @@ def step_table(results: Results) -> Table:
             (str(number), f"{group.title} {group.type}".strip(), _known_links(group), _assembly_text(kernel), how)
         )
     note = _(
-        "Each group: places, velocities, accelerations in closed form (places by iteration where "
-        "the assembly is followed); then reactions, last group first; then the Zhukovsky lever "
-        "from velocities alone."
+        "For each group: positions, velocities and accelerations in closed form (positions by iteration "
+        "where the assembly is continued); then the reactions, from the last group to the first; then the "
+        "Zhukovsky lever from the velocities alone."
     )
     return text_table(
         "way",
@@ -244,7 +244,10 @@ def describe_stages(results: Results) -> Iterable[StageRow]:
     yield _("dead positions"), every, str(scan), places, ""
     yield _("pressure angles"), every, str(scan), places, _("from force equilibrium")
     if results.inputs.dynamics is not None:
-        note = _("more positions until the integrals are accurate; then kinematics and forces with this law")
+        note = _(
+            "the number of positions is increased until the integrals are accurate; then kinematics and forces "
+            "are computed with this law"
+        )
         yield _("law of motion"), every, str(LAW_POSITIONS * driver_range.turns), accelerations, note
     if results.inputs.balancing is not None:
         note = _("shaking force and moment at constant speed of the driver")

@@ -83,7 +83,10 @@ def _transmission_table(results: Results) -> Iterable[Table]:
     found = find_transmitted_forces(results.motion, results.reactions)
     if found and results.reactions.loaded:
         angles = {(p.group, p.link): p.angles for p in results.pressure}
-        words = {N_("driven link"): [f.link for f in found], N_("driven through pair"): [f.pair for f in found]}
+        words = {
+            N_("driven link"): [f.link for f in found],
+            N_("driven through"): [f.pair for f in found],
+        }
         things = [
             [(N_("pressure angle"), angles.get((f.group, f.link)), ANGLE), *quantity_columns(TRANSMITTED, f)]
             for f in found

@@ -68,7 +68,7 @@ def _point_table(problem: Problem) -> Table:
     note = _("Lengths in {unit}. A point that belongs to two links is a hinge; to three or more, a compound hinge.")
     return text_table(
         "points",
-        _("Points, in the axes of their links"),
+        _("Coordinates of the points in the axes of their links"),
         (_("link"), _("point"), _("coordinates")),
         rows,
         (note.format(unit=problem.units.spelt(LENGTH)),),
@@ -230,7 +230,7 @@ def component_tables(problem: Problem) -> Iterable[Table]:
             _("Drivers; they reach the positions of the sketch simultaneously"),
             (
                 _("link"),
-                _("driven relative to"),
+                _("link relative to which the motion is given"),
                 _("driven pair"),
                 _("motion"),
                 _("speed"),

@@ -300,7 +300,7 @@ def _chosen_freely(results: Results) -> bool:
 
 
 def cam_impacts(results: Results) -> Iterable[str]:
-    """Warn of cam laws with jumps of the follower's speed."""
+    """Warn of cam laws with a discontinuous follower velocity."""
     units = results.problem.units
     for mesh in results.linkage.meshes:
         jumps = mesh.law.jumps() if mesh.law is not None else ()

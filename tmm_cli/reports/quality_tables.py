@@ -187,7 +187,10 @@ def pressure_tables(results: Results) -> Iterable[Table]:
     note = (
         _("Allowed: values of the file.")
         if any(results.problem.limits_set)
-        else _("Allowed, if not specified in the file: 30 deg on a sliding link, 45 deg on a rotating one.")
+        else _(
+            "Allowed pressure angles, unless the file gives others: 30 deg for a sliding link, 45 deg for a "
+            "rotating one."
+        )
     )
     yield Table(
         "pressure",
@@ -196,7 +199,7 @@ def pressure_tables(results: Results) -> Iterable[Table]:
             Column(N_("group"), [p.group for p in found]),
             Column(N_("driven link"), [p.link for p in found]),
             Column(N_("motion of the link"), [_("slides") if p.slides else _("rotates") for p in found]),
-            Column(N_("driven through pair"), [p.pair for p in found]),
+            Column(N_("driven through"), [p.pair for p in found]),
             Column(N_("largest angle"), [p.largest for p in found], ANGLE),
             Column(N_("driver position at the largest angle"), places, coordinate_dimension(driver.kind)),
             Column(N_("other extreme"), [p.other for p in found], ANGLE),

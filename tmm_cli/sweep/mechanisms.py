@@ -57,11 +57,14 @@ class SolvedVariants:
 
 @dataclass(frozen=True, eq=False)
 class SweepPoints:
-    """Results at points of a sweep: state and reason per point, (points,); requested quantities, (points,
-    quantities).
+    """Results at the points of a sweep.
 
-    why: the exceeded limit, or a refusal. reach: last argument of each load table against the stroke in
-    lengths, and the stroke, (points, loads, 2), m or rad; nan if there is none.
+    Attributes:
+        state: state of the mechanism at each point, (points,).
+        why: the exceeded limit, or the refusal, at each point.
+        values: requested quantities, (points, quantities).
+        reach: last argument of each load table and the stroke that it must cover, (points, loads, 2), m or rad; nan if
+            there is no such table.
     """
 
     state: Real
@@ -208,7 +211,7 @@ class SweptMechanisms:
         return indices[unsure], indices[otherwise]
 
     def _pressures(self) -> list[str]:
-        """Names of the limited curves whose largest peak is the pressure angle, if it is shown."""
+        """Names of the limited curves whose largest peak is the pressure angle; empty if that is not shown."""
         assert self.crank_variants is not None
         if not any(curve.name == PRESSURE for curve in self.shown):
             return []

@@ -66,7 +66,7 @@ class SweepResults:
 
 
 FORMAT = 1
-TITLE, BORDERS = N_("Sweep"), N_("Borders between states")
+TITLE, BORDERS = N_("Sweep"), N_("Boundaries between states")
 
 
 def points_table(sweep: SweepResults, *, words: bool = False) -> Table:

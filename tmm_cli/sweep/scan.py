@@ -58,7 +58,7 @@ class ScanResults:
     ends: Real
 
     def take(self, rows: Real) -> ScanResults:
-        """Return the results of some variants."""
+        """Return the results of the selected variants."""
         peaks = {name: peak[rows] for name, peak in self.peaks.items()}
         return ScanResults(self.does[rows], self.sure[rows], peaks, self.ends[rows])
 

@@ -369,9 +369,9 @@ def solve(task: CrankSliderTask) -> SynthesisOutcome:
         given_values(task, QUANTITIES),
         lengths + more,
         N_(
-            "triangle formed by the crank pivot and the extreme positions of the slider: sides l + r and l - "
-            "r, between them the angle theta = pi (k - 1)/(k + 1), opposite it H with the height e; "
-            "sin(lambda) = (r + e)/l"
+            "triangle of the crank pivot and the extreme positions of the slider: the sides l + r and l - r "
+            "enclose the angle theta = pi (k - 1)/(k + 1); the third side is the stroke H, and the altitude to "
+            "it is e; sin(lambda) = (r + e)/l"
         ),
         tuple(demands),
         (draw_construction(solution),),

@@ -178,7 +178,7 @@ def stroke_end_angle(results: Results, near: float) -> float:
 
 @dataclass(frozen=True)
 class MeasuredDemand:
-    """A demand, its value on the mechanism (SI, rad; nan: it has none) and the relative difference.
+    """A requirement, its value measured on the mechanism (SI, rad; nan if undefined) and the relative difference.
 
     open: uncertainty of the value from rounding, where it exceeds the tolerance.
     """

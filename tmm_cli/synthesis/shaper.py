@@ -115,7 +115,9 @@ class ShaperSolution:
 
 
 def find_shaper(task: ShaperTask) -> ShaperSolution:
-    """Solve the task. If no such mechanism exists (`refuse` gives the reason), the values are meaningless."""
+    """Find the dimensions of a shaper. If no such mechanism exists (`refuse` gives the reason), the values are
+    meaningless.
+    """
     theta = theta_of(task.k)
     sine, half_height = np.sin(theta / 2), np.sin(theta / 4) ** 2
     lever = np.asarray(task.stroke) / (2 * sine)

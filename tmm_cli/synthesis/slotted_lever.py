@@ -118,7 +118,7 @@ def tabulate_family(task: SlottedLeverTask, f: SlottedLeverSolution) -> tuple[Di
     drawn = Diagram("family-lengths", title, (N_("frame OC"), "length"), (N_("length"), "length"), lines)
     columns = (("OC", N_("frame OC"), "length"), *((name, text, "length") for name, text, __ in rows))
     values = np.stack((frame, *(values for *__, values in rows)), axis=-1).tolist()
-    title = N_("Slotted-lever mechanisms for OC within its bounds")
+    title = N_("Slotted-lever mechanisms with OC within the given limits")
     return drawn, Listing("family", title, columns, tuple(map(tuple, values)), long=True)
 
 
@@ -152,8 +152,7 @@ class SlottedLeverTask:
 
     Attributes:
         b1, b2: extreme positions of the lever's end (m, complex); or CB, c, axis: its length (m), the hinge C and the
-            direction
-            (rad) from C to O.
+            direction (rad) from C to O.
         side: side of the line from b1 to b2 on which C lies, 1 left, -1 right; with CB, 1 means that the lever rotates
             clockwise from B1 to B2.
         k, swing: time ratio, or swing angle (rad).

@@ -168,7 +168,7 @@ class _FontCodes:
         self.codes: dict[Slant, dict[str, int]] = {}
 
     def encode(self, text: str, slant: Slant) -> tuple[int, str]:
-        """Return the number of the font of this slant and the hexadecimal codes of the letters."""
+        """Return the number of the font of this slant and the hexadecimal codes of the characters."""
         codes = self.codes.setdefault(slant, {})
         return list(self.codes).index(slant), "".join(
             f"{codes.setdefault(x, len(codes) + 1):04x}" for x in replace_missing(text)

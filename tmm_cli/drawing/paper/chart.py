@@ -176,7 +176,7 @@ class ChartCurve:
 
 @dataclass(frozen=True)
 class CurveJump:
-    """A jump of a curve at a value of the common axis, from one value to another, with their texts."""
+    """Discontinuity of a curve: value on the common axis, values before and after the jump, and their labels."""
 
     at: float
     values: tuple[float, float]
@@ -230,7 +230,7 @@ def count_fitting(sheet: DrawingSheet, plots: Sequence[PlotContent], over: Commo
 
 
 def _height_for_panels(sheet: DrawingSheet, over: CommonAxis, count: int) -> float:
-    """Return the height (mm) that `count` panels of the least height leave for their heads."""
+    """Return the height (mm) left for the headings when `count` panels have their least height."""
     beside = (2 + bool(over.spans)) * TEXT_ROW
     return float((sheet.canvas.high - sheet.canvas.low).imag - beside - count * (_panel_gap(over) + LEAST_PANEL_HEIGHT))
 

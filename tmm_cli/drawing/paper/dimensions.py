@@ -39,8 +39,7 @@ def draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str,
     """Draw a dimension line beside two points (mm), where it interferes least.
 
     The text stands above the line, or to the left of an upright one. If the line is short, the text stands beyond one
-    of
-    its ends, or beside an upright line.
+    of its ends, or beside an upright line.
 
     Args:
         sheet: Sheet to draw on.
@@ -177,8 +176,7 @@ class Ruler:
     """A ruler parallel to a straight path through `base` along `along`, or concentric with a circular one about `base`.
 
     A circular ruler is measured from direction `along`. off: offset from the path (mm), positive to the left of a
-    line
-    or outside a circle.
+    line or outside a circle.
     """
 
     base: complex

@@ -181,7 +181,7 @@ def shaking_plots(results: Results, q: Any) -> list[QuantityPlot]:
 
 
 def pressure_plots(results: Results, motion: Motion) -> list[QuantityPlot]:
-    """Return pressure angles of sliding and of rotating driven links in separate panels, for their limits differ."""
+    """Plot the pressure angles of sliding and of rotating driven links in separate panels, as their limits differ."""
     with np.errstate(all="ignore"):
         curves = {
             (kernel.group.title, lead[0], driving_pair_names(lead)): pressure_angle(motion, kernel, at, lead)

@@ -1,8 +1,7 @@
 """Table of Assur groups of classes II to VI by order (Table 1 of the source on structure), as a sheet.
 
 Each group is drawn alone: links as bars, or plates if they have three pairs; pairs as hinges or sliding blocks;
-dotted
-stubs at the external pairs.
+dotted stubs at the external pairs.
 """
 
 from __future__ import annotations

@@ -43,8 +43,7 @@ class Cylinder:
         """Return the cylinder of a prismatic pair.
 
         The barrel begins at the last point of its link behind the end of the rod, or else one stroke before it. If
-        the barrel
-        cannot hold the stroke, the piston is drawn to move slower than the rod.
+        the barrel cannot hold the stroke, the piston is drawn to move slower than the rod.
         """
         low, high = (run / sheet.mu for run in scene.travel(slide))
         foot, end = sheet.on(scene.place(slide.carrier, slide.through)), sheet.on(scene.place(slide.runner, slide.at))

@@ -60,10 +60,10 @@ def solve(family: VariantFamily, mistakes: Sequence[Mistake] = ()) -> Solution:
 
 @dataclass(frozen=True)
 class Mistake:
-    """Case of a typical mistake, e.g. the normal acceleration of link 3 left out.
+    """A typical mistake, e.g. that the normal acceleration of link 3 is left out.
 
-    A subclass overrides one or more of the methods below. name: for tables and statistics. sentence: for the student.
-    Both may contain fields of the mistake.
+    A subclass overrides one or more of the methods below. name: text for tables and statistics. sentence: text for the
+    student. Both may contain fields of the mistake.
     """
 
     name: ClassVar[str]

@@ -203,7 +203,7 @@ class NotTurningFaster(WrappedSolver):
 
 @dataclass(frozen=True)
 class Coriolis(Mistake):
-    """Coriolis acceleration of one link on a moving guide left out (sense 0) or reversed (-1)."""
+    """Mistake: the Coriolis acceleration of a link on a moving guide is left out (sense 0) or reversed (-1)."""
 
     runner: str = ""
     carrier: str = ""

@@ -48,10 +48,10 @@ class WheelSetting:
 
 @dataclass(frozen=True)
 class WheelTask:
-    """Wheel (or shaft, flange) on the axis of `link`, which rotates on the frame and drives it.
+    """Wheel (or shaft, flange) coaxial with `link`, which rotates on the frame and drives it intermittently.
 
-    when: the link drives it while it rotates forward (counterclockwise) or backward, or in strokes of the
-    output. settings: one per cycle of the driver, in turn.
+    when: the link drives it while it rotates forward (counterclockwise) or backward, or in strokes of the output.
+    settings: one per cycle of the driver, used in turn.
     """
 
     name: str

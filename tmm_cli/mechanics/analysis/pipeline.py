@@ -435,7 +435,7 @@ def _solve_friction_at(results: Results, motion: Motion) -> FrictionSolution:
 
 
 def motion_at_positions(results: Results, q: Real, order: int = 2) -> Motion:
-    """Return the motion of results at other driver coordinates, (positions,), rad or m."""
+    """Return the motion of an analysed mechanism at other driver coordinates (rad or m), (positions,)."""
     return fill_in_limits(compute_motion(results.linkage, results.kernels, q, results.law, order))
 
 

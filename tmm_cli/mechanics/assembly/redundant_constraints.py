@@ -127,7 +127,7 @@ class RemainingLinkage:
 
 
 def equation_rank(matrix: Real) -> int:
-    """Return the rank of dimensionless equations."""
+    """Return the rank of the constraint equations, which are scaled to be dimensionless."""
     return int(np.linalg.matrix_rank(matrix, rtol=REDUNDANT)) if matrix.size else 0
 
 

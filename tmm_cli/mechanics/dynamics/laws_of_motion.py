@@ -1,8 +1,7 @@
-"""Laws of motion of steady running: speed, acceleration and time along the travel of the driver, the same
-every cycle.
+"""Laws of motion of steady running: speed, acceleration and time along the travel of the driver, the same every cycle.
 
-Under a constant driving moment Md the kinetic energy T along the travel x is an integral: dT/dx = M(x) +
-Md, w^2 = 2 T / (Jf + J).
+Under a constant driving moment Md the kinetic energy T along the travel x follows by integration, dT/dx = M(x) + Md,
+and the speed from w^2 = 2 T / (Jf + J), with the reduced inertia J and that of the flywheel, Jf.
 """
 
 from __future__ import annotations

@@ -230,7 +230,7 @@ def _driving_moment(task: RunTask, t: float, x: Real, speed: float) -> float:
 
 
 def _pieces(moment: PanelCurve, way_edges: Sequence[float]) -> Iterator[tuple[float, float]]:
-    """Yield pieces of the travel between points where the load moment jumps, or the drive may bend or jump."""
+    """Yield intervals of the travel between points where the load moment jumps or the drive has a jump or a kink."""
     inner = moment.edges[1:-1]
     before, after = moment(np.nextafter(inner, 0.0)), moment(inner)
     jumps = inner[np.abs(after - before) > NO_JUMP * float(np.max(np.abs(moment(moment.places()))))]

@@ -116,7 +116,9 @@ class RunTask:
     cyclic: ClassVar[Literal[False]] = False
 
     def along(self, sense: int) -> RunTask:
-        """Return the task with a drive that is positive along the run; sense: of the run, +1 or -1."""
+        """Return the task with the sign of the drive counted positive in the direction of the run; sense: that
+        direction, +1 or -1.
+        """
         drive = self.drive
         if sense > 0 or drive is None:
             return self

@@ -139,7 +139,7 @@ class MomentTerm:
 
     @property
     def letter(self) -> Symbol:
-        """Symbol of the arm: h₁."""
+        """Symbol of the moment arm, e.g. h₁."""
         return Symbol("h", str(self.number))
 
 

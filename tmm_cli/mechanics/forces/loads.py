@@ -86,9 +86,9 @@ BEYOND_END = 0.02  # of the stroke: tolerance for a table that ends later
 
 
 def problem_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLoad]:
-    """Yield the loads of the file and, where the other link moves, their opposites.
+    """Yield the loads of the file and, if the other link also moves, the equal and opposite loads on it.
 
-    Loads limited to working strokes act at all positions if there are no strokes.
+    Loads limited to working strokes act at all positions if the mechanism has no strokes.
     """
     for load in motion.linkage.loads:
         factor = _load_factor(load, motion, strokes)

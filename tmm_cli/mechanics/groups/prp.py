@@ -39,7 +39,7 @@ from tmm_cli.mechanics.numerics import Real, Vector, cross, unit
 
 @dataclass(frozen=True)
 class PRP(Dyad[SliderEnd, SliderEnd, HingeEnd]):
-    """Solver of a PRP dyad: the intersection of two lines, with one assembly only."""
+    """Solver of a PRP dyad: the intersection of two lines; there is one assembly only."""
 
     type = "PRP"
     assemblies = 1

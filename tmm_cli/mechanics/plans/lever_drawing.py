@@ -202,7 +202,7 @@ READING_STEP = 0.5  # mm: resolution of a reading from paper
 
 @dataclass(frozen=True)
 class DrawingScales:
-    """Scales (SI units per mm) of the drawings of the driving link, of its force plan and of the lever."""
+    """Scales (SI units per mm) of the drawings of the input link, its force plan and the Zhukovsky lever."""
 
     link: float
     forces: float

@@ -238,7 +238,7 @@ def _corners(pairs: Sequence[VectorPair], ends: Mapping[str, complex], least: fl
 
 
 def _segment_letters(vector: NamedVector, lettered: Mapping[str, complex], least: float) -> str:
-    """Letters of a vector's ends, empty for a zero vector.
+    """Return the letters at both ends of a vector; empty for a zero vector.
 
     Ends are matched to the nearest lettered points, as near a dead position rounding separates them.
     """

@@ -143,7 +143,7 @@ class _EquationBuilder:
         self.slid: set[str] = set()
 
     def driving(self, driver: Driver) -> SolutionStep:
-        """Return the step of a link driven from the frame."""
+        """Return the step of the solution for a link driven from the frame."""
         link = driver.link
         self.known.add(self.turns[link])
         if driver.kind == "turn":
@@ -199,7 +199,7 @@ class _EquationBuilder:
         return -1 if spot.fixed else self.rank[spot.at] if spot.name == spot.at else float("inf")
 
     def _of_group(self, group: Group, link: str) -> list[PlanPoint]:
-        """Return points of a link in pairs of its group, those that are solved first before the others."""
+        """Return the points at which a link is paired within its group, in the order in which they are solved."""
         points: list[PlanPoint] = []
         for pair in (*group.outer, *group.inner):
             if link not in (pair.i, pair.j) or not pair.lower:

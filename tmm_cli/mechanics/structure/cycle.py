@@ -33,10 +33,10 @@ def turns_of_cycle(linkage: Linkage, rounds: Mapping[str, int] | None = None) ->
 
 
 def _gear_turns(linkage: Linkage, rounds: Mapping[str, int]) -> dict[str, Fraction | None]:
-    """Return the turns of each gear in one turn of the driver; None for a gear that never returns.
+    """Return the revolutions of each gear per revolution of the driver; None for a gear that never returns.
 
-    Links that are not driven by gears return with the driver: their turns are integers, and where they are unknown any
-    integer serves.
+    Links that are not driven by gears return with the driver: their revolutions are integers, and where they are
+    unknown any integer serves.
     """
     whole, lead = Fraction(1), linkage.driver
     turns_of: dict[str, Fraction | None] = {FRAME: Fraction(0)}

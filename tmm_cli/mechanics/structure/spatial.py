@@ -184,7 +184,7 @@ class ChainCount:
 
     @property
     def branches(self) -> tuple[str, ...]:
-        """Moving links that belong to no contour."""
+        """Moving links that belong to no closed loop."""
         closed = {link for contour in self.contours for link in contour.links}
         return tuple(link for link in self.chain.links if link not in closed)
 

@@ -188,7 +188,12 @@ def transmission(subject: Subject) -> Iterable[Block]:
         return
     P, Q, angle = Symbol("P"), Symbol("Q"), Symbol("λ")
     head = cells(
-        _("driven link"), _("driven through pair"), _("position"), (P, ", ", _("N")), (angle, ", °"), (Q, ", ", _("N"))
+        _("driven link"),
+        _("driven through"),
+        _("position"),
+        (P, ", ", _("N")),
+        (angle, ", °"),
+        (Q, ", ", _("N")),
     )
     yield from tabled(
         _(

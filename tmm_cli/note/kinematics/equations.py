@@ -218,7 +218,7 @@ def of_known_link(here: Here, about: SameLinkEquation, letter: str, known: Colle
 
 
 def _in_lines(told: Sequence[Node]) -> Iterable[Block]:
-    """Write short statements in a row, as many in a line as fit."""
+    """Write short statements side by side, as many per line as fit."""
     shown: Node | None = None
     for one in told:
         longer = one if shown is None else row(shown, Words(",  "), one)

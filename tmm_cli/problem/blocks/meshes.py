@@ -279,10 +279,7 @@ def _build_rack(name: str, section: FileSection, members: LinksAndPairs) -> Mesh
         allowed = _("side: left or right, looking along the guide")
         raise section.refusal(
             "side",
-            _(
-                "the axis of the gear lies on the line of the guide: on which side of the rack the gear is must be "
-                "given"
-            ),
+            _("the axis of the gear lies on the line of the guide: specify on which side of the rack the gear lies"),
             allowed=allowed,
         )
     forward = 1.0 if slide.runner == rack else -1.0

@@ -235,7 +235,7 @@ def _build_counterweight_place(
                 "the point about which this counterweight is placed moves, so its mass must be known: `radius` is "
                 "missing"
             ),
-            allowed=_("radius: 80 mm; or `about`: the hinge of this link on the frame"),
+            allowed=_("give `radius`, e.g. 80 mm, or in `about` the hinge of this link on the frame"),
         )
     return CounterweightPlace(name, about, radius)
 

@@ -88,7 +88,7 @@ def _circle_line(across: complex) -> Callable[[PointConstruction, FileNode], com
 
 
 def _circle_ray(points: PointConstruction, step: FileNode) -> complex:
-    """Intersect a circle with a ray at an angle, or with a ray through a second point, rotated by an angle."""
+    """Intersect a circle with a ray, given by its angle or by a second point and a rotation angle."""
     centre, radius, start = points.of(step, "center"), points.number(step["radius"]), points.of(step, "from")
     if step.get("through"):
         turn = cmath.rect(1, math.radians(points.number(step["rotate_deg"]))) if step.get("rotate_deg") else 1
@@ -337,7 +337,7 @@ class _LinkageV2Reader:
     def _driven(self) -> FileNode:
         drives = [self.top["drive"]] if self.top.get("drive") else self.top["drives"].items()
         if len(drives) != 1:
-            raise self.top.refused(_("expected exactly one driving link"))
+            raise self.top.refused(_("expected exactly one input link"))
         return drives[0]
 
     def _drive(self) -> ImportedDrive:

@@ -325,7 +325,7 @@ class _PmksMechanism:
         if joint.slides:
             slide = next((slide for slide in slides if slide.point == joint.id), None)
             if slide is None:
-                raise self._refused(joint, _("expected exactly one driving link"), "0")
+                raise self._refused(joint, _("expected exactly one input link"), "0")
             at = ((joint.place - slide.through) * cmath.rect(1, -slide.angle)).real
             return ImportedDrive(slide.runner, joint.speed or self.saved.linear, "length/s", on=slide.carrier, at=at)
         cranks = self._riders(joint)
@@ -337,7 +337,7 @@ class _PmksMechanism:
                 _("a crank on the frame; otherwise write the block `driver` by hand"),
             )
         if len(cranks) != 1:
-            raise self._refused(joint, _("expected exactly one driving link"), ", ".join(cranks) or "0")
+            raise self._refused(joint, _("expected exactly one input link"), ", ".join(cranks) or "0")
         return ImportedDrive(cranks[0], joint.speed or self.saved.rpm, "rpm")
 
     def _pushes(self) -> Iterator[ImportedLoad]:

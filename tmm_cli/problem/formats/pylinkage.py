@@ -52,7 +52,7 @@ def read(text: str, file: str) -> ImportedMechanism:
         bodies.append(ImportedBody(name, tuple(names), _link_label(link, name)))
         if kind != "link":
             if drive is not None:
-                raise link.refused(_("expected exactly one driving link"))
+                raise link.refused(_("expected exactly one input link"))
             rate = speed.number() if (speed := link.get("angular_velocity")) else math.tau / 360
             drive = ImportedDrive(name, rate)
             notes.append(_("The angular velocity of pylinkage, in rad per unit of time, was taken as rad/s."))
@@ -104,7 +104,7 @@ def read(text: str, file: str) -> ImportedMechanism:
 
 
 def _frame_joints(joints: dict[str, FileNode], links: list[FileNode]) -> tuple[str, ...]:
-    """Return the joints of the frame: of type ground, of the ground link, and centres of rotation of drivers."""
+    """Return the joints on the frame: those of type ground, those of the ground link, and the pivots of drivers."""
     names = [name for name, joint in joints.items() if _joint_type(joint) == "ground"]
     for link in links:
         if link["type"].data == "ground":

@@ -267,7 +267,7 @@ def _split_pieces(curve: DyadCurve, at: Callable[[int, Any], Any]) -> Iterator[A
 
 
 def _sample_densely(at: Callable[[Any], Any]) -> Any:
-    """Return points around a loop, as dense as a drawing needs."""
+    """Return points along a closed curve, spaced closely enough for a drawing."""
 
     def wide(t: Any) -> Any:
         points = at(t)

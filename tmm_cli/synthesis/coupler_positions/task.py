@@ -169,14 +169,14 @@ GIVEN: Final[
     dict[str, dict[str, Any]]
 ] = {  # descriptions of the data of a dyad, by fields of DyadData; points have x and y
     "AB": {
-        "pin": (N_("B in coupler axes, x"), N_("B in coupler axes, y")),
+        "pin": (N_("x coordinate of B in the coupler axes"), N_("y coordinate of B in the coupler axes")),
         "pivot": (NAMES["Ax"], NAMES["Ay"]),
         "length": N_("length of AB"),
         "turn": N_("rotation of AB from position 1 to 2"),
         "near": (N_("A: preferred x"), N_("A: preferred y")),
     },
     "DC": {
-        "pin": (N_("C in coupler axes, x"), N_("C in coupler axes, y")),
+        "pin": (N_("x coordinate of C in the coupler axes"), N_("y coordinate of C in the coupler axes")),
         "pivot": (NAMES["Dx"], NAMES["Dy"]),
         "length": N_("length of DC"),
         "turn": N_("rotation of DC from position 1 to 2"),

@@ -472,7 +472,7 @@ def _check_function(function: GeneratedFunction) -> None:
         )
     if not np.all(np.isfinite(y)) or y[0] == y[-1]:
         differing = _("two ends at which the function differs")
-        domain = translated(DOMAINS.get(function.name, N_("another range")))
+        domain = translated(DOMAINS.get(function.name, N_("the range is different")))
         raise ProblemError(
             _("the function is undefined in this range, or equal at both ends"),
             path=("x",),

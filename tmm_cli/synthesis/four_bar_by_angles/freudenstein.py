@@ -228,8 +228,7 @@ def solve_exact_pairs(phi: Any, psi: Any, phi0: Any = 0.0, psi0: Any = 0.0) -> F
     Args:
         phi, psi: angles (rad), (tasks, pairs).
         phi0, psi0: zero angles (rad), one value or one for each task; None: to be found (none for 3 pairs, one for 4,
-            both
-            for 5).
+            both for 5).
 
     Returns:
         Four-bars (tasks, roots); nan where a root is not real.

@@ -200,8 +200,8 @@ MEAN: Final = N_("root mean square error of the output angle")
 SHORT_DEFECTS: Final = {"": N_("none"), "branch": N_("branch"), "locks": N_("order")}
 NO_FOUR_BAR: Final = N_("no four-bar passes through these pairs of angles")
 NONE_NEAR: Final = N_(
-    "no four-bar has the smallest error for these pairs: it keeps decreasing as the links become "
-    "longer, or as the input link comes closer to locking"
+    "for these pairs of angles the error has no minimum: it keeps decreasing as the links become "
+    "longer, or as the input link approaches locking"
 )
 DEFECTS_OF_ALL: Final = {
     "branch": N_("branch defect: every four-bar through these pairs reaches some of them only in its other assembly"),
@@ -396,7 +396,10 @@ def _notes(
             "transmission angle is the angle between DC and AD; l1/l4 is free, 1/2 was taken"
         )
     if rating.reversed:
-        yield N_("a zero angle differs from the given one by 180 deg: with the given direction no such link exists")
+        yield N_(
+            "the zero angle that was found differs from the given one by 180 deg: with the given direction no "
+            "such link exists"
+        )
     if task.choose == "crank" and not rating.crank:
         yield N_("no solution without defects has an input link that rotates fully: another solution was taken")
     if task.free and abs(abs(np.log(abs(float(solution.l1)))) - np.log(LONGEST)) < 1e-9:
@@ -467,7 +470,7 @@ def _tabulate_family(task: AnglePairsTask) -> Listing:
 
 
 def _solution_row(task: AnglePairsTask, solution: FourBarRatios, rating: FourBarQuality) -> tuple[float, ...]:
-    """Return lengths (m), zero angles and smallest transmission angle of a four-bar."""
+    """Return the link lengths (m), the zero angles and the smallest transmission angle of a four-bar."""
     frame_length = _frame_length(task, solution)
     return (
         *(float(x * frame_length) for x in solution[:3]),

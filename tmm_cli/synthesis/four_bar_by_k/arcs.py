@@ -36,13 +36,12 @@ FARTHEST: Final = 1e6  # l2 over half C1C2: limit for a straight arc
 
 @dataclass(frozen=True)
 class FourBarByKTask:
-    """Rocker l3 (m), its extreme angles (rad), k, its pivot D (`support`), and the condition for A.
+    """Four-bar by the time ratio k: rocker l3 (m), its extreme angles (rad), k, its pivot D (`support`), choice of A.
 
     Attributes:
         psi1, psi2: rocker angle where crank and coupler overlap, and where they are in line.
-        choose: best, level (A as high as D), near (nearest to a point), l1, l2, l4, xA or yA (m), pressure (largest
-            pressure
-            angle, rad); the value stands in the field of that name.
+        choose: best, level (A as high as D), near (nearest to a point), l1, l2, l4, xA or yA (m), or pressure (largest
+            pressure angle, rad); the value stands in the field of that name.
         sense: sense of rotation of the crank (1: counterclockwise) with the slow stroke from psi1 to psi2; 0: any.
     """
 

@@ -9,8 +9,7 @@
     many_starts.py  for least squares, beside the evolution: tournaments of random starts (Levenberg-Marquardt);
                     parameters on which the motion depends linearly are found directly
     refinement.py   quantities of one candidate from windows around their peaks, and sequential quadratic programming
-    solver.py       the search: all of these in order
-    outcome.py      results, tables and diagrams
+    solver.py       the search: all of these in order outcome.py      results, tables and diagrams
 
 Evolution and refinement use scipy. They replaced our own implementations: on the four searches of the bank and of `tmm
 bench synthesis`, with three seeds each, both reached the same objectives to 1e-11; the search takes 1.3 to 2 times as

@@ -119,9 +119,7 @@ class OptimalBlock(TaskBlock):
         le=720,
         description="positions in a cycle during the search; at least 24 per revolution if the cycle has several",
     )
-    population: int = Field(
-        default=0, ge=0, le=2000, description="candidates in a generation; 0: 20 for each parameter"
-    )
+    population: int = Field(default=0, ge=0, le=2000, description="candidates per generation; 0 means 20 per parameter")
     generations: int = Field(
         default=0,
         ge=0,

@@ -35,8 +35,7 @@ class EvolutionResult:
 
     Attributes:
         population: the first candidates and the best of each generation, best first, (variants, n), with their
-            objective
-            and violation.
+            objective and violation.
         history: objective and violation of the leading candidate in each generation.
         stopped: True if stopped by the user.
         every: True if all candidates were evaluated without evolution; history is then of each candidate.

@@ -259,7 +259,7 @@ def _exact_pieces(candidates: Candidates, x: Real, narrow: float = 0.0) -> Calla
 
 
 def _value(candidates: Candidates, n: int, pieces: Real) -> Real:
-    """Return a quantity from its peaks, (variants,)."""
+    """Return the value of a quantity computed from its peaks, (variants,)."""
     extreme: Real = (np.min if candidates.quantities[n].lowest else np.max)(pieces, axis=1)
     return extreme
 

@@ -72,7 +72,7 @@ class QuantityConstraint:
         return [*least, *([] if self.most is None else [(self.most - high) / self.scale])], []
 
     def broken(self, value: float) -> tuple[float, Keys]:
-        """Return the bound that a value violates, and its path."""
+        """Return the bound that a value violates, and the path of its key in the file."""
         low = self.least is not None and value < self.least
         bound = self.least if low else self.most
         assert bound is not None

@@ -92,7 +92,7 @@ class LayoutDraft:
     # --- links
 
     def place_link(self, link: int, turn: float, **points: complex) -> None:
-        """Place a link with its axes in the direction `turn` (rad) and its origin in its first point."""
+        """Place a link with its first point as origin and its axes rotated by `turn` (rad)."""
         self.axis_angle[link] = turn
         self.points[link] = dict(points)
 

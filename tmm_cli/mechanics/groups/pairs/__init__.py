@@ -1,4 +1,4 @@
-"""Constraint equations by kind of pair. A new kind is a class and a line here."""
+"""Constraint equations by kind of pair. To add a kind, write a class and register it here."""
 
 from collections.abc import Callable
 

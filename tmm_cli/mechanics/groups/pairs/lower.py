@@ -44,7 +44,7 @@ class PairConstraint(ABC):
 
     @abstractmethod
     def residuals(self, poses: Poses, drives: DriverStates) -> Sequence[Real]:
-        """Return the residual of each row."""
+        """Return the residual of each constraint equation."""
 
     @abstractmethod
     def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
@@ -91,7 +91,9 @@ class HigherPairConstraint(PairConstraint):
 
     @abstractmethod
     def contact(self, poses: Poses) -> tuple[Vector, Vector]:
-        """Return the point (m) at which i acts on j, and the direction of the force for a positive multiplier."""
+        """Return the contact point (m) at which link i acts on link j, and the direction of the force for a positive
+        multiplier.
+        """
 
     def pushes(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
         point, along = self.contact(poses)

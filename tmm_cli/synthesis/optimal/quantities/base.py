@@ -61,8 +61,7 @@ class MechanismQuantity(ABC):
         name: the pair, point or link.
         links: the links whose lengths count.
         places: driver coordinates (rad or m) of the required values; without them a path may pass through the points at
-            any
-            position.
+            any position.
         wanted: required values.
         norm: how deviations are combined.
         relative: True if a law counts from its first value.
@@ -142,7 +141,7 @@ class MechanismQuantity(ABC):
         return self.text
 
     def unfit(self, linkage: Linkage, groups: Any, *, closed: bool) -> str | None:
-        """Return the reason why a linkage has no such quantity, or None."""
+        """Return why this quantity is not defined for a linkage, or None if it is."""
         return None
 
     def output(self, linkage: Linkage, groups: Any) -> str | None:
