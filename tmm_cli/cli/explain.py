@@ -1,4 +1,4 @@
-"""`tmm explain`."""
+"""Command `tmm explain`: how a file was read and what is computed from it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`tmm new`."""
+"""Command `tmm new`: a commented problem file to start from."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`tmm note`."""
+"""Command `tmm note`: the explanatory note."""
 
 from __future__ import annotations
 

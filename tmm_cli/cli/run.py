@@ -1,4 +1,4 @@
-"""`tmm run`."""
+"""Command `tmm run`: compute problems and write tables, drawings and result.json."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`tmm schema`."""
+"""Command `tmm schema`: the JSON Schema of problem files or of result.json."""
 
 from __future__ import annotations
 

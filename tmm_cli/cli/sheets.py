@@ -1,4 +1,4 @@
-"""`tmm sheets`."""
+"""Command `tmm sheets`: framed sheets to hand in."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`tmm sweep`."""
+"""Command `tmm sweep`: quantities over one or two parameters."""
 
 from __future__ import annotations
 

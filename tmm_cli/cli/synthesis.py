@@ -1,4 +1,4 @@
-"""`tmm synthesis`."""
+"""Command `tmm synthesis`: dimensions from requirements."""
 
 from __future__ import annotations
 

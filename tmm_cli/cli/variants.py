@@ -1,4 +1,4 @@
-"""`tmm variants`."""
+"""Command `tmm variants`: variants of a task for a group of students."""
 
 from __future__ import annotations
 

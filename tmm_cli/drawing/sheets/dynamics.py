@@ -50,7 +50,6 @@ from tmm_cli.mechanics.quantities import (
     ANGULAR_SPEED,
     FORCE,
     INERTIA,
-    INERTIA as MOMENT_OF_INERTIA,
     LENGTH,
     MOMENT,
     NUMBER,
@@ -262,7 +261,7 @@ def energy_mass_sheet(results: Results, running: SteadyRunning, travel: Real) ->
     """Draw the work of all moments from position 0 on against the reduced inertia of the links, over the cycle."""
     assert results.motion is not None
     steady, units = running.steady, results.problem.units
-    factor, unit = units.factor(MOMENT_OF_INERTIA), typeset_unit(units.spelt(MOMENT_OF_INERTIA))
+    factor, unit = units.factor(INERTIA), typeset_unit(units.spelt(INERTIA))
     title = _("Energy-mass diagram with tangents for the largest and the smallest speed; dots: computed positions")
     sheet = DrawingSheet(results.problem.title, title, paper=LANDSCAPE)
     text_start = sheet.canvas.low + 0.5 * TEXT_ROW * 1j
@@ -274,7 +273,7 @@ def energy_mass_sheet(results: Results, running: SteadyRunning, travel: Real) ->
     whole, dotted = diagram(travel), diagram(running.way(results.motion.q), dots=True)
     start, longest = axis_extent(sheet)
     axis = round_axis(*_axis_ends(whole.xs, _massless_width(steady) / factor), start, longest)
-    words = with_unit(_("reduced inertia J of the links"), MOMENT_OF_INERTIA, units)
+    words = with_unit(_("reduced inertia J of the links"), INERTIA, units)
     below = (f"{words};  ", *scale_words("J", axis.mu, f"({unit})/mm"))
     names = _("tangent for the largest speed"), _("tangent for the smallest speed")
     lines = [
@@ -357,7 +356,7 @@ def _flywheel_text(inertia: float, begins: float, units: UnitSystem) -> Words:
     begins: inertia at the start of the axis, in the unit of the file.
     """
     tan, largest, least = symbol("tan"), *TANGENT_ANGLES
-    in_units = units.from_si(inertia, MOMENT_OF_INERTIA)
+    in_units = units.from_si(inertia, INERTIA)
     return (
         CourseSymbol("J_f"),
         " = ab·",
@@ -368,7 +367,7 @@ def _flywheel_text(inertia: float, begins: float, units: UnitSystem) -> Words:
         least,
         ")",
         f" − {numeral(begins, '.4g')}" if begins else "",
-        f" = {numeral(in_units, '.4g')} {typeset_unit(units.spelt(MOMENT_OF_INERTIA))}",
+        f" = {numeral(in_units, '.4g')} {typeset_unit(units.spelt(INERTIA))}",
     )
 
 

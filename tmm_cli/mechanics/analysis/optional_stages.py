@@ -55,9 +55,9 @@ def balancing_stage(mechanism: Mechanism, q: Real, task: BalancingTask) -> Balan
     """Balance the mechanism over the cycle from position 0, and at driver coordinates q. Raises as
     `balance_machine`.
     """
-    from tmm_cli.mechanics.dynamics import balance_machine as found
+    from tmm_cli.mechanics.dynamics import balance_machine
 
-    return found(mechanism, float(mechanism.asked[0]), q, task)
+    return balance_machine(mechanism, float(mechanism.asked[0]), q, task)
 
 
 def intermittent_stage(mechanism: Mechanism, running: LawOfMotion | None) -> tuple[IntermittentMotion, ...]:
@@ -65,7 +65,9 @@ def intermittent_stage(mechanism: Mechanism, running: LawOfMotion | None) -> tup
 
     running: law of motion of the machine, used for every setting; None: the law of the file.
     """
-    from tmm_cli.mechanics.analysis.intermittent import compute_intermittent as found
+    from tmm_cli.mechanics.analysis.intermittent import compute_intermittent
 
     start = float(mechanism.asked[0])
-    return found(mechanism, start, lambda linkage: driver_motion(linkage, start) if running is None else running)
+    return compute_intermittent(
+        mechanism, start, lambda linkage: driver_motion(linkage, start) if running is None else running
+    )

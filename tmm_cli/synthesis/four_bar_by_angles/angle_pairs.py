@@ -16,7 +16,7 @@ from tmm_cli.mechanics.quantities import ANGLE, NUMBER
 from tmm_cli.problem import ProblemError, Value, ValueReader, Vector, nearest_name, quote
 from tmm_cli.synthesis.blocks import UNDETERMINED, Range, TaskBlock, read_numbers
 from tmm_cli.synthesis.four_bar import FourBarLinks, classify_four_bar, extreme_cosine
-from tmm_cli.synthesis.four_bar_by_angles import freudenstein, freudenstein as least_squares
+from tmm_cli.synthesis.four_bar_by_angles import freudenstein
 from tmm_cli.synthesis.four_bar_by_angles.freudenstein import EXACT, FourBarRatios, find_parallelogram
 
 FUNCTIONS: Final[Mapping[str, Callable[[Any], Any]]] = {
@@ -186,7 +186,7 @@ def four_bars_through(task: AnglePairsTask) -> FourBarRatios:
     if len(task.phi) > 2 and (parallel := find_parallelogram(task.phi, task.psi, task.phi0, task.psi0)) is not None:
         return parallel.at(None)
     if task.approximate:
-        four_bars, __ = least_squares.fit_least_squares(task.phi, task.psi, task.phi0, task.psi0)
+        four_bars, __ = freudenstein.fit_least_squares(task.phi, task.psi, task.phi0, task.psi0)
         four_bars = four_bars.at(are_real(four_bars))
         return four_bars.at(np.argsort(rate_four_bars(four_bars, task).defect != "", kind="stable")[:1])
     if task.free:
