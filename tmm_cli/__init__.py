@@ -26,7 +26,7 @@ __all__ = ["__version__", "load", "prepare", "redrive", "solve"]
 
 
 def __getattr__(name: str) -> object:
-    """What `__all__` names, imported when it is asked for."""
+    """Import a name of `__all__` when it is first used."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from tmm_cli.synthesis import solving

@@ -1,4 +1,4 @@
-"""What a note is made of: blocks one after another, which each format writes in its own way. All texts are data."""
+"""Blocks of a note, one after another, which each format writes in its own way. All texts are data."""
 
 from __future__ import annotations
 

@@ -31,10 +31,12 @@ SCAN_WORKS, SCAN_STOPS, SCAN_APART = range(3)  # states of a variant
 
 @dataclass(frozen=True)
 class ScanRequest:
-    """What a scan looks for. peaks: names of limited curves whose peaks are needed with full precision.
+    """Curves to be followed in a scan.
 
-    limits: limits of curves, near which all peaks are computed precisely. strokes: also find the ends of
-    strokes.
+    Attributes:
+        peaks: names of limited curves whose peaks are needed with full precision.
+        limits: limits of curves, near which all peaks are computed precisely.
+        strokes: True if the ends of strokes are to be found too.
     """
 
     peaks: Sequence[str] = ()

@@ -34,8 +34,8 @@ _WORDS = {word: column for column, words in _COLUMNS.items() for word in words}
 
 
 @dataclass(frozen=True)
-class Shape:
-    """How the rows below a header are read; `student`: column of names or None; `width`: length of the header."""
+class AnswerColumns:
+    """Columns of the rows below a header; `student`: column of names or None; `width`: length of the header."""
 
     student: int | None
     entries: Callable[[Row], Iterator[Entry]]
@@ -50,7 +50,7 @@ class Shape:
         return any(row[self.width :])
 
 
-def shape_of(header: Row, answers: Answers, *, filled: bool = True) -> Shape:
+def shape_of(header: Row, answers: Answers, *, filled: bool = True) -> AnswerColumns:
     """Return the shape of a table: long (a column `quantity`) or wide.
 
     filled: rows follow the header.
@@ -83,7 +83,7 @@ def shape_of(header: Row, answers: Answers, *, filled: bool = True) -> Shape:
     def entries(row: Row) -> Iterator[Entry]:
         return (Entry(cell, over) for over, cell in zip(header[first:], row[first:], strict=False))
 
-    return Shape(0 if first else None, entries, len(header))
+    return AnswerColumns(0 if first else None, entries, len(header))
 
 
 def _known(heading: str, answers: Answers) -> bool:
@@ -101,7 +101,7 @@ def _is_unit(text: str) -> bool:
         return False
 
 
-def _long(columns: dict[str, tuple[int, str]], width: int) -> Shape:
+def _long(columns: dict[str, tuple[int, str]], width: int) -> AnswerColumns:
     """Return the shape of a table with the columns quantity, student, position, unit, value, x, y, size, angle."""
     places = {name: place for name, (place, _unit) in columns.items()}
     parts: list[tuple[Part, int, str]] = [("", *columns["value"])] if "value" in columns else []
@@ -112,7 +112,7 @@ def _long(columns: dict[str, tuple[int, str]], width: int) -> Shape:
         for part, place, own in parts:
             yield Entry(_cell(row, place), quantity, part, position, own or ("" if part == "angle" else unit))
 
-    return Shape(places.get("student"), entries, width)
+    return AnswerColumns(places.get("student"), entries, width)
 
 
 def _cell(row: Row, place: int | None) -> str:
@@ -288,7 +288,7 @@ class _Reader:
             entries = (entry for row in own if not shape.longer(row) for entry in shape.entries(row))
             yield self.answers.submission(student, entries, problems)
 
-    def shape(self, rows: list[list[str]], file: str | None = None) -> Shape:
+    def shape(self, rows: list[list[str]], file: str | None = None) -> AnswerColumns:
         """Return the shape of a table.
 
         Raises:

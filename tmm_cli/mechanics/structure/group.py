@@ -104,7 +104,7 @@ class RedundantPair:
 
 @dataclass(frozen=True)
 class Reduction:
-    """What the structural report leaves out: rigid sets count as one link; redundant links, and redundant conditions.
+    """Parts that the structural report leaves out: rigid sets, which count as one link, redundant links and conditions.
 
     conditions: number of redundant conditions of each tie, by its index in list_ties. pairs: the pairs of those ties.
     """
