@@ -45,7 +45,7 @@ REFERENCES = {
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.M | re.S)
 WIDTH = "100"  # of a terminal
 COLOURS = 48  # of a picture
-SHADES = 0.5  # of 255, mean difference of pictures that are the same
+TILE, SHADES = 16, 5.0  # pixels; of 255: largest mean difference of a tile of pictures that are the same
 
 
 @dataclass
@@ -182,12 +182,19 @@ def small(drawing: Path) -> Image.Image:
 
 
 def same_picture(committed: Path, drawing: Path) -> bool:
-    """Whether a committed picture shows a drawing; versions of Pillow may differ in shades."""
+    """Whether a committed picture shows a drawing: each tile of it, as a word is a small part of a picture.
+
+    Versions of Pillow may differ in shades.
+    """
     if not committed.exists():
         return False
     with Image.open(committed) as picture:
         kept, now = (np.asarray(one.convert("L"), dtype=float) for one in (picture, small(drawing)))
-    return kept.shape == now.shape and float(np.mean(np.abs(kept - now))) < SHADES
+    if kept.shape != now.shape:
+        return False
+    height, width = (side // TILE for side in kept.shape)
+    tiles = np.abs(kept - now)[: height * TILE, : width * TILE].reshape(height, TILE, width, TILE)
+    return float(np.max(np.mean(tiles, axis=(1, 3)))) < SHADES
 
 
 def refreshed(text: str) -> str:
