@@ -1,4 +1,4 @@
-"""The block `synthesis:` of a problem file: keys and value limits that all tasks share (register: tasks.py)."""
+"""Keys and value limits that the `synthesis:` blocks of all tasks share. The tasks are listed in tasks.py."""
 
 from __future__ import annotations
 
@@ -41,7 +41,12 @@ Range = Annotated[
 
 
 class TaskBlock(Strict):
-    """Keys that every task has. names: other names for the parameters that the task finds."""
+    """Keys that every task has.
+
+    Attributes:
+        task: name of the task.
+        names: names in the file for the parameters that the task determines, by their standard names.
+    """
 
     task: str = Field(description="one of: " + ", ".join(TASKS))
     names: dict[Name, Name] = Field(
@@ -55,10 +60,16 @@ UNDETERMINED: Final = N_("these keys do not determine a mechanism")
 def choose_key_set(
     block: TaskBlock, sets: Sequence[tuple[str, ...]], others: Sequence[str] = (), refusal: str = UNDETERMINED
 ) -> tuple[str, ...]:
-    """Return the set of keys that the block gives, without any other key of `sets` or `others`.
+    """Return the set of keys that a block gives.
+
+    Args:
+        block: block of a problem file.
+        sets: allowed sets of keys.
+        others: keys that may not be given.
+        refusal: message if no set fits.
 
     Raises:
-        ProblemError: no set fits; `refusal`, with the missing or surplus keys.
+        ProblemError: the given keys match none of the sets; the message lists missing or surplus keys.
     """
     keys = dict.fromkeys([*(key for key_set in sets for key in key_set), *others])
     present = tuple(key for key in keys if getattr(block, key) is not None)
@@ -77,9 +88,9 @@ def choose_key_set(
     ]
     remedy = ""
     if missing:
-        remedy = _("; missing: {keys}").format(keys=_alternatives(missing))
+        remedy = _("; missing: {keys}").format(keys=_join_alternatives(missing))
     elif surplus:
-        remedy = _("; remove: {keys}").format(keys=_alternatives(surplus))
+        remedy = _("; remove: {keys}").format(keys=_join_alternatives(surplus))
     raise ProblemError(
         translated(refusal) + remedy,
         found=", ".join(present) or _("none of these keys"),
@@ -88,12 +99,18 @@ def choose_key_set(
     )
 
 
-def _alternatives(sets: Sequence[tuple[str, ...]]) -> str:
+def _join_alternatives(sets: Sequence[tuple[str, ...]]) -> str:
     return _(" or ").join(dict.fromkeys(_(" and ").join(keys) for keys in sets))
 
 
 def read_numbers(block: TaskBlock, values: ValueReader, quantities: Mapping[str, tuple[Kind, str]]) -> dict[str, Any]:
-    """Read the given quantities of a block into SI, by key. Raises ProblemError."""
+    """Return the given quantities of a block in SI, by key. Raises ProblemError.
+
+    Args:
+        block: block of a problem file.
+        values: reader of numbers with units.
+        quantities: kind and description of each quantity, by key.
+    """
     raw_values = {key: value for key in quantities if (value := getattr(block, key)) is not None}
     return {
         key: values.number(value, DIMENSIONS[quantities[key][0]].dimension, (key,)) for key, value in raw_values.items()
@@ -101,7 +118,7 @@ def read_numbers(block: TaskBlock, values: ValueReader, quantities: Mapping[str,
 
 
 class TriedFileError(Exception):
-    """The file around the block is invalid with numbers that the synthesis tries."""
+    """Raised if the rest of the problem file is invalid with the parameter values that the synthesis tries."""
 
     def __init__(self, error: ProblemError) -> None:
         super().__init__(str(error))
@@ -109,7 +126,7 @@ class TriedFileError(Exception):
 
 
 class SynthesisFile(FileHead):
-    """A problem file without a linkage, for `tmm synthesis` alone."""
+    """A problem file without a linkage, for the command `tmm synthesis`."""
 
     units: dict[str, str] = Field(default_factory=dict)
     parameters: dict[Name, Value] = Field(default_factory=dict, max_length=500)
@@ -117,13 +134,16 @@ class SynthesisFile(FileHead):
 
 
 class TaskName(BaseModel):
-    """The key that names the task of a block."""
+    """The key `task`, validated alone to report an unknown task."""
 
     task: Literal[tuple(TASKS)]  # type: ignore[valid-type]
 
 
 def check_block(tree: Tree) -> TaskBlock:
-    """Validate the block of a file against the keys of its task; only that task is imported. Raises ProblemError."""
+    """Validate the block `synthesis:` of a file against the keys of its task. Raises ProblemError.
+
+    Only the module of this task is imported.
+    """
     block_data, block_class = tree.data["synthesis"], TaskBlock
     try:
         if (
@@ -152,9 +172,11 @@ FUNCTION_KEYS: Final = ("table", "x")  # values of a function, not of a mechanis
 
 
 class BoundedReader(ValueReader):
-    """Reader of values that refuses sizes no mechanism has.
+    """Reader of numbers that rejects dimensions which no mechanism can have.
 
-    others: values (SI) that replace those of the file, by path; given: values read (SI) and their dimensions, by path.
+    Attributes:
+        others: values (SI) that replace those of the file, by path.
+        given: values read so far (SI) and their dimensions, by path.
     """
 
     def __init__(
@@ -169,18 +191,18 @@ class BoundedReader(ValueReader):
 
     def limit(self, want: Dimension, path: Path) -> float:
         limit = super().limit(want, path)
-        return limit if _exempt(path) else LARGEST_VALUES.get(want, limit)
+        return limit if _is_exempt(path) else LARGEST_VALUES.get(want, limit)
 
     def number(self, value: Any, want: Dimension, path: Path) -> float:
-        """Return a value in SI. Raises ProblemError if no mechanism can have it."""
+        """Return a value in SI. Raises ProblemError if no mechanism can have such a value."""
         number = super().number(value, want, path)
         self.given[path] = number, want
         key = path[-1] if path else ""
         sized = isinstance(key, str) and key not in COORDINATE_KEYS and (want in SIZE_DIMENSIONS or key in RATIO_KEYS)
-        if not sized or _exempt(path) or number >= SMALLEST:
+        if not sized or _is_exempt(path) or number >= SMALLEST:
             return number
         raise self.too_small(value, SMALLEST, want, path)
 
 
-def _exempt(path: Path) -> bool:
+def _is_exempt(path: Path) -> bool:
     return bool(path) and (path[-1] == "k" or path[0] in FUNCTION_KEYS)

@@ -1,6 +1,6 @@
-"""Drawings of a synthesis as records, drawn elsewhere: ruler-and-compass constructions and diagrams.
+"""Records that describe the drawings of a synthesis: ruler-and-compass constructions and diagrams.
 
-Points are complex numbers in metres; angles are in radians.
+The records are drawn by another package. Points are complex numbers in metres; angles are in radians.
 """
 
 from __future__ import annotations
@@ -24,7 +24,13 @@ CHAIN_LETTERS: Final[Mapping[Chain, str]] = {  # letters of the joints from the 
 
 @dataclass(frozen=True)
 class Segment:
-    """A straight line; name: the text beside it."""
+    """A straight line between two points, with an optional text beside it.
+
+    Attributes:
+        start, end: ends of the line (complex, m).
+        style: line style.
+        name: text beside the line; empty for none.
+    """
 
     start: complex
     end: complex
@@ -34,7 +40,14 @@ class Segment:
 
 @dataclass(frozen=True)
 class Arc:
-    """An arc of a circle, counterclockwise from `start` to `end` (rad)."""
+    """An arc of a circle, drawn counterclockwise from the angle `start` to the angle `end`.
+
+    Attributes:
+        centre: centre of the circle (complex, m).
+        radius: radius (m).
+        start, end: directions from the centre to both ends of the arc (rad).
+        style: line style.
+    """
 
     centre: complex
     radius: float
@@ -44,21 +57,32 @@ class Arc:
 
 
 def full_circle(centre: complex, radius: float) -> Arc:
-    """Return a whole circle as a construction line."""
+    """Return a full circle, drawn as a dashed construction line."""
     return Arc(centre, radius, 0.0, 2 * np.pi, "dashed")
 
 
 def swept_arc(centre: complex, points: Any, style: Style = "thin", beyond: float = 0.0) -> Arc:
-    """Return the arc about a centre through successive points (an array), extended by `beyond` (rad) at both ends."""
+    """Return the arc about a centre that passes through successive points of a circle.
+
+    Args:
+        centre: centre of the arc (complex, m).
+        points: points on the circle in order of motion (complex array, m).
+        style: line style.
+        beyond: angle by which the arc is extended at both ends (rad).
+    """
     turns = np.unwrap(np.angle(points - centre))
     return Arc(centre, float(abs(points[0] - centre)), float(turns.min()) - beyond, float(turns.max()) + beyond, style)
 
 
 @dataclass(frozen=True)
 class ConstructionCurve:
-    """A curve through closely spaced points (locus of pivots, coupler curve), cut at the edge of the sheet.
+    """A curve through closely spaced points, such as a locus of pivots or a coupler curve. It is cut at the edge of the
+    sheet.
 
-    name: the text beside it; pieces of one curve share a name, which is written once.
+    Attributes:
+        places: points of the curve (complex, m).
+        style: line style.
+        name: text beside the curve. Pieces of one curve share a name, which is written once.
     """
 
     places: tuple[complex, ...]
@@ -68,7 +92,14 @@ class ConstructionCurve:
 
 @dataclass(frozen=True)
 class LetteredPoint:
-    """A point with a letter. along: direction of a slider's guide, or of the link that carries a sliding block."""
+    """A point with a letter, drawn as a hinge, a support, a slider or a dot.
+
+    Attributes:
+        name: letter of the point.
+        at: the point (complex, m).
+        mark: symbol drawn at the point; `stone` is a sliding block.
+        along: direction of a slider's guide, or of the link on which a sliding block moves (complex).
+    """
 
     name: str
     at: complex
@@ -78,7 +109,13 @@ class LetteredPoint:
 
 @dataclass(frozen=True)
 class Angle:
-    """The angle at a vertex between the directions to two points. right: drawn with a right-angle mark."""
+    """An angle dimension: the angle at a vertex between the directions to two points.
+
+    Attributes:
+        vertex, first, last: vertex and the two points (complex, m).
+        name: text beside the angle.
+        right: True to draw a right-angle mark instead of an arc.
+    """
 
     vertex: complex
     first: complex
@@ -89,7 +126,13 @@ class Angle:
 
 @dataclass(frozen=True)
 class DimensionLine:
-    """A dimension: the distance of two points along a direction; along = 0: along the line between them."""
+    """A linear dimension: the distance between two points, measured along a direction.
+
+    Attributes:
+        start, end: the two points (complex, m).
+        name: text on the dimension line.
+        along: direction of measurement (complex); 0 for the direction from `start` to `end`.
+    """
 
     start: complex
     end: complex
@@ -99,7 +142,14 @@ class DimensionLine:
 
 @dataclass(frozen=True)
 class CircleCentre:
-    """Centre of a construction circle, with lines to it from points on the circle; it may lie far off the sheet."""
+    """Centre of a construction circle, joined by lines to points on the circle. It may lie far outside the sheet.
+
+    Attributes:
+        at: the centre (complex, m).
+        radius: radius of the circle (m).
+        legs: points on the circle to which lines are drawn (complex, m).
+        name: letter of the centre.
+    """
 
     at: complex
     radius: float
@@ -109,16 +159,19 @@ class CircleCentre:
 
 @dataclass(frozen=True)
 class GeometricConstruction:
-    """A construction drawn to scale on a sheet of its own.
+    """A geometric construction, drawn to scale on a separate sheet.
 
     Attributes:
-        title, notes: texts with letters in {}; the notes stand in a corner.
-        name: name of its file.
-        wishes: sets of points to show too, in order of priority, if the mechanism stays large enough. Other points that
-            are not in `places` are cut at the edge of the sheet.
-        chain: the mechanism it shows; gives the letters of the joints (CHAIN_LETTERS).
+        title: title of the sheet; letters of points stand in {}.
+        segments, arcs, spots, curves, angles, sizes, centres: lines, arcs, lettered points, curves, angle dimensions,
+            linear dimensions and circle centres to be drawn.
+        notes: texts in a corner of the sheet; letters of points stand in {}.
+        name: file name without its extension.
+        wishes: sets of points (complex, m) that the sheet should also show, most important first, provided that the
+            mechanism stays large enough. Any other point that `places` does not return is cut at the edge of the sheet.
+        chain: type of the mechanism drawn; selects the letters of its joints (CHAIN_LETTERS).
         values: name, value (SI) and kind of the quantities listed in the corner.
-        around: further points that the sheet must hold.
+        around: additional points that the sheet must contain (complex, m).
     """
 
     title: str
@@ -137,20 +190,27 @@ class GeometricConstruction:
     around: tuple[complex, ...] = ()  # further points that the sheet must hold
 
     def places(self) -> list[complex]:
-        """Return the points that the sheet must hold."""
+        """Return the points that the sheet must contain (complex, m)."""
         ends = [place for s in self.segments for place in (s.start, s.end)]
         sizes = [place for s in self.sizes for place in (s.start, s.end)]
         return [*ends, *(s.at for s in self.spots), *sizes, *self.around]
 
 
 def circle_extent(centre: complex, radius: float) -> tuple[complex, ...]:
-    """Return four points whose bounding box contains the circle."""
+    """Return the four points of a circle that determine its bounding box (complex, m)."""
     return tuple(centre + radius * direction for direction in (1, 1j, -1, -1j))
 
 
 @dataclass(frozen=True)
 class DiagramLine:
-    """A curve of a diagram. text: legend; x, y: values (SI, rad); dots: drawn as points; faint: behind the others."""
+    """A curve of a diagram.
+
+    Attributes:
+        text: legend.
+        x, y: coordinates of its points (SI, rad), shape (points,).
+        dots: True to draw separate points instead of a line.
+        faint: True to draw the curve in a pale colour behind the others.
+    """
 
     text: str
     x: Any
@@ -163,8 +223,14 @@ class DiagramLine:
 class Diagram:
     """A diagram, for example of the structural error or of the largest pressure angle along an arc.
 
-    x, y: title and kind of the axes; equal: both axes to one scale, as for a path. lower: curves of a second panel
-    below, over the same x, with a logarithmic axis `lower_y`.
+    Attributes:
+        name: file name without its extension.
+        title: title of the diagram.
+        x, y: title and kind of each axis.
+        lines: curves of the diagram.
+        equal: True if both axes have the same scale, as for a path.
+        lower: curves of a second panel below, over the same x axis.
+        lower_y: title and kind of the logarithmic y axis of the second panel.
     """
 
     name: str

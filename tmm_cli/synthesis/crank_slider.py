@@ -246,7 +246,7 @@ def find_crank_slider(task: CrankSliderTask) -> CrankSliderSolution:
 
     Formulas: see the triangle of the extreme positions above; theta = pi (k - 1)/(k + 1).
     """
-    height = _stroke_length(task)
+    height = _find_stroke(task)
     theta = None if task.k is None else theta_of(task.k)
     if task.ratio is not None:
         length = np.asarray(task.ratio)
@@ -289,7 +289,7 @@ def find_crank_slider(task: CrankSliderTask) -> CrankSliderSolution:
     )
 
 
-def _stroke_length(task: CrankSliderTask) -> Any:
+def _find_stroke(task: CrankSliderTask) -> Any:
     """Return the stroke H; if the mean speed v is given instead, H = pi v/omega (H = 30 v/n)."""
     if task.stroke is not None:
         return np.asarray(task.stroke)
@@ -313,7 +313,7 @@ def refuse(task: CrankSliderTask) -> None:
         raise Infeasible("ratio", _("the crank rotates fully only if the rod is longer than the crank"))
     if ratio is not None and nu is not None and not nu < ratio - 1:
         raise Infeasible("nu", _("the crank does not rotate fully: this requires l > r + e"))
-    if ratio is not None and e is not None and not 2 * np.sqrt(ratio) * e < (ratio - 1) * _stroke_length(task):
+    if ratio is not None and e is not None and not 2 * np.sqrt(ratio) * e < (ratio - 1) * _find_stroke(task):
         raise Infeasible("e", _("the crank does not rotate fully: this requires l > r + e"))
     theta = 0.0 if task.k is None else _refuse_k(task)
     if pressure is not None and not pressure < np.pi / 2:
@@ -338,7 +338,7 @@ def _refuse_k(task: CrankSliderTask) -> float:
     if task.ratio is not None:
         limit = float(largest_theta(task.ratio))
     elif task.e is not None:  # O lies on the circle between B2 and the point above it: e < H cot(theta)
-        limit = float(np.arctan2(_stroke_length(task), task.e))
+        limit = float(np.arctan2(_find_stroke(task), task.e))
     if theta >= np.pi / 2:
         raise Infeasible("k", _("k must be less than 3 if the crank of a crank-slider rotates fully"))
     if theta >= limit and task.ratio is not None:

@@ -1,11 +1,11 @@
-"""The four-bar ABCD (A, D on the frame; AB = l1, BC = l2, CD = l3, DA = l4): type, transmission angle, and the four-bar
-loop of a linkage.
+"""Type and transmission angle of a four-bar, and the search for a four-bar in a linkage.
 
-A joint between adjacent links x and y of a four-bar, z and w being the other two, rotates fully if the distance that z
-and w must span stays within their reach: x + y <= z + w and |x - y| >= |z - w|. The types are those of C. R. Barker, A
-complete classification of planar four-bar linkages, Mechanism and Machine Theory 20 (1985): with the shortest link s
-and the longest link l, s + l is less than the sum of the others (Grashof types, by the shortest link), greater (triple
-rockers, by the longest link) or equal to it (change points).
+The four-bar is ABCD with A and D on the frame: AB = l1, BC = l2, CD = l3, DA = l4. The joint between the adjacent links
+x and y rotates fully if the other two links z and w can span every distance between its ends: x + y <= z + w and |x -
+y| >= |z - w|. The types are from C. R. Barker, A complete classification of planar four-bar linkages, Mechanism and
+Machine Theory 20 (1985). With the shortest link s and the longest link l, the sum s + l is compared with the sum of the
+other two: smaller for Grashof types (named by the shortest link), greater for triple rockers (named by the longest
+link), equal for types with change points.
 """
 
 from __future__ import annotations
@@ -44,7 +44,12 @@ POSITIONS_ONLY: Final = DriverMotion(0.0, 1.0, 0.0, 1)  # only positions are req
 
 @dataclass(frozen=True)
 class FourBarLinks:
-    """Lengths (m) of links 1 to 4 in the order of connection; frame, driver: numbers (1 to 4) of two adjacent links."""
+    """Link lengths of a four-bar, with the choice of the frame and of the driver.
+
+    Attributes:
+        l1, l2, l3, l4: lengths (m) in the order in which the links are connected; numbers or arrays of one shape.
+        frame, driver: numbers (1 to 4) of the frame and of the driver, which must be adjacent.
+    """
 
     l1: Any
     l2: Any
@@ -55,7 +60,7 @@ class FourBarLinks:
 
     @property
     def ordered(self) -> tuple[Any, Any, Any, Any]:
-        """Lengths of frame, input link, coupler and output link."""
+        """Lengths (m) of the frame, the input link, the coupler and the output link."""
         links = (self.l1, self.l2, self.l3, self.l4)
         step = 1 if (self.driver - self.frame) % 4 == 1 else -1
         g, a, b, c = (links[(self.frame - 1 + step * k) % 4] for k in range(4))
@@ -64,14 +69,16 @@ class FourBarLinks:
 
 @dataclass(frozen=True)
 class FourBarType:
-    """Type of four-bars and mobility of their links; arrays, `joints` and `turns` with one more axis at the end.
+    """Type of one or several four-bars, and the joints and links that rotate fully.
 
     Attributes:
-        kind: index in FOUR_BAR_TYPES; -1 if the links do not close.
-        excess: (p + q) - (s + l), m: positive for Grashof linkages.
-        joints: True for each of the joints frame-input, input-coupler, coupler-output, output-frame that rotates fully.
-        turns: True for each of input, coupler, output that rotates fully relative to the frame (with change points:
-            that it can do so).
+        kind: index in FOUR_BAR_TYPES; -1 if the links do not form a closed loop.
+        excess: (p + q) - (s + l), m, for the shortest link s, the longest l and the other two p, q; positive for
+            Grashof types.
+        joints: True for each joint that rotates fully, shape (..., 4): frame-input, input-coupler, coupler-output,
+            output-frame.
+        turns: True for each link that rotates fully relative to the frame, shape (..., 3): input link, coupler, output
+            link. With change points True means that the link can rotate fully.
     """
 
     kind: Any
@@ -83,13 +90,13 @@ class FourBarType:
 def classify_four_bar(links: FourBarLinks) -> FourBarType:
     """Return the type of four-bars and which of their links rotate fully.
 
+    Lengths that differ only by rounding count as equal.
+
     Args:
         links: lengths (m), numbers or arrays of one shape.
 
     Returns:
-        Type (C. R. Barker 1985), excess of Grashof's condition, joints and links that rotate fully. Lengths that differ
-            only
-        by rounding count as equal.
+        Type after C. R. Barker (1985), excess of Grashof's condition (m), and the joints and links that rotate fully.
     """
     lengths = np.stack(np.broadcast_arrays(*links.ordered), axis=-1)
     total = lengths.sum(-1)
@@ -115,14 +122,24 @@ def classify_four_bar(links: FourBarLinks) -> FourBarType:
 
 
 def cosine_bcd(l2: Any, l3: Any, square: Any) -> Any:
-    """Return the cosine of the angle BCD from the square of BD. The transmission angle is BCD or 180° - BCD."""
+    """Return cos BCD by the law of cosines. The transmission angle is BCD or 180° - BCD.
+
+    Args:
+        l2, l3: lengths of BC and CD (m).
+        square: square of the distance BD (m^2).
+    """
     return (l2 * l2 + l3 * l3 - square) / (2 * l2 * l3)
 
 
 def extreme_cosine(lengths: tuple[Any, Any, Any, Any], low: Any, high: Any) -> tuple[Any, Any]:
-    """Return the largest |cos BCD| while AB rotates from `low` to `high` (rad from AD), and the angle of AB there.
+    """Return the largest |cos BCD| while AB rotates over a range, and the angle of AB at which it occurs (rad).
 
-    lengths: l1 to l4. BD, and with it BCD, is extreme at both ends and where B lies on the line AD.
+    The distance BD, and with it the angle BCD, has its extremes at the ends of the range and where B lies on the line
+    AD.
+
+    Args:
+        lengths: l1 to l4 (m).
+        low, high: limits of the angle of AB, measured from AD (rad).
     """
     l1, l2, l3, l4, low, high = (np.asarray(x)[..., None] for x in (*lengths, low, high))
     on_frame = np.pi * (np.ceil(low / np.pi) + np.arange(2))
@@ -135,7 +152,7 @@ def extreme_cosine(lengths: tuple[Any, Any, Any, Any], low: Any, high: Any) -> t
 
 @dataclass(frozen=True)
 class FourBarPins:
-    """Names of the pins of a four-bar in a linkage whose crank AB is the driver."""
+    """Names of the hinges A, B, C, D of a four-bar whose crank AB drives a linkage."""
 
     a: str
     b: str
@@ -144,7 +161,7 @@ class FourBarPins:
 
 
 def find_four_bar(linkage: Linkage) -> FourBarPins | None:
-    """Find the four-bar that the crank of a linkage drives; None if there is none."""
+    """Return the hinges of the four-bar that the crank of a linkage drives; None if there is no such four-bar."""
     crank = linkage.driver.link
     a = linkage.shared(FRAME, crank)
     if a is None or linkage.driver.kind != "turn":
@@ -159,9 +176,15 @@ def find_four_bar(linkage: Linkage) -> FourBarPins | None:
 
 
 def pin_positions(results: Results, phi: Any) -> tuple[Any, Any, Any, Any] | None:
-    """Return A, B, C, D (m, complex) for angles phi (rad) of AB from AD; None if the linkage has no four-bar.
+    """Return the positions of A, B, C and D (complex, m) at given angles of AB.
 
-    A and D are single points; B and C have one point for each angle, nan if the four-bar cannot be assembled there.
+    Args:
+        results: analysis of a linkage with a four-bar.
+        phi: angles of AB, measured from AD (rad), shape (positions,).
+
+    Returns:
+        A and D as single points; B and C with shape (positions,), nan where the four-bar cannot be assembled. None if
+        the linkage has no four-bar.
     """
     linkage, loop = results.linkage, find_four_bar(results.linkage)
     if loop is None or not results.kernels:
@@ -173,8 +196,13 @@ def pin_positions(results: Results, phi: Any) -> tuple[Any, Any, Any, Any] | Non
 
 
 def output_angles(results: Results, phi: Any, near: Any) -> Any:
-    """Return the angles of DC from AD (rad) at angles phi of AB, plus the whole turns that bring them nearest to
-    `near`.
+    """Return the angles of DC, measured from AD, at given angles of AB (rad), shape (positions,); nan without a
+    four-bar.
+
+    Args:
+        results: analysis of the linkage.
+        phi: angles of AB, measured from AD (rad).
+        near: expected angles of DC (rad). Full turns are added to bring each result closest to them.
     """
     pins = pin_positions(results, phi)
     if pins is None:
@@ -184,7 +212,9 @@ def output_angles(results: Results, phi: Any, near: Any) -> Any:
 
 
 def transmission_angle(phi: float, results: Results) -> float:
-    """Return the transmission angle (rad, acute) at the angle phi of AB from AD."""
+    """Return the acute transmission angle (rad) at an angle of AB, measured from AD; nan if the linkage has no
+    four-bar.
+    """
     pins = pin_positions(results, np.array([phi]))
     if pins is None:
         return float("nan")

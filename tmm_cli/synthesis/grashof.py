@@ -60,7 +60,7 @@ SLOTTED_LEVER_TYPES: Final = {
 
 @dataclass(frozen=True)
 class CrankSlider:
-    """Crank r, rod l, offset e (m)."""
+    """Dimensions of a crank-slider (m): crank r, connecting rod l, offset e of the guide."""
 
     r: Any
     l: Any  # noqa: E741  its name in every course
@@ -69,7 +69,7 @@ class CrankSlider:
 
 @dataclass(frozen=True)
 class SlottedLever:
-    """Crank OA, frame OC, and the distance e of the slot's line from C (m)."""
+    """Dimensions of a slotted-lever mechanism (m): crank OA, frame OC, distance e of the slot's centre line from C."""
 
     OA: Any
     OC: Any
@@ -78,9 +78,11 @@ class SlottedLever:
 
 @dataclass(frozen=True)
 class CrankCondition:
-    """Type of a mechanism and its margin.
+    """Type of a crank-slider or slotted-lever mechanism, and the margin of its crank condition.
 
-    kind: index in CRANK_SLIDER_TYPES or SLOTTED_LEVER_TYPES; margin (m): positive if the crank rotates fully.
+    Attributes:
+        kind: index in CRANK_SLIDER_TYPES or SLOTTED_LEVER_TYPES.
+        margin: l - (r + e) or |OC - OA| - e (m); positive if the crank rotates fully.
     """
 
     kind: Any
@@ -91,9 +93,12 @@ CrankConditionTask = FourBarLinks | CrankSlider | SlottedLever
 
 
 def classify_crank_slider(task: CrankSlider) -> CrankCondition:
-    """Classify a crank-slider: the crank rotates fully if l >= r + |e|, with a change point if l = r + |e|.
+    """Return the type of a crank-slider: the crank rotates fully if l >= r + |e|.
 
-    r = l with e = 0 is a change point too.
+    With l = r + |e|, and with r = l + |e|, the mechanism has a change point.
+
+    Args:
+        task: dimensions (m), numbers or arrays.
     """
     r, rod, e = np.broadcast_arrays(task.r, task.l, np.abs(task.e))
     same = SAME_RATIO * (r + rod + e)
@@ -101,24 +106,31 @@ def classify_crank_slider(task: CrankSlider) -> CrankCondition:
     other = r - (rod + e)
     kind = np.where(margin > same, 0, np.where(other > same, 1, 2))
     kind = np.where((np.abs(margin) <= same) | (np.abs(other) <= same), 3, kind)
-    return CrankCondition(kind, _without_rounding(margin, same))
+    return CrankCondition(kind, _zero_rounding(margin, same))
 
 
 def classify_slotted_lever(task: SlottedLever) -> CrankCondition:
-    """Classify a slotted lever: it swings if OC > OA + |e|, rotates if OA > OC + |e|; else the crank rocks."""
+    """Return the type of a slotted-lever mechanism.
+
+    The crank rotates fully if |OC - OA| > |e|: the slotted link then swings if OC > OA and rotates fully if OC < OA.
+    With |OC - OA| = |e| the mechanism has a change point.
+
+    Args:
+        task: dimensions (m), numbers or arrays.
+    """
     crank, frame, e = np.broadcast_arrays(task.OA, task.OC, np.abs(task.e))
     same = SAME_RATIO * (crank + frame + e)
     margin = np.abs(frame - crank) - e
     kind = np.where(margin > same, np.where(frame > crank, 0, 1), 2)
-    return CrankCondition(np.where(np.abs(margin) <= same, 3, kind), _without_rounding(margin, same))
+    return CrankCondition(np.where(np.abs(margin) <= same, 3, kind), _zero_rounding(margin, same))
 
 
-def _without_rounding(margin: Any, same: Any) -> Any:
+def _zero_rounding(margin: Any, same: Any) -> Any:
     return np.where(np.abs(margin) <= same, 0.0, margin)[()]
 
 
 def refuse(task: CrankConditionTask) -> None:
-    """Raise Infeasible if the links do not close."""
+    """Raise Infeasible if the links of a four-bar do not form a closed loop."""
     if isinstance(task, FourBarLinks) and classify_four_bar(task).kind < 0:
         longest = max(("l1", "l2", "l3", "l4"), key=lambda name: float(getattr(task, name)))
         reason = _(
@@ -128,7 +140,7 @@ def refuse(task: CrankConditionTask) -> None:
 
 
 def solve(task: CrankConditionTask) -> SynthesisOutcome:
-    """Solve the task of one file. Raises Infeasible if the links do not form a mechanism."""
+    """Classify the mechanism of a task. Raises Infeasible if its links do not form a closed loop."""
     refuse(task)
     if isinstance(task, FourBarLinks):
         return _solve_four_bar(task)
@@ -144,7 +156,7 @@ def solve(task: CrankConditionTask) -> SynthesisOutcome:
         given_values(task, LINKS),
         values,
         source,
-        _rotation_demands(name in ("crank", "swings", "turns"), name == "change"),
+        _make_rotation_demands(name in ("crank", "swings", "turns"), name == "change"),
     )
 
 
@@ -171,11 +183,11 @@ def _solve_four_bar(task: FourBarLinks) -> SynthesisOutcome:
         "F. Grashof: compare s + l with p + q; types after C. R. Barker, A complete classification of "
         "planar four-bar linkages, Mechanism and Machine Theory 20 (1985)"
     )
-    return SynthesisOutcome(given_rows, tuple(values), source, _rotation_demands(bool(four_bar.turns[0]), change))
+    return SynthesisOutcome(given_rows, tuple(values), source, _make_rotation_demands(bool(four_bar.turns[0]), change))
 
 
-def _rotation_demands(turns: bool, change: bool) -> tuple[Demand, ...]:
-    """Return the predicted rotation of the driver, to be measured; none with change points."""
+def _make_rotation_demands(turns: bool, change: bool) -> tuple[Demand, ...]:
+    """Return the check that the driver rotates fully, or does not, as predicted; empty with change points."""
     words = N_("driver rotates fully (1: yes, 0: no)")
     return () if change else (Demand(words, float(turns), "number", driver_completes_range, asked=False),)
 
@@ -192,7 +204,9 @@ KEY_SETS: tuple[tuple[Any, tuple[str, ...], tuple[str, ...]], ...] = (  # record
 
 
 class GrashofBlock(TaskBlock):
-    """Crank conditions of a four-bar (l1 to l4), a crank-slider (r, l, e) or a slotted lever (OA, OC, e)."""
+    """Keys of the task `grashof`: a four-bar (l1 to l4), a crank-slider (r, l, e) or a slotted-lever mechanism (OA, OC,
+    e).
+    """
 
     task: Literal["grashof"]
     l1: FileValue | None = Field(default=None, description="links of a four-bar, l1 to l4, in the order of connection")
@@ -214,7 +228,7 @@ BLOCK = GrashofBlock
 
 
 def read(block: GrashofBlock, values: ValueReader) -> CrankConditionTask:
-    """Read the lengths (m). Raises ProblemError."""
+    """Read the lengths of a block (m). Raises ProblemError if they do not determine a mechanism."""
     lengths = read_numbers(block, values, LINKS)
     given_keys = {*lengths, *(key for key in ("frame", "driver") if getattr(block, key) is not None)}
     fitting = [record_type for record_type, needed, more in KEY_SETS if set(needed) <= given_keys <= {*needed, *more}]

@@ -1,8 +1,8 @@
 """Time ratio k, and the quantities of a synthesis measured on the analysed mechanism.
 
-The time ratio of a curve is found accurately: strokes end where the slope of the output changes sign. Dwells, where the
-slope is exactly zero, belong to no stroke; near an instantaneous stop rounding may give the slope either sign, and the
-middle of these positions is one end. Both as in tmm_cli.mechanics.kinematics.strokes.
+A stroke ends where the slope of the output changes sign. A dwell, where the slope is exactly zero, belongs to no
+stroke. Near an instantaneous stop rounding may give the slope either sign; the stroke then ends in the middle of these
+positions. The same rules are used in tmm_cli.mechanics.kinematics.strokes.
 """
 
 from __future__ import annotations
@@ -29,16 +29,18 @@ def theta_of(k: Any) -> Any:
 
 
 def k_of(theta: Any) -> Any:
-    """Return the time ratio k = (pi + theta)/(pi - theta)."""
+    """Return the time ratio k = (pi + theta)/(pi - theta) for the angle theta (rad) between the extreme crank
+    positions.
+    """
     return (np.pi + theta) / (np.pi - theta)
 
 
 def time_ratio_of_curve(slope: Callable[[Real], Real], shares: Real) -> float:
-    """Return the time of the longer strokes over that of the shorter ones; nan if the curve has no strokes.
+    """Return the total time of the slower strokes divided by that of the faster ones; nan if the curve has no strokes.
 
     Args:
-        slope: first transfer function of the output at fractions of the cycle.
-        shares: fractions of the whole cycle in equal steps.
+        slope: function that returns the first transfer function of the output at fractions of the cycle.
+        shares: fractions of the cycle in equal steps, covering the whole cycle, shape (samples,).
     """
     y, step = slope(shares), shares[1] - shares[0]
     moves = np.flatnonzero(y)
@@ -49,8 +51,8 @@ def time_ratio_of_curve(slope: Callable[[Real], Real], shares: Real) -> float:
         return float("nan")
     still = np.mod(first - last, len(y)) > 1
     before, on = np.sign(y[last]), np.sign(y[first])
-    stops = _stroke_ends(slope, shares[last], step, before)
-    goes_on = 1.0 - _stroke_ends(lambda s: slope(1.0 - s), 1.0 - shares[first], step, on)
+    stops = _find_stroke_ends(slope, shares[last], step, before)
+    goes_on = 1.0 - _find_stroke_ends(lambda s: slope(1.0 - s), 1.0 - shares[first], step, on)
     middle = stops + (np.mod(goes_on - stops + 0.5, 1.0) - 0.5) / 2
     stops, goes_on = np.where(still, stops, middle), np.where(still, goes_on, middle)
     lengths = np.mod(np.roll(stops, -1) - goes_on, 1.0)
@@ -59,8 +61,8 @@ def time_ratio_of_curve(slope: Callable[[Real], Real], shares: Real) -> float:
     return max(rise, fall) / min(rise, fall)
 
 
-def _stroke_ends(slope: Callable[[Real], Real], low: Real, step: float, before: Real) -> Real:
-    """Return where a slope that has the sign `before` at `low` loses it, within one step."""
+def _find_stroke_ends(slope: Callable[[Real], Real], low: Real, step: float, before: Real) -> Real:
+    """Return the fractions of the cycle, within one step of `low`, at which the slope loses the sign `before`."""
     return bisect(lambda shares: np.sign(slope(shares)) == before, low, low + step)[0]
 
 
@@ -73,7 +75,12 @@ DriverEnds = tuple[float, float] | None  # ends of the driver range (rad or m); 
 
 
 def output_stroke(results: Results, ends: DriverEnds = None) -> float:
-    """Return the stroke H (m) or swing angle psi (rad) of the output in a cycle, or over a range of the driver."""
+    """Return the stroke H (m) or the swing angle psi (rad) of the output link; nan if it has none.
+
+    Args:
+        results: analysis of the mechanism.
+        ends: range of the driver (rad or m); None for a cycle.
+    """
     if results.driver_range is not None and (ends or not results.driver_range.full):
         driver_range, link = results.driver_range, results.mechanism.output
         travel = link and find_travel(
@@ -85,20 +92,25 @@ def output_stroke(results: Results, ends: DriverEnds = None) -> float:
 
 
 def arc_or_stroke(results: Results) -> float:
-    """Return the stroke H (m) of the output; of a swinging output the arc H = psi l of its first point."""
+    """Return the stroke H (m) of a sliding output, or the arc psi l (m) that the first point of a swinging output
+    describes.
+    """
     link = results.mechanism.output
     arm = results.linkage.output_arm(link) if link else None
     return output_stroke(results) * (1.0 if arm is None else arm[1])
 
 
 def time_ratio(results: Results) -> float:
-    """Return the time ratio k (coefficient of change of mean speed)."""
+    """Return the time ratio k (coefficient of change of mean speed); nan if the output has no strokes."""
     strokes = results.strokes
     return strokes.k if strokes is not None and strokes.strokes else NO_VALUE
 
 
 def time_ratio_uncertainty(results: Results) -> float:
-    """Return the uncertainty of k from rounding: near the ends of strokes the sign of the output speed is uncertain."""
+    """Return the uncertainty of the time ratio k from rounding.
+
+    Near the ends of a stroke the sign of the output speed is uncertain, and with it the duration of the stroke.
+    """
     strokes = results.strokes
     if strokes is None or not strokes.strokes:
         return 0.0
@@ -119,7 +131,13 @@ def time_ratio_uncertainty(results: Results) -> float:
 
 
 def largest_pressure_angle(results: Results, ends: DriverEnds = None) -> float:
-    """Return the largest pressure angle on the output, rad."""
+    """Return the largest pressure angle (rad) on the output link, or on any link if the output has none; nan without
+    any.
+
+    Args:
+        results: analysis of the mechanism.
+        ends: range of the driver (rad or m); None for a cycle.
+    """
     strokes, over = results.strokes, results.pressure
     link = strokes.link if strokes is not None else None
     if ends and results.motion is not None:
@@ -130,7 +148,10 @@ def largest_pressure_angle(results: Results, ends: DriverEnds = None) -> float:
 
 
 def mean_output_speed(results: Results) -> float:
-    """Return the mean speed (m/s) of a sliding output over a cycle; with an accelerated crank over the first cycle."""
+    """Return the mean speed (m/s) of a sliding output over a cycle; nan if the output does not slide.
+
+    If the crank accelerates, the mean is taken over the first cycle.
+    """
     strokes, driver = results.strokes, results.linkage.driver
     if strokes is None or not strokes.strokes or strokes.kind != "slide":
         return NO_VALUE
@@ -140,7 +161,12 @@ def mean_output_speed(results: Results) -> float:
 
 
 def completes_range(results: Results, ends: DriverEnds = None) -> bool:
-    """Return True if the driver rotates fully, covers its stroke, or moves from one end of `ends` to the other."""
+    """Return True if the driver completes its motion.
+
+    Args:
+        results: analysis of the mechanism.
+        ends: range (rad or m) that the driver must cover; None for a full rotation, or the stroke of a sliding driver.
+    """
     driver_range = results.driver_range
     if driver_range is None:
         return False
@@ -150,14 +176,15 @@ def completes_range(results: Results, ends: DriverEnds = None) -> bool:
 
 
 def driver_completes_range(results: Results, ends: DriverEnds = None) -> float:
-    """Return 1 if the driver completes its range, else 0."""
+    """Return `completes_range` as a number: 1 if the driver completes its motion, else 0."""
     return float(completes_range(results, ends))
 
 
 def stroke_end_angle(results: Results, near: float) -> float:
-    """Return the angle (rad) of a swinging output at the end of a stroke that is nearest to `near`.
+    """Return the angle (rad) of a swinging output in its extreme position that is nearest to `near` (rad); nan without
+    one.
 
-    It is the angle of the line from its hinge on the frame to the first other point of the link.
+    The angle is that of the line from the hinge of the link on the frame to the first other point of the link.
     """
     strokes, linkage = results.strokes, results.linkage
     if strokes is None or not strokes.strokes or strokes.kind != "swing":
@@ -178,9 +205,13 @@ def stroke_end_angle(results: Results, near: float) -> float:
 
 @dataclass(frozen=True)
 class MeasuredDemand:
-    """A requirement, its value measured on the mechanism (SI, rad; nan if undefined) and the relative difference.
+    """A required or predicted value, compared with the value measured on the mechanism.
 
-    open: uncertainty of the value from rounding, where it exceeds the tolerance.
+    Attributes:
+        demand: the required or predicted value.
+        value: measured value (SI, rad); nan if the mechanism has no such quantity.
+        difference: relative difference of the two.
+        open: uncertainty of the measured value from rounding; 0 if it is within the tolerance.
     """
 
     demand: Demand
@@ -195,7 +226,11 @@ class MeasuredDemand:
 
 @lru_cache(maxsize=1)
 def measure_problem(results: Results) -> tuple[MeasuredDemand, ...]:
-    """Measure the demands of a problem's synthesis on its mechanism; () if it has no synthesis or no motion."""
+    """Measure the values that the synthesis of a problem requires or predicts.
+
+    Returns:
+        One record per value; () if the problem has no synthesis, or if its motion was not computed completely.
+    """
     synthesis = results.problem.synthesis
     if synthesis is None or results.of or results.motion is None:
         return ()
@@ -203,19 +238,23 @@ def measure_problem(results: Results) -> tuple[MeasuredDemand, ...]:
 
 
 def measure_demands(outcome: SynthesisOutcome, results: Results) -> tuple[MeasuredDemand, ...]:
-    """Measure every demand on the mechanism, on the link that the task is about even if the output is another."""
-    results, measured = _with_output(synthesised_link(outcome, results), results), []
+    """Measure the values that a synthesis requires or predicts on the analysed mechanism.
+
+    They are measured on the link that the synthesis concerns, even if the file names another output link.
+    """
+    results, measured = _replace_output_link(synthesised_link(outcome, results), results), []
     for demand in outcome.demands:
-        value = _without_rounding(demand, float(demand.measure(results)))
+        value = _zero_rounding(demand, float(demand.measure(results)))
         left = demand.open(results) if demand.open is not None else 0.0
         measured.append(MeasuredDemand(demand, value, demand.difference(value), left if left > DEMAND_MET else 0.0))
     return tuple(measured)
 
 
 def synthesised_link(outcome: SynthesisOutcome, results: Results) -> str | None:
-    """Return the link whose stroke or swing the task found: of its kind on the frame, the nearest to the driver.
+    """Return the link whose stroke or swing the synthesis determines.
 
-    The output of the file is taken if it is one of these, or if the task does not specify slide or swing.
+    Of the links that slide, or swing, on the frame this is the one nearest to the driver; of several equally near ones
+    the output link of the file. The output link is also returned if the task specifies neither slide nor swing.
     """
     linkage, output = results.linkage, results.mechanism.output
     on_frame = {"slide": linkage.slides_on_frame, "swing": linkage.hinged_to_frame}.get(outcome.output)
@@ -228,8 +267,7 @@ def synthesised_link(outcome: SynthesisOutcome, results: Results) -> str | None:
     return min(links, key=lambda link: (away[link], link != output), default=output)
 
 
-def _with_output(link: str | None, results: Results) -> Results:
-    """Return the results with another link as the output."""
+def _replace_output_link(link: str | None, results: Results) -> Results:
     mechanism = results.mechanism
     if link is None or link == mechanism.output:
         return results
@@ -238,6 +276,6 @@ def _with_output(link: str | None, results: Results) -> Results:
     return replace(results, inputs=inputs, mechanism=other)
 
 
-def _without_rounding(demand: Demand, value: float) -> float:
-    """Return the measured value, or zero if it is only rounding compared with the demand."""
+def _zero_rounding(demand: Demand, value: float) -> float:
+    """Return the measured value, or zero if its magnitude is within rounding error of the required value."""
     return 0.0 if abs(value) <= NO_DEMAND * max(abs(demand.value), demand.at) else value

@@ -1,5 +1,7 @@
-"""The block `synthesis:` of a problem file: read and checked when the file is loaded, solved when its solution is
-needed; refusals with the nearest feasible value.
+"""The block `synthesis:` of a problem file.
+
+It is read and checked when the file is loaded, and solved when its solution is needed. An error message for a task
+without solution includes the nearest feasible value.
 """
 
 from __future__ import annotations
@@ -62,15 +64,19 @@ NO_NEAREST: Final = N_("other given values: changing this one alone does not hel
 
 
 def refusal_error(error: Infeasible, entry: Any, units: UnitSystem, searched: str | None = None) -> ProblemError:
-    """Return the refusal of a task as it is printed: the reason, and the nearest feasible value.
+    """Convert the refusal of a task into the error that is printed, with the reason and the nearest feasible value.
 
-    That value comes from the task itself, or else from a search (`searched`). given: the block of the file.
+    Args:
+        error: refusal of the task.
+        entry: block `synthesis:` of the file.
+        units: units of the file.
+        searched: nearest feasible value from a search, as text; used if the refusal itself has none.
     """
     nearest_text = error.nearest if isinstance(error.nearest, str) else searched
     if isinstance(error.nearest, tuple):
         value, kind, side = error.nearest
         dimension = DIMENSIONS[kind].dimension
-        nearest_text = _nearest_message(error.path, round_to_side(units, value, dimension, side), dimension, units)
+        nearest_text = _format_nearest(error.path, round_to_side(units, value, dimension, side), dimension, units)
     for step in error.path:
         inside = isinstance(entry, list) or (isinstance(entry, dict) and step in entry)
         entry = entry[step] if inside else None
@@ -81,9 +87,12 @@ def refusal_error(error: Infeasible, entry: Any, units: UnitSystem, searched: st
 def describe_nearest(
     given_numbers: Mapping[Path, tuple[float, Dimension]], solved: Callable[[Path, float], bool], units: UnitSystem
 ) -> str:
-    """Describe the nearest feasible value of the first of these numbers (SI) that has one, in the units of the file.
+    """Describe the nearest feasible value of the first number for which one exists, in the units of the file.
 
-    solved: returns True if the task is feasible with another value at a path.
+    Args:
+        given_numbers: value (SI) and dimension of each number, by path.
+        solved: function that returns True if the task has a solution with another value at a path.
+        units: units of the file.
     """
     for path, (value, want) in given_numbers.items():
         feasible = _find_nearest(value, want, partial(solved, path))
@@ -91,17 +100,20 @@ def describe_nearest(
             number = round_to_side(units, feasible, want, 1 if feasible > value else -1)
             if not solved(path, units.si(number, want)):
                 number = float(units.from_si(feasible, want))
-            return _nearest_message(path, number, want, units)
+            return _format_nearest(path, number, want, units)
     return NO_NEAREST
 
 
-def _nearest_message(path: Path, number: float, want: Dimension, units: UnitSystem) -> str:
+def _format_nearest(path: Path, number: float, want: Dimension, units: UnitSystem) -> str:
     value = f"{number:.15g} {units.symbol(want)}".rstrip()
     return _("nearest feasible value: {name}: {value}").format(name=format_path(path), value=value)
 
 
 def _find_nearest(value: float, want: Dimension, solved: Callable[[float], bool]) -> float | None:
-    """Find the feasible value nearest to an infeasible one: try growing changes, then bisect; None if none is found."""
+    """Find the feasible value nearest to an infeasible one; None if none is found.
+
+    Increasingly distant values are tried, then the limit is found by bisection.
+    """
     trials = [value + (abs(value) or 1.0) * STEPS]
     trials += [fixed + abs(value - fixed) * SHARES for fixed in SPECIAL_VALUES.get(want, (0.0,))]
     reach = 2 * np.pi if want == ANGLE else np.inf
@@ -119,7 +131,17 @@ def _find_nearest(value: float, want: Dimension, solved: Callable[[float], bool]
 
 
 def round_to_side(units: UnitSystem, value: float, dimension: Dimension, side: int) -> float:
-    """Round a limit (SI), in the unit of the file, to the printed digits, up (side = 1) or down (side = -1)."""
+    """Round a limit to the number of printed digits, in the unit of the file.
+
+    Args:
+        units: units of the file.
+        value: limit (SI).
+        dimension: dimension of the value.
+        side: 1 to round up, -1 to round down, 0 to leave the value unrounded.
+
+    Returns:
+        The rounded limit in the unit of the file.
+    """
     exact = Decimal(float(units.from_si(value, dimension)))
     if side == 0 or not exact.is_finite() or exact == 0:
         return float(exact)
@@ -138,7 +160,7 @@ GOLDEN_RATIO = (math.sqrt(5) - 1) / 2  # fractional parts of its multiples are i
 
 
 def read(tree: Tree) -> TaskProblem:
-    """Read a file with a task and a linkage: the whole block is checked, nothing is solved. Raises ProblemError."""
+    """Read a file with a synthesis task and a linkage. The block is checked but not solved. Raises ProblemError."""
     if "links" not in tree.data:
         raise ProblemError(
             _("the file has no linkage that could use the synthesised dimensions"),
@@ -156,35 +178,53 @@ def read(tree: Tree) -> TaskProblem:
         shape.title or name,
         file.units,
         shape.description,
-        partial(_solved_problem, file),
-        partial(_draft_problem, file),
+        partial(_build_solved_problem, file),
+        partial(_build_draft_problem, file),
     )
 
 
 def build_synthesised(tree: Tree) -> Problem:
-    """Build the problem of a file, with the dimensions that its synthesis task finds, if any. Raises ProblemError."""
+    """Build the problem of a file. If it has a synthesis task, solve it and use its dimensions. Raises ProblemError."""
     return read(tree).whole if "synthesis" in tree.data else build_linkage(tree)
 
 
 def solve_alone(tree: Tree) -> tuple[str, str, Synthesised, UnitSystem]:
-    """Solve the task of a file without a linkage: name, title, solution, units. Raises ProblemError."""
+    """Solve the synthesis task of a file without a linkage.
+
+    Returns:
+        Name and title of the problem, solution of the task, units of the file.
+
+    Raises:
+        ProblemError: the file is invalid, or the task has no solution.
+    """
     file, name = TaskFile(tree), tree.name
     with locate_errors_in(tree):
         return name, file.shape.title or name, file.solved(), file.units
 
 
 def read_task(tree: Tree) -> Any:
-    """Read the task of a file into SI without solving it. Raises ProblemError."""
+    """Read the synthesis task of a file into SI without solving it. Raises ProblemError."""
     file = TaskFile(tree)
     with locate_errors_in(tree):
         return file.task
 
 
 class TaskFile:
-    """A file with a synthesis task: the parameters that the task finds, and those that depend on them or do not.
+    """A problem file with a synthesis task.
+
+    Attributes:
+        tree: parsed file.
+        shape: validated keys of the file.
+        block: validated keys of the task.
+        searches: True for an optimal synthesis, which builds the problem with many trial values.
+        units: units of the file.
+        kinds: kind of each parameter that the task determines, by its standard name.
+        names: names of these parameters in the file, by their standard names.
+        dependent: expressions of the parameters that depend on the solution, by name.
+        independent: values of the other parameters, with placeholders for the solution, by name.
 
     Raises:
-        ProblemError: located in the file.
+        ProblemError: the file is invalid; the error contains the location in the file.
     """
 
     def __init__(self, tree: Tree, *, extended: bool = False) -> None:
@@ -205,12 +245,12 @@ class TaskFile:
             self._check_independence()
 
     def _find_kinds(self) -> dict[str, str]:
-        """Return names and kinds of the parameters that the task finds; they may depend on the block."""
+        """Return the kind of each parameter that the task determines, by its standard name."""
         own_parameters = getattr(block_module(self.block.task), "parameters", None)
         return dict(solver_module(self.block.task).PARAMETERS if own_parameters is None else own_parameters(self.block))
 
     def _find_names(self) -> dict[str, str]:
-        """Map the standard names of the parameters to be found to their names in the file. Raises ProblemError."""
+        """Return the names of these parameters in the file, by their standard names. Raises ProblemError."""
         raw, aliases, task = self.shape.parameters, self.block.names, self.block.task
         for name, other in aliases.items():
             path = ("synthesis", "names", name)
@@ -246,9 +286,9 @@ class TaskFile:
         return names
 
     def placeholders(self) -> Parameters:
-        """Return placeholder values for the parameters to be found, no two in a simple ratio.
+        """Return placeholder values for the parameters that the task determines. No two are in a simple ratio.
 
-        Those of an optimal synthesis have no dimension: it is not known before the ranges are read.
+        For an optimal synthesis they have no dimension, as it is not known before the ranges are read.
         """
         return {
             name: PhysicalValue(
@@ -258,7 +298,7 @@ class TaskFile:
         }
 
     def _dependent_parameters(self, found_names: set[str]) -> set[str]:
-        """Return the given parameters that depend, directly or through others, on those that the task finds."""
+        """Return the names of the given parameters that depend on the solution, directly or through other parameters."""
         raw = self.shape.parameters
         dummies = dict.fromkeys([*raw, *found_names], PhysicalValue(0.0))
         needs = {
@@ -272,7 +312,9 @@ class TaskFile:
         return late
 
     def _check_independence(self) -> None:
-        """Raise ProblemError if the task depends on its solution. An optimal synthesis may refer to what it varies."""
+        """Raise ProblemError if the task depends on its own solution. An optimal synthesis may use the parameters it
+        varies.
+        """
         dummies = dict.fromkeys([*self.dependent, *(() if self.searches else self.names.values())], PhysicalValue(0.0))
         for path, text in _iterate_texts(self.block):
             used = Parser(plain_text(text[:200]), dummies, self.units).names()
@@ -286,7 +328,7 @@ class TaskFile:
 
     @cached_property
     def task(self) -> Any:
-        """The task in SI, in the record of its kind."""
+        """The task as a record in SI and radians."""
         read = block_module(self.block.task).read
         try:
             with prefix_errors("synthesis"):
@@ -310,7 +352,7 @@ class TaskFile:
             raise TriedFileError(error) from None
 
     def with_values(self, found_values: Parameters, units: UnitSystem) -> Problem:
-        """Build the problem with these values of the parameters to be found."""
+        """Build the problem with these values of the parameters that the task determines."""
         assert isinstance(self.shape, schema.File)
         known_values = self.independent | found_values
         everything = known_values | build_parameters(self.dependent, units, known_values)
@@ -333,7 +375,9 @@ class TaskFile:
         return refusal_error(error, self.tree.data["synthesis"], self.units, searched).at("synthesis")
 
     def find_nearest(self, at_fault: Path) -> str:
-        """Describe the nearest feasible value of one of the numbers at this path, starting with the last one."""
+        """Describe the nearest feasible value of a number at this path; the numbers are tried from the last to the
+        first.
+        """
         read, refuse, reader = (
             block_module(self.block.task).read,
             solver_module(self.block.task).refuse,
@@ -355,40 +399,39 @@ class TaskFile:
             return describe_nearest(given_numbers, solved, self.units)
 
     def values(self, outcome: SynthesisOutcome) -> Parameters:
-        """Return the parameters found, under their names in the file."""
+        """Return the values of the parameters that the task determines, by their names in the file."""
         return {
-            self.names[name]: PhysicalValue(_plain_number(value.value), DIMENSIONS[value.kind].dimension)
+            self.names[name]: PhysicalValue(_to_plain_number(value.value), DIMENSIONS[value.kind].dimension)
             for name, value in outcome.parameters.items()
             if name in self.names
         }
 
 
-def _solved_problem(file: TaskFile) -> Problem:
-    """Build the problem with the dimensions that its task finds."""
+def _build_solved_problem(file: TaskFile) -> Problem:
     with locate_errors_in(file.tree):
-        return _with_solution(file, file.solved())
+        return _insert_solution(file, file.solved())
 
 
-def _with_solution(file: TaskFile, synthesised: Synthesised) -> Problem:
+def _insert_solution(file: TaskFile, synthesised: Synthesised) -> Problem:
     problem = file.with_values(file.values(synthesised.outcome), file.units)
     sketch = synthesised.outcome.sketch or problem.linkage.sketch
     return replace(
         problem,
         linkage=replace(problem.linkage, sketch=sketch),
         synthesis=synthesised,
-        extended=partial(_extended_problem, file.tree, synthesised),
+        extended=partial(_build_extended_problem, file.tree, synthesised),
     )
 
 
-def _extended_problem(tree: Tree, synthesised: Synthesised) -> Problem:
-    """Build the problem with the decimals of the file as double-doubles; the solution of the task stays as it is."""
+def _build_extended_problem(tree: Tree, synthesised: Synthesised) -> Problem:
+    """Build the problem with double-double numbers. The solution of the task is not recomputed."""
     file = TaskFile(tree, extended=True)
     with locate_errors_in(tree):
-        return _with_solution(file, synthesised)
+        return _insert_solution(file, synthesised)
 
 
-def _draft_problem(file: TaskFile) -> Problem | None:
-    """Build the problem with placeholders for the parameters to be found; None if the file is invalid with them."""
+def _build_draft_problem(file: TaskFile) -> Problem | None:
+    """Build the problem with placeholders instead of the solution; None if the file is invalid with these values."""
     try:
         return file.with_values(file.placeholders(), file.units)
     except ProblemError:
@@ -407,7 +450,7 @@ def _iterate_texts(value: Any, path: Path = ()) -> Iterator[tuple[Path, str]]:
             yield from _iterate_texts(item, (*path, key))
 
 
-def _plain_number(value: Any) -> Any:
-    """Return a Python float; a number of higher precision is returned unchanged."""
+def _to_plain_number(value: Any) -> Any:
+    """Convert a value to a Python float; a number of higher precision is returned unchanged."""
     number = np.asarray(value)[()]
     return float(number) if number.dtype == np.float64 else number

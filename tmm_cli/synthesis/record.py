@@ -1,4 +1,6 @@
-"""Outcome of a synthesis: given values, solution, demands to be measured, tables, drawings; refusals."""
+"""Outcome of a synthesis (input data, solution, values to be verified, tables, drawings), and the error for a task
+without solution.
+"""
 
 from __future__ import annotations
 
@@ -21,9 +23,13 @@ Kind = str  # name of a dimension: length, angle, number, speed, ...; `word`: a 
 
 @dataclass(frozen=True)
 class NamedValue:
-    """A quantity of a task (SI, rad). text: its description; kind `word`: the value is a text.
+    """A quantity of a synthesis task, with the description that tables show.
 
-    name: the parameter it sets, or the key that gives it.
+    Attributes:
+        name: parameter that the value sets, or key that gives it; empty if there is neither.
+        value: value (SI, rad); a text if the kind is `word`.
+        kind: name of the dimension (length, angle, number, ...), or `word`.
+        text: description.
     """
 
     name: str
@@ -34,10 +40,16 @@ class NamedValue:
 
 @dataclass(frozen=True)
 class Listing:
-    """A table of a solution. name: of its file; long: written to files only.
+    """A table of a solution.
 
-    columns: name in result.json, heading, kind. Kinds `word` and `name` are plain texts; `mixed` are numbers whose kind
-    stands in the row's column of kind `unit`. A cell of None is empty.
+    Attributes:
+        name: file name without its extension.
+        title: title of the table.
+        columns: name in result.json, heading and kind of each column. Columns of kind `word` and `name` contain plain
+            text. Columns of kind `mixed` contain numbers whose kind is given in the same row, in the column of kind
+            `unit`.
+        rows: cells of each row (SI, rad); None for an empty cell.
+        long: True if the table is written only to files, and not printed.
     """
 
     name: str
@@ -49,16 +61,19 @@ class Listing:
 
 @dataclass(frozen=True)
 class Demand:
-    """A value that the analysed mechanism must show, and the function that measures it on the Results.
+    """A value that the synthesised mechanism must have, and the function that measures it.
 
     Attributes:
-        text: its description.
+        text: description.
         value: required or predicted value (SI, rad).
-        asked: True if the file requires it; False if the synthesis predicts it.
-        measure: returns the measured value; nan if the mechanism has no such quantity.
-        at: smallest reference of the relative difference, for a value that may be zero.
-        open: returns the uncertainty of the measured value from rounding; None: negligible.
-        of: the quantity measured, under which warnings look for it (pressure).
+        kind: name of its dimension.
+        measure: function of the analysis Results that returns the measured value; nan if the mechanism has no such
+            quantity.
+        asked: True if the file requires the value; False if the synthesis predicts it.
+        at: lower limit of the reference for the relative difference; needed if the value may be zero.
+        open: function of the Results that returns the uncertainty of the measured value from rounding; None if
+            negligible.
+        of: name of the measured quantity, e.g. `pressure`, by which the warnings find it.
     """
 
     text: str
@@ -71,24 +86,27 @@ class Demand:
     of: str = ""
 
     def difference(self, measured: float) -> float:
-        """Return the difference relative to the value, or the absolute one if the value is zero."""
+        """Return the difference of a measured value from the required one, relative to the latter; absolute if that is
+        zero.
+        """
         return abs(measured - self.value) / (max(abs(self.value), self.at) or 1.0)
 
 
 @dataclass(frozen=True)
 class SynthesisOutcome:
-    """Outcome of a synthesis.
+    """Outcome of a synthesis task.
 
     Attributes:
-        asked, found: given values and solution, as tables show them.
+        asked: input data, as tables show them.
+        found: solution, as tables show it.
         source: source of the formulas.
         demands: values to be measured on the mechanism.
         drawings: constructions and diagrams.
         notes: texts below the solution.
         listings: further tables.
-        sketch: the assembly, if the sketch of the file does not show it.
-        output: "slide" or "swing": motion of the link that the demands concern, if the file has another output; "": the
-            demands find their link themselves.
+        sketch: sketch that selects the assembly; None to use the sketch of the file.
+        output: motion of the link that the demands concern, "slide" or "swing"; needed if the file names another output
+            link. Empty if the demands select their link themselves.
     """
 
     asked: tuple[NamedValue, ...]
@@ -103,26 +121,31 @@ class SynthesisOutcome:
 
     @property
     def parameters(self) -> dict[str, NamedValue]:
-        """The values found that are parameters, by name."""
+        """Values of the solution that set parameters of the file, by name of the parameter."""
         return {value.name: value for value in self.found if value.name}
 
 
 def given_values(task: Any, quantities: Mapping[str, tuple[Kind, str]]) -> tuple[NamedValue, ...]:
-    """Return the quantities that the task has as fields and are not None. quantities: kind and description by name."""
+    """Return the input data of a task as values with descriptions.
+
+    Args:
+        task: record of the task.
+        quantities: kind and description of each quantity, by name. A quantity that the task lacks, or that is None, is
+            omitted.
+    """
     numbers = ((name, getattr(task, name, None)) for name in quantities)
     return tuple(NamedValue(name, value, *quantities[name]) for name, value in numbers if value is not None)
 
 
 class Infeasible(Exception):  # noqa: N818
-    """No mechanism meets the task.
+    """Raised if no mechanism satisfies the task.
 
     Attributes:
-        path: the key at fault, or the path inside the block.
-        reason: the message.
-        nearest: nearest feasible value, if the task knows it: a text, or (value in SI, kind, rounding: 1 up, -1 down, 0
-            none).
-            Else the value is searched for.
-        search: False if such a search would repeat a solution that takes long.
+        path: key at fault, or its path inside the block; empty if no single key is at fault.
+        reason: error message.
+        nearest: nearest feasible value if the task knows it: a text, or (value in SI, kind, direction of rounding: 1
+            up, -1 down, 0 none). If None, the nearest value is searched for.
+        search: False if this search would take too long.
     """
 
     def __init__(
@@ -139,8 +162,14 @@ class Infeasible(Exception):  # noqa: N818
 
 
 def refuse_nonfinite(outcome: SynthesisOutcome) -> SynthesisOutcome:
-    """Return the outcome. Raises Infeasible if one of its numbers is not finite, so that none is shown as a
-    solution."""
+    """Check that every number of a solution is finite.
+
+    Returns:
+        The same outcome.
+
+    Raises:
+        Infeasible: a number is infinite or nan.
+    """
     for value in outcome.found:
         if value.kind != "word" and not bool(np.all(np.isfinite(np.asarray(value.value, dtype=float)))):
             raise Infeasible(

@@ -144,15 +144,15 @@ def refuse(task: ShaperTask) -> None:
     f = find_shaper(task)
     if not f.frame < f.lever / (1 + np.sin(half)):
         raise Infeasible(
-            _given_key(task, FRAME_KEYS), _("the sliding block would pass the hinge D of the connecting rod")
+            _find_given_key(task, FRAME_KEYS), _("the sliding block would pass the hinge D of the connecting rod")
         )
     steepest = f.pressure if task.pressure is None else task.pressure
     if not steepest < np.pi / 2 - half:  # where the lever reverses, half its swing from the middle
         reason = _("the ram would reverse before the lever: the connecting rod is too steep")
-        raise Infeasible(_given_key(task, ROD_KEYS), reason)
+        raise Infeasible(_find_given_key(task, ROD_KEYS), reason)
 
 
-def _given_key(task: ShaperTask, keys: tuple[str, ...]) -> str:
+def _find_given_key(task: ShaperTask, keys: tuple[str, ...]) -> str:
     return next(key for key in keys if getattr(task, key) is not None)
 
 

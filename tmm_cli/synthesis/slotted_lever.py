@@ -268,11 +268,11 @@ def solve(task: SlottedLeverTask) -> SynthesisOutcome:
         "CB1 = CB2, O on the bisector, OA = OC sin(theta/2)"
     )
     return SynthesisOutcome(
-        _given_values(task), _found_values(task, f), source, demands, drawings, notes, listings, output="swing"
+        _list_given_values(task), _list_solution_values(task, f), source, demands, drawings, notes, listings, output="swing"
     )
 
 
-def _given_values(task: SlottedLeverTask) -> tuple[NamedValue, ...]:
+def _list_given_values(task: SlottedLeverTask) -> tuple[NamedValue, ...]:
     values: list[NamedValue] = []
     if task.CB is None:
         for x, y, place in ((N_("B1, x"), N_("B1, y"), task.b1), (N_("B2, x"), N_("B2, y"), task.b2)):
@@ -288,7 +288,7 @@ def _given_values(task: SlottedLeverTask) -> tuple[NamedValue, ...]:
     return tuple(values)
 
 
-def _found_values(task: SlottedLeverTask, f: SlottedLeverSolution) -> tuple[NamedValue, ...]:
+def _list_solution_values(task: SlottedLeverTask, f: SlottedLeverSolution) -> tuple[NamedValue, ...]:
     away = f.o - f.c
     return (
         NamedValue("OA", f.crank, *QUANTITIES["OA"]),

@@ -1,6 +1,6 @@
 """Public API: load, solve and prepare problems.
 
-Everything is in SI and radians. Bad input raises `tmm_cli.problem.errors.ProblemError`.
+All values are in SI units and radians. Invalid input raises `tmm_cli.problem.errors.ProblemError`.
 """
 
 from __future__ import annotations
@@ -28,9 +28,15 @@ if TYPE_CHECKING:
 
 
 def load(path: str) -> Problem | TaskProblem:
-    """Read and check a problem file. Raises ProblemError.
+    """Read and check a problem file.
 
-    A synthesis task is solved only when the dimensions that it finds are needed: by `solve`, `prepare`, `linkage`.
+    A synthesis task is solved later, when its dimensions are needed: by `solve`, `prepare` or the attribute `linkage`.
+
+    Args:
+        path: path of the file.
+
+    Raises:
+        ProblemError: the file is invalid.
     """
     return build_any_problem(read_file(path))
 
@@ -41,9 +47,17 @@ def solve(
     positions: Sequence[int] | None = None,
     of: Sequence[str] = (),
 ) -> Results:
-    """Compute a problem up to a stage, at all positions of the file or at those numbered. Raises ProblemError.
+    """Compute a problem up to a stage.
 
-    of: names of points, links and centres of mass (E, 5, S3); only the groups that these depend on are solved.
+    Args:
+        problem: problem, as returned by `load`.
+        stage: last stage to compute.
+        positions: numbers of the positions to compute; None for all positions of the file.
+        of: names of points, links and centres of mass (E, 5, S3). If given, only the Assur groups on which these depend
+            are solved.
+
+    Raises:
+        ProblemError: the mechanism cannot be computed.
     """
     whole = problem.whole
     with translate_errors(whole):
@@ -56,7 +70,13 @@ def solve(
 
 
 def structure_of(problem: Problem | TaskProblem) -> Results:
-    """Compute the structure alone; a synthesis task is solved only if lengths are needed. Raises ProblemError."""
+    """Compute only the structure of a mechanism.
+
+    A synthesis task is solved only if the structure depends on its lengths.
+
+    Raises:
+        ProblemError: the mechanism is invalid.
+    """
     draft = problem.draft() if isinstance(problem, TaskProblem) else None
     if draft is not None:
         try:
@@ -67,7 +87,7 @@ def structure_of(problem: Problem | TaskProblem) -> Results:
 
 
 def inputs_of(problem: Problem) -> Inputs:
-    """Return the inputs of the computing stages for a problem."""
+    """Return the input data of the analysis for a problem."""
     extended = None if problem.extended is None else ExtendedInputs(problem.extended)
     return Inputs(
         problem.linkage,
@@ -83,7 +103,10 @@ def inputs_of(problem: Problem) -> Inputs:
 
 @dataclass(frozen=True)
 class ExtendedInputs:
-    """Inputs as double-doubles, built on first use; a class, so that results can be sent to other processes."""
+    """Input data of the analysis with double-double numbers, built when first called.
+
+    This is a class and not a closure, so that results can be sent to other processes.
+    """
 
     problem: Callable[[], Problem]
 
@@ -96,14 +119,22 @@ class ExtendedInputs:
 
 
 def count(problem: ChainProblem) -> ChainResults:
-    """Count links, pairs and mobility of a problem that specifies its chain by pairs only."""
+    """Compute the mobility of a problem that specifies its chain only by links and pairs."""
     return ChainResults(problem, count_chain(problem.chain, problem.output, problem.local, problem.wanted))
 
 
 def redrive(problem: Problem | TaskProblem, link: str) -> Problem:
-    """Return the problem with another link on the frame as the driver, from the same sketch. Raises ProblemError.
+    """Return the problem with another link on the frame as the driver, assembled from the same sketch.
 
-    Everything tied to the driver of the file is dropped: law of motion, balancing, wheels, loads by its angle.
+    Everything that depends on the original driver is removed: law of motion, balancing, wheels, and loads that depend
+    on the driver angle.
+
+    Args:
+        problem: problem, as returned by `load`.
+        link: name of the new driver.
+
+    Raises:
+        ProblemError: the link cannot be the driver.
     """
     whole = problem.whole
     with translate_errors(whole):
@@ -120,7 +151,13 @@ def redrive(problem: Problem | TaskProblem, link: str) -> Problem:
 def prepare(problems: Sequence[Problem | TaskProblem] | Problem | TaskProblem) -> Batch:
     """Prepare problems that differ only in their numbers, to be solved together at any driver coordinates.
 
-    Loads of a working stroke act always, unless there is only one problem. Raises ProblemError.
+    Loads limited to a working stroke act at all positions if there are several problems.
+
+    Args:
+        problems: one problem or several, as returned by `load`.
+
+    Raises:
+        ProblemError: a problem is invalid, or its driver does not run at constant speed.
     """
     from tmm_cli.batch import prepare_batch  # late: loads the traced calculation
 

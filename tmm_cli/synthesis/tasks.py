@@ -1,14 +1,14 @@
-"""Register of the synthesis tasks. A task is one module, or a package where one module would be too long:
+"""Register of the synthesis tasks. A task is a module, or a package if one module would be too long. It has two parts:
 
-    keys       `BLOCK`, the pydantic model of its keys, and `read(block, values) -> Task`, which raises ProblemError;
-               `parameters(block)`, where the parameters that it finds depend on the keys
-    solution   in SI and radians: a frozen record of the task, `PARAMETERS` (kind of each parameter that it may find),
-               `refuse(task)`, which raises Infeasible with the reason, and `solve(task) -> SynthesisOutcome`, which
-               raises it too
+    keys       `BLOCK`, the pydantic model of the keys; `read(block, values) -> Task`, which raises ProblemError;
+               `parameters(block)`, if the names of the parameters that the task determines depend on the keys
+    solution   `Task`, a frozen record in SI and radians; `PARAMETERS`, the kind of each parameter that the task
+               determines; `refuse(task)`, which raises Infeasible with the reason; `solve(task) -> SynthesisOutcome`,
+               which raises Infeasible as well
 
-Only the keys know pydantic and units. The tasks share record.py (outcome of a task), reading.py (the block in a file,
-refusals with the nearest feasible value), measures.py (quantities measured on the mechanism, time ratio k) and
-construction.py (drawings as records). A new task is a new module or package, and a line here.
+Only the keys depend on pydantic and on units. All tasks share record.py (outcome of a task), reading.py (the block in a
+file, error messages with the nearest feasible value), measures.py (quantities measured on the mechanism, time ratio k)
+and construction.py (records of drawings). To add a task, write a module or package and add a line here.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ TASKS: Final[Mapping[str, tuple[str, str]]] = {  # name in problem files: module
 
 
 def block_module(task: str) -> Any:
-    """Import the module with the keys of a task, and none of the other tasks."""
+    """Import and return the module with the keys of a task; modules of other tasks are not imported."""
     return import_module(f"tmm_cli.synthesis.{TASKS[task][0]}")
 
 
 def solver_module(task: str) -> Any:
-    """Import the module with the solution of a task, and none of the other tasks."""
+    """Import and return the module with the solution of a task; modules of other tasks are not imported."""
     return import_module(f"tmm_cli.synthesis.{TASKS[task][1]}")

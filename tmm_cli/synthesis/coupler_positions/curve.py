@@ -115,7 +115,7 @@ def burmester_curve(poses: CouplerPoses) -> DyadCurve:
     for odd in range(4):
         rest = [k for k in range(4) if k != odd]
         if equal_angles(poses.angles[rest]):
-            return _pin_circle(poses, rest, odd)
+            return _find_pin_circle(poses, rest, odd)
     *__, d2, _, size3, size4, total = poses.loop
     over, about = 2 * np.abs(total * d2), np.abs(total) ** 2 + np.abs(d2) ** 2
     toward = np.angle(total * np.conj(d2))
@@ -134,7 +134,7 @@ def burmester_curve(poses: CouplerPoses) -> DyadCurve:
     return RotationLoops(poses, middle.astype(EXACT), half.astype(EXACT), branch)
 
 
-def _pin_circle(poses: CouplerPoses, equal: list[int], odd: int) -> PinCircle:
+def _find_pin_circle(poses: CouplerPoses, equal: list[int], odd: int) -> PinCircle:
     """Return the circle of pins: |B - A| is equal in the odd position too, |c + m g| = |arm| for the pin m."""
     first = equal[0]
     arm = poses.places[first] - circle_centre(poses.places[equal])
@@ -169,7 +169,7 @@ def sample_parts(
         high = np.concatenate([high, t[-1:] if is_good[-1] else t[:0]])
         for a, b in zip(low, high, strict=True):
             inner = np.concatenate([[a], t[(t > a) & (t < b)], [b]])
-            path_length = np.cumsum(np.concatenate([[0], _relative_gaps(curve.at(loop, inner), size)]))
+            path_length = np.cumsum(np.concatenate([[0], _compute_relative_gaps(curve.at(loop, inner), size)]))
             rows.append((loop, inner, np.asarray(path_length, float)))
     total = sum(path_length[-1] for _, _, path_length in rows)
     samples = []
@@ -192,7 +192,7 @@ def _scan_loop(curve: RotationLoops | PinCircle, loop: int, size: float) -> Any:
     def wide(t: Any) -> Any:
         dyads = curve.at(loop, t)
         near = np.abs(dyads.pivot - curve.poses.places[0]) + np.abs(dyads.pin) < 8 * size
-        return (near[1:] | near[:-1]) & ~(_relative_gaps(dyads, size) < APART) & (np.diff(t) > 1e-12)
+        return (near[1:] | near[:-1]) & ~(_compute_relative_gaps(dyads, size) < APART) & (np.diff(t) > 1e-12)
 
     return refine_parameters(wide, FIRST, ROUNDS)
 
@@ -208,7 +208,7 @@ def refine_parameters(wide: Callable[[Any], Any], first: int, rounds: int) -> An
     return t
 
 
-def _relative_gaps(dyads: Dyads, size: float) -> Any:
+def _compute_relative_gaps(dyads: Dyads, size: float) -> Any:
     """Return the distances of neighbouring dyads over the size of the task."""
     with np.errstate(all="ignore"):
         return (np.abs(np.diff(dyads.pivot)) + np.abs(np.diff(dyads.pin))) / size

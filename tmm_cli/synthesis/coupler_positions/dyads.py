@@ -86,8 +86,8 @@ def best_on_curves(
         return rate_pairs(poses, first.at(x), second.at(y), limits, loose)
 
     table = score(np.arange(len(first.t))[:, None], np.arange(len(second.t))[None, :])
-    x, y = _local_peaks(table, first, second)
-    x, y, value = _climb(score, x, y, first, second)
+    x, y = _find_local_peaks(table, first, second)
+    x, y, value = _improve_pairs(score, x, y, first, second)
     x, y, value = _refine_best(score, x, y, value, first, second)
     at = int(np.argmax(value))
     return first.at(x[at : at + 1])[0], second.at(y[at : at + 1])[0], float(value[at])
@@ -147,7 +147,7 @@ def rate_pairs(poses: CouplerPoses, first: Dyads, second: Dyads, limits: LinkLim
     return np.where(np.isfinite(value), value, -99.0)
 
 
-def _local_peaks(table: Any, first: CurveSamples, second: CurveSamples) -> tuple[Any, Any]:
+def _find_local_peaks(table: Any, first: CurveSamples, second: CurveSamples) -> tuple[Any, Any]:
     """Return the indices of the pairs not worse than their neighbours on the same parts, best first."""
     top = np.ones(table.shape, bool)
     for axis, rows in enumerate((first, second)):
@@ -160,7 +160,7 @@ def _local_peaks(table: Any, first: CurveSamples, second: CurveSamples) -> tuple
     return x[order].astype(float), y[order].astype(float)
 
 
-def _climb(score: Any, x: Any, y: Any, first: CurveSamples, second: CurveSamples) -> tuple[Any, Any, Any]:
+def _improve_pairs(score: Any, x: Any, y: Any, first: CurveSamples, second: CurveSamples) -> tuple[Any, Any, Any]:
     """Improve all starting points together: rate a small grid around each, and shrink it where its middle is best."""
     shifts = np.linspace(-1.5, 1.5, 7)
     ends = [(rows.low[at.astype(int)], rows.high[at.astype(int)]) for rows, at in ((first, x), (second, y))]
@@ -188,7 +188,7 @@ def _refine_best(
     for k in np.argsort(-value, kind="stable").tolist():
         if len(kept) < LAST and all(abs(x[k] - x[m]) + abs(y[k] - y[m]) > APART for m in kept):
             kept.append(k)
-    (low, high), (first, last) = (_search_interval(rows, at[kept]) for rows, at in ((ab_samples, x), (dc_samples, y)))
+    (low, high), (first, last) = (_limit_search(rows, at[kept]) for rows, at in ((ab_samples, x), (dc_samples, y)))
 
     def of_best(x: Any) -> tuple[Any, Any]:
         """Return the best positions of DC for positions of AB (all starting points repeated), and their negative
@@ -201,7 +201,7 @@ def _refine_best(
     return x, of_best(x)[0], -bad
 
 
-def _search_interval(rows: CurveSamples, at: Any) -> tuple[Any, Any]:
+def _limit_search(rows: CurveSamples, at: Any) -> tuple[Any, Any]:
     """Return the ends of the interval around each index in which its peak is searched."""
     sample = at.astype(int)
     return np.maximum(at - REACH, rows.low[sample]), np.minimum(at + REACH, rows.high[sample])
@@ -234,7 +234,7 @@ def find_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads, GuidanceQualit
     """Return the dyads AB and DC and their quality. Raises Infeasible."""
     first, second = solve_both_dyads(task)
     if not min(abs(first.pivot - second.pivot), abs(first.pin - second.pin)) > SAME_POINTS * task.size:
-        raise Infeasible(_given_key(task, "DC"), _("AB and DC have a common pin or pivot: this is not a four-bar"))
+        raise Infeasible(_find_given_key(task, "DC"), _("AB and DC have a common pin or pivot: this is not a four-bar"))
     rating = rate_guidance(task.poses, first, second)
     if rating.defect and not task.keep:
         raise Infeasible("positions", DEFECTS[int(rating.defect)], search=_search_is_quick(task))
@@ -246,7 +246,7 @@ def _search_is_quick(task: CouplerPositionsTask) -> bool:
     return len(task.places) < 4 or len(task.sides) == 2 or task.still
 
 
-def _given_key(task: CouplerPositionsTask, name: str) -> str:
+def _find_given_key(task: CouplerPositionsTask, name: str) -> str:
     """Return the key of the file that specifies a link (pin, pivot, turn or near); `positions` if none is given."""
     side = task.sides.get(name, DyadData())
     keys = {name[1]: side.pin, name[0]: side.pivot, f"{name}_turn": side.turn, f"{name[0]}_near": side.near}

@@ -208,7 +208,7 @@ def refuse(task: CouplerPositionsTask) -> None:
 def solve(task: CouplerPositionsTask) -> SynthesisOutcome:
     """Solve the task of one file. Raises Infeasible."""
     first, second, rating = find_dyads(task)
-    numbers = _parameter_values(task, first, second)
+    numbers = _compute_parameters(task, first, second)
     values = [NamedValue(name, float(numbers[name]), kind, NAMES[name]) for name, kind in PARAMETERS.items()]
     values += [
         NamedValue(
@@ -227,17 +227,17 @@ def solve(task: CouplerPositionsTask) -> SynthesisOutcome:
             )
         )
     elif count == 4:
-        values += [*_curve_values(task, "AB", first), *_curve_values(task, "DC", second)]
+        values += [*_list_curve_values(task, "AB", first), *_list_curve_values(task, "DC", second)]
         listings.append(_tabulate_curve(task))
     by_pivot = [name in task.sides and task.sides[name].pivot is not None for name in ("AB", "DC")]
     drawn = draw_construction(task.poses, first, second, (by_pivot[0], by_pivot[1]))
-    source, demands = SOURCES[1 if task.still else count], tuple(_demands(task, first, second, rating))
+    source, demands = SOURCES[1 if task.still else count], tuple(_list_demands(task, first, second, rating))
     return SynthesisOutcome(
-        tuple(_given_values(task)), tuple(values), source, demands, drawn, tuple(notes), tuple(listings)
+        tuple(_list_given_values(task)), tuple(values), source, demands, drawn, tuple(notes), tuple(listings)
     )
 
 
-def _parameter_values(task: CouplerPositionsTask, first: Dyads, second: Dyads) -> dict[str, Any]:
+def _compute_parameters(task: CouplerPositionsTask, first: Dyads, second: Dyads) -> dict[str, Any]:
     """Return all parameters in extended precision."""
     b, c = (task.poses.on_frame(x.pin)[..., 0] for x in (first, second))
     a, d = first.pivot, second.pivot
@@ -250,7 +250,7 @@ def _parameter_values(task: CouplerPositionsTask, first: Dyads, second: Dyads) -
     return parameters | {"Cx": c.real, "Cy": c.imag, "phi1": np.arctan2((b - a).imag, (b - a).real)}
 
 
-def _curve_values(task: CouplerPositionsTask, name: str, dyad: Dyads) -> Iterator[NamedValue]:
+def _list_curve_values(task: CouplerPositionsTask, name: str, dyad: Dyads) -> Iterator[NamedValue]:
     """Yield rotation and branch of a dyad on Burmester's curves, as a file can specify them."""
     side = task.sides.get(name, DyadData())
     if side.turn is None:
@@ -290,7 +290,7 @@ def _tabulate_curve(task: CouplerPositionsTask) -> Listing:
     return Listing("curve", title, columns, tuple(rows), long=True)
 
 
-def _position_names(k: int) -> tuple[str, str, str]:
+def _describe_position(k: int) -> tuple[str, str, str]:
     """Return the descriptions of x, y and angle of a position."""
     return (
         Phrase("position {number}: P, x", number=k + 1),
@@ -299,23 +299,23 @@ def _position_names(k: int) -> tuple[str, str, str]:
     )
 
 
-def _demands(task: CouplerPositionsTask, first: Dyads, second: Dyads, rating: GuidanceQuality) -> Iterator[Demand]:
+def _list_demands(task: CouplerPositionsTask, first: Dyads, second: Dyads, rating: GuidanceQuality) -> Iterator[Demand]:
     b = task.poses.on_frame(first.pin)
     phi = np.angle(np.asarray((b - first.pivot) / (second.pivot - first.pivot), complex))
     span = complex(second.pin - first.pin)
     local, slope = complex(-first.pin) * np.conj(span) / abs(span), float(np.angle(span))
     for k, (place, angle) in enumerate(zip(task.places, task.angles, strict=True)):
         at = {"phi": float(phi[k]), "local": local, "slope": slope, "near": float(angle)}
-        x, y, turned = _position_names(k)
-        yield Demand(x, complex(place).real, "length", partial(_measured_pose, "x", at), at=task.size)
-        yield Demand(y, complex(place).imag, "length", partial(_measured_pose, "y", at), at=task.size)
-        yield Demand(turned, float(angle), "angle", partial(_measured_pose, "angle", at), at=1.0)
+        x, y, turned = _describe_position(k)
+        yield Demand(x, complex(place).real, "length", partial(_measure_pose, "x", at), at=task.size)
+        yield Demand(y, complex(place).imag, "length", partial(_measure_pose, "y", at), at=task.size)
+        yield Demand(turned, float(angle), "angle", partial(_measure_pose, "angle", at), at=1.0)
     measure = partial(four_bar.transmission_angle, float(rating.worst))
     name = N_("smallest transmission angle between the first and last position")
     yield Demand(name, float(rating.least), "angle", measure, asked=False, at=1.0)
 
 
-def _measured_pose(coordinate: str, at: dict[str, Any], results: Any) -> float:
+def _measure_pose(coordinate: str, at: dict[str, Any], results: Any) -> float:
     """Measure a coordinate of the coupler at the angle of AB from AD that belongs to a position."""
     pins = four_bar.pin_positions(results, np.array([at["phi"]]))
     if pins is None:
@@ -327,29 +327,29 @@ def _measured_pose(coordinate: str, at: dict[str, Any], results: Any) -> float:
     return float({"x": place.real, "y": place.imag, "angle": turned}[coordinate])
 
 
-def _given_values(task: CouplerPositionsTask) -> Iterator[NamedValue]:
+def _list_given_values(task: CouplerPositionsTask) -> Iterator[NamedValue]:
     for k, (place, angle) in enumerate(zip(task.places, task.angles, strict=True)):
-        x, y, turned = _position_names(k)
-        yield from _coordinate_values(place, x, y)
+        x, y, turned = _describe_position(k)
+        yield from _list_coordinates(place, x, y)
         yield NamedValue("", angle, "angle", turned)
     for name, side in task.sides.items():
         texts = GIVEN[name]
         for field_name in ("pin", "pivot", "length", "turn", "near"):
             value = getattr(side, field_name)
             if value is not None and isinstance(texts[field_name], tuple):
-                yield from _coordinate_values(value, *texts[field_name])
+                yield from _list_coordinates(value, *texts[field_name])
             elif value is not None:
                 yield NamedValue("", value, "length" if field_name == "length" else "angle", texts[field_name])
     if task.within is not None:
-        yield from _coordinate_values(
+        yield from _list_coordinates(
             task.within[0], N_("box for free pivots: first corner, x"), N_("box for free pivots: first corner, y")
         )
-        yield from _coordinate_values(
+        yield from _list_coordinates(
             task.within[1], N_("box for free pivots: opposite corner, x"), N_("box for free pivots: opposite corner, y")
         )
 
 
-def _coordinate_values(place: Any, x: str, y: str) -> tuple[NamedValue, NamedValue]:
+def _list_coordinates(place: Any, x: str, y: str) -> tuple[NamedValue, NamedValue]:
     return NamedValue("", place.real, "length", x), NamedValue("", place.imag, "length", y)
 
 

@@ -181,7 +181,7 @@ def four_bars_through(task: AnglePairsTask) -> FourBarRatios:
     If l4/l1 is free, or no four-bar passes through all pairs exactly, only the best one is returned.
     """
     if len(task.phi) == 3 and len(task.lengths) == 2:
-        four_bars = _four_bar_of_circle(task)
+        four_bars = _find_by_circle(task)
         return four_bars.at(are_real(four_bars))
     if len(task.phi) > 2 and (parallel := find_parallelogram(task.phi, task.psi, task.phi0, task.psi0)) is not None:
         return parallel.at(None)
@@ -190,9 +190,9 @@ def four_bars_through(task: AnglePairsTask) -> FourBarRatios:
         four_bars = four_bars.at(are_real(four_bars))
         return four_bars.at(np.argsort(rate_four_bars(four_bars, task).defect != "", kind="stable")[:1])
     if task.free:
-        four_bars = _best_ratio(task)
+        four_bars = _find_best_ratio(task)
     elif len(task.phi) == 2:
-        four_bars = _four_bars_of_lengths(task)
+        four_bars = _find_by_two_lengths(task)
     else:
         four_bars = freudenstein.solve_exact_pairs(task.phi, task.psi, task.phi0, task.psi0).at(0)
     return four_bars.at(are_real(four_bars))
@@ -200,22 +200,22 @@ def four_bars_through(task: AnglePairsTask) -> FourBarRatios:
 
 def four_bars_of_ratios(task: AnglePairsTask, ratios: Any) -> FourBarRatios:
     """Find the four-bars through two pairs with l4/l1 = |ratio|; a negative ratio draws the crank the opposite way."""
-    return _four_bars_through_two(task, np.broadcast_to([1.0, 0.0, 0.0], (len(ratios), 3)), ratios)
+    return _solve_two_pairs(task, np.broadcast_to([1.0, 0.0, 0.0], (len(ratios), 3)), ratios)
 
 
-def _four_bars_of_lengths(task: AnglePairsTask) -> FourBarRatios:
+def _find_by_two_lengths(task: AnglePairsTask) -> FourBarRatios:
     """Find the four-bars through two pairs with two given lengths; either link may be drawn the opposite way."""
     a, b = sorted(task.lengths)
     ratio, sense = task.lengths[b] / task.lengths[a], np.array([1.0, -1.0])
     ones, zeros = np.ones(2), np.zeros(2)
     if b == "l3":  # p = ratio q
-        return _four_bars_through_two(task, np.stack([ones, -ratio * sense, zeros], axis=-1), zeros)
-    return _four_bars_through_two(
+        return _solve_two_pairs(task, np.stack([ones, -ratio * sense, zeros], axis=-1), zeros)
+    return _solve_two_pairs(
         task, np.stack([ones, zeros, zeros] if a == "l1" else [zeros, ones, zeros], axis=-1), ratio * sense
     )
 
 
-def _four_bar_of_circle(task: AnglePairsTask) -> FourBarRatios:
+def _find_by_circle(task: AnglePairsTask) -> FourBarRatios:
     """Find the four-bar through three pairs with given l4 and l1 (or l3).
 
     B rotated back about D by the output angles (or C about A by the input angles) has three positions; the centre of
@@ -233,7 +233,7 @@ def _four_bar_of_circle(task: AnglePairsTask) -> FourBarRatios:
     return FourBarRatios(*ratios).at(None)
 
 
-def _four_bars_through_two(task: AnglePairsTask, coefficients: Any, value: Any) -> FourBarRatios:
+def _solve_two_pairs(task: AnglePairsTask, coefficients: Any, value: Any) -> FourBarRatios:
     """Find the four-bars through two pairs with the conditions known . (p, q, s) = value, shapes (n, 3) and (n,)."""
     phi0, psi0 = task.phi0 or 0.0, task.psi0 or 0.0
     phi, psi = (
@@ -245,7 +245,7 @@ def _four_bars_through_two(task: AnglePairsTask, coefficients: Any, value: Any) 
     return four_bars._replace(phi0=four_bars.phi0 + phi0, psi0=four_bars.psi0 + psi0)
 
 
-def _best_ratio(task: AnglePairsTask) -> FourBarRatios:
+def _find_best_ratio(task: AnglePairsTask) -> FourBarRatios:
     """Find the four-bar through two pairs with the best transmission angle, l4/l1 being free."""
 
     def badness(ratios: Any) -> Any:

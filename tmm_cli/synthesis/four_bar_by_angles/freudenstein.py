@@ -333,10 +333,10 @@ def fit_least_squares(phi: Any, psi: Any, phi0: Any, psi0: Any) -> tuple[FourBar
     linear = solve_pqs(phi + zeros[:, :1], psi + zeros[:, 1:])
     starts = np.concatenate([np.asarray(linear, dtype=float), zeros], axis=-1)
     free = [0, 1, 2, *(3 + k for k, z in enumerate((phi0, psi0)) if z is None)]
-    squares = np.array([min(_squared_errors(x, phi, psi, side)[1] for side in (1.0, -1.0)) for x in starts])
+    squares = np.array([min(_compute_errors(x, phi, psi, side)[1] for side in (1.0, -1.0)) for x in starts])
     best = [k for k in np.argsort(squares)[:STARTS] if np.isfinite(squares[k])]
     ends = [
-        end for k in best if (end := _descend(starts[k], phi, psi, free)) and np.abs(end[0][:2]).min() > ENDLESS_LINK
+        end for k in best if (end := _minimise_errors(starts[k], phi, psi, free)) and np.abs(end[0][:2]).min() > ENDLESS_LINK
     ]
     ends.sort(key=lambda end: end[1])
     values = np.array([end[0] for end in ends]).reshape(-1, 5)
@@ -352,7 +352,7 @@ def fitted_lengths(values: Any) -> FourBarRatios:
         return ratios._replace(l2=np.sqrt(1 + 1 / p**2 + 1 / q**2 - 2 * s / (p * q)))
 
 
-def _squared_errors(x: Any, phi: Any, psi: Any, side: float) -> tuple[Any, float]:
+def _compute_errors(x: Any, phi: Any, psi: Any, side: float) -> tuple[Any, float]:
     """Return the errors of the output angle (rad) and their sum of squares, inf if the four-bar does not close."""
     p, q, s, phi0, psi0 = x
     with np.errstate(all="ignore"):  # a link in the opposite direction has a negative length here
@@ -362,10 +362,10 @@ def _squared_errors(x: Any, phi: Any, psi: Any, side: float) -> tuple[Any, float
     return off, total if np.isfinite(total) else np.inf
 
 
-def _descend(x: Any, phi: Any, psi: Any, free: list[int]) -> tuple[Any, float] | None:
+def _minimise_errors(x: Any, phi: Any, psi: Any, free: list[int]) -> tuple[Any, float] | None:
     """Minimise the sum of squares by damped steps on the better assembly: end point and sum, or None."""
-    side = min((1.0, -1.0), key=lambda side: _squared_errors(x, phi, psi, side)[1])
-    (off, least), damping = _squared_errors(x, phi, psi, side), FIRST
+    side = min((1.0, -1.0), key=lambda side: _compute_errors(x, phi, psi, side)[1])
+    (off, least), damping = _compute_errors(x, phi, psi, side), FIRST
     for _ in range(STEPS):
         rows = equation_slopes(x[0], x[1], phi + x[3], psi + off + x[4])
         with np.errstate(all="ignore"):
@@ -379,7 +379,7 @@ def _descend(x: Any, phi: Any, psi: Any, free: list[int]) -> tuple[Any, float] |
         step = np.linalg.lstsq(damped, np.concatenate([-off, np.zeros(len(free))]), rcond=None)[0] / sizes
         tried = x.copy()
         tried[free] += step
-        errors, total = _squared_errors(tried, phi, psi, side)
+        errors, total = _compute_errors(tried, phi, psi, side)
         if total < least * (1 - GAIN):
             x, off, least, damping = tried, errors, total, damping / 9
         elif damping > LARGEST or total <= least * (1 + GAIN):

@@ -81,7 +81,7 @@ def solve(task: AnglePairsTask) -> SynthesisOutcome:
     solutions, at = choose_solution(task)
     solution, rating = solutions.at(at), rate_four_bars(solutions.at(at), task)
     is_parallelogram = find_parallelogram(task.phi, task.psi, task.phi0, task.psi0) is not None
-    values, demands = _found_values(task, solution, rating), _demands(task, solution, rating)
+    values, demands = _list_solution_values(task, solution, rating), _list_demands(task, solution, rating)
     if not is_parallelogram:  # a parallelogram has change points
         demands.append(
             Demand(
@@ -94,7 +94,7 @@ def solve(task: AnglePairsTask) -> SynthesisOutcome:
         )
     drawings: list[Any] = []
     if not task.approximate:
-        drawings.append(draw_construction(solution, task.phi, task.psi, float(_frame_length(task, solution))))
+        drawings.append(draw_construction(solution, task.phi, task.psi, float(_compute_frame_length(task, solution))))
     elif not task.function:
         drawings.append(draw_reached(solution, task))
     listings = [_tabulate_pairs(task, solution)] if task.approximate else []
@@ -109,16 +109,16 @@ def solve(task: AnglePairsTask) -> SynthesisOutcome:
     if task.function and not rating.defect:
         curve, error = draw_structural_error(solution, task)
         values.append(NamedValue("", error, "angle", N_("largest structural error")))
-        largest = partial(_measured_largest_error, solution, task)
+        largest = partial(_measure_largest_error, solution, task)
         demands.append(Demand(N_("largest structural error"), error, "angle", largest, asked=False, at=1.0))
         drawings.append(curve)
     source = N_(
         "Freudenstein's equation (l4/l1) cos(psi) - (l4/l3) cos(phi) + (l1^2 + l3^2 + l4^2 - l2^2)/(2 l1 l3) = "
         "cos(phi - psi), angles from AD; Trans. ASME 76 (1954)"
     )
-    notes = _notes(task, solution, rating, is_parallelogram)
+    notes = _write_notes(task, solution, rating, is_parallelogram)
     return SynthesisOutcome(
-        _given_values(task), tuple(values), source, tuple(demands), tuple(drawings), tuple(notes), tuple(listings)
+        _list_given_values(task), tuple(values), source, tuple(demands), tuple(drawings), tuple(notes), tuple(listings)
     )
 
 
@@ -156,14 +156,14 @@ def _refuse_inputs(task: AnglePairsTask) -> None:
         raise Infeasible(key, _("the input link completes a full revolution before the last pair of angles"))
 
 
-def _frame_length(task: AnglePairsTask, solution: FourBarRatios) -> Any:
+def _compute_frame_length(task: AnglePairsTask, solution: FourBarRatios) -> Any:
     """Return l4 (m) of a four-bar from the given length."""
     name = next(iter(task.lengths))
     return task.lengths[name] / (1.0 if name == "l4" else getattr(solution, name))
 
 
-def _found_values(task: AnglePairsTask, solution: FourBarRatios, rating: FourBarQuality) -> list[NamedValue]:
-    frame_length = _frame_length(task, solution)
+def _list_solution_values(task: AnglePairsTask, solution: FourBarRatios, rating: FourBarQuality) -> list[NamedValue]:
+    frame_length = _compute_frame_length(task, solution)
     numbers = {
         "l1": solution.l1 * frame_length,
         "l2": solution.l2 * frame_length,
@@ -182,17 +182,17 @@ def _found_values(task: AnglePairsTask, solution: FourBarRatios, rating: FourBar
         *(NamedValue(key, float(numbers[key]), *description) for key, description in FOUND.items()),
         NamedValue("", rating.least, "angle", N_("smallest transmission angle over the range")),
         NamedValue("", DEFECTS[str(rating.defect)], "word", N_("defects")),
-        *([NamedValue("", _mean_error(solution, task), "angle", MEAN)] if task.approximate else []),
+        *([NamedValue("", _compute_mean_error(solution, task), "angle", MEAN)] if task.approximate else []),
     ]
 
 
-def _demands(task: AnglePairsTask, solution: FourBarRatios, rating: FourBarQuality) -> list[Demand]:
+def _list_demands(task: AnglePairsTask, solution: FourBarRatios, rating: FourBarQuality) -> list[Demand]:
     if task.approximate:
-        mean = partial(_measured_mean, solution, task)
-        demands = [Demand(MEAN, _mean_error(solution, task), "angle", mean, asked=False, at=1.0)]
+        mean = partial(_measure_mean_error, solution, task)
+        demands = [Demand(MEAN, _compute_mean_error(solution, task), "angle", mean, asked=False, at=1.0)]
     else:
         demands = [
-            Demand(_output_name(k), float(b), "angle", partial(_measured_output, solution, a, b), at=1.0)
+            Demand(_describe_output(k), float(b), "angle", partial(_measure_output, solution, a, b), at=1.0)
             for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True))
         ]
     name, measure = (
@@ -202,45 +202,45 @@ def _demands(task: AnglePairsTask, solution: FourBarRatios, rating: FourBarQuali
     return [*demands, Demand(name, float(rating.least), "angle", measure, asked=False, at=1.0)]
 
 
-def _mean_error(four_bar: FourBarRatios, task: AnglePairsTask) -> float:
+def _compute_mean_error(four_bar: FourBarRatios, task: AnglePairsTask) -> float:
     return float(np.sqrt(np.mean(output_errors(four_bar, task) ** 2)))
 
 
-def _measured_outputs(solution: FourBarRatios, results: Any, phi: Any, near: Any) -> Any:
+def _measure_outputs(solution: FourBarRatios, results: Any, phi: Any, near: Any) -> Any:
     """Return the output angles of the mechanism from their zero at input angles, nearest to `near` by whole turns."""
     return four_bar.output_angles(results, phi + float(solution.phi0), near + float(solution.psi0)) - float(
         solution.psi0
     )
 
 
-def _measured_mean(solution: FourBarRatios, task: AnglePairsTask, results: Any) -> float:
+def _measure_mean_error(solution: FourBarRatios, task: AnglePairsTask, results: Any) -> float:
     phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
     return float(
-        np.sqrt(np.mean((_measured_outputs(solution, results, phi, psi + output_errors(solution, task)) - psi) ** 2))
+        np.sqrt(np.mean((_measure_outputs(solution, results, phi, psi + output_errors(solution, task)) - psi) ** 2))
     )
 
 
-def _output_name(k: int) -> str:
+def _describe_output(k: int) -> str:
     return Phrase("output angle {number}", number=k + 1)
 
 
-def _measured_output(solution: FourBarRatios, phi: float, psi: float, results: Any) -> float:
-    return float(_measured_outputs(solution, results, np.array([phi]), np.array([psi]))[0])
+def _measure_output(solution: FourBarRatios, phi: float, psi: float, results: Any) -> float:
+    return float(_measure_outputs(solution, results, np.array([phi]), np.array([psi]))[0])
 
 
-def _measured_largest_error(solution: FourBarRatios, task: AnglePairsTask, results: Any) -> float:
+def _measure_largest_error(solution: FourBarRatios, task: AnglePairsTask, results: Any) -> float:
     """Return the largest structural error measured on the mechanism."""
     assert task.function
     function = task.function
 
     def error(phi: Any) -> Any:
         required = function.required_output(phi)
-        return _measured_outputs(solution, results, phi, required) - required
+        return _measure_outputs(solution, results, phi, required) - required
 
     return error_extremes(error, function)[1]
 
 
-def _notes(
+def _write_notes(
     task: AnglePairsTask, solution: FourBarRatios, rating: FourBarQuality, is_parallelogram: bool
 ) -> Iterable[str]:
     if task.approximate and not is_parallelogram:
@@ -286,7 +286,7 @@ def _tabulate_solutions(task: AnglePairsTask, four_bars: FourBarRatios, at: int)
         rating = rate_four_bars(four_bars.at(k), task)
         taken, crank = N_("yes") if k == at else None, N_("yes") if rating.crank else N_("no")
         rows.append(
-            (str(k + 1), taken, *_solution_row(task, four_bars.at(k), rating), crank, SHORT_DEFECTS[str(rating.defect)])
+            (str(k + 1), taken, *_make_solution_row(task, four_bars.at(k), rating), crank, SHORT_DEFECTS[str(rating.defect)])
         )
     return Listing(
         "solutions", N_("Solutions. To take another one, write choose: and its number"), columns, tuple(rows)
@@ -322,14 +322,14 @@ def _tabulate_family(task: AnglePairsTask) -> Listing:
     for k in np.flatnonzero(are_real(four_bars)):
         rating = rate_four_bars(four_bars.at(k), task)
         rows.append(
-            (abs(float(ratios[k])), *_solution_row(task, four_bars.at(k), rating), SHORT_DEFECTS[str(rating.defect)])
+            (abs(float(ratios[k])), *_make_solution_row(task, four_bars.at(k), rating), SHORT_DEFECTS[str(rating.defect)])
         )
     return Listing("family", N_("Four-bars through both pairs of angles"), columns, tuple(rows), long=True)
 
 
-def _solution_row(task: AnglePairsTask, solution: FourBarRatios, rating: FourBarQuality) -> tuple[float, ...]:
+def _make_solution_row(task: AnglePairsTask, solution: FourBarRatios, rating: FourBarQuality) -> tuple[float, ...]:
     """Return the link lengths (m), the zero angles and the smallest transmission angle of a four-bar."""
-    frame_length = _frame_length(task, solution)
+    frame_length = _compute_frame_length(task, solution)
     return (
         *(float(x * frame_length) for x in solution[:3]),
         float(frame_length),
@@ -339,7 +339,7 @@ def _solution_row(task: AnglePairsTask, solution: FourBarRatios, rating: FourBar
     )
 
 
-def _given_values(task: AnglePairsTask) -> tuple[NamedValue, ...]:
+def _list_given_values(task: AnglePairsTask) -> tuple[NamedValue, ...]:
     values = [NamedValue(name, value, *LENGTHS[name]) for name, value in task.lengths.items()]
     if task.function:
         text = task.function.name.replace("x^1.5", "x^(3/2)") or N_("table with linear interpolation")
@@ -356,5 +356,5 @@ def _given_values(task: AnglePairsTask) -> tuple[NamedValue, ...]:
         ]
     for k, (a, b) in enumerate(zip(task.phi, task.psi, strict=True) if not task.approximate else ()):
         name = Phrase("input angle {number}", number=k + 1)
-        values += [NamedValue("", a, "angle", name), NamedValue("", b, "angle", _output_name(k))]
+        values += [NamedValue("", a, "angle", name), NamedValue("", b, "angle", _describe_output(k))]
     return *values, *given_values(task, ZEROS)

@@ -55,19 +55,19 @@ ON_LINE: Final = ("level", "xA", "yA")
 SAME: Final = 1e-6  # relative: tells a pivot of this arc from one of the other arc
 
 
-def _pressure_of(four_bar: FourBarByKSolution, __: FourBarByKTask) -> Any:
+def _get_pressure(four_bar: FourBarByKSolution, __: FourBarByKTask) -> Any:
     return four_bar.pressure
 
 
-def _extent(four_bar: FourBarByKSolution, __: FourBarByKTask) -> Any:
+def _compute_extent(four_bar: FourBarByKSolution, __: FourBarByKTask) -> Any:
     return four_bar.l2 + four_bar.l4
 
 
-def _distance_to_near(four_bar: FourBarByKSolution, task: FourBarByKTask) -> Any:
+def _compute_distance(four_bar: FourBarByKSolution, task: FourBarByKTask) -> Any:
     return np.abs(four_bar.a - task.near)
 
 
-def _pressure_slope(f: FourBarByKSolution, task: FourBarByKTask) -> Any:
+def _compute_pressure_slope(f: FourBarByKSolution, task: FourBarByKTask) -> Any:
     """Return a multiple of the derivative of sin(largest pressure angle) with respect to w."""
     half, theta, l3 = task.swing / 2, task.theta, task.l3
     h, s, c = l3 * np.sin(half), np.sin(theta / 2), np.cos(theta / 2)
@@ -85,8 +85,8 @@ def _pressure_slope(f: FourBarByKSolution, task: FourBarByKTask) -> Any:
 
 # Functions that the required pivot minimises, and functions that vanish there.
 OBJECTIVES: Final[Mapping[str, Callable[[FourBarByKSolution, FourBarByKTask], Any]]] = {
-    "best": _pressure_of,
-    "near": _distance_to_near,
+    "best": _get_pressure,
+    "near": _compute_distance,
 }
 EQUATIONS: Final[Mapping[str, Callable[[FourBarByKSolution, FourBarByKTask], Any]]] = {
     "l1": lambda found, task: found.l1 - task.l1,
@@ -95,7 +95,7 @@ EQUATIONS: Final[Mapping[str, Callable[[FourBarByKSolution, FourBarByKTask], Any
     "l4": lambda found, task: found.l4 - task.l4,
     **dict.fromkeys(("level", "yA"), lambda found, task: np.imag(found.a - task.support) - line_offset(task)),
     "xA": lambda found, task: np.real(found.a - task.support) - line_offset(task),
-    "best": _pressure_slope,
+    "best": _compute_pressure_slope,
     "near": lambda found, task: np.real(np.conj(found.a - task.near) * found.slope),
 }
 
@@ -128,7 +128,7 @@ def choose_pivot(task: FourBarByKTask) -> FourBarByKSolution:
 
     The search has D in the origin: a distant support costs no digits.
     """
-    _refuse_numbers(task)
+    _check_numbers(task)
     beside = {
         key: getattr(task, key) - place
         for key, place in (("near", task.support), ("xA", np.real(task.support)), ("yA", np.imag(task.support)))
@@ -144,12 +144,12 @@ def choose_pivot(task: FourBarByKTask) -> FourBarByKSolution:
             for w in _find_crossings(centred, side, EQUATIONS[task.choose])
         ]
     if not pivots and task.choose == "pressure":
-        raise _pressure_refusal(centred)
+        raise _make_pressure_refusal(centred)
     if not pivots:
         level = task.choose == "level"
         reason = _("no pivot A on the admissible arcs meets this condition")
         raise Infeasible("choose" if level else task.choose, reason, "best transmission" if level else None)
-    goal = _extent if task.choose == "pressure" else OBJECTIVES.get(task.choose, _pressure_of)
+    goal = _compute_extent if task.choose == "pressure" else OBJECTIVES.get(task.choose, _get_pressure)
     w, side = min(pivots, key=lambda pivot: float(goal(four_bar_at(centred, *pivot), centred)))
     if task.choose == "near" and w in sample_arc(centred, side)[[0, -1]]:
         reason = _("the nearest point of the admissible arcs is their end, where the rocker reaches a dead position")
@@ -158,7 +158,7 @@ def choose_pivot(task: FourBarByKTask) -> FourBarByKSolution:
     return replace(f, a=zero_within_rounding(task.support + f.a, f.l4 + np.abs(task.support)))
 
 
-def _pressure_refusal(task: FourBarByKTask) -> Infeasible:
+def _make_pressure_refusal(task: FourBarByKTask) -> Infeasible:
     """Return the refusal of a largest pressure angle that no pivot of the admissible arcs has."""
     least = min(
         float(four_bar_at(task, _find_minimum(task, side, "best"), side).pressure) for side in admissible_arcs(task)
@@ -172,7 +172,7 @@ def refuse(task: FourBarByKTask) -> None:
     choose_pivot(task)
 
 
-def _refuse_numbers(task: FourBarByKTask) -> None:
+def _check_numbers(task: FourBarByKTask) -> None:
     if not task.k >= 1:
         raise Infeasible(
             "k",
@@ -242,8 +242,8 @@ def solve(task: FourBarByKTask) -> SynthesisOutcome:
         () if task.k > 1 else (N_("with k = 1 the circle becomes the line C1C2: A may be any of its points beyond C1"),)
     )
     return SynthesisOutcome(
-        _given_values(task),
-        _found_values(task, f),
+        _list_given_values(task),
+        _list_solution_values(task, f),
         source,
         tuple(demands),
         (draw_construction(task, f, family), *draw_diagrams(task, f, family)),
@@ -253,7 +253,7 @@ def solve(task: FourBarByKTask) -> SynthesisOutcome:
     )
 
 
-def _given_values(task: FourBarByKTask) -> tuple[NamedValue, ...]:
+def _list_given_values(task: FourBarByKTask) -> tuple[NamedValue, ...]:
     choice = {
         "best": N_("best transmission: the smallest value of the largest pressure angle"),
         "level": N_("pivots level: A at the height of D"),
@@ -268,7 +268,7 @@ def _given_values(task: FourBarByKTask) -> tuple[NamedValue, ...]:
     return *given_values(task, QUANTITIES), NamedValue("", choice, "word", N_("choice of A"))
 
 
-def _found_values(task: FourBarByKTask, f: FourBarByKSolution) -> tuple[NamedValue, ...]:
+def _list_solution_values(task: FourBarByKTask, f: FourBarByKSolution) -> tuple[NamedValue, ...]:
     """Return the values of the solution: four-bar, pivot, its arc, sense of the crank, ends of the admissible arcs."""
     at_c2 = task.support + task.l3 * unit(task.psi2) - f.a
     rows = [

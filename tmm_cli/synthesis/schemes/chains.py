@@ -28,10 +28,10 @@ def canonical_form(colours: Sequence[int], edges: Mapping[tuple[int, int], int])
     for (i, j), kind in edges.items():
         beside[i].append((kind * beyond, j))
         beside[j].append((kind * beyond, i))
-    return min(_forms(list(colours), colours, beside, edges))
+    return min(_find_smallest_form(list(colours), colours, beside, edges))
 
 
-def _forms(
+def _find_smallest_form(
     refined: list[int],
     colours: Sequence[int],
     beside: list[list[tuple[int, int]]],
@@ -52,7 +52,7 @@ def _forms(
         # half a step below the others of its cell
         apart = [2 * colour + 1 for colour in refined]
         apart[vertex] -= 1
-        forms += _forms(apart, colours, beside, edges)
+        forms += _find_smallest_form(apart, colours, beside, edges)
     return [min(forms)]
 
 
@@ -148,16 +148,16 @@ def enumerate_chains(links: int, mobility: int = 1) -> tuple[KinematicChain, ...
         return (KinematicChain(links, tuple(sorted(tuple(sorted((k, (k + 1) % links))) for k in range(links)))),)  # type: ignore[misc]
     chains = [
         _insert_binary_links(bundles, binaries, links)
-        for vertices, bundles in _multigraphs(loops)
+        for vertices, bundles in _enumerate_multigraphs(loops)
         for binaries in _distribute_binary_links(vertices, bundles, links - vertices)
     ]
     return tuple(sorted(chains, key=lambda chain: (tuple(-k for k in chain.assortment), chain.pairs)))
 
 
-def _multigraphs(loops: int) -> Iterator[tuple[int, tuple[Bundle, ...]]]:
+def _enumerate_multigraphs(loops: int) -> Iterator[tuple[int, tuple[Bundle, ...]]]:
     """Yield connected multigraphs with so many independent contours and all degrees 3 or more: vertices, bundles."""
     seen = set()
-    for extra in _partitions(2 * (loops - 1)):
+    for extra in _enumerate_partitions(2 * (loops - 1)):
         degrees = [2 + k for k in extra]
         for bundles in _fill_degrees(degrees, 0, 0):
             if not _is_connected(set(range(len(degrees))), [(i, j) for i, j, _ in bundles]):
@@ -170,11 +170,11 @@ def _multigraphs(loops: int) -> Iterator[tuple[int, tuple[Bundle, ...]]]:
                 yield len(degrees), tuple(bundles)
 
 
-def _partitions(total: int, most: int | None = None) -> Iterator[list[int]]:
+def _enumerate_partitions(total: int, most: int | None = None) -> Iterator[list[int]]:
     if total == 0:
         yield []
     for first in range(min(total, most or total), 0, -1):
-        for rest in _partitions(total - first, first):
+        for rest in _enumerate_partitions(total - first, first):
             yield [first, *rest]
 
 
@@ -209,7 +209,7 @@ def _distribute_binary_links(
         for size in range(2, vertices + 1)
         for vertex_set in combinations(range(vertices), size)
     ]
-    same = _automorphisms(vertices, bundles)
+    same = _find_automorphisms(vertices, bundles)
     seen = set()
     for binaries in _spread_binary_links(bundles, binary):
         taken = [sum(max(0, 2 - m) for m in numbers) for numbers in binaries]
@@ -228,8 +228,8 @@ def _spread_binary_links(bundles: Sequence[Bundle], binary: int) -> Iterator[tup
             yield ()
         return
     (i, j, count), rest = bundles[0], bundles[1:]
-    least = sum(_fewest_binary_links(i == j, count) for i, j, count in rest)
-    for numbers in _ascending_tuples(count, binary - least, 3 if i == j else 0):
+    least = sum(_count_fewest_binary_links(i == j, count) for i, j, count in rest)
+    for numbers in _enumerate_ascending_tuples(count, binary - least, 3 if i == j else 0):
         # two edges of one bundle close a contour of their binary links and two others
         if i != j and count > 1 and numbers[0] + numbers[1] < 2:
             continue
@@ -237,22 +237,22 @@ def _spread_binary_links(bundles: Sequence[Bundle], binary: int) -> Iterator[tup
             yield (numbers, *others)
 
 
-def _fewest_binary_links(loop: bool, count: int) -> int:
+def _count_fewest_binary_links(loop: bool, count: int) -> int:
     """Return the smallest number of binary links that a bundle needs: a contour has at least four links."""
     return 3 * count if loop else max(0, 2 * (count - 1))
 
 
-def _ascending_tuples(count: int, most: int, least: int) -> Iterator[tuple[int, ...]]:
+def _enumerate_ascending_tuples(count: int, most: int, least: int) -> Iterator[tuple[int, ...]]:
     """Yield ascending tuples of `count` numbers from `least` on, with a sum of at most `most`."""
     if count == 0:
         yield ()
         return
     for first in range(least, most // count + 1):
-        for rest in _ascending_tuples(count - 1, most - first, first):
+        for rest in _enumerate_ascending_tuples(count - 1, most - first, first):
             yield (first, *rest)
 
 
-def _automorphisms(vertices: int, bundles: Sequence[Bundle]) -> list[list[int]]:
+def _find_automorphisms(vertices: int, bundles: Sequence[Bundle]) -> list[list[int]]:
     """Return all automorphisms of the multigraph, each as the indices of the images of its bundles."""
     counts = {(i, j): count for i, j, count in bundles}
     number = {(i, j): k for k, (i, j, _) in enumerate(bundles)}

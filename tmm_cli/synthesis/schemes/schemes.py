@@ -51,16 +51,16 @@ class GroupType:
         return f"{ROMAN[self.grade]} {self.name}" if self.grade == 2 else self.name
 
 
-def _dyad(name: str) -> GroupType:
-    return GroupType(name, 2, 2, ((0, 1, _kind(name[1])),), ((0, _kind(name[0])), (1, _kind(name[2]))))
+def _make_dyad(name: str) -> GroupType:
+    return GroupType(name, 2, 2, ((0, 1, _read_kind(name[1])),), ((0, _read_kind(name[0])), (1, _read_kind(name[2]))))
 
 
-def _kind(letter: str) -> Kind:
+def _read_kind(letter: str) -> Kind:
     return "P" if letter == "P" else "R"
 
 
 GROUP_TYPES: dict[str, GroupType] = {
-    **{name: _dyad(name) for name in ("RRR", "RRP", "RPR", "PRP", "RPP")},
+    **{name: _make_dyad(name) for name in ("RRR", "RRP", "RPR", "PRP", "RPP")},
     # a ternary link with its three external pairs
     "III": GroupType("III", 3, 4, ((0, 1, "R"), (0, 2, "R"), (0, 3, "R")), ((1, "R"), (2, "R"), (3, "R"))),
     # a closed contour of four; external pairs on adjacent links would split it into two dyads
@@ -141,7 +141,7 @@ class Scheme:
     @cached_property
     def directions(self) -> tuple[int, ...]:
         """For every link, the first link that keeps its direction relative to it (joined by prismatic pairs alone)."""
-        return _first_joined_links(self.links, [(i, j) for i, j, kind in self.joints if kind == "P"])
+        return _find_first_joined_links(self.links, [(i, j) for i, j, kind in self.joints if kind == "P"])
 
 
 def enumerate_schemes(links: int, mobility: int = 1, types: Sequence[str] = tuple(GROUP_TYPES)) -> tuple[Scheme, ...]:
@@ -191,10 +191,10 @@ def attach_group(scheme: Scheme, kind: GroupType) -> Iterator[Scheme]:
 
 def _is_connected_without_frame(scheme: Scheme) -> bool:
     """Return True if the moving links, including every crank, are connected without the frame."""
-    return len(set(_first_joined_links(scheme.links, [(i, j) for i, j, _ in scheme.joints if i and j])[1:])) == 1
+    return len(set(_find_first_joined_links(scheme.links, [(i, j) for i, j, _ in scheme.joints if i and j])[1:])) == 1
 
 
-def _first_joined_links(links: int, pairs: Iterable[tuple[int, int]]) -> tuple[int, ...]:
+def _find_first_joined_links(links: int, pairs: Iterable[tuple[int, int]]) -> tuple[int, ...]:
     """Return, for every link 0 to `links`, the first link that these pairs connect with it, itself included."""
     first = list(range(links + 1))
     for i, j in pairs:
