@@ -268,7 +268,14 @@ def solve(task: SlottedLeverTask) -> SynthesisOutcome:
         "CB1 = CB2, O on the bisector, OA = OC sin(theta/2)"
     )
     return SynthesisOutcome(
-        _list_given_values(task), _list_solution_values(task, f), source, demands, drawings, notes, listings, output="swing"
+        _list_given_values(task),
+        _list_solution_values(task, f),
+        source,
+        demands,
+        drawings,
+        notes,
+        listings,
+        output="swing",
     )
 
 

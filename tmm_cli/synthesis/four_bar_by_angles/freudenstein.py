@@ -336,7 +336,9 @@ def fit_least_squares(phi: Any, psi: Any, phi0: Any, psi0: Any) -> tuple[FourBar
     squares = np.array([min(_compute_errors(x, phi, psi, side)[1] for side in (1.0, -1.0)) for x in starts])
     best = [k for k in np.argsort(squares)[:STARTS] if np.isfinite(squares[k])]
     ends = [
-        end for k in best if (end := _minimise_errors(starts[k], phi, psi, free)) and np.abs(end[0][:2]).min() > ENDLESS_LINK
+        end
+        for k in best
+        if (end := _minimise_errors(starts[k], phi, psi, free)) and np.abs(end[0][:2]).min() > ENDLESS_LINK
     ]
     ends.sort(key=lambda end: end[1])
     values = np.array([end[0] for end in ends]).reshape(-1, 5)

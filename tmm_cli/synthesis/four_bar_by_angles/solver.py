@@ -286,7 +286,13 @@ def _tabulate_solutions(task: AnglePairsTask, four_bars: FourBarRatios, at: int)
         rating = rate_four_bars(four_bars.at(k), task)
         taken, crank = N_("yes") if k == at else None, N_("yes") if rating.crank else N_("no")
         rows.append(
-            (str(k + 1), taken, *_make_solution_row(task, four_bars.at(k), rating), crank, SHORT_DEFECTS[str(rating.defect)])
+            (
+                str(k + 1),
+                taken,
+                *_make_solution_row(task, four_bars.at(k), rating),
+                crank,
+                SHORT_DEFECTS[str(rating.defect)],
+            )
         )
     return Listing(
         "solutions", N_("Solutions. To take another one, write choose: and its number"), columns, tuple(rows)
@@ -322,7 +328,11 @@ def _tabulate_family(task: AnglePairsTask) -> Listing:
     for k in np.flatnonzero(are_real(four_bars)):
         rating = rate_four_bars(four_bars.at(k), task)
         rows.append(
-            (abs(float(ratios[k])), *_make_solution_row(task, four_bars.at(k), rating), SHORT_DEFECTS[str(rating.defect)])
+            (
+                abs(float(ratios[k])),
+                *_make_solution_row(task, four_bars.at(k), rating),
+                SHORT_DEFECTS[str(rating.defect)],
+            )
         )
     return Listing("family", N_("Four-bars through both pairs of angles"), columns, tuple(rows), long=True)
 
