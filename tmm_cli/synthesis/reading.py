@@ -298,7 +298,7 @@ class TaskFile:
         }
 
     def _dependent_parameters(self, found_names: set[str]) -> set[str]:
-        """Return the names of the given parameters that depend on the solution, directly or through other parameters."""
+        """Return the names of the given parameters that depend on the solution, directly or through others."""
         raw = self.shape.parameters
         dummies = dict.fromkeys([*raw, *found_names], PhysicalValue(0.0))
         needs = {
