@@ -1,4 +1,4 @@
-"""Answer key of a group for the teacher: right answers, tolerances, and questions that are not informative."""
+"""Answer key for the teacher: right answers of all students, tolerances, and questions that are not informative."""
 
 from __future__ import annotations
 
@@ -23,7 +23,15 @@ WIDE = 0.25  # of the largest value: whoever guesses is right
 
 @dataclass(frozen=True)
 class KeyLine:
-    """Answer of a student: value (SI), tolerance (SI), and tolerance as a fraction of the largest value."""
+    """Line of the answer key: the right answer to one question for one student.
+
+    Attributes:
+        student: name of the student.
+        asked: the question.
+        value: right value, SI; complex for a vector.
+        allowed: tolerance, SI.
+        share: tolerance as a fraction of the reference value: the largest value in the cycle, the range, or 1 rad.
+    """
 
     student: str
     asked: Question
@@ -33,7 +41,7 @@ class KeyLine:
 
     @property
     def idle(self) -> str:
-        """Reason why the question is not informative, or ""."""
+        """Reason why the question is not informative, e.g. that zero counts as right; "" if it is informative."""
         if self.asked.quantity.against == "exact":
             return ""
         if self.share > WIDE:
@@ -41,7 +49,7 @@ class KeyLine:
         return _("not informative: zero counts as a right answer") if abs(self.value) <= self.allowed else ""
 
     def cells(self, task: Task) -> list[str]:
-        """Return the cells of the line in the order of HEADER."""
+        """Return the table cells of this line, in the order of HEADER, in the units of the task file."""
         quantity = self.asked.quantity
         scale = task.units.factor(quantity.dimension)
         value = self.value if abs(self.value) > NOTHING * self.allowed else 0
@@ -57,7 +65,11 @@ class KeyLine:
 
 
 def compute_answer_key(task: Task, table: VariantTable) -> Iterator[KeyLine]:
-    """Yield the answers of all students in order; students whose mechanism cannot be solved have none.
+    """Yield the lines of the answer key, student by student; none for a student whose mechanism cannot be solved.
+
+    Args:
+        task: Task whose block `grading` lists the questions.
+        table: Parameter values of each student's variant.
 
     Raises:
         ProblemError: The table or the task is wrong.
@@ -85,7 +97,7 @@ def compute_answer_key(task: Task, table: VariantTable) -> Iterator[KeyLine]:
 
 
 def idle_questions(lines: list[KeyLine]) -> Iterator[str]:
-    """Yield a sentence for each question that is not informative."""
+    """Yield a sentence for each question that is not informative, with the number of students concerned."""
     students = len({line.student for line in lines})
     found = Counter((line.asked.name, line.idle) for line in lines if line.idle)
     for (name, why), count in found.items():

@@ -1,8 +1,10 @@
-"""Explanation of a student's wrong answers: by typical mistakes, or by another student's variant.
+"""Explanation of wrong answers: by typical mistakes, or by the variant of another student.
 
-The whole sheet is compared with what each mistake would have given. A mistake is named if it explains the sheet best by
-a margin. Mistakes that cannot be distinguished within the drawing error are named together; a mistake that changes
-nothing is not claimed. Pairs of mistakes are tried if one mistake leaves answers unexplained."""
+All answers of a student are compared with the answers that each mistake would produce. A mistake is named only if it
+explains them clearly better than any other. Mistakes that cannot be distinguished within the drawing error are named
+together. A mistake that changes no answer is not named. Pairs of mistakes are tried if one mistake leaves wrong answers
+unexplained.
+"""
 
 from __future__ import annotations
 
@@ -34,14 +36,19 @@ Explanation = tuple[float, tuple[int, ...], Vector]  # its cost, which cases, an
 
 @dataclass(frozen=True)
 class Claim:
-    """Explanation of some wrong answers (indices of the questions); each of the alternatives explains them alone."""
+    """Explanation of some wrong answers of a student by a mistake.
+
+    Attributes:
+        alternatives: mistakes that explain these answers equally well; usually one.
+        answers: indices of the questions answered wrongly because of it.
+    """
 
     alternatives: tuple[Mistake, ...]
     answers: tuple[int, ...]
 
     @property
     def told(self) -> str:
-        """Sentence for the student."""
+        """Sentence for the student about this mistake, or about all alternatives."""
         sentences = list(dict.fromkeys(case.told for case in self.alternatives))
         if len(sentences) == 1:
             return sentences[0]
@@ -51,15 +58,20 @@ class Claim:
 
     @property
     def called(self) -> str:
-        """Name for the statistics of the group."""
+        """Name of the mistake in the statistics of the group; alternatives are joined by a slash."""
         return " / ".join(sorted({case.called for case in self.alternatives}))
 
 
 def diagnose_students(family: VariantFamily, right: Right, written: Written) -> dict[int, list[Claim]]:
-    """Explain the wrong answers of a family of variants.
+    """Explain the wrong answers of students whose variants form one family.
+
+    Args:
+        family: Variants of the students, solved together as arrays.
+        right: Right answers, (students, answers).
+        written: Answers that the students gave, (students, answers).
 
     Returns:
-        Explanations by index of the student, for students with wrong answers.
+        Explanations by the student's index in the family, for students with wrong answers only.
     """
     wrong = right.error(written) > right.allowed
     rows = np.flatnonzero(np.any(wrong, axis=1))
@@ -71,7 +83,7 @@ def diagnose_students(family: VariantFamily, right: Right, written: Written) -> 
 
 
 class _Sheets:
-    """Students with wrong answers, and the answers that each typical mistake would give for their variants."""
+    """Answers of students who made mistakes, and the answers that each typical mistake would give for their variants."""
 
     def __init__(self, family: VariantFamily, right: Right, written: Written) -> None:
         self.family, self.right, self.written, self.cases = family, right, written, cases(family)
@@ -94,18 +106,21 @@ class _Sheets:
         self.slips = np.array([c for c, case in enumerate(self.cases) if not case.solves and self.whole[c]])
 
     def errors(self, value: Vector, rows: Real | None = None) -> Real:
-        """Return errors in standard errors; 0 for missing answers, infinite for values that do not exist."""
+        """Return the differences between the written answers and `value`, in standard errors of a drawing.
+
+        The difference is 0 for a missing answer and infinite where `value` is nan.
+        """
         right, written = self.right, self.written
         if rows is not None:
             right, written = right.take(rows), written.take(rows)
         return _errors(right, written, value)
 
     def cost(self, value: Vector, rows: Real | None = None) -> Real:
-        """Return the misfit of a value: sum of squared standard errors, each capped."""
+        """Return how badly `value` fits the written answers: the sum of squared standard errors, each capped at CAP."""
         return _cost(self.errors(value, rows))
 
     def claims(self) -> Iterator[list[Claim]]:
-        """Yield the explanations of each student."""
+        """Yield a list of explanations for each student."""
         pairs = self._pairs()
         for n in range(len(self.none)):
             yield self._claims(n, pairs.get(n, []))
@@ -124,7 +139,7 @@ class _Sheets:
         return [*found, *self._slips(n, {k for claim in found for k in claim.answers})]
 
     def _named(self, n: int, best: Explanation, rivals: Sequence[Explanation]) -> list[Claim]:
-        """Return the mistakes of the best explanation, each with its equally good alternatives."""
+        """Return the mistakes of the best explanation, each with alternatives that explain the answers equally well."""
         found = []
         for c in best[1]:
             others = {
@@ -139,7 +154,7 @@ class _Sheets:
         return found
 
     def _explained(self, n: int, best: Explanation, c: int) -> tuple[int, ...]:
-        """Return the wrong answers that an explanation fits and that this mistake changes."""
+        """Return the indices of the wrong answers that the explanation fits and that mistake number `c` changes."""
         fits = self.errors(best[2][None], np.array([n]))[0] <= PER_ALLOWED
         rest = [d for d in best[1] if d != c]
         without = self.values[rest[0], n] if rest else self.right.value[n]
@@ -148,7 +163,7 @@ class _Sheets:
         return tuple(np.flatnonzero(self.wrong[n] & fits & moved).tolist())
 
     def _slips(self, n: int, known: set[int]) -> Iterator[Claim]:
-        """Yield mistakes made in writing down single answers."""
+        """Yield mistakes that affect a single answer (wrong unit, wrong sign), for the answers not explained otherwise."""
         right, at = self.right.take(np.array([n])), self.slips
         with np.errstate(all="ignore"):
             moved = np.abs(self.values[at, n] - right.value) / right.scale > 4 / PER_ALLOWED * right.allowed
@@ -159,7 +174,11 @@ class _Sheets:
                 yield Claim(tuple(fits), (k,))
 
     def _pairs(self) -> dict[int, list[Explanation]]:
-        """Return, for students whom no single mistake explains, the best pairs with their costs and values."""
+        """Try two mistakes at once for each student whose answers no single mistake explains.
+
+        Returns:
+            Explanations by two mistakes, the best first, by the index of the student.
+        """
         best = np.argmin(self.costs, axis=0)
         rows = np.arange(len(best))
         left = np.any(self.errors(self.values[best, rows]) > PER_ALLOWED, axis=1)
@@ -180,7 +199,11 @@ class _Sheets:
         return found
 
     def _likely(self, n: int) -> list[tuple[int, int]]:
-        """Return pairs that fit a sheet best if their changes add or multiply; one of the two explains much alone."""
+        """Return the pairs of mistakes that are worth computing for student `n`, the most promising first.
+
+        A pair is ranked by how well the answers fit if the changes due to its two mistakes are added or multiplied. One
+        of the two must explain much on its own.
+        """
         right, values, costs = self.right.take(np.array([n])), self.values[:, n], self.costs[:, n]
         written = self.written.take(np.array([n]))
         moving = np.all(np.isfinite(values), axis=1) & np.any(values != right.value, axis=1)
@@ -223,7 +246,12 @@ BLOCK = 50  # students compared with those at once
 
 
 def with_copies(found: Sequence[StudentMarks]) -> list[StudentMarks]:
-    """Return the marks, with the name of the student whose variant fits the answers better."""
+    """Find students whose answers fit another student's variant better than their own.
+
+    Returns:
+        The marks of all students. Where such a variant is found, `copied` names its owner, and the mistakes of the
+        answers that it explains are removed.
+    """
     value, size, right, scale, allowed = _arrays(found)
     there = ~np.isnan(value)
     own = _fits(value, size, right, scale, allowed)
@@ -247,7 +275,7 @@ def with_copies(found: Sequence[StudentMarks]) -> list[StudentMarks]:
 
 
 def _told(marks: StudentMarks, other: str, explained: Sequence[bool]) -> StudentMarks:
-    """Add the other student's name and remove mistakes explained by the other variant."""
+    """Set `copied` to the other student's name and remove the mistakes of the answers that the other variant explains."""
     own = [
         replace(mark, reasons=() if mark.state == "wrong" else mark.reasons, mistakes=()) if of_other else mark
         for mark, of_other in zip(marks.marks, explained, strict=True)
@@ -263,7 +291,11 @@ def _fits(value: Real, size: Real, right: Real, scale: Real, allowed: Real) -> R
 
 
 def _arrays(found: Sequence[StudentMarks]) -> tuple[Real, Real, Real, Real, Real]:
-    """Return arrays (students, answers): values, True where only magnitudes count, right values, scales, tolerances."""
+    """Return the marks as arrays (students, answers).
+
+    The arrays are the values, True where only the magnitude was given, the right values, the reference values of the
+    relative errors, and the tolerances.
+    """
 
     def of(part: str, kind: type) -> Real:
         rows = [[getattr(mark, part) for mark in marks.marks] for marks in found]

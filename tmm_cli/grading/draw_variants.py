@@ -1,4 +1,4 @@
-"""Drawing of variants: feasible, different from one another, and spread over the range of their answers."""
+"""Random variants of a task: feasible, different from one another, with answers spread over their whole range."""
 
 from __future__ import annotations
 
@@ -41,10 +41,12 @@ Held = tuple[str, str]  # a link and the pairs in which it is driven
 
 @dataclass(frozen=True)
 class Faults:
-    """Requirements on a variant, taken from the mechanism of the problem file.
+    """Requirements on every variant, derived from the mechanism of the problem file.
 
-    turns: crank turns of a full cycle, 0 if the driver does not rotate fully. strokes: number of strokes of the output.
-    limits: largest permitted pressure angles (rad) by link and pair.
+    Attributes:
+        turns: crank revolutions in a full cycle; 0 if the driver does not rotate fully.
+        strokes: number of strokes of the output in a cycle.
+        limits: largest permitted pressure angles (rad), by link and pair.
     """
 
     turns: int
@@ -52,7 +54,7 @@ class Faults:
     limits: Mapping[Held, float]
 
     def of(self, family: VariantFamily) -> Real:
-        """Return the reason why each variant is rejected, "" for a feasible one."""
+        """Return the reason why each variant is rejected, (variants,); an empty text for a feasible variant."""
         linkage = family.linkage
         low = np.min(family.q, axis=1, keepdims=True)
         if self.turns:
@@ -84,7 +86,7 @@ class Faults:
 
 
 def tables_apart(task: Task, table: VariantTable) -> Iterator[str]:
-    """Yield messages on load tables that do not end with the stroke of the variants.
+    """Yield a warning for each load table whose last argument differs from the stroke of some variants.
 
     Raises:
         ProblemError: The table or the task is wrong.
@@ -103,7 +105,7 @@ def tables_apart(task: Task, table: VariantTable) -> Iterator[str]:
 
 
 def faults_of(task: Task) -> Faults:
-    """Return the requirements set by the mechanism of the file.
+    """Derive the requirements on variants from the mechanism of the problem file.
 
     Raises:
         ProblemError: The mechanism of the file cannot be moved.
@@ -140,7 +142,7 @@ def _slots(states: LinkStates) -> Iterator[tuple[Real, str]]:
 
 
 def _top(values: Real) -> Real:
-    """Return the maximum of each row, refined by a parabola through its neighbours."""
+    """Return the maximum of each row, (variants,), refined by a parabola through the neighbouring samples."""
     k = np.argmax(values, axis=1)[:, None]
     last = values.shape[1] - 1
     before, top, after = (np.take_along_axis(values, np.clip(k + n, 0, last), 1)[:, 0] for n in (-1, 0, 1))
@@ -169,10 +171,13 @@ MOSTLY = 0.75  # of what is asked is to be better than that
 
 @dataclass(frozen=True)
 class Judged:
-    """Judged candidates.
+    """Candidates for variants, checked against the requirements.
 
-    why: reason of rejection, "" if feasible. rows: indices of feasible candidates. values: their answers, (feasible,
-    answers). allowed: tolerances of the answers.
+    Attributes:
+        why: reason of rejection, "" for a feasible candidate, (candidates,).
+        rows: indices of the feasible candidates.
+        values: right answers of the feasible candidates, (feasible, answers); their parameters if nothing is graded.
+        allowed: tolerances of the answers, SI, same shape.
     """
 
     why: Real
@@ -182,7 +187,13 @@ class Judged:
 
 
 class Variety:
-    """Source of variants of a task; `thrown` counts rejected candidates by reason.
+    """Generator of random variants of a task.
+
+    Attributes:
+        names: names of the parameters that vary.
+        size: number of all possible combinations of their values.
+        tried: number of candidates checked so far.
+        thrown: number of rejected candidates by reason.
 
     Raises:
         ProblemError: The task cannot be varied.
@@ -207,11 +218,14 @@ class Variety:
         return self.task.make(self.names, self.dimensions, values)
 
     def texts(self, picks: Real) -> tuple[str, ...]:
-        """Return the parameter values of a variant as table cells."""
+        """Return the parameter values of a candidate as table cells; picks: the index of each parameter's value."""
         return tuple(choice.texts[k] for choice, k in zip(self.free, picks.tolist(), strict=True))
 
     def judged(self, picks: Real) -> Judged:
-        """Judge candidates given by indices of parameter values, (candidates, parameters).
+        """Check candidates against the requirements on variants.
+
+        Args:
+            picks: Indices of the parameter values, (candidates, parameters).
 
         Raises:
             ProblemError: A candidate is not a valid problem.
@@ -239,7 +253,11 @@ class Variety:
         return Judged(why, np.concatenate(rows), values.astype(complex), allowed)
 
     def _families(self, columns: Real) -> Iterator[tuple[Real, VariantFamily | LinkageError]]:
-        """Yield the candidates with the file's own variant before them, assembled as in the sketch; or each alone."""
+        """Yield the indices of candidates with their family or the error that prevents its solution.
+
+        All candidates form one family whose assembly follows the variant of the file, or each forms its own if that
+        fails.
+        """
         if not self.alone:
             family = build_family(self._make, np.concatenate([self.own, columns]))
             if family is not None:
@@ -249,7 +267,10 @@ class Variety:
             yield from ((np.array([row]), family) for _rows, family in split_families(self._make, own[None]))
 
     def pools(self, seed: int) -> Iterator[Iterator[Real]]:
-        """Yield pools of feasible candidates, each ordered so that its members are far from all before them."""
+        """Yield pools of feasible candidates.
+
+        Within a pool, the next candidate is always the one whose answers differ most from those of all before it.
+        """
         for number in range(POOLS):
             random = np.random.default_rng([seed, number])
             tried = SLOWLY if self.alone else TRIED
@@ -277,7 +298,7 @@ class Variety:
         return (picks[rows[row]] for row in _spread(values, allowed, self.thrown))
 
     def as_drawn(self, picks: Real) -> bool:
-        """Return True if a variant, written as a file of its own, is assembled as in the file."""
+        """Return True if the variant, as a problem file of its own, has the same assembly as the file of the task."""
         if not self._assembled_alike(picks):
             self.thrown[_("the sketch shows a different assembly from that of the problem file")] += 1
             return False
@@ -297,7 +318,15 @@ class Variety:
 
 
 def draw(variety: Variety, seed: int, count: int) -> VariantTable:
-    """Draw `count` numbered variants, or fewer if there are not as many.
+    """Draw variants numbered from 1.
+
+    Args:
+        variety: Generator of variants.
+        seed: Seed of the random numbers; the same seed gives the same variants.
+        count: Number of variants.
+
+    Returns:
+        Table with `count` variants, or fewer if there are not enough different ones.
 
     Raises:
         ProblemError: The task cannot be varied.
@@ -308,7 +337,16 @@ def draw(variety: Variety, seed: int, count: int) -> VariantTable:
 
 
 def draw_for(variety: Variety, seed: int, students: Sequence[str]) -> VariantTable:
-    """Draw a variant for each student, in order; some may have none.
+    """Draw a different variant for each student.
+
+    Args:
+        variety: Generator of variants.
+        seed: Seed of the random numbers. A student's variant depends on the seed and the name only, unless it is taken
+            already.
+        students: Names of the students; the first in the list choose first.
+
+    Returns:
+        Table of the variants; without the last students if there are not enough different variants.
 
     Raises:
         ProblemError: The task cannot be varied.
@@ -333,14 +371,17 @@ def draw_for(variety: Variety, seed: int, students: Sequence[str]) -> VariantTab
 
 
 def _well_conditioned(found: Right) -> Real:
-    """Return which variants have mostly answers that are not sensitive to drawing errors."""
+    """Return True for each variant most of whose answers are not sensitive to drawing errors, (variants,)."""
     tolerance = np.array([one.tolerance for one in found.asked])
     exact = np.array([one.quantity.against == "exact" for one in found.asked])
     return np.asarray(np.mean((found.allowed <= CLOSE * tolerance) | exact, axis=1) >= MOSTLY)
 
 
 def _spread(values: Vector, allowed: Real, thrown: Counter[str]) -> Iterator[int]:
-    """Yield row indices, each as far as possible from those before; rows with the same answers are dropped."""
+    """Yield row indices so that each next row lies as far as possible from all rows before it.
+
+    A row whose values agree with those of an earlier row within the tolerances is dropped and counted in `thrown`.
+    """
     if not len(values):
         return
     size = np.nanmax(values.real, axis=0) - np.nanmin(values.real, axis=0) + np.ptp(values.imag, axis=0)

@@ -42,7 +42,7 @@ STATES: dict[State, tuple[str, str]] = {
 
 
 def chart(task: Task, marks: Sequence[StudentMarks]) -> Drawing:
-    """Return the chart of a group on a landscape A4 sheet."""
+    """Draw the chart of a group on a landscape A4 sheet."""
     own = percents(marks)
     told = _("students: {students}, handed in: {there}; median {median:.0f} %, mean {mean:.0f} % of the points")
     caption = told.format(
@@ -90,7 +90,7 @@ def _spread(panel: Panel, counts: Real, own: Real) -> None:
 
 
 def _counts(panel: Panel) -> None:
-    """Draw grid lines at whole numbers of students."""
+    """Draw horizontal grid lines at whole numbers of students."""
     for value, text in panel.y.ticks(6):
         if value == round(value):
             height = float(panel.y.on(value))
@@ -146,7 +146,7 @@ def _bar(panel: Panel, row: int, first: float, last: float, colour: str) -> None
 
 
 def _name(panel: Panel, row: int, name: str) -> None:
-    """Write a name beside its bar, on two lines if it is long."""
+    """Write the name of a bar to the left of it, on two lines if it is long."""
     lines = textwrap.wrap(name, LONGEST, max_lines=2, placeholder="…")
     middle = complex(panel.x.start - 1.5, float(panel.y.on(row + 0.5)))
     for k, line in enumerate(lines):
@@ -154,7 +154,7 @@ def _name(panel: Panel, row: int, name: str) -> None:
 
 
 def _legend(panel: Panel, entries: Iterable[tuple[str, str]], at: complex) -> None:
-    """Draw a legend: coloured fields with their texts."""
+    """Draw a legend: coloured rectangles, each followed by its text."""
     for text, colour in entries:
         _area(panel, at.real, at.real + 5, at.imag - 1.2, at.imag + 1.2, colour)
         panel.text(at + 6, text)
@@ -167,7 +167,7 @@ def _room(entries: Iterable[tuple[str, str]]) -> float:
 
 
 def _area(panel: Panel, left: float, right: float, low: float, high: float, colour: str, z: float = 2.0) -> None:
-    """Draw a filled rectangle (mm on paper)."""
+    """Draw a filled rectangle; coordinates in mm on the paper."""
     corners = [complex(left, low), complex(right, low), complex(right, high), complex(left, high)]
     panel.sheet.area(corners, colour, "none", z=z, blocks=False)
 
@@ -176,6 +176,6 @@ def _area(panel: Panel, left: float, right: float, low: float, high: float, colo
 
 
 def files(book: Gradebook) -> Iterator[tuple[str, Iterable[bytes]]]:
-    """Yield the chart in every drawing format."""
+    """Yield the chart in every drawing format: group.png, group.svg and others, with their contents."""
     for name, picture in pictures([("group", chart(book.task, book.marks))]):
         yield name, (picture,)

@@ -1,4 +1,4 @@
-"""Error carried forward: later answers judged by the student's own earlier answers."""
+"""Error carried forward: an answer that is right with the student's own earlier answers earns its points."""
 
 from __future__ import annotations
 
@@ -35,10 +35,14 @@ from tmm_cli.mechanics.numerics import Real, Vector, cross, squared_length
 
 @dataclass(frozen=True)
 class OwnMotion(Mistake):
-    """Student's velocity or acceleration of a point, or ω or ε of a link.
+    """Replacement of a right velocity or acceleration by the student's: of a point, or ω or ε of a link.
 
-    given: values (students, 1) in SI. rate, gain: velocity and acceleration of the driver, since group solvers work
-    with transfer functions.
+    Attributes:
+        point: name of the point or link; empty for ω and ε.
+        link: link whose ω or ε or centre of mass is replaced; empty for a point.
+        given: the students' values, (students, 1), SI.
+        order: 1 for a velocity, 2 for an acceleration.
+        rate, gain: velocity and acceleration of the driver, as group solvers work with transfer functions.
     """
 
     point: str
@@ -57,13 +61,18 @@ class OwnMotion(Mistake):
 
 @dataclass(frozen=True)
 class OwnGroup(WrappedSolver):
-    """Group whose links move as the student's answer says; known points keep their motion."""
+    """Solver of a group in which one link moves according to the student's answer; known links keep their motion."""
 
     own: OwnMotion
     linkage: Linkage
 
     def _hinge(self, link: str) -> tuple[str, complex, complex] | None:
-        """Return the external hinge of a link: the known link and the hinge in the axes of both; or None."""
+        """Return the hinge that connects a link to a known link, or None if there is none.
+
+        Returns:
+            Name of the known link, and coordinates (m) of the hinge in the axes of the known link and of the link
+            itself.
+        """
         for pair in self.group.outer:
             if pair.kind == "R" and self.group.own(pair) == link:
                 other = pair.other(link)
@@ -129,7 +138,7 @@ class OwnGroup(WrappedSolver):
 
 @dataclass(frozen=True)
 class OwnSpeed(Mistake):
-    """Student's crank speed, rad/s."""
+    """Replacement of the right crank speed by the student's, rad/s."""
 
     given: Vector
 
@@ -141,7 +150,7 @@ class OwnSpeed(Mistake):
 
 @dataclass(frozen=True)
 class OwnInertia(Mistake):
-    """Student's inertia force or couple."""
+    """Replacement of the right inertia force or inertia couple of a link by the student's."""
 
     link: str
     part: str
@@ -156,7 +165,7 @@ class OwnInertia(Mistake):
 
 @dataclass(frozen=True)
 class OwnReaction(Mistake):
-    """Student's reaction on one link of a pair."""
+    """Replacement of the right reaction in a pair by the student's; on: the link on which the reaction acts."""
 
     pair: str
     on: str
@@ -169,7 +178,7 @@ class OwnReaction(Mistake):
 
 @dataclass(frozen=True)
 class OwnReactions(WrappedSolver):
-    """Group with a reaction replaced by the student's."""
+    """Solver of a group in which one reaction is replaced by the student's."""
 
     own: OwnReaction
 
@@ -185,13 +194,16 @@ class OwnReactions(WrappedSolver):
 
 
 def own_answer(quantity: NamedQuantity, value: Vector, motion: Motion, right: Vector) -> Mistake | None:
-    """Return the replacement of a quantity by the students' values; None if no later quantity depends on it.
+    """Replace a quantity by the students' values, to judge the quantities that depend on it.
 
     Args:
         quantity: Quantity to replace.
         value: Values of the students, (students, 1), SI.
         motion: Motion of their variants.
         right: Right values, (students, 1).
+
+    Returns:
+        The replacement, applied like a mistake; None if no later quantity depends on this one.
     """
     kind, linkage = quantity.name.partition(" of ")[0], motion.linkage
     thing = quantity.thing
@@ -228,8 +240,11 @@ def following(
 ) -> dict[Cell, tuple[int, ...]]:
     """Find wrong answers that are right with the student's own earlier answers.
 
+    An answer is earlier if it precedes the other in the order of the work, at the same position. Each wrong answer is
+    first checked with one earlier wrong answer in place of the right value, then with all of them.
+
     Returns:
-        Indices of the earlier answers, by (student, answer).
+        Indices of the earlier answers, by the indices (student, answer) of the wrong answer.
     """
     wrong = right.error(written) > right.allowed
     whole = _whole(right, written)
@@ -251,14 +266,14 @@ def following(
 
 
 def _whole(right: Right, written: Written) -> Real:
-    """Return answers as vectors; an answer given by magnitude alone gets the right direction."""
+    """Return the written answers as vectors; a magnitude without a direction is given the right direction."""
     with np.errstate(all="ignore"):
         direction = np.where(right.value == 0, 1, right.value / np.abs(right.value))
     return np.where(written.size, np.abs(written.value) * direction, written.value)
 
 
 def _earlier(right: Right, wrong: Real, n: int, k: int) -> Iterable[int]:
-    """Yield the wrong answers that come before one in the work, at the same position."""
+    """Yield the indices of the student's wrong answers at the same position that are due before answer `k`."""
     asked = right.asked
     for j in np.flatnonzero(wrong[n]).tolist():
         same = asked[j].position == asked[k].position
@@ -267,7 +282,7 @@ def _earlier(right: Right, wrong: Real, n: int, k: int) -> Iterable[int]:
 
 
 def _by_mistake(right: Right, wrong: Real, claims: dict[int, list[Claim]]) -> dict[Cell, tuple[int, ...]]:
-    """Return wrong answers caused by a mistake that an earlier answer already shows: it is charged once."""
+    """Return the wrong answers due to a mistake that an earlier answer already shows, so that it is charged only once."""
     found: dict[Cell, tuple[int, ...]] = {}
     for n, own in claims.items():
         for claim in own:
@@ -287,7 +302,11 @@ def _fitting(
     wanted: dict[tuple[int, ...], list[Cell]],
     known: dict[Cell, tuple[int, ...]],
 ) -> dict[Cell, tuple[int, ...]]:
-    """Return the answers that are right with the sources under which they are listed."""
+    """Return the answers that are right if earlier answers of the student replace the right values.
+
+    wanted: answers (student, answer) to be checked, by the indices of the earlier answers. known: answers already
+    found.
+    """
     found: dict[Cell, tuple[int, ...]] = {}
     for sources, cells in wanted.items():
         cells = [cell for cell in cells if cell not in known and cell not in found]

@@ -1,4 +1,4 @@
-"""Data of grading: variants, submissions, marks; and the reading of answers in units."""
+"""Records of grading (variants, submissions, marks), and the conversion of answers to SI units."""
 
 from __future__ import annotations
 
@@ -22,7 +22,12 @@ Form = Literal["number", "size", "components", "polar"]
 
 @dataclass(frozen=True)
 class VariantTable:
-    """Parameter values by student: rows[student] are texts in the order of names."""
+    """Parameter values of each student's variant.
+
+    Attributes:
+        names: names of the parameters.
+        rows: values as texts in the order of `names`, by student.
+    """
 
     names: tuple[str, ...]
     rows: Mapping[str, tuple[str, ...]]
@@ -30,10 +35,14 @@ class VariantTable:
 
 @dataclass(frozen=True)
 class Given:
-    """Answer as it was read: one number, or two.
+    """An answer as read from a cell: one number or two.
 
-    components: x and y; polar: magnitude and direction. unit: as written, or as the sheet asks; "" if neither gives it.
-    turn_unit: the same for the direction. text: the original text.
+    Attributes:
+        first, second: x and y for components, magnitude and direction for polar; otherwise only `first` is used.
+        form: number, size (magnitude of a vector), components or polar.
+        unit: unit written by the student, otherwise that of the answer sheet; "" if neither states it.
+        turn_unit: unit of the direction, likewise.
+        text: the original text.
     """
 
     first: float
@@ -46,10 +55,15 @@ class Given:
 
 @dataclass(frozen=True)
 class Submission:
-    """Submission of one student.
+    """Everything that one student handed in.
 
-    problems: sentences on what could not be read. by_angle: answers at a driver angle (rad) instead of a position
-    number, by quantity and angle. unread: nothing could be read.
+    Attributes:
+        student: name of the student.
+        answers: answers by quantity and position number.
+        problems: sentences on what could not be read.
+        by_angle: answers by quantity and driver angle (rad), where the student gave an angle instead of a position
+            number.
+        unread: True if nothing could be read.
     """
 
     student: str
@@ -64,11 +78,22 @@ State = Literal["missing", "right", "follows", "wrong"]
 
 @dataclass(frozen=True)
 class Mark:
-    """Judged answer.
+    """Mark for one answer of a student.
 
-    value, right: SI, in the form of the quantity; size: the value is the magnitude of a vector. scale: reference value
-    of `error` and `allowed`. reading: unit assumed where none was written. reasons: sentences for the student.
-    mistakes: their names for the statistics.
+    Attributes:
+        key: quantity and position number.
+        state: missing, right, follows (right with the student's own earlier answers) or wrong.
+        points, of: points earned and available.
+        value: the student's value, SI; complex for a vector. None if there is none.
+        right: right value, SI.
+        size: True if `value` is only the magnitude of a vector.
+        scale: reference value (SI) of the relative errors `error` and `allowed`.
+        error: relative error of the answer.
+        allowed: largest permitted relative error.
+        reading: unit that was assumed because none was written.
+        reasons: sentences for the student.
+        mistakes: names of the mistakes, for the statistics.
+        text: the answer as written.
     """
 
     key: Key
@@ -88,13 +113,20 @@ class Mark:
 
     @property
     def judged(self) -> bool:
-        """True if there was a variant to judge the answer by."""
+        """True if the answer could be judged, i.e. the student has a variant that can be solved."""
         return self.allowed > 0
 
 
 @dataclass(frozen=True)
 class StudentMarks:
-    """Marks of one student; `copied`: student whose variant fits the answers better, for the teacher only."""
+    """Marks of one student.
+
+    Attributes:
+        student: name of the student.
+        marks: a mark for each question of the task.
+        problems: sentences on what could not be read.
+        copied: student whose variant fits the answers better, "" if none; for the teacher only.
+    """
 
     student: str
     marks: tuple[Mark, ...]
@@ -128,10 +160,16 @@ Cells = dict[tuple[int, int], str]  # words by student and answer
 
 
 def read(units: UnitSystem, wanted: Right, submissions: Sequence[Submission]) -> tuple[Written, Cells, Cells]:
-    """Read answers in SI; without a unit, in the most fitting of the usual ones.
+    """Convert the answers of all students to SI. An answer without a unit gets the usual unit that makes it fit best.
+
+    Args:
+        units: Units of the task file.
+        wanted: Right answers.
+        submissions: Submissions of the students.
 
     Returns:
-        The answers, the assumed units, and the reasons why a text is not an answer; the last two by (student, answer).
+        Answers in SI; units assumed for answers without one; messages on texts that are not answers. The last two are
+        dictionaries by the indices (student, answer).
     """
     shape = len(submissions), len(wanted.asked)
     value, size = np.full(shape, np.nan, dtype=complex), np.zeros(shape, dtype=bool)
@@ -159,7 +197,11 @@ def read(units: UnitSystem, wanted: Right, submissions: Sequence[Submission]) ->
 
 
 def _alike(submissions: Sequence[Submission], key: Key) -> dict[tuple[Form, str, str], list[int]]:
-    """Return the indices of submissions by the form and the units of an answer."""
+    """Group the students by the form and units of their answer to one question.
+
+    Returns:
+        Indices of the submissions by form, unit, and unit of the direction.
+    """
     found: dict[tuple[Form, str, str], list[int]] = {}
     for n, submission in enumerate(submissions):
         given = submission.answers.get(key)
@@ -169,7 +211,7 @@ def _alike(submissions: Sequence[Submission], key: Key) -> dict[tuple[Form, str,
 
 
 def _factors(quantity: NamedQuantity, unit: str, units: UnitSystem) -> dict[str, float]:
-    """Return SI factors by unit: the written unit, otherwise all possible ones, the file's own first.
+    """Return the SI factors of the units an answer may be in: the written unit, or else all usual ones.
 
     Raises:
         UnitError: The unit does not measure this quantity.
@@ -179,7 +221,7 @@ def _factors(quantity: NamedQuantity, unit: str, units: UnitSystem) -> dict[str,
 
 
 def _numbers(given: Sequence[Given], form: Form, turn: float) -> Vector:
-    """Return the written answers as complex numbers in their unit."""
+    """Return answers of one form as complex numbers in their own unit; turn: SI value of the unit of their directions."""
     first, second = np.array([[one.first, one.second] for one in given]).T
     turned = first * np.exp(1j * second * turn) if form == "polar" else first
     found: Vector = turned + 1j * second if form == "components" else turned.astype(complex)
@@ -188,10 +230,10 @@ def _numbers(given: Sequence[Given], form: Form, turn: float) -> Vector:
 
 @cache
 def factor(name: str, dimension: Dimension) -> float:
-    """Return the SI factor of a unit.
+    """Return the SI value of a unit; 1 for an empty name.
 
     Raises:
-        UnitError: The unit measures something else.
+        UnitError: The unit is not one of this dimension.
     """
     if not name:
         return 1.0

@@ -1,7 +1,8 @@
-"""Grading of a group: solve the variants, judge every answer, explain the wrong ones, keep marks for later runs.
+"""Grading of a group: solve the variants, judge each answer, explain the wrong ones, save the marks for later runs.
 
-The file of kept marks has a line per student, added as soon as the student is graded: the key of everything the marks
-depend on, a digest of the rest, and the marks as JSON. A damaged line is ignored."""
+The file of saved marks has a line per student, added as soon as the student is graded: a key computed from everything
+that the marks depend on, a digest of the line, and the marks as JSON. A damaged line is ignored.
+"""
 
 from __future__ import annotations
 
@@ -48,7 +49,7 @@ VECTORS = ("value", "right")
 
 
 def key_of(task: Task, table: VariantTable, submission: Submission) -> str:
-    """Return a digest of everything the marks of a student depend on: program, task, variant, submission."""
+    """Return a digest of everything that a student's marks depend on: program, language, task, variant and submission."""
     row = table.rows.get(submission.student)
     return _digest(program_digest(), language(), task.tree.data, table.names, row, submission)
 
@@ -58,14 +59,14 @@ def _digest(*parts: object) -> str:
 
 
 def _line(key: str, marks: StudentMarks) -> str:
-    """Return a line of the file of kept marks, without its end."""
+    """Return a line of the file of saved marks, without the line break."""
     rows = [[_plain(getattr(mark, name), name) for name in NAMES] for mark in marks.marks]
     text = json.dumps([marks.student, rows, marks.problems])
     return f"{key} {_digest(text)} {text}"
 
 
 def _plain(value: Any, name: str) -> Any:
-    """Return a field of a mark as JSON; a vector as its two components."""
+    """Return a field of a mark as JSON data; a complex number as a list of its real and imaginary parts."""
     if name not in VECTORS or value is None:
         return value
     number = complex(value)
@@ -73,7 +74,15 @@ def _plain(value: Any, name: str) -> Any:
 
 
 def read_kept(path: Path, keys: Collection[str]) -> dict[str, StudentMarks]:
-    """Return the kept marks with these keys."""
+    """Read the saved marks of earlier runs.
+
+    Args:
+        path: File of saved marks; it need not exist.
+        keys: Keys of the students' marks that are needed.
+
+    Returns:
+        Marks by key, for those found in the file.
+    """
     found: dict[str, StudentMarks] = {}
     try:
         with path.open(encoding="ascii", errors="replace") as stream:
@@ -99,7 +108,7 @@ def _mark(row: dict[str, Any]) -> Mark:
 
 
 def keep(path: Path, marks: Mapping[str, StudentMarks]) -> None:
-    """Append marks to the file of kept marks.
+    """Append marks to the file of saved marks; marks: by key.
 
     Raises:
         OSError: The file cannot be written.
@@ -118,6 +127,11 @@ POSITIONS = 100_000  # of all these students, at most: numbers of the work are s
 
 def grade(task: Task, table: VariantTable, submissions: Sequence[Submission]) -> Iterator[StudentMarks]:
     """Yield the marks of all students in the order of the submissions.
+
+    Args:
+        task: Task whose block `grading` lists the questions.
+        table: Variants of the students.
+        submissions: Submissions of the students.
 
     Raises:
         ProblemError: The table or the task is wrong.
@@ -144,9 +158,11 @@ def _chunk(task: Task, table: VariantTable, submissions: Sequence[Submission]) -
 
 
 def numbers_of(task: Task, table: VariantTable, students: Sequence[str]) -> tuple[tuple[Dimension | None, ...], Real]:
-    """Return the dimensions of the parameters and their values, (students, parameters).
+    """Read the parameter values of the students' variants.
 
-    Values are in SI; a column without units stays as written.
+    Returns:
+        Dimension of each parameter, and the values, (students, parameters), in SI. A parameter without units in the
+        whole column has the dimension that the task gives it; if there is none (None), its values stay as written.
 
     Raises:
         ProblemError: A value cannot be read.
@@ -162,7 +178,7 @@ def numbers_of(task: Task, table: VariantTable, students: Sequence[str]) -> tupl
 
 
 def ungraded(task: Task, submission: Submission, why: str) -> StudentMarks:
-    """Return the marks of a student whose answers cannot be judged."""
+    """Return marks without points for a student whose answers cannot be judged; why: reason for the teacher."""
     marks = tuple(Mark(one.key, "missing", 0.0, one.points) for one in task.asked)
     return StudentMarks(submission.student, marks, (*submission.problems, why))
 
@@ -170,9 +186,10 @@ def ungraded(task: Task, submission: Submission, why: str) -> StudentMarks:
 def _begun(
     task: Task, family: VariantFamily, submissions: Sequence[Submission]
 ) -> Iterator[tuple[Real, VariantFamily]]:
-    """Yield students grouped by the extreme position from which they count the positions.
+    """Group the students by the extreme position of the output from which they number the positions.
 
-    The other extreme position is considered only if the task allows it and it makes more answers right.
+    The other extreme position is considered only if the task allows it. It is chosen for students more of whose answers
+    it makes right. Each group is given by the indices of its students and their variants.
     """
     rows, strokes = np.arange(len(submissions)), family.strokes
     if task.rules.from_ == "task" or strokes is None or len(strokes.strokes) != 2:
@@ -190,7 +207,7 @@ def _begun(
 
 
 def _marks(task: Task, family: VariantFamily, submissions: Sequence[Submission]) -> list[StudentMarks]:
-    """Return the marks of the students of one family."""
+    """Return the marks of students whose variants form one family, with the same zero position."""
     submissions = [at_positions(one, task, places) for one, places in zip(submissions, family.q, strict=True)]
     found: dict[int, StudentMarks] = {}
     for rows, asked in _by_attachment(task, family, submissions):
@@ -203,9 +220,10 @@ def _marks(task: Task, family: VariantFamily, submissions: Sequence[Submission])
 def _by_attachment(
     task: Task, family: VariantFamily, submissions: Sequence[Submission]
 ) -> Iterator[tuple[Real, tuple[Question, ...]]]:
-    """Yield students grouped by the way they attach links at compound hinges, with the quantities asked of them.
+    """Group the students by how they attach links at a hinge of three or more links.
 
-    The other attachment counts for an answer that only it makes right.
+    The other attachment changes which forces a reaction at this hinge includes. It is used for answers that are right
+    only in this way. Each group is given by the indices of its students and their questions.
     """
     other = tuple(replace(one, quantity=one.quantity.otherwise or one.quantity) for one in task.asked)
     if other == task.asked:
@@ -224,7 +242,7 @@ def _by_attachment(
 def _marks_of(
     task: Task, asked_all: tuple[Question, ...], family: VariantFamily, submissions: Sequence[Submission]
 ) -> list[StudentMarks]:
-    """Return the marks of students of one family with the same questions."""
+    """Return the marks of students whose variants form one family and who have the same questions."""
     wanted = right(family, asked_all)
     written, how, refused = read(task.units, wanted, submissions)
     error = wanted.error(written)
@@ -275,15 +293,23 @@ SLOW = ("xlsx", "drawing", "junit")  # formats that take as long as all the othe
 
 @dataclass(frozen=True)
 class Chunk:
-    """Work unit of a grading process: some students with their variants."""
+    """Part of the grading that one process does: some students with their variants. Calling it returns their marks.
+
+    Attributes:
+        tree: contents of the task file.
+        table: variants of these students.
+        submissions: their submissions.
+    """
 
     tree: Tree
     table: VariantTable
     submissions: tuple[Submission, ...]
 
     def __call__(self) -> list[StudentMarks]:
-        """Return the marks in the order of the submissions; on an error, halve the students to find the one who causes
-        it.
+        """Grade the students; return their marks in the order of the submissions.
+
+        If grading fails, it is repeated with each half of the students, so that only the one who causes the error is
+        ungraded.
         """
         task = Task(self.tree)
         try:
@@ -306,23 +332,23 @@ def graded(
     seen: Callable[[int], None] = lambda count: None,
     stopped: Callable[[], bool] = lambda: False,
 ) -> list[StudentMarks]:
-    """Grade all students, in parallel and with marks of earlier runs.
+    """Grade all students, if required in parallel; students with saved marks of earlier runs are not graded again.
 
     Args:
         task: Task.
-        table: Variants.
+        table: Variants of the students.
         submissions: Submissions of the students.
-        way: How the chunks are processed: here, in processes or on a cluster.
-        kept: File of marks of earlier runs.
-        seen: Called with the number of further students graded.
-        stopped: Returns True to stop early.
+        way: Runner of the jobs: in this process, in several processes or on a cluster.
+        kept: File of saved marks; None to save nothing.
+        seen: Called with the number of students graded since the last call.
+        stopped: Called to ask whether to stop early; returns True to stop.
 
     Returns:
-        Marks in the order of the submissions; after a stop, those of the graded students.
+        Marks in the order of the submissions; after an early stop, those of the students graded so far.
 
     Raises:
         ProblemError: The table or the task is wrong.
-        OSError: The file of kept marks cannot be written.
+        OSError: The file of saved marks cannot be written.
     """
     task.dimensions(table.names)
     task.asked  # noqa: B018  refuses what is wrong in it before the work starts
@@ -342,7 +368,13 @@ def graded(
 
 
 def written(folder: Path, book: Gradebook, formats: Collection[str], jobs: int) -> None:
-    """Write a gradebook, for a large group in two processes.
+    """Write a gradebook in several formats; for a large group in two processes, one for the slow formats.
+
+    Args:
+        folder: Folder for the files.
+        book: Gradebook.
+        formats: Names of formats, keys of EXPORTS.
+        jobs: Largest number of processes.
 
     Raises:
         OSError: A file cannot be written.
@@ -366,7 +398,10 @@ HANDED_IN = ("submissions", "answers.csv", "answers.xlsx")
 
 
 def grades(task_file: Path) -> dict[str, Any]:
-    """Return the marks of a graded example (a folder with task, variants and submissions) as plain data.
+    """Grade an example: a folder with a task file, variants.csv and submissions.
+
+    Returns:
+        Marks of all students as dictionaries and lists that JSON can represent.
 
     Raises:
         ProblemError: A file of the example is missing or wrong.

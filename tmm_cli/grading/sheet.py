@@ -1,4 +1,4 @@
-"""Written and right answers of a family of variants, as arrays (students, answers)."""
+"""Students' answers and right answers as arrays (students, answers), with relative errors and tolerances."""
 
 from __future__ import annotations
 
@@ -34,7 +34,12 @@ SAME = 1e-6  # of a number that is exact, as a class is
 
 @dataclass(frozen=True)
 class Written:
-    """Answers in SI, nan if missing; `size` marks vectors given by magnitude alone."""
+    """Answers as the students wrote them.
+
+    Attributes:
+        value: answers (students, answers), SI; complex for vectors; nan if missing.
+        size: True where a vector is given by its magnitude alone, same shape.
+    """
 
     value: Vector
     size: Real
@@ -44,13 +49,20 @@ class Written:
         return ~np.isnan(self.value)
 
     def take(self, rows: Real) -> Written:
-        """Return the answers of some students, possibly repeated."""
+        """Return the answers of the students with these indices, which may repeat."""
         return Written(self.value[rows], self.size[rows])
 
 
 @dataclass(frozen=True)
 class Right:
-    """Right values; `scale`: reference of relative errors; `allowed`: largest permitted relative error."""
+    """Right answers of the students' variants.
+
+    Attributes:
+        asked: the questions.
+        value: right values, SI, (students, answers); complex for vectors.
+        scale: reference values (SI) of relative errors, same shape.
+        allowed: largest permitted relative errors, same shape.
+    """
 
     asked: tuple[Question, ...]
     value: Vector
@@ -58,7 +70,10 @@ class Right:
     allowed: Real
 
     def error(self, written: Written, value: Vector | None = None) -> Real:
-        """Return relative errors of answers, by default from the right values; nan for missing answers."""
+        """Return the relative errors of written answers, (students, answers); nan for missing answers.
+
+        value: values to compare with, SI; by default the right ones.
+        """
         wanted = self.value if value is None else value
         gap = np.abs(written.value - wanted)
         sizes = np.abs(np.abs(written.value) - np.abs(wanted))
@@ -70,22 +85,25 @@ class Right:
         return np.where(np.isnan(wanted) & written.there, 0.0, share)  # where nothing is right nothing is judged
 
     def side_by_side(self, rows: Sequence[int], k: int, count: int) -> Right:
-        """Return one answer of some students repeated, for several possible meanings of it."""
+        """Return the right answer to question `k`, for students `rows`, in `count` equal columns.
+
+        With it an answer that can be understood in several ways is compared in all of them at once.
+        """
         own = (part[rows, k][:, None] for part in (self.value, self.scale, self.allowed))
         return Right((self.asked[k],) * count, *own)
 
     def take(self, rows: Real) -> Right:
-        """Return the values of some students, possibly repeated."""
+        """Return the right answers of the students with these indices, which may repeat."""
         return Right(self.asked, self.value[rows], self.scale[rows], self.allowed[rows])
 
 
 def predicted(family: VariantFamily, asked: Sequence[Question], mistakes: Sequence[Mistake] = ()) -> Vector:
-    """Return the answers that would be written down with these mistakes, (students, answers)."""
+    """Return the answers that students who make these mistakes would write, (students, answers), SI."""
     return written_down(solve(family, mistakes), asked, mistakes)
 
 
 def written_down(solution: Solution, asked: Sequence[Question], mistakes: Sequence[Mistake] = ()) -> Vector:
-    """Return the answers of a solution, (students, answers), with mistakes made in writing them down."""
+    """Return the answers of a solution, (students, answers), SI, changed by mistakes made in writing them down."""
     return np.stack([_value(one, solution, mistakes) for one in asked], axis=1)
 
 
@@ -97,15 +115,15 @@ def _value(asked: Question, solution: Solution, mistakes: Sequence[Mistake]) -> 
 
 
 def values_of(quantity: NamedQuantity, solution: Solution) -> Real:
-    """Return a quantity of all variants at all positions; (variants, 1) for a quantity of the whole mechanism."""
+    """Return the values of a quantity, (variants, positions); (variants, 1) for a quantity of the whole mechanism."""
     found = np.asarray(quantity.read(solution))
     return np.broadcast_to(found, (len(solution.family), found.shape[-1]))
 
 
 def right(family: VariantFamily, asked: Sequence[Question]) -> Right:
-    """Return the right answers of a family with their tolerances.
+    """Compute the right answers of a family of variants with their tolerances.
 
-    The tolerance combines the rule of the task with the effect of drawing or rounding errors in the lengths.
+    A tolerance combines the one set in the task with the effect of drawing or rounding errors of the lengths.
     """
     solution = solve(family)
     value = np.stack([_value(one, solution, ()) for one in asked], axis=1)
@@ -126,7 +144,10 @@ def right(family: VariantFamily, asked: Sequence[Question]) -> Right:
 
 
 def _scales(asked: Sequence[Question], solution: Solution) -> Real:
-    """Return reference values; a quantity that is zero throughout the cycle is compared with a typical value."""
+    """Return the reference values (SI) of relative errors, (variants, answers).
+
+    For a quantity that is zero throughout the cycle, the reference value is a typical magnitude of its dimension.
+    """
     found = np.stack([_scale(one.quantity, solution) for one in asked], axis=1)
     usual = _usual(solution)
     for k, one in enumerate(asked):
@@ -137,7 +158,7 @@ def _scales(asked: Sequence[Question], solution: Solution) -> Real:
 
 
 def _usual(solution: Solution) -> dict[Dimension, Real]:
-    """Return typical magnitudes by dimension, (variants,): from the longest link, the driver speed and the loads."""
+    """Return typical magnitudes (SI) by dimension, (variants,), from the longest link, the driver speed and the loads."""
     motion, loads = solution.motion, solution.reactions.applied
     size = np.reshape(np.max([np.max(kernel.size, initial=0.0) for kernel in motion.kernels] or [1.0]), (-1,))
     rate = np.maximum(np.nanmax(np.abs(motion.rate), axis=1), NOTHING)
@@ -158,7 +179,7 @@ def _usual(solution: Solution) -> dict[Dimension, Real]:
 
 
 def _scale(quantity: NamedQuantity, solution: Solution) -> Real:
-    """Return the reference value of a quantity's errors, (variants,)."""
+    """Return the value (SI) to which relative errors of a quantity refer, (variants,): its largest value or its range."""
     values = values_of(quantity, solution)
     if quantity.against in ("angle", "exact"):
         return np.ones(len(values))
@@ -168,9 +189,9 @@ def _scale(quantity: NamedQuantity, solution: Solution) -> Real:
 
 
 def _nearby(family: VariantFamily) -> Iterator[VariantFamily]:
-    """Yield the family with the lengths of one link after another, then the driver coordinate, slightly increased.
+    """Yield the family with slightly changed data: the lengths of one link after another, then the driver coordinate.
 
-    All changes in one family of repeated variants, or one at a time if a group solver is not closed-form.
+    All changes are made in one family with repeated variants, or one after another if a group solver does not allow it.
     """
     of = {
         link: [

@@ -21,7 +21,13 @@ STEP = 10  # per cent: a bar of the histogram
 
 @dataclass
 class Difficulty:
-    """Results for one quantity at all requested positions: answers by state, points earned and available."""
+    """Results of the group for one quantity, at all requested positions together.
+
+    Attributes:
+        name: name of the quantity.
+        answers: number of answers by state (right, follows, wrong, missing).
+        points, of: points earned and available.
+    """
 
     name: str
     answers: Counter[State] = field(default_factory=Counter)
@@ -30,7 +36,7 @@ class Difficulty:
 
     @property
     def share(self) -> float:
-        """Fraction of the points earned; if there are no points, of the right answers."""
+        """Fraction of the available points that was earned; if no points are given, fraction of right answers."""
         if self.of:
             return self.points / self.of
         return (self.answers["right"] + self.answers["follows"]) / max(1, self.answers.total())
@@ -42,17 +48,17 @@ def handed_in(marks: Sequence[StudentMarks]) -> list[StudentMarks]:
 
 
 def percents(marks: Sequence[StudentMarks]) -> Real:
-    """Return the points of those who handed in, in per cent."""
+    """Return the points of each student who handed in answers, in per cent of the maximum."""
     return np.array([100 * student.points / student.of for student in handed_in(marks) if student.of])
 
 
 def histogram(marks: Sequence[StudentMarks]) -> Real:
-    """Return the number of students with 0 to 10 %, 10 to 20 %, ...; 100 % counts in the last bin."""
+    """Return the numbers of students with 0 to 10 %, 10 to 20 %, ... of the points; the last range includes 100 %."""
     return np.histogram(np.round(percents(marks), 6), np.arange(0, 101, STEP))[0]
 
 
 def hardest(task: Task, marks: Sequence[StudentMarks]) -> list[Difficulty]:
-    """Return all quantities, the hardest first."""
+    """Return the results for each quantity, the hardest quantity first."""
     found = {asked.quantity.name: Difficulty(asked.quantity.name) for asked in task.asked}
     for student in handed_in(marks):
         for mark in student.marks:
@@ -64,7 +70,7 @@ def hardest(task: Task, marks: Sequence[StudentMarks]) -> list[Difficulty]:
 
 
 def commonest(marks: Sequence[StudentMarks]) -> list[tuple[str, int, int]]:
-    """Return the mistakes by number of students: name, students, answers."""
+    """Return the mistakes, the most frequent first: name, number of students, number of answers."""
     students: defaultdict[str, set[int]] = defaultdict(set)
     answers = Counter[str]()
     for n, student in enumerate(marks):
@@ -77,7 +83,7 @@ def commonest(marks: Sequence[StudentMarks]) -> list[tuple[str, int, int]]:
 
 
 def statistics_tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Table]:
-    """Yield the tables of a group; empty ones are left out."""
+    """Yield the tables with the statistics of a group; empty tables are omitted."""
     own = percents(marks)
     absent = len(marks) - len(handed_in(marks))
     notes = [_("students: {count}").format(count=len(marks))]

@@ -1,4 +1,4 @@
-"""Task sheet of each student: scheme, dimensions, requested quantities, and a problem file."""
+"""Task sheets of the students: scheme, dimensions, requested quantities, and a problem file for each student."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ SAFE = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 
 
 def file_names(students: Iterable[str]) -> dict[str, str]:
-    """Return a file name for each student, without extension, unique on every system."""
+    """Return a file name for each student, without extension. All names differ, even where case is ignored."""
     found: dict[str, str] = {}
     taken = {"variants", "key"}
     for student in students:
@@ -82,9 +82,14 @@ def file_names(students: Iterable[str]) -> dict[str, str]:
 
 
 class TaskSheets:
-    """Writer of the students' files; `text` is the text of the task file.
+    """Writer of the files that each student receives. Its methods raise ProblemError.
 
-    Methods raise ProblemError.
+    Attributes:
+        task: the task.
+        text: text of the task file.
+        table: variants of the students.
+        names: file name of each student, without extension.
+        measures: dimension of each parameter.
     """
 
     def __init__(self, task: Task, text: str, table: VariantTable) -> None:
@@ -92,7 +97,7 @@ class TaskSheets:
         self.names, self.measures = file_names(table.rows), _measures(task)
 
     def of(self, student: str) -> Iterator[tuple[str, bytes]]:
-        """Yield the files of a student by name."""
+        """Yield the names and contents of a student's files: problem file, scheme, and task sheet in Markdown and HTML."""
         name, title = self.names[student], self.task.problem.title
         who = _("Variant {number}").format(number=student) if student.isdigit() else shown(student)
         values = dict(zip(self.table.names, self.table.rows[student], strict=True))
@@ -112,7 +117,7 @@ class TaskSheets:
 
 
 def problem_text(text: str, values: Mapping[str, str]) -> str:
-    """Return the text of a problem file with other parameter values and without the teacher's blocks."""
+    """Return the text of a task file with the parameter values of a variant, without the blocks for the teacher."""
     tree = read_text(text, "")
     ends = {}
     for event in yaml.parse(text):
@@ -130,7 +135,6 @@ def problem_text(text: str, values: Mapping[str, str]) -> str:
 
 
 def _without(text: str) -> str:
-    """Remove the teacher's blocks from a problem file."""
     tree = read_text(text, "")
     lines = text.splitlines(keepends=True)
     starts = sorted(mark.line for path, mark in tree.key_marks.items() if len(path) == 1)
@@ -143,7 +147,7 @@ def _without(text: str) -> str:
 
 
 def _dimensions(task: Task, values: Mapping[str, str], measures: Mapping[str, Dimension | None]) -> Table:
-    """Return the table of all parameters of a variant."""
+    """Return the table of all parameters of a variant with their units."""
     rows = []
     for name, own in (task.tree.data.get("parameters") or {}).items():
         text = values.get(name, str(own))
@@ -155,7 +159,7 @@ def _dimensions(task: Task, values: Mapping[str, str], measures: Mapping[str, Di
 
 
 def _told(table: Table) -> Table:
-    """Keep only the rows on the mechanism in the table of facts."""
+    """Reduce the table of facts to the driver, the gravitational acceleration and the positions; keep other tables."""
     if table.name != "facts":
         return table
     rows = zip(*(column.values for column in table.columns), strict=True)
@@ -164,7 +168,7 @@ def _told(table: Table) -> Table:
 
 
 def _measures(task: Task) -> dict[str, Dimension | None]:
-    """Return the dimension of each parameter; of a bare number, the one the file accepts, length first."""
+    """Return the dimension of each parameter; for a number without a unit, the first that the task accepts."""
     found: dict[str, Dimension | None] = {}
     for name in task.tree.data.get("parameters") or {}:
         (own,) = task.own((name,))
@@ -206,7 +210,7 @@ def _asked(task: Task) -> Iterator[Table]:
 
 
 def meaning(name: str) -> str:
-    """Return the meaning of a quantity's name for a student."""
+    """Return what the name of a quantity means, as a phrase for the student; "" if the name is unknown."""
     kind, _of, thing = name.partition(" of ")
     kind = f"{kind} on" if f"{kind} on" in MEANINGS and " on " in thing else kind
     return _(MEANINGS.get(kind, MEANINGS.get(kind.partition("_")[0], "")))
@@ -233,7 +237,7 @@ def _markdown(title: str, student: str, picture: str, tables: Iterable[Table]) -
 
 
 def _page(title: str, student: str, picture: bytes | None, tables: Iterable[Table]) -> str:
-    """Return a self-contained page without scripts."""
+    """Return a task sheet as a self-contained HTML page without scripts."""
     body = [f'<h1>{escape(title)}</h1>\n<p class="who"><bdi>{escape(student)}</bdi></p>']
     if picture is not None:
         body.append(

@@ -1,4 +1,4 @@
-"""Tables from other people and programs: CSV and XLSX as rows of plain text, limited in size; nothing is executed."""
+"""Reading of CSV and XLSX files from unknown sources as rows of text, with limits on their size; nothing is executed."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ JOINERS = "\u200c\u200d"  # that words of Persian and of Indian languages need
 
 
 def shown(text: str, longest: int = LONGEST_SHOWN) -> str:
-    """Return an untrusted text in one line, shortened, without control characters."""
+    """Return an untrusted text as one line: control characters removed, cut to `longest` characters."""
     if len(text) > longest:
         text = text[: longest - 1] + "…"
     return text if text.isprintable() else re.sub(r"\s", " ", "".join(map(_shown, text)))
@@ -41,7 +41,7 @@ def _shown(sign: str) -> str:
 
 
 def sentence(text: str) -> str:
-    """Return a sentence that may quote untrusted text, made harmless in the same way."""
+    """Return a sentence that may quote an untrusted text as one printable line of at most LONGEST_SENTENCE characters."""
     return shown(text, LONGEST_SENTENCE)
 
 
@@ -56,13 +56,14 @@ T = TypeVar("T")
 
 
 class ProcessEndedError(Exception):
-    """The process ended before it answered."""
+    """The separate process ended before it returned a result."""
 
 
 class GuardedProcess:
-    """Process for calls that may exhaust memory or crash; it starts with the first call.
+    """Separate process for calls that may exhaust the memory or crash; it starts with the first call.
 
-    memory: limit of its address space in bytes, where the system supports it (POSIX).
+    Args:
+        memory: Limit of its address space in bytes, where the system supports it (POSIX).
     """
 
     def __init__(self, memory: int) -> None:
@@ -70,7 +71,7 @@ class GuardedProcess:
         self._pool: ProcessPoolExecutor | None = None
 
     def call(self, function: Callable[P, T], *args: P.args, **named: P.kwargs) -> T:
-        """Call a function in the process and return its result or raise its exception.
+        """Call a function in the process; return its result or raise its exception.
 
         Raises:
             ProcessEndedError: The process ended, e.g. for lack of memory; the next call starts another one.
@@ -86,7 +87,7 @@ class GuardedProcess:
 
 
 def _limit(memory: int) -> None:
-    """Limit the memory of this process, discard its error output and ignore Ctrl-C."""
+    """Limit the memory of the current process, discard its error output and ignore Ctrl-C."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     if sys.platform != "win32":
@@ -128,12 +129,13 @@ REFUSED = {  # parts of an XLSX
 
 
 def rows_of(path: Path | str, largest: int = LARGEST, most: int = MOST_ROWS) -> list[list[str]]:
-    """Return the non-empty rows of a CSV file or of the first sheet of an XLSX file; formulas give their last values.
+    """Read the non-empty rows of a CSV file, or of the first sheet of an XLSX file, as texts.
 
     Args:
-        path: File; CSV with semicolons, tabs or commas, in UTF-8, UTF-16 with a byte-order mark, or cp1251.
-        largest: Largest size of the file, bytes.
-        most: Largest number of rows.
+        path: File. CSV may have semicolons, tabs or commas, in UTF-8, UTF-16 with a byte-order mark, or cp1251. A
+            formula in XLSX is read as its last saved value.
+        largest: Largest permitted size of the file, bytes.
+        most: Largest permitted number of rows.
 
     Raises:
         ProblemError: The file cannot be read or is too large.
@@ -152,7 +154,7 @@ def rows_of(path: Path | str, largest: int = LARGEST, most: int = MOST_ROWS) -> 
 
 
 def bytes_of(path: Path | str, largest: int) -> bytes:
-    """Return the contents of a regular file.
+    """Read a regular file of at most `largest` bytes.
 
     Raises:
         ProblemError: The file cannot be read, is a link or a device, or is too large.
@@ -200,7 +202,7 @@ def _of_csv(data: bytes, most: int) -> list[list[str]]:
 
 
 def decoded(data: bytes) -> str:
-    """Decode a text in UTF-8, UTF-16 with a byte-order mark, or else cp1251."""
+    """Decode a text in UTF-8, in UTF-16 with a byte-order mark, or else in cp1251."""
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return data.decode("utf-16", errors="replace")
     try:
@@ -210,7 +212,11 @@ def decoded(data: bytes) -> str:
 
 
 def _of_xlsx(data: bytes, largest: int, most: int) -> list[list[str]]:
-    """Return the rows of the first sheet, read in a separate process; a crash of the process is a refusal."""
+    """Read the rows of the first sheet in a separate process; report a crash of that process as an error.
+
+    Raises:
+        ProblemError: The file cannot be read or is too large.
+    """
     _inspect(data, largest, most)
     try:
         return READER.call(_read_sheet, data)
@@ -253,7 +259,7 @@ def _damaged(error: BaseException) -> ProblemError:
 
 
 def _inspect(data: bytes, largest: int, most: int) -> None:
-    """Refuse an archive that would fill the memory or contains more than a table.
+    """Check an XLSX archive before it is read: refuse one that would fill the memory or contains more than tables.
 
     Raises:
         ProblemError: The archive is refused.
@@ -288,7 +294,15 @@ def _inspect(data: bytes, largest: int, most: int) -> None:
 
 
 def _refuse_announced(content: bytes, whole: int) -> None:
-    """Refuse counts and ranges that the file cannot hold. whole: bytes of all its parts. Raises ProblemError."""
+    """Refuse a part of an XLSX archive that declares more texts or cells than the file can contain.
+
+    Args:
+        content: The unpacked part.
+        whole: Total size of all unpacked parts, bytes.
+
+    Raises:
+        ProblemError: A declared count or range is too large.
+    """
     for kind, digits in (count for tag in COUNTING.findall(content) for count in COUNT.findall(tag)):
         most = len(content) // SHORTEST_TEXT if kind == b"uniqueC" else whole
         if len(digits) > 12 or int(digits) > most:
@@ -316,7 +330,16 @@ def _column(letters: bytes) -> int:
 
 
 def _refuse_far(content: bytes, cells: int, most: int) -> None:
-    """A cell far out makes a table of all the empty ones before it. cells: how many there are. Raises ProblemError."""
+    """Refuse a cell with a distant address: reading it would create all the empty cells before it.
+
+    Args:
+        content: An unpacked part of an XLSX archive.
+        cells: Number of cells in it.
+        most: Largest permitted row number.
+
+    Raises:
+        ProblemError: A cell has no address, or lies outside the permitted rows and columns.
+    """
     places = PLACE.findall(content)
     if len(places) != cells:
         raise ProblemError(_("a cell has no address"), allowed=_("a file saved by a spreadsheet program"))
@@ -330,7 +353,7 @@ def _refuse_far(content: bytes, cells: int, most: int) -> None:
 
 
 def _text(cell: Any) -> str:
-    """Return a cell as a spreadsheet shows it, numbers with 15 figures."""
+    """Return a cell as a spreadsheet shows it; a number with at most 15 significant figures."""
     if isinstance(cell, bool | str):
         return str(cell)
     if isinstance(cell, datetime | date | time):

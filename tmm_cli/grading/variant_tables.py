@@ -1,4 +1,4 @@
-"""Tables of variants: a row per student, a column per parameter; read and written as CSV or XLSX."""
+"""Tables of variants in CSV and XLSX, with a row per student and a column per parameter."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ FORMULA = re.compile(r"\A'(?=[=+\-@\t\r])")  # what is written so that no spread
 
 
 def read_table(path: Path | str, task: Task) -> VariantTable:
-    """Read a table of variants with a header; without a column of students, variants are numbered from 1.
+    """Read a table of variants with a header row; without a column of students, variants are numbered from 1.
 
     Raises:
         ProblemError: The table is wrong.
@@ -38,7 +38,7 @@ def read_table(path: Path | str, task: Task) -> VariantTable:
 
 
 def read_students(path: Path | str) -> tuple[str, ...]:
-    """Return the names in the column `student`, or in the first column, each once.
+    """Read the names of students from the column `student`, or from the first column; a repeated name is returned once.
 
     Raises:
         ProblemError: The table contains no names.
@@ -54,7 +54,11 @@ def read_students(path: Path | str) -> tuple[str, ...]:
 
 
 def variant_in(table: VariantTable, asked: str) -> dict[str, str]:
-    """Return the parameter values of a student, or of a variant number from 1.
+    """Return the parameter values of one variant by parameter name.
+
+    Args:
+        table: Variants.
+        asked: Name of a student, or number of the variant, counted from 1.
 
     Raises:
         ProblemError: There is no such variant.
@@ -69,13 +73,16 @@ def variant_in(table: VariantTable, asked: str) -> dict[str, str]:
 
 
 def csv_of(rows: Iterable[Sequence[str]]) -> bytes:
-    """Return rows as CSV with a byte-order mark."""
+    """Return rows of cells as the contents of a CSV file with a byte-order mark."""
     lines = (",".join(csv_cell(cell) for cell in row) for row in rows)
     return ("\ufeff" + "".join(f"{line}\n" for line in lines)).encode()
 
 
 def xlsx_of(sheets: dict[str, Sequence[Sequence[str]]]) -> bytes | None:
-    """Return sheets of texts and numbers as XLSX, without formulas and links; None if no XLSX package is installed."""
+    """Return the contents of an XLSX file without formulas and links; None if XLSX cannot be written here.
+
+    sheets: rows of cells by the name of the worksheet.
+    """
     stream = io.BytesIO()
     try:
         found = open_workbook("variants.xlsx", stream, {"in_memory": True})
@@ -101,7 +108,7 @@ def _put(sheet: Any, n: int, k: int, cell: str, form: Any) -> None:
 
 
 def rows_of_table(table: VariantTable) -> list[list[str]]:
-    """Return a table of variants as rows with a header; a unit common to a column is in its heading."""
+    """Return a table of variants as rows of cells with a header; a unit common to a column is put in its heading."""
     columns = []
     for k, name in enumerate(table.names):
         texts = [row[k] for row in table.rows.values()]
@@ -146,7 +153,7 @@ def _table(rows: list[list[str]], task: Task) -> VariantTable:
 
 
 def _heading(text: str) -> tuple[str, str]:
-    """Split a heading into name and unit."""
+    """Split the heading of a column into the parameter name and the unit."""
     found = HEADING.fullmatch(text)
     assert found is not None
     unit = found[2] or found[3] or found[4] or ""
@@ -157,7 +164,7 @@ def _heading(text: str) -> tuple[str, str]:
 
 
 def _value(task: Task, name: str, cell: str, unit: str, dimension: Any) -> str:
-    """Return a cell as a value of a problem file."""
+    """Return a cell as a parameter value of a problem file, with the unit of the column if the cell has none."""
     text = COMMA.sub(r"\1.\2", cell.translate(MINUS))
     with prefix_errors(name):
         if not text:

@@ -1,4 +1,4 @@
-"""Output formats of grading; a new format is a function that yields files by name, and an entry in EXPORTS."""
+"""Output formats of grading. To add one, write a function that yields file names and contents, and list it in EXPORTS."""
 
 from __future__ import annotations
 
@@ -30,9 +30,15 @@ def write(
     formats: Collection[str] = tuple(EXPORTS),
     say: Callable[[str], None] = lambda note: None,
 ) -> None:
-    """Write a gradebook; files appear completely or not at all, after all of them have been prepared.
+    """Write a gradebook in several formats.
 
-    A format that cannot be written is skipped and reported by `say`. Other files in the folder are kept.
+    All files are prepared first, and each then appears completely or not at all. Other files in the folder are kept.
+
+    Args:
+        folder: Folder for the files.
+        book: Gradebook.
+        formats: Names of formats, keys of EXPORTS.
+        say: Called with a message for each format that cannot be written; that format is skipped.
 
     Raises:
         OSError: A file cannot be written.

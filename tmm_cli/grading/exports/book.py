@@ -1,4 +1,4 @@
-"""Marks with their task, and texts of names, points and values shared by all output formats."""
+"""Gradebook with the marks of all students, and the texts of its tables that all output formats share."""
 
 from __future__ import annotations
 
@@ -28,7 +28,14 @@ STATES = {
 
 @dataclass(frozen=True)
 class Answer:
-    """Requested answer as output formats name it; `scale` is its unit in SI."""
+    """A requested answer as it appears in the output formats.
+
+    Attributes:
+        asked: the question.
+        name: name of the quantity with the position number.
+        unit: unit in which values are written.
+        scale: this unit in SI.
+    """
 
     asked: Question
     name: str
@@ -36,9 +43,12 @@ class Answer:
     scale: float
 
     def text(self, value: complex, unit: str = "", size: bool = False) -> str:
-        """Return a value (SI) with its unit; a vector by magnitude and direction: `1.31 m/s at 35°`.
+        """Return a value (SI) as text with its unit; a vector by magnitude and direction, e.g. `1.31 m/s at 35°`.
 
-        size: True if only the magnitude of a vector is known.
+        Args:
+            value: Value, SI.
+            unit: Unit to write it in; by default that of the answer.
+            size: True if only the magnitude of a vector is known.
         """
         scale = factor(unit, self.asked.quantity.dimension) if unit else self.scale
         number = f"{numeral(self.number(value) / scale + 0.0, '.5g')} {typeset_unit(spelt(unit or self.unit))}".rstrip()
@@ -47,12 +57,12 @@ class Answer:
         return _("{size} at {direction}°").format(size=number, direction=numeral(direction(value), ".4g"))
 
     def number(self, value: complex) -> float:
-        """Return a value (SI) as one number, the magnitude for a vector."""
+        """Return a value (SI) as one real number: the magnitude of a vector, otherwise the value itself."""
         return abs(value) if self.asked.quantity.vector else value.real
 
     @property
     def of(self) -> str:
-        """Reference value of relative errors, in words."""
+        """Name of the quantity to which relative errors refer, e.g. "the largest value in the cycle"."""
         return _(OF[self.asked.quantity.against])
 
 
@@ -66,10 +76,13 @@ OF = {
 
 @dataclass(frozen=True)
 class Gradebook:
-    """Marks of all students, in the order of the task's answers.
+    """Marks of all students for one task.
 
-    decimal: decimal mark in CSV files; with a comma, cells are separated by semicolons. users: students listed by the
-    teacher; others are left out of the gradebooks of learning platforms. None: all.
+    Attributes:
+        task: the task.
+        marks: marks of each student, in the order of the task's questions.
+        decimal: decimal mark of CSV files; with a comma, cells are separated by semicolons.
+        users: students on the teacher's list; the file for Moodle omits all others. None: no list, all are included.
     """
 
     task: Task
@@ -92,7 +105,7 @@ class Gradebook:
 
     @cached_property
     def files(self) -> tuple[str, ...]:
-        """File name for each student, without extension, unique on every system."""
+        """File name for each student, without extension. All names differ, even where case is ignored."""
         taken: set[str] = set()
         found, count = [], Counter[str]()
         for student in self.marks:
@@ -110,35 +123,35 @@ Export = Callable[[Gradebook], Iterable[tuple[str, Iterable[str | bytes]]]]  # f
 
 @lru_cache(maxsize=1024)
 def points_text(points: float) -> str:
-    """Return points as text: 4, 3.5."""
+    """Return a number of points as text, e.g. 4 or 3.5."""
     return f"{rounded(points):.10g}"
 
 
 def rounded(points: float) -> float:
-    """Return points without rounding noise of their sum."""
+    """Round points to three decimals."""
     return round(points, 3) + 0.0
 
 
 def percent(student: StudentMarks) -> float | None:
-    """Return the points in per cent of all; None if there are none to be earned."""
+    """Return a student's points in per cent of the maximum, or None if the maximum is zero."""
     return round(100 * student.points / student.of, 1) if student.of else None
 
 
 def share_text(share: float) -> str:
-    """Return a fraction in per cent with two figures: 0.51 %, 5.1 %, 51 %."""
+    """Return a fraction in per cent with two significant figures: 0.51 %, 5.1 %, 51 %."""
     if not share < 10:  # nan too
         return _("over 999 %")
     return f"{100 * share:.0f} %" if share >= 0.0995 else f"{numeral(100 * share, '.2g')} %"
 
 
 def direction(value: complex) -> float:
-    """Return the direction of a vector in degrees, 0 to 360."""
+    """Return the direction of a vector in degrees, from 0 up to 360, counterclockwise from the x axis."""
     found = math.degrees(cmath.phase(value)) % 360
     return 0.0 if found >= 359.95 else found
 
 
 def fitting(mark: Mark) -> bool:
-    """Return True if the answer earns its points."""
+    """Return True if the answer earns its points: it is right, or right with the student's own earlier values."""
     return mark.state in ("right", "follows")
 
 
@@ -149,19 +162,19 @@ Cell = str | float | None | Mark  # a mark: its points, and its state beside the
 
 
 def marks_header(book: Gradebook) -> list[str]:
-    """Return the header of the table with a column per answer."""
+    """Return the header of the table of marks, which has a row per student and a column per answer."""
     return ["student", "points", "of", "percent", *(answer.name for answer in book.answers), "notes"]
 
 
 def marks_rows(book: Gradebook) -> Iterator[list[Cell]]:
-    """Yield a row of marks per student."""
+    """Yield the rows of the table of marks, one per student."""
     for student in book.marks:
         points = rounded(student.points), rounded(student.of), percent(student)
         yield [shown(student.student), *points, *student.marks, _notes(student)]
 
 
 def _notes(student: StudentMarks) -> str:
-    """Return the notes for the teacher."""
+    """Return the notes on a student for the teacher: what could not be read, and whose variant the answers fit."""
     copied = (_("the answers fit the variant of {student}").format(student=shown(student.copied)),)
     return "; ".join((*map(sentence, student.problems), *(copied if student.copied else ())))
 
@@ -187,7 +200,10 @@ ANSWERS_HEADER = (
 
 
 def answers_rows(book: Gradebook) -> Iterator[list[Cell]]:
-    """Yield a row per answer; values in the units of the file, vectors by magnitude and direction."""
+    """Yield the rows of the table of answers, one per answer of each student.
+
+    Values are in the units of the task file; vectors are given by magnitude and direction.
+    """
     for student in book.marks:
         name = shown(student.student)
         for answer, mark in zip(book.answers, student.marks, strict=True):
@@ -224,10 +240,10 @@ def _percent(share: float | None) -> float | None:
 
 
 def finite(number: float) -> float | None:
-    """Return a number rounded to six figures; None if it is not finite."""
+    """Round a number to six significant figures; return None if it is infinite or nan."""
     return float(f"{number:.6g}") if math.isfinite(number) else None
 
 
 def reasons(mark: Mark) -> str:
-    """Return the sentences of a mark in one text."""
+    """Join the sentences that explain a mark to one text."""
     return " ".join(map(sentence, mark.reasons))

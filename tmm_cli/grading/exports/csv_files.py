@@ -20,13 +20,16 @@ from tmm_cli.reports import csv_cell
 
 
 def csv_tables(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
-    """Yield marks.csv and answers.csv."""
+    """Yield marks.csv and answers.csv with their lines."""
     yield "marks.csv", csv_lines(book, marks_header(book), marks_rows(book))
     yield "answers.csv", csv_lines(book, ANSWERS_HEADER, answers_rows(book))
 
 
 def csv_lines(book: Gradebook, header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> Iterator[str]:
-    """Yield a table line by line; with decimal commas, with semicolons and a byte-order mark."""
+    """Yield the lines of a CSV table.
+
+    If the gradebook uses decimal commas, cells are separated by semicolons, and a byte-order mark comes first.
+    """
     comma = book.decimal == ","
     between = ";" if comma else ","
     yield ("\ufeff" if comma else "") + between.join(map(csv_cell, header)) + "\n"
@@ -45,7 +48,7 @@ def _cell(cell: Cell, comma: bool) -> str:
 
 
 def moodle_file(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
-    """Yield moodle.csv: students as the teacher names them (user name, id or address), and points."""
+    """Yield moodle.csv with the points of each student, who is named as in the teacher's list (login, id or e-mail)."""
     known = [one for one in book.marks if book.users is None or one.student in book.users]
     rows = ((shown(student.student), rounded(student.points)) for student in known)
     yield "moodle.csv", csv_lines(book, ("user", "grade"), rows)

@@ -1,6 +1,7 @@
-"""Feedback sheet of each student: every answer as it was understood, the permitted error, explanations of mistakes.
+"""Feedback sheets: each answer as it was understood, its error, the tolerance, and the explanation of mistakes.
 
-Written as feedback/<student>.md and feedback/<student>.html. Whose answers were copied is never told."""
+The files are feedback/<student>.md and feedback/<student>.html. They never say whose answers were copied.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +28,7 @@ SHARES = {
 
 @dataclass(frozen=True)
 class StudentSheetRow:
-    """Answer on a sheet: its cells as plain text in the order of the headers."""
+    """Row of a feedback sheet: the state of an answer, and the table cells as plain text."""
 
     state: State
     cells: tuple[str, ...]
@@ -35,7 +36,18 @@ class StudentSheetRow:
 
 @dataclass(frozen=True)
 class StudentSheet:
-    """Feedback for one student as plain text; `reasons` pairs each sentence with the answers it concerns."""
+    """Feedback for one student, as plain text.
+
+    Attributes:
+        title: title of the task.
+        student: name of the student.
+        total: points earned, e.g. "12 of 16 points (75 %)".
+        problems: sentences on what could not be read.
+        headers: headings of the table of answers.
+        rows: rows of this table.
+        reasons: explanations of mistakes, each with the names of the answers that it concerns.
+        notes: remarks below the table on units and tolerances.
+    """
 
     title: str
     student: str
@@ -48,7 +60,7 @@ class StudentSheet:
 
 
 def sheets(book: Gradebook) -> Iterator[StudentSheet]:
-    """Yield the feedback sheets in the order of the marks."""
+    """Yield the feedback sheet of each student, in the order of the gradebook."""
     reveal = book.task.rules.reveal
     right = (_("right value"),) if reveal else ()
     headers = (_("quantity"), _("your answer"), *right, _("off by"), _("allowed"), _("score"), _("result"))
@@ -97,7 +109,7 @@ def _cells(answer: Answer, mark: Mark, reveal: bool) -> tuple[str, ...]:
 
 
 def written(answer: Answer, mark: Mark) -> str:
-    """Return the student's value with the unit it was read in, or the text if it is not a value."""
+    """Return the student's value with the unit in which it was read, or the original text if it is not a value."""
     if mark.value is None or not cmath.isfinite(mark.value):
         return shown(mark.text) or "-"
     return answer.text(mark.value, mark.reading, mark.size) + (f" {UNSAID}" if mark.reading else "")
@@ -108,7 +120,7 @@ def _error(answer: Answer, mark: Mark) -> str:
 
 
 def _allowed(answer: Answer, mark: Mark) -> str:
-    """Return the tolerance, with the usual one if that is smaller."""
+    """Return the tolerance as text; a tolerance widened for this variant is followed by the usual one."""
     if answer.asked.quantity.against == "exact":
         return _("exact")
     if not mark.judged:
@@ -120,13 +132,13 @@ def _allowed(answer: Answer, mark: Mark) -> str:
 
 
 def _notes(book: Gradebook) -> tuple[str, ...]:
-    """Return the notes on the reference values of errors."""
+    """Return the notes that say to which value relative errors refer."""
     against = {answer.asked.quantity.against for answer in book.answers}
     return tuple(_(SHARES[one]) for one in SHARES if one in against)
 
 
 def _why_more(both: Iterable[tuple[Answer, Mark]]) -> Iterator[str]:
-    """Yield why a larger tolerance than usual applies."""
+    """Yield sentences that explain why some tolerances are larger than usual."""
     drawn = {answer.asked.drawn for answer, mark in both if _widened(answer, mark)}
     if True in drawn:
         yield _(
@@ -145,7 +157,7 @@ def _widened(answer: Answer, mark: Mark) -> bool:
 
 
 def _reasons(both: list[tuple[Answer, Mark]]) -> Iterator[tuple[str, str]]:
-    """Yield each sentence once with all answers it concerns; unexplained errors last."""
+    """Yield each explanation once, with the names of all answers it concerns; answers without an explanation come last."""
     found: dict[str, list[str]] = {}
     left = []
     for answer, mark in both:
@@ -160,7 +172,7 @@ def _reasons(both: list[tuple[Answer, Mark]]) -> Iterator[tuple[str, str]]:
 
 
 def output(answer: Answer, mark: Mark, reveal: bool) -> str:
-    """Return all about one answer in a few lines."""
+    """Return the feedback on one answer as a few lines of text; reveal: True to include the right value."""
     lines = [_("result: {result}").format(result=_(STATES[mark.state]))]
     if mark.state != "missing":
         lines.append(_("your answer: {answer}").format(answer=written(answer, mark)))
@@ -180,7 +192,7 @@ CELL_BREAK = "\x1f"  # stands between the cells of a row while they are escaped
 
 
 def markdown_text(sheet: StudentSheet) -> str:
-    """Return a sheet as Markdown, with markup in students' texts escaped."""
+    """Return a feedback sheet as Markdown; characters of students' texts that Markdown would interpret are escaped."""
     parts = [
         f"# {_escape_markdown(sheet.title)}",
         f"**{_escape_markdown(sheet.student)}**: {_escape_markdown(sheet.total)}",
@@ -198,7 +210,6 @@ def _markdown_list(lines: Iterable[str]) -> str:
 
 
 def _escape_markdown(text: str) -> str:
-    """Escape the markup of Markdown and HTML."""
     safe = SIGNS.sub(r"\\\1", escape(text, quote=False))
     return LINE.sub(r"\\_", safe) if "_" in safe else safe
 
@@ -227,7 +238,7 @@ PAGE_HEAD = (
 
 
 def html_page(sheet: StudentSheet) -> str:
-    """Return a sheet as a self-contained HTML page; names keep their own writing direction."""
+    """Return a feedback sheet as a self-contained HTML page; a name in a right-to-left script is displayed correctly."""
     problems = _html_list(f"<li>{escape(problem)}</li>" for problem in sheet.problems)
     header = "".join(f"<th>{escape(header)}</th>" for header in sheet.headers)
     rows = "\n".join(
@@ -258,6 +269,6 @@ FEEDBACK_FORMATS: Final[Mapping[str, Callable[[StudentSheet], str]]] = {
 
 
 def feedback_files(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
-    """Yield each sheet in every format."""
+    """Yield the feedback files of all students: file names with their contents, Markdown and HTML."""
     for name, sheet in zip(book.files, sheets(book), strict=True):
         yield from ((f"feedback/{name}.{ending}", (text(sheet),)) for ending, text in FEEDBACK_FORMATS.items())

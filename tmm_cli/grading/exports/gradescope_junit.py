@@ -1,4 +1,4 @@
-"""Marks as results of tests: gradescope/<student>.json (results.json of Gradescope) and junit.xml."""
+"""Marks in the form of test results: gradescope/<student>.json (results.json of Gradescope) and junit.xml."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tmm_cli.grading.untrusted_tables import sentence, shown
 
 
 def gradescope_files(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
-    """Yield a Gradescope record for each student."""
+    """Yield a results file for Gradescope for each student."""
     for name, student in zip(book.files, book.marks, strict=True):
         yield f"gradescope/{name}.json", (_gradescope_record(book, student),)
 
@@ -37,12 +37,12 @@ def _gradescope_record(book: Gradebook, student: StudentMarks) -> str:
 
 
 def junit_file(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
-    """Yield junit.xml with all students."""
+    """Yield junit.xml with the answers of all students as test cases."""
     yield "junit.xml", _junit_lines(book)
 
 
 def _junit_lines(book: Gradebook) -> Iterator[str]:
-    """Yield the lines of junit.xml; a case is identified by classname (student) and name (answer)."""
+    """Yield the lines of junit.xml; in a test case, classname is the student and name is the answer."""
     marks = [mark for student in book.marks for mark in student.marks]
     counted = f'tests="{len(marks)}" failures="{sum(not fitting(mark) for mark in marks)}"'
     yield f'<?xml version="1.0" encoding="UTF-8"?>\n<testsuites {counted}>\n'

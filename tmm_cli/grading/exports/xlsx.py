@@ -1,4 +1,4 @@
-"""Workbook marks.xlsx: marks, answers and statistics; texts are never written as formulas or links."""
+"""Workbook marks.xlsx: marks, answers and statistics. Texts are never written as formulas or links."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ HEAD_HEIGHT = 32  # points: two lines
 
 
 def files(book: Gradebook) -> Iterator[tuple[str, Iterable[bytes]]]:
-    """Yield the workbook."""
+    """Yield marks.xlsx with its contents."""
     yield "marks.xlsx", (_workbook(book),)
 
 
 def _workbook(book: Gradebook) -> bytes:
-    """Return the workbook.
+    """Return the contents of marks.xlsx.
 
     Raises:
         ProblemError: No package that writes XLSX is installed.
@@ -48,7 +48,7 @@ def _workbook(book: Gradebook) -> bytes:
 
 
 def _answers(book: Gradebook) -> Iterator[list[Cell]]:
-    """Yield a row per answer for reading; answers.csv has more columns for computing."""
+    """Yield the rows of the sheet of answers: fewer columns than in answers.csv, values as texts for reading."""
     for student in book.marks:
         name = shown(student.student)
         for answer, mark in zip(book.answers, student.marks, strict=True):
@@ -66,7 +66,7 @@ def _sheets(
     head: Any,
     widths: Sequence[float],
 ) -> None:
-    """Write a table, continued on further sheets if one cannot hold it."""
+    """Write a table to a worksheet, and what exceeds MOST_ROWS to further worksheets."""
     rows = iter(rows)
     for number in count(1):
         some = islice(rows, MOST_ROWS)
@@ -101,7 +101,7 @@ def _row(sheet: Any, at: int, row: Sequence[Cell], formats: dict[str, Any]) -> N
 
 
 def _group(workbook: Any, book: Gradebook, head: Any) -> None:
-    """Write all tables of the statistics below one another."""
+    """Write all statistics tables to the worksheet Group, one below another."""
     sheet, at = workbook.add_worksheet("Group"), 0
     sheet.set_column(0, 0, 40)
     sheet.set_column(1, 7, 18)

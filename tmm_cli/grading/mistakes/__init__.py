@@ -1,4 +1,4 @@
-"""Typical mistakes; a new one is a class in a module here and an entry in MISTAKES."""
+"""Typical mistakes. To add one, write a class in a module of this package and list it in MISTAKES."""
 
 from __future__ import annotations
 
@@ -43,5 +43,5 @@ MISTAKES: tuple[type[Mistake], ...] = (
 
 
 def cases(family: VariantFamily) -> tuple[Mistake, ...]:
-    """Return all cases of all mistakes that are possible in a family of variants."""
+    """Return all cases of all typical mistakes that are possible for the variants of a family."""
     return tuple(case for kind in MISTAKES for case in kind.cases(family))

@@ -1,4 +1,4 @@
-"""A typical mistake, and the solution of a family of variants with mistakes in it."""
+"""Base class of typical mistakes, and the solution of variants in which mistakes are made."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tmm_cli.mechanics.numerics import Real
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """Motion and forces of all variants at all positions, (variants, positions)."""
+    """Motion and forces of all variants of a family at all positions, (variants, positions)."""
 
     family: VariantFamily
     motion: Motion
@@ -36,7 +36,10 @@ class Solution:
 
 
 def solve(family: VariantFamily, mistakes: Sequence[Mistake] = ()) -> Solution:
-    """Solve a family of variants with mistakes; each mistake changes the stage it concerns, in the given order."""
+    """Solve the variants of a family as a student would who makes the given mistakes.
+
+    Each mistake changes the stage of the solution that it concerns; several mistakes act in the given order.
+    """
     for mistake in mistakes:
         family = mistake.family(family)
     lead = family.linkage.driver
@@ -62,8 +65,14 @@ def solve(family: VariantFamily, mistakes: Sequence[Mistake] = ()) -> Solution:
 class Mistake:
     """A typical mistake, e.g. that the normal acceleration of link 3 is left out.
 
-    A subclass overrides one or more of the methods below. name: text for tables and statistics. sentence: text for the
-    student. Both may contain fields of the mistake.
+    A subclass overrides one or more of the methods below, each of which changes one stage of the solution.
+
+    Attributes:
+        name: text for tables and statistics; it may contain fields of the mistake in braces.
+        sentence: text for the student, likewise.
+        solves: True if the mechanism must be solved again with this mistake; False if it changes only the written
+            values.
+        price: squared standard errors that the mistake must explain in addition, as it has many cases.
     """
 
     name: ClassVar[str]
@@ -73,35 +82,37 @@ class Mistake:
 
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
-        """Yield the cases of this mistake that are possible in a family of variants."""
+        """Yield the cases of this mistake that are possible for the variants of a family, e.g. one for each link."""
         yield cls()
 
     @property
     def told(self) -> str:
-        """Sentence with the fields of this case."""
+        """Sentence about this mistake for the student."""
         return _(self.sentence).format(**vars(self))
 
     @property
     def called(self) -> str:
-        """Name with the fields of this case."""
+        """Name of this mistake for tables and statistics."""
         return _(self.name).format(**vars(self))
 
     def family(self, family: VariantFamily) -> VariantFamily:
-        """Return the variants as this mistake changes them; by default unchanged."""
+        """Return the variants as a student who makes this mistake would have them; by default unchanged."""
         return family
 
     def kernel(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
-        """Return the group solver as this mistake changes it; by default unchanged."""
+        """Return the group solver with this mistake built in; by default unchanged."""
         return kernel
 
     def motion(self, motion: Motion) -> Motion:
-        """Return the motion as this mistake changes it; by default unchanged."""
+        """Return the motion as a student who makes this mistake would compute it; by default unchanged."""
         return motion
 
     def load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
-        """Return a load as this mistake changes it; by default unchanged."""
+        """Return a load as a student who makes this mistake would apply it; by default unchanged."""
         return load
 
     def value(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
-        """Return values (variants, positions) as they are written down with this mistake; by default unchanged."""
+        """Return values (variants, positions) as a student who makes this mistake would write them; by default
+        unchanged.
+        """
         return values

@@ -1,4 +1,4 @@
-"""Mistakes in input data and units: degrees, millimetres, rpm, zero position, sense of rotation, scale."""
+"""Mistakes in input data and units: degrees, millimetres, rpm, zero position, sense of rotation, scale factor."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tmm_cli.mechanics.numerics import Real
 
 @dataclass(frozen=True)
 class Degrees(Mistake):
-    """Degrees taken for radians or the reverse, in angles, angular velocities and accelerations."""
+    """Mistake: an angle, angular velocity or angular acceleration is in degrees instead of radians, or the reverse."""
 
     factor: float = 1.0
 
@@ -38,7 +38,7 @@ class Degrees(Mistake):
 
 @dataclass(frozen=True)
 class Millimetres(Mistake):
-    """Millimetres taken for metres or the reverse, in every quantity with a length in its dimension."""
+    """Mistake: a quantity with a length in its dimension is in millimetres instead of metres, or the reverse."""
 
     factor: float = 1.0
 
@@ -59,7 +59,7 @@ class Millimetres(Mistake):
 
 @dataclass(frozen=True)
 class Rpm(Mistake):
-    """Crank speed in rpm used as rad/s: velocities are 9.55 times too large, accelerations 91 times."""
+    """Mistake: the crank speed in rpm is used as rad/s; velocities are 9.55 times too large, accelerations 91 times."""
 
     name = N_("rpm instead of rad/s")
     sentence = N_("The speed of the crank was substituted in revolutions per minute; use omega = pi n / 30 in rad/s.")
@@ -79,7 +79,10 @@ class Rpm(Mistake):
 
 @dataclass(frozen=True)
 class OtherZero(Mistake):
-    """Positions counted from the other extreme position, or from the crank along the x axis."""
+    """Mistake: positions are counted from the other extreme position, or from the crank along the x axis.
+
+    extreme: True for the other extreme position.
+    """
 
     extreme: bool = True
 
@@ -108,7 +111,7 @@ class OtherZero(Mistake):
 
 @dataclass(frozen=True)
 class Neighbour(Mistake):
-    """Value of the position before or after."""
+    """Mistake: the value belongs to the position before or after the requested one."""
 
     step: int = 1
 
@@ -129,7 +132,10 @@ class Neighbour(Mistake):
 
 @dataclass(frozen=True)
 class Sense(Mistake):
-    """Crank rotated in the wrong sense, with the positions as they are or counted in the wrong sense too."""
+    """Mistake: the crank rotates in the opposite sense.
+
+    counted: True if the positions are also numbered in the opposite sense.
+    """
 
     counted: bool = False
 
@@ -159,7 +165,14 @@ SIZES = tuple(m * 10.0**power for power in (-3, -2, -1, 0, 1, 2) for m in (1, 2,
 
 @dataclass(frozen=True)
 class ScaleInverted(Mistake):
-    """All values of one kind of plan multiplied by the square of its scale factor, a round number."""
+    """Mistake: lengths measured on a plan are divided by its scale factor instead of multiplied.
+
+    All values of this plan are then wrong by the square of the scale factor, which is a round number.
+
+    Attributes:
+        stage: plan with the mistake: velocities, accelerations or forces.
+        scale: scale factor.
+    """
 
     stage: str = ""
     scale: float = 1.0

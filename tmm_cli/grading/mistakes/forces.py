@@ -20,7 +20,7 @@ from tmm_cli.mechanics.numerics import Real
 
 @dataclass(frozen=True)
 class InertiaReversed(Mistake):
-    """Inertia forces, couples or both directed along the acceleration."""
+    """Mistake: inertia forces, inertia couples or both are directed along the acceleration instead of opposite to it."""
 
     parts: tuple[str, ...] = ()
 
@@ -44,7 +44,10 @@ class InertiaReversed(Mistake):
 
 @dataclass(frozen=True)
 class HingeInertia(Mistake):
-    """Moment of inertia of one link or of all about a hinge: the inertia couple is too large by m s² ε."""
+    """Mistake: the moment of inertia is taken about a hinge, so the inertia couple is too large by m s² ε.
+
+    Here s is the distance from the hinge to the centre of mass. link: the link concerned; "" for all links.
+    """
 
     link: str = ""
 
@@ -69,7 +72,7 @@ class HingeInertia(Mistake):
 
 
 def _arm(family: VariantFamily, name: str) -> Real:
-    """Return the vector (m) from a link's hinge, preferably on the frame, to its centre of mass."""
+    """Return the vector (m) from a link's hinge, preferably one on the frame, to its centre of mass."""
     link = family.linkage.links[name]
     frame = family.linkage.links[FRAME].points
     hinge = next((p for n, p in link.points.items() if n in frame), next(iter(link.points.values()), 0j))
@@ -81,7 +84,7 @@ def _arm(family: VariantFamily, name: str) -> Real:
 
 @dataclass(frozen=True)
 class NoInertia(Mistake):
-    """Inertia force of one link or of all left out."""
+    """Mistake: the inertia force of one link is left out, or of all links if `link` is empty."""
 
     link: str = ""
 
@@ -108,7 +111,7 @@ class NoInertia(Mistake):
 
 @dataclass(frozen=True)
 class NoCouple(NoInertia):
-    """Inertia couple of one link or of all left out."""
+    """Mistake: the inertia couple of one link is left out, or of all links if `link` is empty."""
 
     name = N_("inertia couple left out")
     sentence = N_("The inertia couple J epsilon was left out.")
@@ -120,7 +123,10 @@ class NoCouple(NoInertia):
 
 @dataclass(frozen=True)
 class NoWeight(Mistake):
-    """Weight of one link or of all left out, or with `mass` replaced by the mass."""
+    """Mistake: the weight of one link is left out, or of all links if `link` is empty.
+
+    mass: True if the mass is used in place of the weight.
+    """
 
     link: str = ""
     mass: bool = False
@@ -148,7 +154,7 @@ class NoWeight(Mistake):
 
 @dataclass(frozen=True)
 class WeightForMass(Mistake):
-    """Weight used as mass: inertia forces are g times too large."""
+    """Mistake: the weight is used in place of the mass, so inertia forces are g times too large."""
 
     name = N_("weight instead of mass")
     sentence = N_(
@@ -169,7 +175,7 @@ class WeightForMass(Mistake):
 
 @dataclass(frozen=True)
 class GuideThroughHinge(Mistake):
-    """Reaction of a guide drawn through the hinge, where it seldom acts."""
+    """Mistake: the reaction of a guide is drawn through the hinge, where it usually does not act."""
 
     name = N_("reaction of a guide drawn through the hinge")
     sentence = N_(
@@ -187,7 +193,7 @@ class GuideThroughHinge(Mistake):
 
 @dataclass(frozen=True)
 class OppositeReaction(Mistake):
-    """Reaction with the opposite direction: R_ik instead of R_ki."""
+    """Mistake: the reaction has the opposite direction, R_ik instead of R_ki."""
 
     name = N_("R_ik instead of R_ki")
     sentence = N_("This is the opposite of the requested reaction: R_ik acts from link i on link k.")
@@ -202,7 +208,10 @@ class OppositeReaction(Mistake):
 
 @dataclass(frozen=True)
 class WrongStroke(Mistake):
-    """Useful resistance acting in the return stroke only, or with `both` always."""
+    """Mistake: the useful resistance acts in the return stroke instead of the working stroke.
+
+    both: True if it acts in both strokes.
+    """
 
     both: bool = False
 

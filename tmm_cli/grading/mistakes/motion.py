@@ -1,4 +1,4 @@
-"""Mistakes in motion: assembly; normal, tangential and Coriolis accelerations."""
+"""Mistakes in the motion: wrong assembly; normal, tangential or Coriolis acceleration left out."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from tmm_cli.mechanics.numerics import Real, cross
 
 @dataclass(frozen=True)
 class Mirror(Mistake):
-    """Group of these links in its other assembly."""
+    """Mistake: an Assur group is drawn in its other (mirror-image) assembly; links: names of its links."""
 
     links: str = ""
 
@@ -58,7 +58,7 @@ Terms = Callable[[PairConstraint, Poses, Rates], Any]  # the velocity terms of a
 
 @dataclass(frozen=True)
 class Equations(NewtonSolver):
-    """Group solved as a system of equations with modified velocity terms."""
+    """Solver of a group as a system of equations in which `terms` replaces the velocity terms of the pairs."""
 
     terms: Terms = field(kw_only=True)
 
@@ -68,13 +68,13 @@ class Equations(NewtonSolver):
 
 @dataclass(frozen=True)
 class OtherTerms(WrappedSolver):
-    """Group whose accelerations follow from equations with modified velocity terms."""
+    """Solver of a group whose accelerations follow from equations with modified velocity terms; all else is right."""
 
     equations: Equations
 
     @classmethod
     def of(cls, right: GroupSolver, linkage: Linkage, terms: Terms) -> OtherTerms:
-        """Return the group with its numbers and modified velocity terms."""
+        """Build the solver from the right one, with the velocity terms of the pairs replaced."""
         plain = NewtonSolver.of(right.group.rebind(linkage), linkage)
         own = {f.name: getattr(plain, f.name) for f in fields(plain)}
         return cls.around(right, Equations(**own, terms=terms))
@@ -90,7 +90,7 @@ class OtherTerms(WrappedSolver):
 
 @dataclass(frozen=True)
 class Normal(Mistake):
-    """Normal acceleration of one link left out, as if it did not rotate."""
+    """Mistake: the normal acceleration of one link is left out."""
 
     link: str = ""
 
@@ -119,13 +119,13 @@ class Normal(Mistake):
 
 
 def without(rates: Rates, link: str) -> Rates:
-    """Return the velocities with the rotation of one link set to zero."""
+    """Return the velocities of the links with the rotation of one link set to zero."""
     return {**rates, link: replace(rates[link], w=rates[link].w * 0)}
 
 
 @dataclass(frozen=True)
 class Unturned(WrappedSolver):
-    """Group that depends on a link whose normal acceleration is left out."""
+    """Solver of a group attached to a link whose normal acceleration is left out."""
 
     link: str
 
@@ -138,7 +138,7 @@ class Unturned(WrappedSolver):
 
 @dataclass(frozen=True, kw_only=True)
 class UnturnedMotion(Motion):
-    """Motion in which the normal accelerations of one link are left out."""
+    """Motion of the mechanism with the normal accelerations of one link left out."""
 
     link_without: str
 
@@ -156,7 +156,7 @@ class UnturnedMotion(Motion):
 
 @dataclass(frozen=True)
 class Tangential(Mistake):
-    """Tangential acceleration left out, of a link that rotates about an external hinge of its group."""
+    """Mistake: the tangential acceleration is left out, of a link that has a hinge outside its Assur group."""
 
     link: str = ""
 
@@ -181,7 +181,13 @@ class Tangential(Mistake):
 
 @dataclass(frozen=True)
 class NotTurningFaster(WrappedSolver):
-    """Group in which one link has no angular acceleration."""
+    """Solver of a group in which the angular acceleration of one link is set to zero.
+
+    Attributes:
+        link: the link without angular acceleration.
+        known: link outside the group to which it is hinged.
+        there, here: the hinge in the axes of `known` and of `link`, m.
+    """
 
     link: str
     known: str
@@ -203,7 +209,13 @@ class NotTurningFaster(WrappedSolver):
 
 @dataclass(frozen=True)
 class Coriolis(Mistake):
-    """Mistake: the Coriolis acceleration of a link on a moving guide is left out (sense 0) or reversed (-1)."""
+    """Mistake: the Coriolis acceleration of a link on a moving guide is left out or reversed.
+
+    Attributes:
+        runner: the sliding link.
+        carrier: the link that carries the guide.
+        sense: factor of the Coriolis acceleration: 0 if left out, -1 if reversed.
+    """
 
     runner: str = ""
     carrier: str = ""

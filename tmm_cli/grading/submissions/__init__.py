@@ -1,1 +1,1 @@
-"""Submissions: reading of unchecked files, and empty answer sheets."""
+"""Reading of students' submissions, and empty answer sheets."""

@@ -1,4 +1,4 @@
-"""Conversion of table cells under their headings to answers; components of vectors are joined."""
+"""Conversion of table cells with their headings to answers; components of a vector in separate cells are joined."""
 
 from __future__ import annotations
 
@@ -34,7 +34,14 @@ Cells = dict[Part, tuple[str, str]]  # text and unit of every part of an answer
 
 
 class Entry(NamedTuple):
-    """Cell with its heading, or with the contents of the other columns that describe it."""
+    """A cell of a submitted table with the texts that say what it answers.
+
+    Attributes:
+        cell: text of the cell.
+        heading: heading of its column, or the contents of the column `quantity` in its row.
+        part: component of a vector, if stated by the column.
+        position, unit: contents of these columns, if any.
+    """
 
     cell: str
     heading: str
@@ -44,7 +51,14 @@ class Entry(NamedTuple):
 
 
 class Over(NamedTuple):
-    """Meaning of a heading: quantity and position, component, unit, and whether it is requested."""
+    """Meaning of a heading.
+
+    Attributes:
+        place: quantity and position.
+        part: component of a vector, if any.
+        unit: unit, "" if none.
+        asked: True if the task requests this answer.
+    """
 
     place: Heading
     part: Part
@@ -53,7 +67,7 @@ class Over(NamedTuple):
 
 
 class Answers:
-    """Reader of answers to the questions of a task.
+    """Converter of table cells to the answers that a task requests.
 
     Raises:
         ProblemError: The block `grading` of the task is wrong.
@@ -95,7 +109,10 @@ class Answers:
         return Over(place, entry.part or over.part, checked_unit(entry.unit) or over.unit, asked)
 
     def submission(self, student: str, entries: Iterable[Entry], problems: Iterable[str] = ()) -> Submission:
-        """Return the submission given by the cells of one student; empty cells and dashes are not answers."""
+        """Convert the cells of one student to a submission; empty cells and dashes are not answers.
+
+        problems: sentences on what could not be read in the file itself.
+        """
         told: list[str | ProblemError] = list(problems)
         cells: dict[Heading, Cells] = {}  # by quantity and position
         unasked: dict[Heading, None] = {}
@@ -152,7 +169,7 @@ class Answers:
         return one_line(error)
 
     def _not_asked(self, places: list[Heading]) -> str:
-        """Return the message on quantities not requested, with similar names; R_12 is never taken for R_21."""
+        """Return a message on answers that the task does not request, with similar requested names if there are any."""
         names = []
         for place in places[:MOST_TOLD]:
             near = None if place.quantity in self.names else nearest_name(place.quantity, self.names)
@@ -167,7 +184,7 @@ def one_line(error: ProblemError) -> str:
 
 
 def twice(place: Heading) -> str:
-    """Return the message on an answer given twice."""
+    """Return the message that the same answer is given twice."""
     return _("{name} is given twice: the first counts").format(name=_called(place))
 
 
@@ -184,7 +201,7 @@ def _called(place: Heading) -> str:
 
 
 def _given(cells: Cells) -> Given | None:
-    """Return one answer from its components.
+    """Join the cells with the components of one answer; return None if they are empty.
 
     Raises:
         ProblemError: A component is missing or the units differ.
@@ -228,9 +245,15 @@ NEAR = np.radians(2.0)  # as angles are read off a drawing
 
 
 def at_positions(submission: Submission, task: Task, places: Real) -> Submission:
-    """Assign answers given by a driver angle to the positions of the student's variant.
+    """Assign answers given at a driver angle to the nearest position of the student's variant.
 
-    places: angles (rad) of the positions of the variant. Answers that cannot be assigned are reported in `problems`.
+    Args:
+        submission: Submission of the student.
+        task: Task.
+        places: Driver angles (rad) at the positions of the variant.
+
+    Returns:
+        The submission with all answers by position number; answers that no position matches are reported in `problems`.
     """
     if not submission.by_angle:
         return submission

@@ -1,7 +1,8 @@
-"""Reading of one answer as students write it.
+"""Reading of a single answer as students write it.
 
 A number: `1,31 m/s`, `3·10^-3`, `1 200.5`, `II`. A vector by components: `(1,2; -3,4) N`, `Fx = 1.2 N, Fy = -3.4 N`; by
-magnitude and direction: `1.2 kN at 34 deg`, `1200 N, 34°`. Nothing is computed; a text has at most LONGEST characters.
+magnitude and direction: `1.2 kN at 34 deg`, `1200 N, 34°`. Expressions are not evaluated. A text has at most LONGEST
+characters.
 """
 
 from __future__ import annotations
@@ -103,7 +104,7 @@ def read_answer(text: str, unit: str = "", turn_unit: str = "") -> Given | None:
 
 
 def plainly(text: str) -> str:
-    """Replace typographic minus signs, points, spaces and superscripts by keyboard characters.
+    """Replace typographic minus signs, dots, spaces and superscripts by characters of a keyboard.
 
     Raises:
         ProblemError: The text is too long.
@@ -118,7 +119,7 @@ def plainly(text: str) -> str:
 
 
 def read_number(source: str) -> tuple[float, str]:
-    """Read a number and the unit after it ("" if none).
+    """Read a number and the unit after it; return both, "" if there is no unit.
 
     Raises:
         ProblemError: The text is not a number.
@@ -149,7 +150,7 @@ def read_number(source: str) -> tuple[float, str]:
 
 @lru_cache(maxsize=1024)
 def checked_unit(text: str) -> str:
-    """Return a unit as written, "" if empty.
+    """Return the unit as written, without a final full stop; "" for an empty text.
 
     Raises:
         UnitError: The unit is unknown.
@@ -168,14 +169,17 @@ def _turns(unit: str) -> bool:
 
 
 def _labelled(part: str) -> tuple[str, str]:
-    """Split `Fx = 1.2 N` into its label and the rest."""
+    """Split a text such as `Fx = 1.2 N` into label and value; the label is "" if there is none."""
     label = _LABEL.match(part)
     return (label[1], part[label.end() :]) if label else ("", part)
 
 
 def _parts(source: str) -> tuple[list[str], str, bool]:
-    """Split a text into its numbers; return them, their common unit, and True if the second is stated to be a
-    direction.
+    """Split an answer into the texts of its numbers.
+
+    Returns:
+        Texts of the numbers, their common unit ("" if none), and True if the second is written as a direction (`at
+        34°`).
     """
     inside, unit = source, ""
     brackets = _BRACKETS.fullmatch(source)
@@ -207,7 +211,10 @@ _PLACE = re.compile(r"(?:(phi|φ) *= *)?(.*)")
 
 @dataclass(frozen=True)
 class Heading:
-    """Quantity at a position number or at a driver angle (rad), with the requested component."""
+    """Heading of an answer sheet: quantity, and the position number or driver angle (rad) at which it is given.
+
+    part: component of a vector, "" if none. unit: unit, "" if none.
+    """
 
     quantity: str
     position: int | None = None
@@ -217,7 +224,7 @@ class Heading:
 
 
 class UnknownQuantityError(ProblemError):
-    """Name that belongs to no quantity."""
+    """A heading contains a name that belongs to no quantity of the mechanism."""
 
     def __init__(self, name: str) -> None:
         super().__init__(_("there is no quantity with this name"), found=quote(name))
@@ -225,13 +232,13 @@ class UnknownQuantityError(ProblemError):
 
 
 class Headings:
-    """Reader of headings by names of quantities; Cyrillic letters that look like Latin ones are accepted."""
+    """Reader of headings that begin with the name of a quantity; lookalike Cyrillic letters are accepted."""
 
     def __init__(self, names: Iterable[str]) -> None:
         self.names = {to_latin(name): name for name in sorted(names, key=len, reverse=True)}
 
     def read(self, text: str) -> Heading:
-        """Read a heading.
+        """Read a heading, e.g. `v of E at 7, m/s`.
 
         Raises:
             ProblemError: The heading cannot be read.
@@ -260,7 +267,10 @@ def _heading(name: str, part: str, position: str, rest: str, unit: str) -> Headi
 
 
 def read_position(text: str) -> tuple[int | None, float | None]:
-    """Read `7` as a position number, `phi = 210 deg` or `210 deg` as an angle (rad).
+    """Read a position number, e.g. `7`, or a driver angle, e.g. `phi = 210 deg` or `210 deg`.
+
+    Returns:
+        Position number and angle (rad); the one that is not given is None, both for an empty text.
 
     Raises:
         ProblemError: The text is not a position.

@@ -1,4 +1,4 @@
-"""Reading of submissions: a folder with a file per student, or one table; a damaged file does not stop the others."""
+"""Reading of submissions: a folder with a file per student, or one table; a damaged file does not affect the others."""
 
 from __future__ import annotations
 
@@ -35,25 +35,34 @@ _WORDS = {word: column for column, words in _COLUMNS.items() for word in words}
 
 @dataclass(frozen=True)
 class AnswerColumns:
-    """Columns of the rows below a header; `student`: column of names or None; `width`: length of the header."""
+    """Structure of a submitted table, read from its header.
+
+    Attributes:
+        student: index of the column with the students' names, None if there is no such column.
+        entries: function that returns the cells of a row with their headings.
+        width: number of columns in the header.
+    """
 
     student: int | None
     entries: Callable[[Row], Iterator[Entry]]
     width: int
 
     def named(self, row: Row) -> str:
-        """Return the student named in a row, "" if none."""
+        """Return the name of the student in a row, "" if there is none."""
         return "" if self.student is None else _cell(row, self.student)
 
     def longer(self, row: Row) -> bool:
-        """Return True if a row has cells beyond the header."""
+        """Return True if a row has more cells than the header."""
         return any(row[self.width :])
 
 
 def shape_of(header: Row, answers: Answers, *, filled: bool = True) -> AnswerColumns:
-    """Return the shape of a table: long (a column `quantity`) or wide.
+    """Recognise the structure of a table from its header.
 
-    filled: rows follow the header.
+    Args:
+        header: Cells of the header. A column `quantity` means an answer per row; otherwise each column is an answer.
+        answers: Converter that knows the requested answers.
+        filled: True if rows follow the header, so that a header without any known answer is an error.
 
     Raises:
         ProblemError: The header cannot be read.
@@ -102,7 +111,7 @@ def _is_unit(text: str) -> bool:
 
 
 def _long(columns: dict[str, tuple[int, str]], width: int) -> AnswerColumns:
-    """Return the shape of a table with the columns quantity, student, position, unit, value, x, y, size, angle."""
+    """Return the structure of a table with an answer per row: columns quantity, position, unit, value, x, y, ..."""
     places = {name: place for name, (place, _unit) in columns.items()}
     parts: list[tuple[Part, int, str]] = [("", *columns["value"])] if "value" in columns else []
     parts += [(part, *columns[part]) for part in PARTS if part in columns]
@@ -123,7 +132,7 @@ def _cell(row: Row, place: int | None) -> str:
 
 
 class Texts(Composer):
-    """YAML composer that keeps every value as its text, since students write numbers otherwise than YAML does."""
+    """YAML reader that keeps every value as its text, since students write numbers differently from YAML."""
 
     def parsed(self) -> Iterator[Any]:
         for self.last in super().parsed():
@@ -133,7 +142,7 @@ class Texts(Composer):
         return str(event.value)
 
     def cut_by_comma(self, event: Any, path: Any) -> None:
-        """Do nothing: a list is read as its text."""
+        """Do nothing: a list in brackets is read as its text, so a comma in it is allowed."""
 
     def sequence(self, start: Any, path: Any) -> Any:
         found = super().sequence(start, path)
@@ -141,7 +150,14 @@ class Texts(Composer):
 
 
 def read_sheet(text: str, file: str) -> tuple[str, list[Entry]]:
-    """Read an answer sheet in YAML: the student's name ("" if none) and its entries.
+    """Read an answer sheet in YAML.
+
+    Args:
+        text: Contents of the file.
+        file: Name of the file, for error messages.
+
+    Returns:
+        Name of the student ("" if none), and the answers as cells with headings.
 
     Raises:
         ProblemError: The file is not an answer sheet.
@@ -180,15 +196,15 @@ TABLES, SHEETS = (".csv", ".tsv", ".txt", ".xlsx"), (".yaml", ".yml")
 
 
 def read_submissions(path: str | os.PathLike[str], task: Task, students: Collection[str]) -> Iterator[Submission]:
-    """Yield submissions, each read when needed; at the end those of students who handed in nothing.
+    """Yield the submissions one by one, each read when it is requested; students who handed in nothing come last.
 
     Args:
-        path: Folder whose files are named after the students, or a table of all.
+        path: Folder with a file named after each student, or a single table with all students.
         task: Task.
-        students: Known names.
+        students: Names of the students who have variants.
 
     Raises:
-        ProblemError: The path or the whole table cannot be read.
+        ProblemError: The path or the table of all students cannot be read.
     """
     real = Path(os.path.realpath(path))
     reader = _Reader(task, students)
@@ -210,7 +226,10 @@ class _Reader:
             self.alike.setdefault(_folded(student), []).append(student)
 
     def student(self, name: str) -> str:
-        """Return the known student a name means, or the name in printable form."""
+        """Return the known student meant by a name; otherwise the name itself, without unprintable characters.
+
+        Differences of case, spaces and lookalike Cyrillic letters are ignored.
+        """
         if name in self.students:
             return name
         found = self.alike.get(_folded(name), [])
@@ -219,7 +238,7 @@ class _Reader:
         return clean(name.encode(errors="replace").decode().translate(NO_PATH).strip(" ."), 100) or "?"
 
     def folder(self, folder: Path) -> Iterator[Submission]:
-        """Yield the submissions in a folder in the order of file names; two files of one student are refused."""
+        """Yield the submissions in a folder in the order of file names; a student with more than one file is not read."""
         files: dict[str, list[str]] = {}
         for name in sorted(os.listdir(folder)):
             if not name.startswith((".", "~$")) and name.casefold() not in OF_WINDOWS:  # ~$: of an editor that is open
@@ -235,7 +254,7 @@ class _Reader:
                 )
 
     def file(self, path: Path, student: str) -> Submission:
-        """Return the submission in one student's file."""
+        """Read the file of one student."""
         problems: dict[str, None] = {}
         own: list[Entry] = []
         try:
@@ -263,7 +282,7 @@ class _Reader:
         return replace(read, problems=(_("there is no answer in {file}").format(file=clean(path.name)),))
 
     def table(self, path: Path) -> Iterator[Submission]:
-        """Yield the submissions in a table of all students; a YAML sheet belongs to one.
+        """Yield the submissions in a single file: a table with all students, or a YAML sheet of one student.
 
         Raises:
             ProblemError: The table cannot be read.
@@ -289,7 +308,7 @@ class _Reader:
             yield self.answers.submission(student, entries, problems)
 
     def shape(self, rows: list[list[str]], file: str | None = None) -> AnswerColumns:
-        """Return the shape of a table.
+        """Recognise the structure of a table from its first row.
 
         Raises:
             ProblemError: The table is empty or its header cannot be read.
@@ -304,5 +323,5 @@ def _unread(student: str, why: str) -> Submission:
 
 
 def _folded(name: str) -> str:
-    """Return a name without differences in accents, case, spaces, or Latin and Cyrillic lookalikes."""
+    """Return a name in a form for comparison: without differences of case, spaces or lookalike Cyrillic letters."""
     return to_latin(" ".join(unicodedata.normalize("NFC", name).replace("_", " ").split())).casefold()

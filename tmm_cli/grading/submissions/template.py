@@ -1,4 +1,4 @@
-"""Empty answer sheets: quantities, units and blank cells, read back like any other sheet."""
+"""Empty answer sheets with the requested quantities, their units and blank cells."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PLAIN_KEY = re.compile(r"[^\W\d_][\w ,.*/^%°·-]*")
 
 
 def write_template(task: Task, path: str | os.PathLike[str]) -> None:
-    """Write an empty answer sheet for one student in the format of the file extension.
+    """Write an empty answer sheet for one student; the file extension selects the format: .xlsx, .csv or .yaml.
 
     Raises:
         ProblemError: The extension is unknown.
@@ -56,7 +56,7 @@ def _csv(task: Task) -> bytes:
 
 
 def _xlsx(task: Task) -> bytes:
-    """Return the sheet as XLSX; cells without an answer are grey."""
+    """Return the sheet as XLSX; cells in which nothing is to be written are grey."""
     found = io.BytesIO()
     options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
     with open_workbook("XLSX", found, options, _("CSV; or: pip install 'tmm-cli[excel]'")) as book:
@@ -76,7 +76,7 @@ def _xlsx(task: Task) -> bytes:
 
 
 def _yaml(task: Task) -> bytes:
-    """Return the sheet as YAML with a line for every answer."""
+    """Return the sheet as YAML, with a line for each answer."""
     lines = [
         _(
             "# Write the answer after the colon; a different unit goes after the number: 1.31 m/s. Vectors: "
