@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tmm_cli.grading import Given, Heading, Headings, read_answer
+from tmm_cli.grading import Heading, Headings, ReadAnswer, read_answer
 from tmm_cli.problem import ProblemError
 
 
@@ -81,9 +81,9 @@ def test_an_empty_cell_and_a_dash_are_no_answer(text):
 
 
 def test_a_unit_of_the_sheet_counts_where_the_cell_has_none():
-    assert read_answer("1.2", "N", "deg") == Given(1.2, unit="N", text="1.2")
+    assert read_answer("1.2", "N", "deg") == ReadAnswer(1.2, unit="N", text="1.2")
     assert read_answer("1.2 kN", "N").unit == "kN"
-    assert read_answer("1.2 at 3", "N", "rad") == Given(1.2, 3.0, "polar", "N", "rad", "1.2 at 3")
+    assert read_answer("1.2 at 3", "N", "rad") == ReadAnswer(1.2, 3.0, "polar", "N", "rad", "1.2 at 3")
 
 
 ONE = "not a number\n  found:   '{}'\n  allowed: 1,31 m/s, 1.31 or 3·10^-3"

@@ -10,7 +10,7 @@ import zipfile
 import pytest
 import xlsxwriter
 
-from tmm_cli.grading import rows_of, untrusted_tables as cells
+from tmm_cli.grading import read_rows, untrusted_tables as cells
 from tmm_cli.problem import ProblemError
 
 ROWS = [["студент", "OA, mm"], ["Ана", "80,5"]]
@@ -30,13 +30,13 @@ ROWS = [["студент", "OA, mm"], ["Ана", "80,5"]]
 def test_csv_of_all_kinds_is_one_table(data, tmp_path):
     path = tmp_path / "table.csv"
     path.write_bytes(data)
-    assert rows_of(path) == ROWS
+    assert read_rows(path) == ROWS
 
 
 def test_a_single_column_keeps_its_decimal_commas(tmp_path):
     path = tmp_path / "table.csv"
     path.write_text("OA\n80,5\n")
-    assert rows_of(path) == [["OA"], ["80,5"]]
+    assert read_rows(path) == [["OA"], ["80,5"]]
 
 
 def book(path, content):
@@ -49,7 +49,7 @@ def book(path, content):
 
 def test_an_xlsx_gives_numbers_texts_and_values_of_formulas(tmp_path):
     path = book(tmp_path / "t.xlsx", [("A1", "OA"), ("B1", "n1"), ("A2", 80.5), ("B2", "=2*A2", 161), ("A4", 7)])
-    assert rows_of(path) == [["OA", "n1"], ["80.5", "161"], ["7", ""]]
+    assert read_rows(path) == [["OA", "n1"], ["80.5", "161"], ["7", ""]]
 
 
 def packed(path, parts):
@@ -61,7 +61,7 @@ def packed(path, parts):
 
 def refusal(path):
     with pytest.raises(ProblemError) as caught:
-        rows_of(path)
+        read_rows(path)
     return str(caught.value).removeprefix(f"{path}: ")
 
 
@@ -109,7 +109,9 @@ def test_cells_that_do_not_say_where_they_stand_are_not_counted_through(row, tmp
 
 
 def test_a_place_may_stand_behind_other_attributes(tmp_path):
-    assert rows_of(rewritten(tmp_path / "t.xlsx", b"<row r='2'><c s = '0' r = 'B2'><v>1.5</v></c></row>")) == [["1.5"]]
+    assert read_rows(rewritten(tmp_path / "t.xlsx", b"<row r='2'><c s = '0' r = 'B2'><v>1.5</v></c></row>")) == [
+        ["1.5"]
+    ]
 
 
 SHARED = '<sst xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main" {count}><si><t>OA</t></si></sst>'
@@ -150,12 +152,12 @@ def test_a_file_that_ends_the_process_which_reads_it_is_refused_and_the_next_one
     if subprocess.run(read, capture_output=True).returncode == 0:
         pytest.skip("this version of python-calamine reserves no memory by what a file announces")
     with monkeypatch.context() as blind:
-        blind.setattr(cells, "_inspect", lambda *unused: None)
+        blind.setattr(cells, "_inspect_archive", lambda *unused: None)
         told = (
             "reading the file requires too much memory or crashes the process that reads it\n  allowed: a table in CSV"
         )
         assert [refusal(path), refusal(path)] == [told, told]
-    assert rows_of(book(tmp_path / "sound.xlsx", [("A1", "OA")])) == [["OA"]]
+    assert read_rows(book(tmp_path / "sound.xlsx", [("A1", "OA")])) == [["OA"]]
     assert capfd.readouterr().err == ""
 
 

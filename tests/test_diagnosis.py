@@ -8,7 +8,7 @@ import numpy as np
 from test_commands import SHAPER
 
 from tmm_cli.batch import read_task, split_families
-from tmm_cli.grading import Written, cases, diagnose_students, predicted, right
+from tmm_cli.grading import WrittenAnswers, compute_right_answers, diagnose_students, list_cases, predict_answers
 from tmm_cli.mechanics.quantities import ANGULAR_SPEED, LENGTH
 from tmm_cli.problem import read_text
 
@@ -35,7 +35,7 @@ def group():
     random = np.random.default_rng(5)
     columns = np.stack([random.uniform(0.09, 0.12, STUDENTS), random.uniform(7, 10, STUDENTS)], axis=1)
     family = next(split_families(lambda x: task.make(("OA", "n1"), (LENGTH, ANGULAR_SPEED), x), columns))[1]
-    return family, right(family, task.asked)
+    return family, compute_right_answers(family, task.asked)
 
 
 def drawn(values):
@@ -46,7 +46,7 @@ def drawn(values):
     errors = random.uniform(-DRAWING, DRAWING, values.shape) + 1j * vectors * random.uniform(
         -DRAWING, DRAWING, values.shape
     )
-    return Written(values + errors * np.maximum(known.scale, np.abs(values)), np.zeros(values.shape, bool))
+    return WrittenAnswers(values + errors * np.maximum(known.scale, np.abs(values)), np.zeros(values.shape, bool))
 
 
 def test_right_answers_off_a_drawing_accuse_nobody():
@@ -57,8 +57,8 @@ def test_right_answers_off_a_drawing_accuse_nobody():
 def test_what_one_mistake_makes_of_a_sheet_is_explained_by_it():
     """At least 95 of 100 sheets, and at most one of 100 by another one."""
     family, known = group()
-    every, random = cases(family), np.random.default_rng(2)
-    values = np.stack([predicted(family, known.asked, [case]) for case in every])
+    every, random = list_cases(family), np.random.default_rng(2)
+    values = np.stack([predict_answers(family, known.asked, [case]) for case in every])
     with np.errstate(all="ignore"):
         moved = np.max(np.abs(values - known.value) / known.scale, axis=2)
     moves = np.isfinite(moved) & (moved > 4 * DRAWING * 5 / 3)

@@ -10,7 +10,7 @@ from test_commands import SHAPER
 
 from tmm_cli import solve
 from tmm_cli.batch import read_free_parameters, read_task, with_vary
-from tmm_cli.grading import Variety, draw, draw_for, draw_variants
+from tmm_cli.grading import VariantGenerator, draw_numbered_variants, draw_student_variants, draw_variants
 from tmm_cli.problem import ProblemError, read_text
 
 ASKED = """
@@ -31,8 +31,8 @@ def few(monkeypatch):
 
 @cache
 def drawn():
-    variety = Variety(task())
-    return variety, draw(variety, 1, 12)
+    variety = VariantGenerator(task())
+    return variety, draw_numbered_variants(variety, 1, 12)
 
 
 def test_drawn_variants_are_sound_as_files_of_their_own():
@@ -49,8 +49,8 @@ def test_drawn_variants_are_sound_as_files_of_their_own():
 
 def test_what_was_thrown_away_is_counted_by_its_reason():
     variety, _table = drawn()
-    assert variety.thrown["the pressure angle exceeds 30 deg"] > 0
-    assert sum(variety.thrown.values()) < variety.tried
+    assert variety.rejected["the pressure angle exceeds 30 deg"] > 0
+    assert sum(variety.rejected.values()) < variety.tried
 
 
 def test_results_are_spread_over_their_range():
@@ -64,19 +64,19 @@ def test_results_are_spread_over_their_range():
 
 def test_a_student_has_a_variant_by_the_seed_and_the_name_alone():
     names = ["Ana", "Бојан", "Čeda", "<script>"]
-    few = draw_for(Variety(task()), 7, names)
-    more = draw_for(Variety(task()), 7, ["Aaron", *reversed(names), "Zoran"])
+    few = draw_student_variants(VariantGenerator(task()), 7, names)
+    more = draw_student_variants(VariantGenerator(task()), 7, ["Aaron", *reversed(names), "Zoran"])
     assert {name: more.rows[name] for name in names} == few.rows
     assert len(set(more.rows.values())) == 6
-    assert draw_for(Variety(task()), 8, names).rows != few.rows
+    assert draw_student_variants(VariantGenerator(task()), 8, names).rows != few.rows
 
 
 def test_one_by_one_they_are_judged_as_together():
-    variety = Variety(task())
+    variety = VariantGenerator(task())
     picks = np.array([[0, 0, 0], [28, 0, 0], [4, 50, 2]])
-    together = variety.judged(picks)
+    together = variety.check(picks)
     variety.alone = True
-    alone = variety.judged(picks)
+    alone = variety.check(picks)
     assert (
         together.why.tolist()
         == alone.why.tolist()

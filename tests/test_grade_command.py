@@ -73,7 +73,9 @@ def test_a_second_run_grades_what_has_changed_alone(course, monkeypatch):
 
 def test_a_run_that_is_stopped_keeps_what_is_graded(course, monkeypatch):
     monkeypatch.setattr(run, "CHUNK", 5)
-    monkeypatch.setattr(run, "keep", lambda *own, do=run.keep: do(*own) or signal.raise_signal(signal.SIGINT))
+    monkeypatch.setattr(
+        run, "append_marks", lambda *own, do=run.append_marks: do(*own) or signal.raise_signal(signal.SIGINT)
+    )
     done = graded(course, "--jobs", 1)
     assert done.returncode == 1
     assert after_the_echo(done.stderr).splitlines() == [

@@ -23,17 +23,17 @@ from tmm_cli.grading import (
     Gradebook,
     Mark,
     StudentMarks,
-    chart,
-    commonest,
+    count_by_points,
     direction,
+    draw_group_chart,
     exports,
-    hardest,
-    histogram,
     points_text,
+    printable_text,
+    rank_difficulties,
+    rank_mistakes,
     share_text,
-    shown,
     statistics_tables,
-    write,
+    write_formats,
 )
 from tmm_cli.grading.exports import xlsx
 from tmm_cli.problem import read_text
@@ -95,7 +95,7 @@ def absent(student, *problems):
 
 
 def written(folder, book, *formats):
-    write(folder, book, formats or tuple(EXPORTS))
+    write_formats(folder, book, formats or tuple(EXPORTS))
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
@@ -195,7 +195,7 @@ def test_a_workbook_has_marks_answers_and_the_group(own, tmp_path):
 def test_where_nothing_writes_workbooks_the_rest_is_written_and_it_is_said(own, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "xlsxwriter", None)
     told = []
-    write(tmp_path, Gradebook(own, [marks("Ann")]), ("xlsx", "moodle"), told.append)
+    write_formats(tmp_path, Gradebook(own, [marks("Ann")]), ("xlsx", "moodle"), told.append)
     assert os.listdir(tmp_path) == ["moodle.csv"]
     assert told == [
         ("writing marks.xlsx requires xlsxwriter, which is not installed\n  allowed: pip install 'tmm-cli[excel]'")
@@ -310,7 +310,7 @@ def test_nothing_of_hostile_names_and_answers_becomes_more_than_text(own, tmp_pa
             assert not set(text) & set("\0\r\t\u202e\u2066") and "x" * 600 not in text and "nan" not in text
     ElementTree.fromstring(files["junit.xml"])
     rows = CalamineWorkbook.from_filelike(io.BytesIO(files["marks.xlsx"])).get_sheet_by_name("Marks").to_python()
-    assert [row[0] for row in rows[1:]] == [shown(name) for name in HOSTILE]
+    assert [row[0] for row in rows[1:]] == [printable_text(name) for name in HOSTILE]
 
 
 def test_what_is_no_number_is_no_number_in_any_table(own, tmp_path):
@@ -325,7 +325,7 @@ def test_an_error_on_the_way_leaves_the_old_files_and_nothing_else(own, tmp_path
     (tmp_path / "marks" / "my notes.txt").write_text("mine")
     monkeypatch.setitem(exports.EXPORTS, "drawing", lambda book: iter([("group.png", (b"", 1 / 0))]))
     with pytest.raises(ZeroDivisionError):
-        write(tmp_path / "marks", Gradebook(own, [marks("Ann", text="other")]))
+        write_formats(tmp_path / "marks", Gradebook(own, [marks("Ann", text="other")]))
     after = {str(p.relative_to(tmp_path / "marks")): p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()}
     assert after == before | {"my notes.txt": b"mine"}
 
@@ -347,9 +347,9 @@ def test_points_are_written_as_people_do():
 
 def test_statistics_are_of_those_who_handed_in(own):
     group = [marks("Ann"), marks("Bob", problems=("row 9: no number",), copied="Ann"), absent("Eve")]
-    assert histogram(group).tolist() == [0, 0, 0, 0, 0, 2, 0, 0, 0, 0]
-    assert [(one.name, one.share) for one in hardest(own, group)][:2] == [("class", 0), ("v of E", 0)]
-    assert commonest(group) == [("Coriolis", 2, 2)]
+    assert count_by_points(group).tolist() == [0, 0, 0, 0, 0, 2, 0, 0, 0, 0]
+    assert [(one.name, one.share) for one in rank_difficulties(own, group)][:2] == [("class", 0), ("v of E", 0)]
+    assert rank_mistakes(group) == [("Coriolis", 2, 2)]
     found = {table.name: table for table in statistics_tables(own, group)}
     assert list(found) == ["group", "histogram", "hardest", "mistakes", "copies", "problems"]
     assert found["group"].notes == ("students: 3", "without an answer (not counted): 1")
@@ -362,4 +362,4 @@ def test_statistics_are_of_those_who_handed_in(own):
 def test_a_group_without_an_answer_has_no_figures(own):
     assert [table.name for table in statistics_tables(own, [absent("Ann", "no such file")])] == ["problems"]
     assert [table.name for table in statistics_tables(own, [])] == []
-    assert "no typical mistake was recognised" in chart(own, [absent("Ann")]).texts()
+    assert "no typical mistake was recognised" in draw_group_chart(own, [absent("Ann")]).texts()

@@ -10,19 +10,19 @@ from test_variants_of_task import family_of
 
 from tmm_cli.batch import read_task
 from tmm_cli.grading import (
-    Given,
     OtherZero,
+    ReadAnswer,
     Sense,
     Submission,
     VariantTable,
-    Written,
+    WrittenAnswers,
     diagnose_students,
-    following,
+    find_carried_errors,
+    find_copies,
     grade,
-    own_answer,
-    predicted,
-    solve,
-    with_copies,
+    predict_answers,
+    replace_by_own_answer,
+    solve_with_mistakes,
 )
 from tmm_cli.problem import read_text
 
@@ -47,7 +47,7 @@ def sheet(values):
     for asked, value in zip(TASK.asked, values, strict=True):
         unit = UNITS.get(asked.quantity.name.split(" of ")[0], "N")
         two = asked.quantity.vector
-        found[asked.key] = Given(value.real, value.imag if two else 0.0, "components" if two else "number", unit)
+        found[asked.key] = ReadAnswer(value.real, value.imag if two else 0.0, "components" if two else "number", unit)
     return found
 
 
@@ -78,14 +78,16 @@ def test_an_early_mistake_costs_its_own_points_only(wrong, follow):
     family, known = group()
     k = next(k for k, asked in enumerate(known.asked) if asked.name == wrong)
     value = known.value[:, k][:, None] + 0.4 * known.scale[:, k][:, None]
-    own = own_answer(known.asked[k].quantity, value, solve(family).motion, known.value[:, k][:, None])
-    values = predicted(family, known.asked, [own])
+    own = replace_by_own_answer(
+        known.asked[k].quantity, value, solve_with_mistakes(family).motion, known.value[:, k][:, None]
+    )
+    values = predict_answers(family, known.asked, [own])
     same = [j for j, asked in enumerate(known.asked) if asked.position == known.asked[k].position and j >= k]
     mixed = known.value.copy()
     mixed[:, same] = values[:, same]
     mixed[:, k] = value[:, 0]
-    written = Written(mixed, np.zeros(mixed.shape, bool))
-    found = following(family, known, written, diagnose_students(family, known, written))
+    written = WrittenAnswers(mixed, np.zeros(mixed.shape, bool))
+    found = find_carried_errors(family, known, written, diagnose_students(family, known, written))
     failed = known.error(written) > known.allowed
     for n in range(len(family)):
         lost = [known.asked[j].name for j in np.flatnonzero(failed[n]) if (n, int(j)) not in found]
@@ -108,7 +110,7 @@ def test_an_answer_that_follows_says_from_what():
 def test_the_sheet_of_another_variant_is_named_to_the_teacher():
     rows = rights()
     rows[3] = rows[5]
-    found = with_copies(list(grade(TASK, TABLE, [Submission(n, sheet(r)) for n, r in zip(NAMES, rows, strict=True)])))
+    found = find_copies(list(grade(TASK, TABLE, [Submission(n, sheet(r)) for n, r in zip(NAMES, rows, strict=True)])))
     assert [marks.copied for marks in found] == ["", "", "", NAMES[5], "", "", "", ""]
     assert not any("student 5" in reason for mark in found[3].marks for reason in mark.reasons)
 
@@ -118,14 +120,17 @@ def test_a_crank_turned_the_wrong_way_has_its_loads_in_the_same_part_of_the_turn
     table = VariantTable(("OA", "n1"), {"1": ("110", "82 rpm"), "2": ("105", "70 rpm")})
     given = family_of(read_task(read_text(text + ASKED, "t")), table)
     other = family_of(read_task(read_text(text.replace("turns: ccw", "turns: cw") + ASKED, "t")), table)
-    moment = [solve(one).reactions.balance.moment for one in (OtherZero(True).family(Sense(True).family(given)), other)]
+    moment = [
+        solve_with_mistakes(one).reactions.balance.moment
+        for one in (OtherZero(True).change_family(Sense(True).change_family(given)), other)
+    ]
     assert moment[0] == pytest.approx(moment[1], rel=1e-12)
 
 
 def test_positions_may_be_counted_from_either_extreme_position():
     either = ASKED.replace("grading:", "grading:\n  from: either")
     task = read_task(read_text(SHAPER.read_text(encoding="utf-8") + either, "task.yaml"))
-    rows, others = rights(), predicted(OtherZero(True).family(family_of(TASK, TABLE)), TASK.asked)
+    rows, others = rights(), predict_answers(OtherZero(True).change_family(family_of(TASK, TABLE)), TASK.asked)
     sheets = [sheet(rows[0]), sheet(others[1])]
     found = list(grade(task, TABLE, [Submission(n, own) for n, own in zip(NAMES, sheets, strict=False)]))
     assert [marks.points for marks in found] == [11.0, 11.0]
@@ -136,7 +141,7 @@ def test_positions_may_be_counted_from_either_extreme_position():
 def test_where_a_guides_reaction_acts_is_not_judged_where_it_is_nearly_zero():
     text = (ROOT / "problems" / "crank-slider.yaml").read_text(encoding="utf-8")
     task = read_task(read_text(text + "grading: {answers: [{of: arm of R_03, at: [5, 8, 9, 10]}]}", "task.yaml"))
-    answers = {asked.key: Given(1e6, unit="mm") for asked in task.asked}
+    answers = {asked.key: ReadAnswer(1e6, unit="mm") for asked in task.asked}
     (marks,) = grade(task, VariantTable((), {"one": ()}), [Submission("one", answers)])
     assert [mark.state for mark in marks.marks] == ["wrong", "wrong", "right", "wrong"]
     assert np.isnan(marks.marks[2].right)

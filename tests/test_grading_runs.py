@@ -15,13 +15,23 @@ import pytest
 from test_commands import ROOT
 
 from tmm_cli.batch import in_processes, on_cluster, read_task, run_here, workers
-from tmm_cli.grading import Given, Mark, StudentMarks, Submission, VariantTable, graded, keep, read_kept, run
+from tmm_cli.grading import (
+    Mark,
+    ReadAnswer,
+    StudentMarks,
+    Submission,
+    VariantTable,
+    append_marks,
+    grade_group,
+    read_saved_marks,
+    run,
+)
 from tmm_cli.problem import ProblemError, read_text
 
 SINE = (ROOT / "problems" / "sine.yaml").read_text(encoding="utf-8")
 ASKED = "\ngrading: {answers: [{of: H}, {of: v of E, at: 3}]}\n"
 TABLE = VariantTable(("r",), {f"S{n}": (f"{90 + n / 10}",) for n in range(12)})
-GIVEN = {("H", None): Given(180.0), ("v of E", 3): Given(0.99)}
+GIVEN = {("H", None): ReadAnswer(180.0), ("v of E", 3): ReadAnswer(0.99)}
 GROUP = [Submission(student, GIVEN) for student in TABLE.rows]
 
 
@@ -47,13 +57,13 @@ def counted(done):
 
 def test_a_second_run_grades_only_what_has_changed(small, tmp_path):
     kept, done, seen = tmp_path / "marks" / ".graded", [], []
-    first = graded(task(), TABLE, GROUP, counted(done), kept)
+    first = grade_group(task(), TABLE, GROUP, counted(done), kept)
     assert done == [4, 4, 4]
-    assert repr(graded(task(), TABLE, GROUP, counted(done), kept, seen.append)) == repr(first)
+    assert repr(grade_group(task(), TABLE, GROUP, counted(done), kept, seen.append)) == repr(first)
     assert done == [4, 4, 4] and seen == [12]
     changed = [*GROUP[:5], replace(GROUP[5], answers={}), *GROUP[6:]]
     moved = replace(TABLE, rows=TABLE.rows | {"S7": ("92",)})
-    second = graded(task(), moved, changed, counted(done), kept)
+    second = grade_group(task(), moved, changed, counted(done), kept)
     assert done == [4, 4, 4, 2] and second[6] == first[6] and {m.state for m in second[5].marks} == {"missing"}
 
 
@@ -73,8 +83,8 @@ def test_marks_of_every_form_come_back_as_they_were_kept(mark, tmp_path):
         "key": StudentMarks("Ана", (mark, mark), ("this student has no variant",)),
         "none": StudentMarks("", ()),
     }
-    keep(tmp_path / ".graded", marks)
-    again = read_kept(tmp_path / ".graded", {"key", "none"})
+    append_marks(tmp_path / ".graded", marks)
+    again = read_saved_marks(tmp_path / ".graded", {"key", "none"})
     assert repr(again) == repr(marks).replace("value=0.0", "value=0j").replace("right=0.18", "right=(0.18+0j)")
 
 
@@ -84,21 +94,21 @@ def test_marks_of_every_form_come_back_as_they_were_kept(mark, tmp_path):
         Submission("nobody"),
         Submission("nobody", GIVEN),
         Submission("S1", problems=("broken",), unread=True),
-        Submission("S2", GIVEN | {("v of E", 99): Given(1.0)}),
-        Submission("S3", {("H", None): Given(0.0)}),
-        Submission("S4", {("v of E", 3): Given(1.0, 2.0, "polar", "m/s", "deg", "1 at 2")}),
+        Submission("S2", GIVEN | {("v of E", 99): ReadAnswer(1.0)}),
+        Submission("S3", {("H", None): ReadAnswer(0.0)}),
+        Submission("S4", {("v of E", 3): ReadAnswer(1.0, 2.0, "polar", "m/s", "deg", "1 at 2")}),
     ],
     ids=lambda one: one.student,
 )
 def test_marks_of_every_kind_of_submission_are_the_same_in_a_second_run(submission, tmp_path):
-    first, again = (graded(task(), TABLE, [submission], run_here, tmp_path / ".graded") for __ in range(2))
-    assert repr(again) == repr(first) == repr(graded(task(), TABLE, [submission]))
+    first, again = (grade_group(task(), TABLE, [submission], run_here, tmp_path / ".graded") for __ in range(2))
+    assert repr(again) == repr(first) == repr(grade_group(task(), TABLE, [submission]))
 
 
 def test_a_task_that_has_changed_is_graded_anew(tmp_path):
     done = []
     for one in (task(), task(ASKED.replace("{of: H}", "{of: H, points: 2}"))):
-        graded(one, TABLE, GROUP, counted(done), tmp_path / ".graded")
+        grade_group(one, TABLE, GROUP, counted(done), tmp_path / ".graded")
     assert done == [12, 12]
 
 
@@ -114,26 +124,26 @@ def test_a_task_that_has_changed_is_graded_anew(tmp_path):
 )
 def test_what_is_damaged_of_the_kept_marks_is_graded_again(spoil, tmp_path):
     kept, done = tmp_path / ".graded", []
-    first = graded(task(), TABLE, GROUP, run_here, kept)
+    first = grade_group(task(), TABLE, GROUP, run_here, kept)
     kept.write_bytes(spoil(kept.read_bytes()))
-    assert repr(graded(task(), TABLE, GROUP, counted(done), kept)) == repr(first)
+    assert repr(grade_group(task(), TABLE, GROUP, counted(done), kept)) == repr(first)
     assert sum(done) > 0
-    assert repr(graded(task(), TABLE, GROUP, counted(done := []), kept)) == repr(first) and not done
+    assert repr(grade_group(task(), TABLE, GROUP, counted(done := []), kept)) == repr(first) and not done
 
 
 @pytest.mark.parametrize("way", [run_here, in_processes(2)], ids=["here", "processes"])
 def test_what_is_graded_before_a_stop_is_kept_and_the_gradebook_is_the_same_to_the_last_bit(way, small, tmp_path):
     kept, seen, done = tmp_path / ".graded", [], []
-    part = graded(task(), TABLE, GROUP, way, kept, seen.append, lambda: any(seen))
+    part = grade_group(task(), TABLE, GROUP, way, kept, seen.append, lambda: any(seen))
     assert 4 <= len(part) == sum(seen)
-    whole = graded(task(), TABLE, GROUP, counted(done), kept)
+    whole = grade_group(task(), TABLE, GROUP, counted(done), kept)
     assert sum(done) == 12 - sum(seen)
-    assert repr(whole) == repr(graded(task(), TABLE, GROUP))
+    assert repr(whole) == repr(grade_group(task(), TABLE, GROUP))
 
 
 def test_what_fails_is_told_of_its_student_and_stops_nothing():
     table = replace(TABLE, rows=TABLE.rows | {"S3": ("90 N",), "S4": ("four",)})
-    marks = graded(task(), table, [*GROUP, Submission("nobody")])
+    marks = grade_group(task(), table, [*GROUP, Submission("nobody")])
     told = {one.student: one.problems[0] for one in marks if one.problems}
     assert told == {
         "S3": "could not be graded: task.yaml:16:44: links.1.length: expected here: a length; "
@@ -146,13 +156,13 @@ def test_what_fails_is_told_of_its_student_and_stops_nothing():
 
 def test_a_table_of_other_parameters_is_refused_before_the_work():
     with pytest.raises(ProblemError, match="no parameter has this name"):
-        graded(task(), replace(TABLE, names=("R",)), GROUP)
+        grade_group(task(), replace(TABLE, names=("R",)), GROUP)
 
 
 def test_no_scheduler_is_one_line(monkeypatch):
     monkeypatch.setattr(workers, "ANSWER_TIMEOUT", 0.2)
     with pytest.raises(ProblemError, match="no scheduler answers at this address"):
-        graded(task(), TABLE, GROUP, on_cluster("tcp://127.0.0.1:9"))
+        grade_group(task(), TABLE, GROUP, on_cluster("tcp://127.0.0.1:9"))
 
 
 @pytest.mark.parametrize(
@@ -161,7 +171,7 @@ def test_no_scheduler_is_one_line(monkeypatch):
 def test_an_address_that_is_none_is_one_line(address):
     pytest.importorskip("distributed")
     with pytest.raises(ProblemError) as refused:
-        graded(task(), TABLE, GROUP, on_cluster(address))
+        grade_group(task(), TABLE, GROUP, on_cluster(address))
     told = f"not an address of a scheduler\n  found:   '{address}'\n  allowed: tcp://host:8786"
     assert str(refused.value) == told
 
@@ -170,7 +180,7 @@ def test_a_server_that_says_nothing_is_one_line(monkeypatch):
     pytest.importorskip("distributed")
     monkeypatch.setattr(workers, "ANSWER_TIMEOUT", 0.2)
     with socket.create_server(("127.0.0.1", 0)) as server, pytest.raises(ProblemError, match="no scheduler answers"):
-        graded(task(), TABLE, GROUP, on_cluster(f"127.0.0.1:{server.getsockname()[1]}"))
+        grade_group(task(), TABLE, GROUP, on_cluster(f"127.0.0.1:{server.getsockname()[1]}"))
 
 
 def started(tmp_path, kind, *options, path=ROOT):
@@ -198,7 +208,7 @@ def test_a_scheduler_without_workers_and_a_worker_with_another_program_are_one_l
         address = address_of(tmp_path)
         monkeypatch.setattr(workers, "ANSWER_TIMEOUT", 0.5)
         with pytest.raises(ProblemError, match="the scheduler has no workers") as refused:
-            graded(task(), TABLE, GROUP, on_cluster(address))
+            grade_group(task(), TABLE, GROUP, on_cluster(address))
         assert refused.value.allowed == f"dask worker {address}"
         monkeypatch.setattr(workers, "ANSWER_TIMEOUT", 60)
         (tmp_path / "old" / "tmm_cli").mkdir(parents=True)
@@ -206,7 +216,7 @@ def test_a_scheduler_without_workers_and_a_worker_with_another_program_are_one_l
         worker = started(tmp_path, "worker", "--no-nanny", "--nthreads", "1", path=tmp_path / "old")
         processes_of_dask.append(worker)
         with pytest.raises(ProblemError, match="a worker of the cluster has a different version of tmm"):
-            graded(task(), TABLE, GROUP, on_cluster(address))
+            grade_group(task(), TABLE, GROUP, on_cluster(address))
     finally:
         for process in processes_of_dask:
             process.kill()
@@ -247,7 +257,9 @@ def test_a_cluster_that_loses_a_worker_on_the_way_gives_the_same_gradebook(dask,
         if sum(seen) == 2:
             workers[0].kill()
 
-    assert repr(graded(task(), TABLE, GROUP, on_cluster(address), None, lose)) == repr(graded(task(), TABLE, GROUP))
+    assert repr(grade_group(task(), TABLE, GROUP, on_cluster(address), None, lose)) == repr(
+        grade_group(task(), TABLE, GROUP)
+    )
     assert seen == [0, *[1] * 12]
 
 
@@ -262,4 +274,4 @@ def test_a_cluster_that_loses_all_its_workers_is_one_line(dask, monkeypatch):
                 one.kill()
 
     with pytest.raises(ProblemError, match="the scheduler has no workers"):
-        graded(task(), TABLE, GROUP, on_cluster(address), None, lose)
+        grade_group(task(), TABLE, GROUP, on_cluster(address), None, lose)

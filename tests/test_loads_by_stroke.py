@@ -9,7 +9,7 @@ import pytest
 
 from tmm_cli import load, prepare, solve
 from tmm_cli.batch import Task, read_task
-from tmm_cli.grading import Given, Submission, VariantTable, grade
+from tmm_cli.grading import ReadAnswer, Submission, VariantTable, grade
 from tmm_cli.mechanics.accuracy import judge_values
 from tmm_cli.problem import ProblemError, build_any_problem, build_problem, read_text
 from tmm_cli.reports import input_data_tables
@@ -153,7 +153,7 @@ def test_grading_gives_each_student_the_strokes_of_his_own_pistons():
     submissions = []
     for name, (crank,) in table.rows.items():
         moment = solved(TWO_PISTONS.replace("r: 50", f"r: {crank}")).reactions.balance.moment
-        answers = {("M_b", k): Given(moment[k], unit="N*m") for k in (2, 4, 9)}
+        answers = {("M_b", k): ReadAnswer(moment[k], unit="N*m") for k in (2, 4, 9)}
         submissions.append(Submission(name, answers))
     marks = list(grade(task, table, submissions))
     assert [mark.state for student in marks for mark in student.marks] == ["right"] * 6

@@ -15,7 +15,7 @@ from test_commands import tmm
 
 from tmm_cli import solve
 from tmm_cli.batch import read_task
-from tmm_cli.grading import Given, Submission, VariantTable, grade
+from tmm_cli.grading import ReadAnswer, Submission, VariantTable, grade
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.structure import analyse_structure
 from tmm_cli.problem import ProblemError, build_problem, read_text
@@ -263,7 +263,7 @@ def marked(answers):
     """States of the answers of a student of the V engine, sizes in N by quantity, at position 10."""
     asked = ", ".join(f"{{of: {name}, at: 10}}" for name in answers)
     task = read_task(read_text(V_ENGINE + f"grading: {{drawn: false, answers: [{asked}]}}\n", "task.yaml"))
-    given = {(name, 10): Given(size, unit="N") for name, size in answers.items()}
+    given = {(name, 10): ReadAnswer(size, unit="N") for name, size in answers.items()}
     (marks,) = grade(task, VariantTable((), {"one": ()}), [Submission("one", given)])
     return {mark.key[0]: (mark.state, abs(mark.right)) for mark in marks.marks}
 
@@ -291,7 +291,7 @@ def test_a_reaction_given_by_components_has_the_direction_of_its_attachment():
     task = read_task(read_text(V_ENGINE + "grading: {drawn: false, answers: [{of: R_12, at: 10}]}\n", "task.yaml"))
     states = []
     for force in (pin["2"], -pin["1"], pin["1"]):
-        given = {("R_12", 10): Given(force.real, force.imag, "components", "N")}
+        given = {("R_12", 10): ReadAnswer(force.real, force.imag, "components", "N")}
         (marks,) = grade(task, VariantTable((), {"one": ()}), [Submission("one", given)])
         states += [mark.state for mark in marks.marks]
     assert states == ["right", "right", "wrong"]

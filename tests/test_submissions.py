@@ -10,17 +10,17 @@ import pytest
 import xlsxwriter
 from test_variants_of_task import TABLE, family_of, task
 
-from tmm_cli.grading import Given, grade, read_submissions, rows_of, write_template
+from tmm_cli.grading import ReadAnswer, grade, read_rows, read_submissions, write_template
 from tmm_cli.grading.submissions import answers, read as reading
 from tmm_cli.problem import ProblemError
 
 OWN = task()  # asks H, k, class, v of E at 3 and 7, a of E at 3, R_34 at 7, M_b at 3 and 7
 FIVE = {
-    ("H", None): Given(414.5, unit="mm"),
-    ("class", None): Given(2.0),
-    ("v of E", 7): Given(1.2, 180.0, "polar", "m/s", "deg"),
-    ("R_34", 7): Given(1.2, -3.4, "components", "kN"),
-    ("M_b", 3): Given(-20.0, unit="N*m"),
+    ("H", None): ReadAnswer(414.5, unit="mm"),
+    ("class", None): ReadAnswer(2.0),
+    ("v of E", 7): ReadAnswer(1.2, 180.0, "polar", "m/s", "deg"),
+    ("R_34", 7): ReadAnswer(1.2, -3.4, "components", "kN"),
+    ("M_b", 3): ReadAnswer(-20.0, unit="N*m"),
 }
 LONG = """quantity;position;value;unit;x;y;size;angle, deg
 H;;414,5;mm;;;;
@@ -349,7 +349,7 @@ def filled(path):
         given = ["1,5", "2.5", "II", "4.5 at 30 deg", "(5,5; -30)", "6.5 at 30 deg", "(7.5; -30)", "8.5", "−9,5"]
         path.write_text("\n".join([*lines[:2], *map(" ".join, zip(lines[2:], given, strict=True))]), encoding="utf-8")
         return
-    header, *rows = rows_of(path)
+    header, *rows = read_rows(path)
     numbers = (str(n + 1.5) for n in range(9))
     for row, number in zip(rows, numbers, strict=True):
         row[3:] = ["", "", "", number, "30"] if row[1] == "3" else ["", number, "-30"]

@@ -8,7 +8,14 @@ from test_commands import ROOT, SHAPER
 
 from tmm_cli import solve
 from tmm_cli.batch import read_task, split_families
-from tmm_cli.grading import Given, Submission, VariantTable, grade, numbers_of, solve as solved
+from tmm_cli.grading import (
+    ReadAnswer,
+    Submission,
+    VariantTable,
+    grade,
+    read_parameter_values,
+    solve_with_mistakes as solved,
+)
 from tmm_cli.problem import ProblemError, read_text
 
 ASKED = """
@@ -26,7 +33,7 @@ def task():
 
 
 def family_of(own, table=TABLE):
-    dimensions, columns = numbers_of(own, table, list(table.rows))
+    dimensions, columns = read_parameter_values(own, table, list(table.rows))
     return next(split_families(lambda numbers: own.make(table.names, dimensions, numbers), columns))[1]
 
 
@@ -92,13 +99,13 @@ def test_a_variant_that_its_sketch_shows_badly_is_found_alone():
     text = (ROOT / "problems/shaking-screen.yaml").read_text(encoding="utf-8")
     own = read_task(read_text(text + "grading: {answers: [{of: M_b, at: 3}]}", "task.yaml"))
     table = VariantTable(("CE",), {"1": ("180",), "2": ("185",), "3": ("230",)})
-    dimensions, columns = numbers_of(own, table, list(table.rows))
+    dimensions, columns = read_parameter_values(own, table, list(table.rows))
     found = list(split_families(lambda numbers: own.make(table.names, dimensions, numbers), columns))
     assert [rows.tolist() for rows, _ in found] == [[0, 1], [2]]
 
 
 def test_bare_numbers_of_a_table_are_in_the_units_of_the_file():
-    _, columns = numbers_of(task(), TABLE, ["1", "3"])
+    _, columns = read_parameter_values(task(), TABLE, ["1", "3"])
     assert columns == pytest.approx(np.array([[0.11, 82 * np.pi / 30], [0.12, 90 * np.pi / 30]]))
 
 
@@ -106,13 +113,13 @@ def test_an_angle_is_judged_to_a_degree_or_two_however_little_the_link_swings():
     own = read_task(read_text(SHAPER.read_text(encoding="utf-8") + "grading: {answers: [{of: phi of 3, at: 3}]}", "t"))
     right = np.degrees(solve(own.problem).motion.link("3").angle[3])
     key = ("phi of 3", 3)
-    sheets = [Submission("1", {key: Given(right + off, unit="deg")}) for off in (361, -1, 2.5, -4)]
+    sheets = [Submission("1", {key: ReadAnswer(right + off, unit="deg")}) for off in (361, -1, 2.5, -4)]
     states = [next(grade(own, ITS_OWN, [sheet])).marks[0].state for sheet in sheets]
     assert states == ["right", "right", "wrong", "wrong"]
 
 
 def test_answers_are_judged_against_the_largest_value_of_the_cycle():
-    given = {("H", None): Given(414), ("v of E", 3): Given(1.31), ("M_b", 3): Given(200, unit="N*m")}
+    given = {("H", None): ReadAnswer(414), ("v of E", 3): ReadAnswer(1.31), ("M_b", 3): ReadAnswer(200, unit="N*m")}
     marks, none = grade(task(), TABLE, [Submission("1", given), Submission("nobody")])
     states = {mark.key: mark.state for mark in marks.marks}
     assert [states[key] for key in given] == ["right", "right", "wrong"]

@@ -14,13 +14,13 @@ from tmm_cli.grading import (
     TaskSheets,
     VariantTable,
     compute_answer_key,
+    describe_idle_questions,
     draw_variants,
-    idle_questions,
-    meaning,
-    problem_text,
+    explain_quantity,
+    read_rows,
     read_students,
     read_table,
-    rows_of,
+    variant_problem_text,
 )
 from tmm_cli.problem import ProblemError
 
@@ -58,8 +58,10 @@ def test_a_sheet_says_what_every_name_stands_for_and_how_vectors_are_answered(wr
     page = (written[0] / "Иванов_Иван.md").read_text(encoding="utf-8")
     assert "| M\\_b | 3 | N\\*m | 1 | balancing moment on the input link, positive counterclockwise |" in page
     assert "3.6 at 34 deg" in page
-    assert all(map(meaning, task().quantities))
-    assert meaning("v of 2 on 3") != meaning("v of E") and meaning("M of 3") != meaning("M_b")
+    assert all(map(explain_quantity, task().quantities))
+    assert explain_quantity("v of 2 on 3") != explain_quantity("v of E") and explain_quantity(
+        "M of 3"
+    ) != explain_quantity("M_b")
 
 
 def test_names_run_nothing_and_lead_nowhere(written):
@@ -83,7 +85,7 @@ def _rows(path):
 def test_a_name_does_not_turn_the_writing_of_a_sheet_round():
     own, text = task(), SHAPER.read_text(encoding="utf-8") + ASKED
     sheets = TaskSheets(own, text, VariantTable(("OA",), {"\u202eanA": ("110",)}))
-    pages = [page.decode() for name, page in sheets.of("\u202eanA") if name.endswith((".md", ".html"))]
+    pages = [page.decode() for name, page in sheets.build_files("\u202eanA") if name.endswith((".md", ".html"))]
     assert all("\ufffdanA" in page and "\u202e" not in page for page in pages)
 
 
@@ -99,7 +101,7 @@ def test_the_key_has_every_answer_of_every_student(written):
 def test_what_can_tell_nothing_is_said():
     own = task("\ngrading: {answers: [{of: v of E, at: [0, 3]}]}\n")
     lines = list(compute_answer_key(own, VariantTable(("OA",), {"Ana": ("110",), "Iva": ("115",)})))
-    assert list(idle_questions(lines)) == [
+    assert list(describe_idle_questions(lines)) == [
         "v of E at 0: not informative: zero counts as a right answer (students: 2 of 2)"
     ]
 
@@ -163,12 +165,12 @@ def test_students_are_read_from_the_first_column_or_that_of_their_names(tmp_path
     assert read_students(path) == ("Ana", "Iva")
     path.write_text("group,Student\n1,Ana\n1,Iva\n")
     assert read_students(path) == ("Ana", "Iva")
-    assert rows_of(path)[0] == ["group", "Student"]
+    assert read_rows(path)[0] == ["group", "Student"]
 
 
 def test_a_problem_text_keeps_all_but_the_values_and_the_blocks_of_the_teacher():
     text = "tmm: 1\nparameters: {OA: '1', n1: 82 rpm}   # why\nvariants: {OA: [1, 2]}\ngrading:\n  a: 1\nlinks: {}\n"
-    assert problem_text(text, {"OA": "2.5", "n1": "70 об/мин"}) == (
+    assert variant_problem_text(text, {"OA": "2.5", "n1": "70 об/мин"}) == (
         "tmm: 1\nparameters: {OA: 2.5, n1: 70 об/мин}   # why\nlinks: {}\n"
     )
 

@@ -14,7 +14,7 @@ import numpy as np
 import xlsxwriter
 
 from tmm_cli.batch import read_task, split_families
-from tmm_cli.grading import VariantTable, cases, numbers_of, predicted, right
+from tmm_cli.grading import VariantTable, compute_right_answers, list_cases, predict_answers, read_parameter_values
 from tmm_cli.problem import read_file
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
@@ -127,16 +127,16 @@ def written(asked, value):
 
 def sheets(task, table, random):
     """Answers of every student, as text; None: nothing that could be read."""
-    dimensions, columns = numbers_of(task, table, NAMES)
+    dimensions, columns = read_parameter_values(task, table, NAMES)
     family = next(split_families(lambda x: task.make(table.names, dimensions, x), columns))[1]
-    known = right(family, task.asked)
-    by_kind = {type(case).__name__: case for case in reversed(cases(family))}
+    known = compute_right_answers(family, task.asked)
+    by_kind = {type(case).__name__: case for case in reversed(list_cases(family))}
     found = []
     for n in range(len(NAMES)):
         values = known.value[n]
         case = by_kind.get(MISTAKES.get(n, ""))
         if case is not None:
-            values = predicted(family.take(np.array([n])), task.asked, [case])[0]
+            values = predict_answers(family.take(np.array([n])), task.asked, [case])[0]
         if MISTAKES.get(n) == "copy":
             values = known.value[n - 7]
         if MISTAKES.get(n) == "late":  # an early answer that is wrong, and what follows from it

@@ -27,18 +27,18 @@ from tmm_cli.bench.measured import CLOCK, Measurement, target_slack, text_table
 from tmm_cli.grading import (
     CHUNK,
     Mistake,
-    Right,
+    RightAnswers,
+    VariantGenerator,
     VariantTable,
-    Variety,
-    Written,
-    cases,
+    WrittenAnswers,
+    compute_right_answers,
     diagnose_students,
-    following,
-    numbers_of,
-    own_answer,
-    predicted,
-    right,
-    solve,
+    find_carried_errors,
+    list_cases,
+    predict_answers,
+    read_parameter_values,
+    replace_by_own_answer,
+    solve_with_mistakes,
 )
 from tmm_cli.mechanics.numerics import Real, Vector
 from tmm_cli.problem import read_text
@@ -62,18 +62,18 @@ class StudentGroup:
     task: Task
     table: VariantTable
     family: VariantFamily
-    right: Right
+    right: RightAnswers
     random: np.random.Generator
 
     @cached_property
     def cases(self) -> tuple[Mistake, ...]:
-        return cases(self.family)
+        return list_cases(self.family)
 
     @cached_property
     def with_mistake(self) -> Vector:
         """Answers that result from each mistake, shape (mistakes, students, answers)."""
         with np.errstate(all="ignore"):
-            return np.stack([predicted(self.family, self.right.asked, [case]) for case in self.cases])
+            return np.stack([predict_answers(self.family, self.right.asked, [case]) for case in self.cases])
 
     @cached_property
     def seen(self) -> Real:
@@ -102,7 +102,9 @@ class StudentGroup:
                 value[n] = self.with_mistake[student_mistakes[0], n]
             elif student_mistakes:
                 with np.errstate(all="ignore"):
-                    two = predicted(self.family.take([n]), self.right.asked, [self.cases[c] for c in student_mistakes])
+                    two = predict_answers(
+                        self.family.take([n]), self.right.asked, [self.cases[c] for c in student_mistakes]
+                    )
                 value[n] = two[0]
         return self.drawn(value)
 
@@ -133,12 +135,12 @@ def make_students(count: int, seed: int = 1) -> StudentGroup:
     rows = {str(n): row for n, row in enumerate(zip(*columns, strict=True))}
     table = VariantTable(tuple(BOUNDS), rows)
     family = solve_family(task, table)
-    return StudentGroup(task, table, family, right(family, task.asked), random)
+    return StudentGroup(task, table, family, compute_right_answers(family, task.asked), random)
 
 
 def solve_family(task: Task, table: VariantTable) -> VariantFamily:
     """Solve all variants of a table together."""
-    dimensions, numbers = numbers_of(task, table, list(table.rows))
+    dimensions, numbers = read_parameter_values(task, table, list(table.rows))
     ((rows, family),) = split_families(lambda values: task.make(table.names, dimensions, values), numbers)
     if not isinstance(family, VariantFamily) or len(rows) < len(table.rows):
         raise AssertionError("a variant of the measurement cannot be assembled")
@@ -266,7 +268,7 @@ def measure_diagnosis(group: StudentGroup, count: int) -> Iterator[GradingFigure
     students = range(len(group.family))
     mistakes = [group.mistakes(n, count) for n in students]
     value = group.sheets(mistakes)
-    written = Written(value, np.zeros(value.shape, dtype=bool))
+    written = WrittenAnswers(value, np.zeros(value.shape, dtype=bool))
     claims = diagnose_students(group.family, group.right, written)
     rightly = wrongly = beside = 0
     for n in students:
@@ -298,26 +300,26 @@ def measure_carried_errors(group: StudentGroup) -> GradingFigure:
     right, chance = group.right, group.random
     count = len(group.family)
     drawn, source = group.drawn(right.value), np.full(count, -1)
-    motion = solve(group.family).motion
+    motion = solve_with_mistakes(group.family).motion
     begins = [
         k
         for k, answer in enumerate(right.asked)
-        if own_answer(answer.quantity, right.value[:, [k]], motion, right.value[:, [k]]) is not None
+        if replace_by_own_answer(answer.quantity, right.value[:, [k]], motion, right.value[:, [k]]) is not None
     ]
     for k, rows in zip(begins, np.array_split(np.arange(count), len(begins)), strict=True):
         answer, subfamily = right.asked[k], group.family.take(rows)
         turn = np.exp(2j * np.pi * chance.random(len(rows)))
         direction = turn if answer.quantity.vector else np.sign(turn.real)
         wrong_values = right.value[rows, k] + chance.uniform(0.2, 0.6, len(rows)) * right.scale[rows, k] * direction
-        mistake = own_answer(
-            answer.quantity, wrong_values[:, None], solve(subfamily).motion, right.value[rows, k][:, None]
+        mistake = replace_by_own_answer(
+            answer.quantity, wrong_values[:, None], solve_with_mistakes(subfamily).motion, right.value[rows, k][:, None]
         )
-        later = group.drawn(predicted(subfamily, right.asked, [mistake] if mistake else []), rows)
+        later = group.drawn(predict_answers(subfamily, right.asked, [mistake] if mistake else []), rows)
         same = [j for j, other in enumerate(right.asked) if other.position == answer.position]
         drawn[rows[:, None], same] = later[:, same]
         drawn[rows, k], source[rows] = wrong_values, k
-    written = Written(drawn, np.zeros(drawn.shape, dtype=bool))
-    follows = following(group.family, right, written, diagnose_students(group.family, right, written))
+    written = WrittenAnswers(drawn, np.zeros(drawn.shape, dtype=bool))
+    follows = find_carried_errors(group.family, right, written, diagnose_students(group.family, right, written))
     wrong = right.error(written) > right.allowed
     alone = sum(
         {k for k in np.flatnonzero(wrong[n]).tolist() if (n, k) not in follows} == {int(source[n])}
@@ -329,13 +331,13 @@ def measure_carried_errors(group: StudentGroup) -> GradingFigure:
 
 def measure_variant_selection(count: int) -> GradingFigure:
     """Measure how many candidates for variants are judged feasible or not in a second on one core."""
-    variety = Variety(make_students(1).task)
+    variety = VariantGenerator(make_students(1).task)
     random = np.random.default_rng(1)
     picks = np.stack([random.integers(0, len(values), count) for values in variety.numbers], axis=1)
     per_second = 0.0
     for first in range(0, count, CHUNK):  # the least time counts: other work of the machine only adds to it
         start = CLOCK()
-        judgements = variety.judged(picks[first : first + CHUNK])
+        judgements = variety.check(picks[first : first + CHUNK])
         per_second = max(per_second, len(judgements.why) / (CLOCK() - start))
     return GradingFigure(
         "candidates for variants judged per second", count, per_second, PER_SECOND, "least", absolute=True
@@ -358,7 +360,7 @@ def measure_command(sizes: Sequence[int], progress: Callable[[str], None]) -> It
                     PART_STUDENTS * number,
                 )
                 start = CLOCK()
-                solve(solve_family(students_part.task, students_part.table))
+                solve_with_mistakes(solve_family(students_part.task, students_part.table))
                 solving += CLOCK() - start
             run = _run_command(Path(folder))
         times.append(run.first + run.others)

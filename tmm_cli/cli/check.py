@@ -14,7 +14,7 @@ from tmm_cli import __version__
 from tmm_cli.cli.common import console, problems_in, reporting_errors, with_progress
 from tmm_cli.cli.reporting import compute_file
 from tmm_cli.cli.talk import BAD_INPUT, CHECK_FAILED, OK, printable, say
-from tmm_cli.grading import grades
+from tmm_cli.grading import grade_example
 from tmm_cli.language import _
 from tmm_cli.problem import ProblemError, UnitSystem
 from tmm_cli.reports import (
@@ -51,7 +51,9 @@ def check_problem(file: Path, update: bool) -> CheckOutcome:
 
 def check_grades(task: Path, update: bool) -> CheckOutcome:
     """Grade an example again and compare it with expected.json beside its task."""
-    return _check_expected(f"grading/{task.parent.name}", task.parent / "expected.json", lambda: grades(task), update)
+    return _check_expected(
+        f"grading/{task.parent.name}", task.parent / "expected.json", lambda: grade_example(task), update
+    )
 
 
 def _check_expected(

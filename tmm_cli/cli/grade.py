@@ -21,13 +21,13 @@ from tmm_cli.grading import (
     Gradebook,
     StudentMarks,
     Submission,
-    graded,
+    check_load_tables,
+    grade_group,
     read_submissions,
     read_table,
     statistics_tables,
-    tables_apart,
+    write_gradebook,
     write_template,
-    written,
 )
 from tmm_cli.language import _
 from tmm_cli.problem import ProblemError, parse_names
@@ -97,7 +97,7 @@ def _grade_group(
     print_file_summary(task.problem)
     table = read_table(variants, task)
     with suppress(ProblemError):  # an unreadable value is reported to its student
-        for slip in tables_apart(task, table):
+        for slip in check_load_tables(task, table):
             warn(f"{task.problem.name}: {slip}")
     jobs = jobs or os.cpu_count() or 1
     runner = on_cluster(scheduler) if scheduler else in_processes(jobs)
@@ -110,14 +110,14 @@ def _grade_group(
         place = {student: n for n, student in enumerate(table.rows)}
         handed.sort(key=lambda submission: place.get(submission.student, len(place)))
         grading = progress.add_task(_("graded"), total=len(handed))
-        marks = graded(
+        marks = grade_group(
             task, table, handed, runner, out / CACHE_FOLDER, lambda count: progress.advance(grading, count), stopped
         )
     if len(marks) < len(handed):
         text = _("stopped: {done} of {count} graded; the next run keeps them and grades the others")
         say(text.format(done=len(marks), count=len(handed)))
         return CHECK_FAILED
-    written(out, Gradebook(task.revealing() if reveal else task, marks, users=table.rows), names, jobs)
+    write_gradebook(out, Gradebook(task.revealing() if reveal else task, marks, users=table.rows), names, jobs)
     for statistics in statistics_tables(task, marks):
         print_on_terminal(statistics, task.units, console())
     return _print_summary(handed, marks, out)

@@ -59,10 +59,10 @@ def variant_settings(file: str, variants: str | None, variant: str | None, setti
     if variants is None or variant is None:
         raise ProblemError(_("give both the table of variants and the variant"), allowed="--variants FILE --variant 7")
     from tmm_cli.batch import read_task
-    from tmm_cli.grading import read_table, variant_in  # few runs have a table
+    from tmm_cli.grading import find_variant, read_table  # few runs have a table
 
     try:
-        values = variant_in(read_table(variants, read_task(read_tree(file))), variant)
+        values = find_variant(read_table(variants, read_task(read_tree(file))), variant)
     except ProblemError as error:
         raise (error if error.file else error.located(variants)) from None
     return [*(f"{name}={text}" for name, text in values.items()), *own_settings]

@@ -14,17 +14,17 @@ from tmm_cli.cli.talk import printable, say, warn
 from tmm_cli.grading import (
     HEADER,
     TaskSheets,
+    VariantGenerator,
     VariantTable,
-    Variety,
+    check_load_tables,
     compute_answer_key,
-    csv_of,
-    draw,
-    draw_for,
-    idle_questions,
+    csv_bytes,
+    describe_idle_questions,
+    draw_numbered_variants,
+    draw_student_variants,
     read_students,
-    rows_of_table,
-    tables_apart,
-    xlsx_of,
+    variant_table_rows,
+    xlsx_bytes,
 )
 from tmm_cli.language import _
 from tmm_cli.problem import ProblemError
@@ -58,17 +58,17 @@ def variants(
     with reporting_errors():
         refuse_unwritable(out, folder=True)
         task = read_task(with_vary(read_in_file_language(file), vary or ()))
-        variety = Variety(task)
+        variety = VariantGenerator(task)
         if students is None:
-            table = draw(variety, seed, count)
+            table = draw_numbered_variants(variety, seed, count)
         else:
             listed = read_students(students)
             before = read_students(out / TABLE) if (out / TABLE).exists() else ()
             first = [name for name in before if name in listed]
-            table = draw_for(variety, seed, [*first, *sorted(set(listed) - set(first))])
+            table = draw_student_variants(variety, seed, [*first, *sorted(set(listed) - set(first))])
             count = len(listed)
         _print_drawn(variety, table)
-        for slip in tables_apart(task, table):
+        for slip in check_load_tables(task, table):
             warn(f"{task.problem.name}: {slip}")
         if len(table.rows) < count:
             raise ProblemError(
@@ -80,22 +80,22 @@ def variants(
         _write(task, Path(file).read_text(encoding="utf-8-sig"), table, out)
 
 
-def _print_drawn(variety: Variety, table: VariantTable) -> None:
+def _print_drawn(variety: VariantGenerator, table: VariantTable) -> None:
     """Print how many variants were drawn and rejected."""
-    rows = [(why, str(count)) for why, count in variety.thrown.most_common() if count]
+    rows = [(why, str(count)) for why, count in variety.rejected.most_common() if count]
     text = _("variants: {count}, free parameters: {free}, candidates tried: {tried}")
     say(text.format(count=len(table.rows), free=", ".join(table.names), tried=variety.tried))
     if rows:
-        thrown = text_table("thrown", _("Rejected candidates"), (_("reason"), _("candidates")), rows)
-        print_on_terminal(thrown, variety.task.units, console())
+        rejected = text_table("rejected", _("Rejected candidates"), (_("reason"), _("candidates")), rows)
+        print_on_terminal(rejected, variety.task.units, console())
 
 
 def _write(task: Task, text: str, table: VariantTable, out: Path) -> None:
     """Write all files at once, or none. Raises ProblemError, OSError."""
     with StagedFolder(out) as folder:
-        rows = rows_of_table(table)
-        folder.write(TABLE, [csv_of(rows)])
-        book = xlsx_of({"variants": rows})
+        rows = variant_table_rows(table)
+        folder.write(TABLE, [csv_bytes(rows)])
+        book = xlsx_bytes({"variants": rows})
         if book is None:
             say(_("note: variants.xlsx requires the package xlsxwriter: pip install 'tmm-cli[excel]'"))
         else:
@@ -104,11 +104,11 @@ def _write(task: Task, text: str, table: VariantTable, out: Path) -> None:
             say(_("note: no answer key is written, as the file has no block `grading`"))
         else:
             key = list(compute_answer_key(task, table))
-            folder.write("key.csv", [csv_of([HEADER, *(line.cells(task) for line in key)])])
-            for sentence in idle_questions(key):
+            folder.write("key.csv", [csv_bytes([HEADER, *(line.cells(task) for line in key)])])
+            for sentence in describe_idle_questions(key):
                 say(sentence)
         sheets = TaskSheets(task, text, table)
         for student in with_progress(list(table.rows)):
-            for name, content in sheets.of(student):
+            for name, content in sheets.build_files(student):
                 folder.write(name, [content])
     say(_("written: {files}").format(files=printable(out)))

@@ -1,15 +1,19 @@
 """Grading: variants of a task, what students hand in, how right it is, and what went wrong where it is not."""
 
-from .answer_key import HEADER as HEADER, compute_answer_key as compute_answer_key, idle_questions as idle_questions
-from .diagnose import diagnose_students as diagnose_students, with_copies as with_copies
+from .answer_key import (
+    HEADER as HEADER,
+    compute_answer_key as compute_answer_key,
+    describe_idle_questions as describe_idle_questions,
+)
+from .diagnose import diagnose_students as diagnose_students, find_copies as find_copies
 from .draw_variants import (
     CHUNK as CHUNK,
-    Variety as Variety,
-    draw as draw,
-    draw_for as draw_for,
-    tables_apart as tables_apart,
+    VariantGenerator as VariantGenerator,
+    check_load_tables as check_load_tables,
+    draw_numbered_variants as draw_numbered_variants,
+    draw_student_variants as draw_student_variants,
 )
-from .exports import EXPORTS as EXPORTS, write as write
+from .exports import EXPORTS as EXPORTS, write_formats as write_formats
 from .exports.book import (
     ANSWERS_HEADER as ANSWERS_HEADER,
     Gradebook as Gradebook,
@@ -17,44 +21,53 @@ from .exports.book import (
     points_text as points_text,
     share_text as share_text,
 )
-from .group_chart import chart as chart
-from .mistakes import MISTAKES as MISTAKES, cases as cases
-from .mistakes.base import Mistake as Mistake, solve as solve
+from .group_chart import draw_group_chart as draw_group_chart
+from .mistakes import MISTAKES as MISTAKES, list_cases as list_cases
+from .mistakes.base import Mistake as Mistake, solve_with_mistakes as solve_with_mistakes
 from .mistakes.data import OtherZero as OtherZero, Sense as Sense
-from .own_answers import following as following, own_answer as own_answer
+from .own_answers import find_carried_errors as find_carried_errors, replace_by_own_answer as replace_by_own_answer
 from .record import (
-    Given as Given,
     Mark as Mark,
+    ReadAnswer as ReadAnswer,
     StudentMarks as StudentMarks,
     Submission as Submission,
     VariantTable as VariantTable,
 )
 from .run import (
+    append_marks as append_marks,
     grade as grade,
-    graded as graded,
-    grades as grades,
-    keep as keep,
-    numbers_of as numbers_of,
-    read_kept as read_kept,
-    written as written,
+    grade_example as grade_example,
+    grade_group as grade_group,
+    read_parameter_values as read_parameter_values,
+    read_saved_marks as read_saved_marks,
+    write_gradebook as write_gradebook,
 )
-from .sheet import Right as Right, Written as Written, predicted as predicted, right as right
+from .sheet import (
+    RightAnswers as RightAnswers,
+    WrittenAnswers as WrittenAnswers,
+    compute_right_answers as compute_right_answers,
+    predict_answers as predict_answers,
+)
 from .statistics import (
-    commonest as commonest,
-    hardest as hardest,
-    histogram as histogram,
+    count_by_points as count_by_points,
+    rank_difficulties as rank_difficulties,
+    rank_mistakes as rank_mistakes,
     statistics_tables as statistics_tables,
 )
 from .submissions.numbers import Heading as Heading, Headings as Headings, read_answer as read_answer
 from .submissions.read import read_submissions as read_submissions
 from .submissions.template import write_template as write_template
-from .task_sheets import TaskSheets as TaskSheets, meaning as meaning, problem_text as problem_text
-from .untrusted_tables import rows_of as rows_of, shown as shown
+from .task_sheets import (
+    TaskSheets as TaskSheets,
+    explain_quantity as explain_quantity,
+    variant_problem_text as variant_problem_text,
+)
+from .untrusted_tables import printable_text as printable_text, read_rows as read_rows
 from .variant_tables import (
-    csv_of as csv_of,
+    csv_bytes as csv_bytes,
+    find_variant as find_variant,
     read_students as read_students,
     read_table as read_table,
-    rows_of_table as rows_of_table,
-    variant_in as variant_in,
-    xlsx_of as xlsx_of,
+    variant_table_rows as variant_table_rows,
+    xlsx_bytes as xlsx_bytes,
 )

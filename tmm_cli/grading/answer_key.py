@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 from tmm_cli.batch import Question, Task, split_families
 from tmm_cli.grading.record import VariantTable
-from tmm_cli.grading.run import numbers_of
-from tmm_cli.grading.sheet import right
+from tmm_cli.grading.run import read_parameter_values
+from tmm_cli.grading.sheet import compute_right_answers
 from tmm_cli.language import _
 from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.quantities import NUMBER
@@ -40,7 +40,7 @@ class KeyLine:
     share: float
 
     @property
-    def idle(self) -> str:
+    def idle_reason(self) -> str:
         """Reason why the question is not informative, e.g. that zero counts as right; "" if it is informative."""
         if self.asked.quantity.against == "exact":
             return ""
@@ -61,7 +61,7 @@ class KeyLine:
         allowed, share = ("", "") if exact else (f"{self.allowed / scale:.3g}", f"{100 * self.share:.3g}")
         name = quantity.name
         value_text = f"{size / scale + 0.0:.6g}"
-        return [self.student, name, number, value_text, direction, unit, allowed, share, self.idle]
+        return [self.student, name, number, value_text, direction, unit, allowed, share, self.idle_reason]
 
 
 def compute_answer_key(task: Task, table: VariantTable) -> Iterator[KeyLine]:
@@ -75,12 +75,12 @@ def compute_answer_key(task: Task, table: VariantTable) -> Iterator[KeyLine]:
         ProblemError: The table or the task is wrong.
     """
     students = list(table.rows)
-    dimensions, columns = numbers_of(task, table, students)
+    dimensions, columns = read_parameter_values(task, table, students)
     found: dict[int, list[KeyLine]] = {}
     for rows, family in split_families(lambda numbers: task.make(table.names, dimensions, numbers), columns):
         if isinstance(family, LinkageError):
             continue
-        own = right(family, task.asked)
+        own = compute_right_answers(family, task.asked)
         for n, row in enumerate(rows.tolist()):
             found[row] = [
                 KeyLine(
@@ -96,9 +96,9 @@ def compute_answer_key(task: Task, table: VariantTable) -> Iterator[KeyLine]:
         yield from found.get(row, ())
 
 
-def idle_questions(lines: list[KeyLine]) -> Iterator[str]:
+def describe_idle_questions(lines: list[KeyLine]) -> Iterator[str]:
     """Yield a sentence for each question that is not informative, with the number of students concerned."""
     students = len({line.student for line in lines})
-    found = Counter((line.asked.name, line.idle) for line in lines if line.idle)
+    found = Counter((line.asked.name, line.idle_reason) for line in lines if line.idle_reason)
     for (name, why), count in found.items():
         yield _("{asked}: {why} (students: {count} of {all})").format(asked=name, why=why, count=count, all=students)

@@ -14,11 +14,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tmm_cli.batch import VariantFamily
-from tmm_cli.grading.mistakes import cases
-from tmm_cli.grading.mistakes.base import Mistake, solve
+from tmm_cli.grading.mistakes import list_cases
+from tmm_cli.grading.mistakes.base import Mistake, solve_with_mistakes
 from tmm_cli.grading.mistakes.data import ScaleInverted
 from tmm_cli.grading.record import StudentMarks
-from tmm_cli.grading.sheet import Right, Written, predicted, written_down
+from tmm_cli.grading.sheet import RightAnswers, WrittenAnswers, predict_answers, write_down_answers
 from tmm_cli.language import _
 from tmm_cli.mechanics.numerics import Real, Vector
 
@@ -47,9 +47,9 @@ class Claim:
     answers: tuple[int, ...]
 
     @property
-    def told(self) -> str:
+    def description(self) -> str:
         """Sentence for the student about this mistake, or about all alternatives."""
-        sentences = list(dict.fromkeys(case.told for case in self.alternatives))
+        sentences = list(dict.fromkeys(case.description for case in self.alternatives))
         if len(sentences) == 1:
             return sentences[0]
         return _("One of these mistakes, which cannot be distinguished here: {sentences}").format(
@@ -57,12 +57,12 @@ class Claim:
         )
 
     @property
-    def called(self) -> str:
+    def label(self) -> str:
         """Name of the mistake in the statistics of the group; alternatives are joined by a slash."""
-        return " / ".join(sorted({case.called for case in self.alternatives}))
+        return " / ".join(sorted({case.label for case in self.alternatives}))
 
 
-def diagnose_students(family: VariantFamily, right: Right, written: Written) -> dict[int, list[Claim]]:
+def diagnose_students(family: VariantFamily, right: RightAnswers, written: WrittenAnswers) -> dict[int, list[Claim]]:
     """Explain the wrong answers of students whose variants form one family.
 
     Args:
@@ -78,21 +78,25 @@ def diagnose_students(family: VariantFamily, right: Right, written: Written) -> 
     if not rows.size:
         return {}
     return dict(
-        zip(rows.tolist(), _Sheets(family.take(rows), right.take(rows), written.take(rows)).claims(), strict=True)
+        zip(
+            rows.tolist(),
+            _SheetDiagnosis(family.take(rows), right.take(rows), written.take(rows)).explain_all(),
+            strict=True,
+        )
     )
 
 
-class _Sheets:
-    """Answers of students who made mistakes, and the answers that each typical mistake would give for their variants."""
+class _SheetDiagnosis:
+    """Answers of students who made mistakes, and those that each typical mistake would give for their variants."""
 
-    def __init__(self, family: VariantFamily, right: Right, written: Written) -> None:
-        self.family, self.right, self.written, self.cases = family, right, written, cases(family)
-        plain = solve(family)
+    def __init__(self, family: VariantFamily, right: RightAnswers, written: WrittenAnswers) -> None:
+        self.family, self.right, self.written, self.cases = family, right, written, list_cases(family)
+        plain = solve_with_mistakes(family)
         asked = right.asked
         with np.errstate(all="ignore"):
             self.values = np.stack(
                 [
-                    predicted(family, asked, [case]) if case.solves else written_down(plain, asked, [case])
+                    predict_answers(family, asked, [case]) if case.solves else write_down_answers(plain, asked, [case])
                     for case in self.cases
                 ]
             )
@@ -119,13 +123,13 @@ class _Sheets:
         """Return how badly `value` fits the written answers: the sum of squared standard errors, each capped at CAP."""
         return _cost(self.errors(value, rows))
 
-    def claims(self) -> Iterator[list[Claim]]:
+    def explain_all(self) -> Iterator[list[Claim]]:
         """Yield a list of explanations for each student."""
-        pairs = self._pairs()
+        pairs = self._solve_pairs()
         for n in range(len(self.none)):
-            yield self._claims(n, pairs.get(n, []))
+            yield self._explain_student(n, pairs.get(n, []))
 
-    def _claims(self, n: int, pairs: Sequence[Explanation]) -> list[Claim]:
+    def _explain_student(self, n: int, pairs: Sequence[Explanation]) -> list[Claim]:
         costs = self.costs[:, n]
         near = [int(c) for c in np.argsort(costs) if costs[c] <= np.min(costs) + MARGIN]
         single: list[Explanation] = [(float(costs[c]), (c,), self.values[c, n]) for c in near]
@@ -135,10 +139,10 @@ class _Sheets:
         found: list[Claim] = []
         if best[0] < self.none[n] - GAIN:
             rivals = [rival for rival in (pairs if len(best[1]) == 2 else single) if rival[0] < best[0] + MARGIN]
-            found = self._named(n, best, rivals)
-        return [*found, *self._slips(n, {k for claim in found for k in claim.answers})]
+            found = self._name_mistakes(n, best, rivals)
+        return [*found, *self._find_slips(n, {k for claim in found for k in claim.answers})]
 
-    def _named(self, n: int, best: Explanation, rivals: Sequence[Explanation]) -> list[Claim]:
+    def _name_mistakes(self, n: int, best: Explanation, rivals: Sequence[Explanation]) -> list[Claim]:
         """Return the mistakes of the best explanation, each with alternatives that explain the answers equally well."""
         found = []
         for c in best[1]:
@@ -148,12 +152,12 @@ class _Sheets:
             }
             others -= set(best[1]) - {c}
             alike = [self.cases[d] for d in sorted(others, key=lambda d: self.costs[d, n])]
-            answers = self._explained(n, best, c)
+            answers = self._find_explained_answers(n, best, c)
             if answers and len({type(case) for case in alike}) <= ALIKE:
                 found.append(Claim(tuple(alike), answers))
         return found
 
-    def _explained(self, n: int, best: Explanation, c: int) -> tuple[int, ...]:
+    def _find_explained_answers(self, n: int, best: Explanation, c: int) -> tuple[int, ...]:
         """Return the indices of the wrong answers that the explanation fits and that mistake number `c` changes."""
         fits = self.errors(best[2][None], np.array([n]))[0] <= PER_ALLOWED
         rest = [d for d in best[1] if d != c]
@@ -162,8 +166,8 @@ class _Sheets:
             moved = np.abs(best[2] - without) > self.right.allowed[n] * self.right.scale[n] * 0.5
         return tuple(np.flatnonzero(self.wrong[n] & fits & moved).tolist())
 
-    def _slips(self, n: int, known: set[int]) -> Iterator[Claim]:
-        """Yield mistakes that affect a single answer (wrong unit, wrong sign), for the answers not explained otherwise."""
+    def _find_slips(self, n: int, known: set[int]) -> Iterator[Claim]:
+        """Yield mistakes that affect a single answer (e.g. a wrong unit), for answers not explained otherwise."""
         right, at = self.right.take(np.array([n])), self.slips
         with np.errstate(all="ignore"):
             moved = np.abs(self.values[at, n] - right.value) / right.scale > 4 / PER_ALLOWED * right.allowed
@@ -173,7 +177,7 @@ class _Sheets:
             if k not in known and len({type(case) for case in fits}) == 1:
                 yield Claim(tuple(fits), (k,))
 
-    def _pairs(self) -> dict[int, list[Explanation]]:
+    def _solve_pairs(self) -> dict[int, list[Explanation]]:
         """Try two mistakes at once for each student whose answers no single mistake explains.
 
         Returns:
@@ -184,13 +188,13 @@ class _Sheets:
         left = np.any(self.errors(self.values[best, rows]) > PER_ALLOWED, axis=1)
         wanted: dict[tuple[int, int], list[int]] = {}
         for n in np.flatnonzero(left).tolist():
-            for pair in self._likely(n):
+            for pair in self._choose_pairs(n):
                 wanted.setdefault(pair, []).append(n)
         found: dict[int, list[Explanation]] = {}
         for pair, students in wanted.items():
             at = np.array(students)
             with np.errstate(all="ignore"):
-                value = predicted(self.family.take(at), self.right.asked, [self.cases[c] for c in pair])
+                value = predict_answers(self.family.take(at), self.right.asked, [self.cases[c] for c in pair])
             price = np.sum(self.price[list(pair)])
             for n, cost, own in zip(students, self.cost(value, at) + price, value, strict=True):
                 found.setdefault(n, []).append((float(cost), pair, own))
@@ -198,7 +202,7 @@ class _Sheets:
             own.sort(key=lambda one: one[0])
         return found
 
-    def _likely(self, n: int) -> list[tuple[int, int]]:
+    def _choose_pairs(self, n: int) -> list[tuple[int, int]]:
         """Return the pairs of mistakes that are worth computing for student `n`, the most promising first.
 
         A pair is ranked by how well the answers fit if the changes due to its two mistakes are added or multiplied. One
@@ -225,11 +229,11 @@ class _Sheets:
         return found[:TRIED]
 
 
-def _errors(right: Right, written: Written, value: Vector) -> Real:
+def _errors(right: RightAnswers, written: WrittenAnswers, value: Vector) -> Real:
     with np.errstate(all="ignore"):
         scale = np.maximum(1.0, np.abs(value) / right.scale)  # drawn off a plan of the wrong values
         found = right.error(written, value) / scale / (right.allowed / PER_ALLOWED)
-    return np.where(written.there, np.nan_to_num(found, nan=np.inf), 0.0)
+    return np.where(written.given, np.nan_to_num(found, nan=np.inf), 0.0)
 
 
 def _cost(errors: Real) -> Real:
@@ -245,14 +249,14 @@ NEAR = 1000  # students before and after one in the table: who copies is in a gr
 BLOCK = 50  # students compared with those at once
 
 
-def with_copies(found: Sequence[StudentMarks]) -> list[StudentMarks]:
+def find_copies(found: Sequence[StudentMarks]) -> list[StudentMarks]:
     """Find students whose answers fit another student's variant better than their own.
 
     Returns:
         The marks of all students. Where such a variant is found, `copied` names its owner, and the mistakes of the
         answers that it explains are removed.
     """
-    value, size, right, scale, allowed = _arrays(found)
+    value, size, right, scale, allowed = _mark_arrays(found)
     there = ~np.isnan(value)
     own = _fits(value, size, right, scale, allowed)
     suspects = np.sum(there & ~own, axis=1) >= LEAST
@@ -271,11 +275,11 @@ def with_copies(found: Sequence[StudentMarks]) -> list[StudentMarks]:
             other = int(np.argmax(likely[row]))
             if likely[row, other]:
                 copied[n] = found[low + other].student, holds[row, other].tolist()
-    return [_told(marks, *copied[n]) if n in copied else marks for n, marks in enumerate(found)]
+    return [_set_copied(marks, *copied[n]) if n in copied else marks for n, marks in enumerate(found)]
 
 
-def _told(marks: StudentMarks, other: str, explained: Sequence[bool]) -> StudentMarks:
-    """Set `copied` to the other student's name and remove the mistakes of the answers that the other variant explains."""
+def _set_copied(marks: StudentMarks, other: str, explained: Sequence[bool]) -> StudentMarks:
+    """Set `copied` to the other student and remove the mistakes of answers that the other variant explains."""
     own = [
         replace(mark, reasons=() if mark.state == "wrong" else mark.reasons, mistakes=()) if of_other else mark
         for mark, of_other in zip(marks.marks, explained, strict=True)
@@ -290,7 +294,7 @@ def _fits(value: Real, size: Real, right: Real, scale: Real, allowed: Real) -> R
     return holds
 
 
-def _arrays(found: Sequence[StudentMarks]) -> tuple[Real, Real, Real, Real, Real]:
+def _mark_arrays(found: Sequence[StudentMarks]) -> tuple[Real, Real, Real, Real, Real]:
     """Return the marks as arrays (students, answers).
 
     The arrays are the values, True where only the magnitude was given, the right values, the reference values of the

@@ -23,8 +23,8 @@ from tmm_cli.batch import (
     split_families,
 )
 from tmm_cli.grading.record import VariantTable
-from tmm_cli.grading.run import numbers_of
-from tmm_cli.grading.sheet import Right, right
+from tmm_cli.grading.run import read_parameter_values
+from tmm_cli.grading.sheet import RightAnswers, compute_right_answers
 from tmm_cli.language import _, numeral
 from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.forces import table_lengths
@@ -40,7 +40,7 @@ Held = tuple[str, str]  # a link and the pairs in which it is driven
 
 
 @dataclass(frozen=True)
-class Faults:
+class VariantRequirements:
     """Requirements on every variant, derived from the mechanism of the problem file.
 
     Attributes:
@@ -53,7 +53,7 @@ class Faults:
     strokes: int
     limits: Mapping[Held, float]
 
-    def of(self, family: VariantFamily) -> Real:
+    def check(self, family: VariantFamily) -> Real:
         """Return the reason why each variant is rejected, (variants,); an empty text for a feasible variant."""
         linkage = family.linkage
         low = np.min(family.q, axis=1, keepdims=True)
@@ -62,30 +62,30 @@ class Faults:
         else:
             q = low + (np.max(family.q, axis=1, keepdims=True) - low) * np.linspace(0, 1, SCAN + 1)
         states = link_states(linkage, family.kernels, q, 0)
-        alike = family.strokes is None or _strokes(family.strokes) == self.strokes
+        alike = family.strokes is None or _count_strokes(family.strokes) == self.strokes
         with np.errstate(all="ignore"):
             found = [
                 (np.all(states.moving, axis=1), _("the mechanism cannot be assembled in all positions")),
                 (family.sound & alike, _("the output moves differently from that of the problem file")),
-                *_margins(states),
-                *_slots(states),
-                *self._pressures(states),
+                *_check_margins(states),
+                *_check_slots(states),
+                *self._check_pressures(states),
             ]
         holds, sentences = zip(*found, strict=True)
         wrong = [~np.broadcast_to(one, len(q)) for one in holds]
         return np.asarray(np.select(wrong, sentences, "").astype(object))
 
-    def _pressures(self, states: LinkStates) -> Iterator[tuple[Real, str]]:
+    def _check_pressures(self, states: LinkStates) -> Iterator[tuple[Real, str]]:
         for kernel, at in zip(states.kernels, states.placements, strict=True):
             for lead in driven_links(kernel.group):
                 limit = self.limits.get((lead[0], driving_pair_names(lead)))
                 if limit is not None:
                     beyond = _("the pressure angle exceeds {limit} deg")
                     told = beyond.format(limit=numeral(np.degrees(limit), ".4g"))
-                    yield _top(pressure_angle(states, kernel, at, lead)) <= limit, told
+                    yield _refine_maximum(pressure_angle(states, kernel, at, lead)) <= limit, told
 
 
-def tables_apart(task: Task, table: VariantTable) -> Iterator[str]:
+def check_load_tables(task: Task, table: VariantTable) -> Iterator[str]:
     """Yield a warning for each load table whose last argument differs from the stroke of some variants.
 
     Raises:
@@ -94,7 +94,7 @@ def tables_apart(task: Task, table: VariantTable) -> Iterator[str]:
     linkage = task.problem.whole.linkage
     if not any(load.table is not None and load.table.against == "stroke" for load in linkage.loads):
         return
-    dimensions, columns = numbers_of(task, table, list(table.rows))
+    dimensions, columns = read_parameter_values(task, table, list(table.rows))
     reach: dict[str, list[tuple[float, float]]] = {}
     for __, family in split_families(lambda numbers: task.make(table.names, dimensions, numbers), columns):
         if isinstance(family, VariantFamily):
@@ -104,7 +104,7 @@ def tables_apart(task: Task, table: VariantTable) -> Iterator[str]:
     yield from warn_of_load_tables(linkage, task.units, reach)
 
 
-def faults_of(task: Task) -> Faults:
+def derive_requirements(task: Task) -> VariantRequirements:
     """Derive the requirements on variants from the mechanism of the problem file.
 
     Raises:
@@ -117,31 +117,31 @@ def faults_of(task: Task) -> Faults:
         for one in mechanism.pressure
     }
     full = mechanism.driver_range.full and problem.linkage.driver.kind == "turn"
-    return Faults(mechanism.driver_range.turns if full else 0, _strokes(mechanism.strokes), limits)
+    return VariantRequirements(mechanism.driver_range.turns if full else 0, _count_strokes(mechanism.strokes), limits)
 
 
-def _strokes(strokes: Strokes | None) -> int:
+def _count_strokes(strokes: Strokes | None) -> int:
     return 0 if strokes is None else len(strokes.strokes)
 
 
-def _margins(states: LinkStates) -> Iterator[tuple[Real, str]]:
+def _check_margins(states: LinkStates) -> Iterator[tuple[Real, str]]:
     for kernel, at in zip(states.kernels, states.placements, strict=True):
         margin = np.broadcast_to(at.margin, states.q.shape)
-        yield -_top(-margin) > kernel.near, _("the mechanism comes close to a dead position")
+        yield -_refine_maximum(-margin) > kernel.near, _("the mechanism comes close to a dead position")
 
 
-def _slots(states: LinkStates) -> Iterator[tuple[Real, str]]:
+def _check_slots(states: LinkStates) -> Iterator[tuple[Real, str]]:
     driven = {driver.joint for driver in states.linkage.drivers if driver.kind == "slide"}
     for slide in states.linkage.slides:
         if slide.ends is not None and slide.name not in driven:
             first, last = (states.linkage.local(slide.carrier, name) for name in slide.ends)
             length = np.ravel(abs(last - first))
             run = np.broadcast_to(states.run(slide), states.q.shape)
-            beyond = np.maximum(_top(run) - length, _top(-run))
+            beyond = np.maximum(_refine_maximum(run) - length, _refine_maximum(-run))
             yield beyond <= END_OF_SLOT * length, _("a sliding block leaves its slot")
 
 
-def _top(values: Real) -> Real:
+def _refine_maximum(values: Real) -> Real:
     """Return the maximum of each row, (variants,), refined by a parabola through the neighbouring samples."""
     k = np.argmax(values, axis=1)[:, None]
     last = values.shape[1] - 1
@@ -170,7 +170,7 @@ MOSTLY = 0.75  # of what is asked is to be better than that
 
 
 @dataclass(frozen=True)
-class Judged:
+class CheckedCandidates:
     """Candidates for variants, checked against the requirements.
 
     Attributes:
@@ -186,21 +186,21 @@ class Judged:
     allowed: Real
 
 
-class Variety:
+class VariantGenerator:
     """Generator of random variants of a task.
 
     Attributes:
         names: names of the parameters that vary.
         size: number of all possible combinations of their values.
         tried: number of candidates checked so far.
-        thrown: number of rejected candidates by reason.
+        rejected: number of rejected candidates by reason.
 
     Raises:
         ProblemError: The task cannot be varied.
     """
 
     def __init__(self, task: Task) -> None:
-        self.task, self.faults = task, faults_of(task)
+        self.task, self.requirements = task, derive_requirements(task)
         self.free = read_free_parameters(task)
         self.names = tuple(choice.name for choice in self.free)
         self.dimensions = tuple(choice.dimension for choice in self.free)
@@ -209,7 +209,7 @@ class Variety:
         own = [task.number(v, d) for v, d in zip(task.own(self.names), self.dimensions, strict=True)]
         self.own = np.array([own])
         self.size = math.prod(len(choice.texts) for choice in self.free)
-        self.thrown: Counter[str] = Counter()
+        self.rejected: Counter[str] = Counter()
         self.tried = 0
         base = build_family(self._make, np.concatenate([self.own, self.own]))
         self.alone = base is None or not bool(np.all(base.sound))
@@ -217,11 +217,11 @@ class Variety:
     def _make(self, values: Sequence[Any]) -> Variant:
         return self.task.make(self.names, self.dimensions, values)
 
-    def texts(self, picks: Real) -> tuple[str, ...]:
+    def table_cells(self, picks: Real) -> tuple[str, ...]:
         """Return the parameter values of a candidate as table cells; picks: the index of each parameter's value."""
         return tuple(choice.texts[k] for choice, k in zip(self.free, picks.tolist(), strict=True))
 
-    def judged(self, picks: Real) -> Judged:
+    def check(self, picks: Real) -> CheckedCandidates:
         """Check candidates against the requirements on variants.
 
         Args:
@@ -233,15 +233,15 @@ class Variety:
         columns = np.stack([values[picks[:, k]] for k, values in enumerate(self.numbers)], axis=1)
         why = np.full(len(columns), "", dtype=object)
         rows, found = [np.zeros(0, dtype=int)], [(np.zeros((0, len(self.asked) or len(self.free))),) * 2]
-        for at, family in self._families(columns):
+        for at, family in self._build_families(columns):
             if isinstance(family, LinkageError):
                 why[at] = _("the mechanism cannot be assembled in all positions")
                 continue
-            own = self.faults.of(family)
+            own = self.requirements.check(family)
             sound = np.flatnonzero(own == "")
             if self.asked and sound.size:
-                wanted = right(family.take(sound), self.asked)
-                good = _well_conditioned(wanted)
+                wanted = compute_right_answers(family.take(sound), self.asked)
+                good = _find_well_conditioned(wanted)
                 own[sound[~good]] = _("the requested quantities are too sensitive to the lengths")
                 found.append((wanted.value[good], (wanted.allowed * wanted.scale)[good]))
                 sound = sound[good]
@@ -250,9 +250,9 @@ class Variety:
             rows.append(at[sound])
             why[at] = own
         values, allowed = (np.concatenate(parts) for parts in zip(*found, strict=True))
-        return Judged(why, np.concatenate(rows), values.astype(complex), allowed)
+        return CheckedCandidates(why, np.concatenate(rows), values.astype(complex), allowed)
 
-    def _families(self, columns: Real) -> Iterator[tuple[Real, VariantFamily | LinkageError]]:
+    def _build_families(self, columns: Real) -> Iterator[tuple[Real, VariantFamily | LinkageError]]:
         """Yield the indices of candidates with their family or the error that prevents its solution.
 
         All candidates form one family whose assembly follows the variant of the file, or each forms its own if that
@@ -266,7 +266,7 @@ class Variety:
         for row, own in enumerate(columns):
             yield from ((np.array([row]), family) for _rows, family in split_families(self._make, own[None]))
 
-    def pools(self, seed: int) -> Iterator[Iterator[Real]]:
+    def draw_pools(self, seed: int) -> Iterator[Iterator[Real]]:
         """Yield pools of feasible candidates.
 
         Within a pool, the next candidate is always the one whose answers differ most from those of all before it.
@@ -283,41 +283,41 @@ class Variety:
             else:
                 drawn = np.stack([random.integers(0, n, tried) for n in lengths], axis=1)
                 picks = drawn[np.sort(np.unique(drawn, axis=0, return_index=True)[1])]
-            yield self._pool(picks)
+            yield self._draw_pool(picks)
 
-    def _pool(self, picks: Real) -> Iterator[Real]:
-        parts: list[Judged] = []
+    def _draw_pool(self, picks: Real) -> Iterator[Real]:
+        parts: list[CheckedCandidates] = []
         for first in range(0, len(picks), CHUNK):
-            parts.append(self.judged(picks[first : first + CHUNK]))
-            self.thrown.update(why for why in parts[-1].why.tolist() if why)
+            parts.append(self.check(picks[first : first + CHUNK]))
+            self.rejected.update(why for why in parts[-1].why.tolist() if why)
             self.tried += len(parts[-1].why)
             if sum(len(part.rows) for part in parts) >= ENOUGH:
                 break
         rows = np.concatenate([part.rows + CHUNK * n for n, part in enumerate(parts)])
         values, allowed = (np.concatenate([getattr(p, name) for p in parts]) for name in ("values", "allowed"))
-        return (picks[rows[row]] for row in _spread(values, allowed, self.thrown))
+        return (picks[rows[row]] for row in _order_by_distance(values, allowed, self.rejected))
 
-    def as_drawn(self, picks: Real) -> bool:
+    def keeps_assembly(self, picks: Real) -> bool:
         """Return True if the variant, as a problem file of its own, has the same assembly as the file of the task."""
-        if not self._assembled_alike(picks):
-            self.thrown[_("the sketch shows a different assembly from that of the problem file")] += 1
+        if not self._has_same_assembly(picks):
+            self.rejected[_("the sketch shows a different assembly from that of the problem file")] += 1
             return False
         return True
 
-    def _assembled_alike(self, picks: Real) -> bool:
+    def _has_same_assembly(self, picks: Real) -> bool:
         row = np.array([[values[k] for values, k in zip(self.numbers, picks, strict=True)]])
         alone = next(split_families(self._make, row))[1]
         if isinstance(alone, LinkageError):
             return False
         if self.alone:
             return True
-        _rows, family = next(self._families(row))
+        _rows, family = next(self._build_families(row))
         assert isinstance(family, VariantFamily)
         one, other = (link_states(f.linkage, f.kernels, alone.q[:, :1], 0).poses for f in (alone, family))
         return all(bool(np.allclose(one[link].z, other[link].z, atol=SAME_ASSEMBLY)) for link in one)
 
 
-def draw(variety: Variety, seed: int, count: int) -> VariantTable:
+def draw_numbered_variants(variety: VariantGenerator, seed: int, count: int) -> VariantTable:
     """Draw variants numbered from 1.
 
     Args:
@@ -331,12 +331,12 @@ def draw(variety: Variety, seed: int, count: int) -> VariantTable:
     Raises:
         ProblemError: The task cannot be varied.
     """
-    every = (picks for pool in variety.pools(seed) for picks in pool if variety.as_drawn(picks))
-    rows = {variety.texts(picks): None for picks in islice(every, count)}
+    every = (picks for pool in variety.draw_pools(seed) for picks in pool if variety.keeps_assembly(picks))
+    rows = {variety.table_cells(picks): None for picks in islice(every, count)}
     return VariantTable(variety.names, {str(n + 1): row for n, row in enumerate(rows)})
 
 
-def draw_for(variety: Variety, seed: int, students: Sequence[str]) -> VariantTable:
+def draw_student_variants(variety: VariantGenerator, seed: int, students: Sequence[str]) -> VariantTable:
     """Draw a different variant for each student.
 
     Args:
@@ -353,34 +353,34 @@ def draw_for(variety: Variety, seed: int, students: Sequence[str]) -> VariantTab
     """
     found: dict[str, tuple[str, ...]] = {}
     taken: set[tuple[str, ...]] = set()
-    for number, pool in enumerate(variety.pools(seed)):
+    for number, pool in enumerate(variety.draw_pools(seed)):
         every = list(islice(pool, POOL))
         for student in students:
             if student in found:
                 continue
             key = hashlib.sha256(f"{seed} {number} {student}".encode()).digest()
             order = np.random.default_rng(int.from_bytes(key)).permutation(len(every))
-            free = (k for k in order if variety.texts(every[k]) not in taken and variety.as_drawn(every[k]))
+            free = (k for k in order if variety.table_cells(every[k]) not in taken and variety.keeps_assembly(every[k]))
             own = next(free, None)
             if own is not None:
-                found[student] = variety.texts(every[own])
+                found[student] = variety.table_cells(every[own])
                 taken.add(found[student])
         if len(found) == len(students):
             break
     return VariantTable(variety.names, {student: found[student] for student in students if student in found})
 
 
-def _well_conditioned(found: Right) -> Real:
+def _find_well_conditioned(found: RightAnswers) -> Real:
     """Return True for each variant most of whose answers are not sensitive to drawing errors, (variants,)."""
     tolerance = np.array([one.tolerance for one in found.asked])
     exact = np.array([one.quantity.against == "exact" for one in found.asked])
     return np.asarray(np.mean((found.allowed <= CLOSE * tolerance) | exact, axis=1) >= MOSTLY)
 
 
-def _spread(values: Vector, allowed: Real, thrown: Counter[str]) -> Iterator[int]:
+def _order_by_distance(values: Vector, allowed: Real, rejected: Counter[str]) -> Iterator[int]:
     """Yield row indices so that each next row lies as far as possible from all rows before it.
 
-    A row whose values agree with those of an earlier row within the tolerances is dropped and counted in `thrown`.
+    A row whose values agree with those of an earlier row within the tolerances is dropped and counted in `rejected`.
     """
     if not len(values):
         return
@@ -394,7 +394,7 @@ def _spread(values: Vector, allowed: Real, thrown: Counter[str]) -> Iterator[int
         apart = np.abs(places - places[row])
         far = np.minimum(far, np.sqrt(np.sum(apart**2, axis=1)))
         alike = ~np.any(np.abs(values - values[row]) > allowed, axis=1) & (far > 0)
-        thrown[_("the answers coincide with those of another variant")] += int(np.count_nonzero(alike)) - int(
+        rejected[_("the answers coincide with those of another variant")] += int(np.count_nonzero(alike)) - int(
             alike[row]
         )
         far[alike] = 0

@@ -10,9 +10,9 @@ import numpy as np
 
 from tmm_cli.batch import VariantFamily
 from tmm_cli.grading.diagnose import Claim
-from tmm_cli.grading.mistakes.base import Mistake, solve
+from tmm_cli.grading.mistakes.base import Mistake, solve_with_mistakes
 from tmm_cli.grading.mistakes.motion import Coriolis
-from tmm_cli.grading.sheet import Right, Written, written_down
+from tmm_cli.grading.sheet import RightAnswers, WrittenAnswers, write_down_answers
 from tmm_cli.mechanics.analysis import NamedQuantity
 from tmm_cli.mechanics.forces import AppliedLoad
 from tmm_cli.mechanics.groups import (
@@ -52,21 +52,21 @@ class OwnMotion(Mistake):
     rate: Real
     gain: Real
 
-    def kernel(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
+    def change_solver(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
         links = family.linkage.links
         if any(name == self.link or self.point in links[name].points for name in kernel.group.links):
-            return OwnGroup.around(kernel, self, family.linkage)
+            return SolverWithOwnMotion.around(kernel, self, family.linkage)
         return kernel
 
 
 @dataclass(frozen=True)
-class OwnGroup(WrappedSolver):
+class SolverWithOwnMotion(WrappedSolver):
     """Solver of a group in which one link moves according to the student's answer; known links keep their motion."""
 
     own: OwnMotion
     linkage: Linkage
 
-    def _hinge(self, link: str) -> tuple[str, complex, complex] | None:
+    def _find_hinge(self, link: str) -> tuple[str, complex, complex] | None:
         """Return the hinge that connects a link to a known link, or None if there is none.
 
         Returns:
@@ -84,10 +84,10 @@ class OwnGroup(WrappedSolver):
         if self.own.order != 1:
             return found
         value = self.own.given / self.own.rate
-        return tuple(self._rate(*of, poses, rates, value) for of in zip(self.group.links, found, strict=True))
+        return tuple(self._replace_rate(*of, poses, rates, value) for of in zip(self.group.links, found, strict=True))
 
-    def _rate(self, link: str, right: Rate, poses: Poses, rates: Rates, value: Vector) -> Rate:
-        z, hinge, points = poses[link].z, self._hinge(link), self.linkage.links[link].points
+    def _replace_rate(self, link: str, right: Rate, poses: Poses, rates: Rates, value: Vector) -> Rate:
+        z, hinge, points = poses[link].z, self._find_hinge(link), self.linkage.links[link].points
         if link == self.own.link and not self.own.point:
             if hinge is None:
                 return replace(right, w=np.real(value))
@@ -95,7 +95,7 @@ class OwnGroup(WrappedSolver):
             return Rate.through(rates[known].at(there * poses[known].z), np.real(value), here * z)
         if self.own.point not in points and not (link == self.own.link and self.own.point):
             return right
-        place = self._place(link) * z
+        place = self._local_point(link) * z
         if hinge is None or np.all(place == hinge[2] * z):
             return Rate.through(value, right.w, place)
         known, there, here = hinge
@@ -103,7 +103,7 @@ class OwnGroup(WrappedSolver):
         w = cross(arm, value - rates[known].at(there * poses[known].z)) / squared_length(arm)
         return Rate.through(value, w, place)
 
-    def _place(self, link: str) -> complex:
+    def _local_point(self, link: str) -> complex:
         own = self.linkage.links[link]
         return own.points.get(self.own.point, own.centre)
 
@@ -113,10 +113,12 @@ class OwnGroup(WrappedSolver):
         found = super().accelerations(at, poses, rates, accels, drives)
         if self.own.order != 2:
             return found
-        return tuple(self._accel(*of, poses, rates, accels) for of in zip(self.group.links, found, strict=True))
+        return tuple(
+            self._replace_acceleration(*of, poses, rates, accels) for of in zip(self.group.links, found, strict=True)
+        )
 
-    def _accel(self, link: str, right: Accel, poses: Poses, rates: Rates, accels: Accels) -> Accel:
-        z, w, hinge = poses[link].z, rates[link].w, self._hinge(link)
+    def _replace_acceleration(self, link: str, right: Accel, poses: Poses, rates: Rates, accels: Accels) -> Accel:
+        z, w, hinge = poses[link].z, rates[link].w, self._find_hinge(link)
         own, points = self.own, self.linkage.links[link].points
         if link == own.link and not own.point:
             e = np.real(own.given - w * own.gain) / own.rate**2
@@ -126,7 +128,7 @@ class OwnGroup(WrappedSolver):
             return Accel.through(accels[known].at(there * poses[known].z, rates[known].w), e, w, here * z)
         if own.point not in points and link != own.link:
             return right
-        place = self._place(link) * z
+        place = self._local_point(link) * z
         value = (own.given - rates[link].at(place) * own.gain) / own.rate**2
         if hinge is None or np.all(place == hinge[2] * z):
             return Accel.through(value, right.e, w, place)
@@ -142,7 +144,7 @@ class OwnSpeed(Mistake):
 
     given: Vector
 
-    def family(self, family: VariantFamily) -> VariantFamily:
+    def change_family(self, family: VariantFamily) -> VariantFamily:
         driver = family.linkage.driver
         rate: Any = np.abs(np.real(self.given))
         return family.changed(replace(family.linkage, driver=replace(driver, rate=rate)))
@@ -156,7 +158,7 @@ class OwnInertia(Mistake):
     part: str
     given: Vector
 
-    def load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
+    def change_load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
         if load.kind != "inertia" or load.link != self.link:
             return load
         value = self.given if self.part == "force" else np.real(self.given)
@@ -171,13 +173,13 @@ class OwnReaction(Mistake):
     on: str
     given: Vector
 
-    def kernel(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
+    def change_solver(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
         pairs = (*kernel.group.outer, *kernel.group.inner)
-        return OwnReactions.around(kernel, self) if any(pair.name == self.pair for pair in pairs) else kernel
+        return SolverWithOwnReaction.around(kernel, self) if any(pair.name == self.pair for pair in pairs) else kernel
 
 
 @dataclass(frozen=True)
-class OwnReactions(WrappedSolver):
+class SolverWithOwnReaction(WrappedSolver):
     """Solver of a group in which one reaction is replaced by the student's."""
 
     own: OwnReaction
@@ -193,7 +195,7 @@ class OwnReactions(WrappedSolver):
         return replace(found, outer=tuple(outer), inner=tuple(inner))
 
 
-def own_answer(quantity: NamedQuantity, value: Vector, motion: Motion, right: Vector) -> Mistake | None:
+def replace_by_own_answer(quantity: NamedQuantity, value: Vector, motion: Motion, right: Vector) -> Mistake | None:
     """Replace a quantity by the students' values, to judge the quantities that depend on it.
 
     Args:
@@ -235,8 +237,8 @@ def own_answer(quantity: NamedQuantity, value: Vector, motion: Motion, right: Ve
 Cell = tuple[int, int]  # a student and an answer
 
 
-def following(
-    family: VariantFamily, right: Right, written: Written, claims: dict[int, list[Claim]]
+def find_carried_errors(
+    family: VariantFamily, right: RightAnswers, written: WrittenAnswers, claims: dict[int, list[Claim]]
 ) -> dict[Cell, tuple[int, ...]]:
     """Find wrong answers that are right with the student's own earlier answers.
 
@@ -247,32 +249,32 @@ def following(
         Indices of the earlier answers, by the indices (student, answer) of the wrong answer.
     """
     wrong = right.error(written) > right.allowed
-    whole = _whole(right, written)
-    found: dict[Cell, tuple[int, ...]] = _by_mistake(right, wrong, claims)
+    whole = _complete_vectors(right, written)
+    found: dict[Cell, tuple[int, ...]] = _find_repeated_mistakes(right, wrong, claims)
     rows = np.flatnonzero(np.sum(wrong, axis=1) > 1)
     wanted: dict[tuple[int, ...], list[Cell]] = {}
     for n in rows.tolist():
         for k in np.flatnonzero(wrong[n]).tolist():
-            for before in _earlier(right, wrong, n, k):
+            for before in _find_earlier(right, wrong, n, k):
                 wanted.setdefault((before,), []).append((n, k))
-    found |= _fitting(family, right, written, whole, wanted, found)
+    found |= _find_consistent(family, right, written, whole, wanted, found)
     wanted = {}
     for n in rows.tolist():
         for k in np.flatnonzero(wrong[n]).tolist():
-            sources = tuple(_earlier(right, wrong, n, k))
+            sources = tuple(_find_earlier(right, wrong, n, k))
             if len(sources) > 1 and (n, k) not in found:
                 wanted.setdefault(sources, []).append((n, k))
-    return found | _fitting(family, right, written, whole, wanted, found)
+    return found | _find_consistent(family, right, written, whole, wanted, found)
 
 
-def _whole(right: Right, written: Written) -> Real:
+def _complete_vectors(right: RightAnswers, written: WrittenAnswers) -> Real:
     """Return the written answers as vectors; a magnitude without a direction is given the right direction."""
     with np.errstate(all="ignore"):
         direction = np.where(right.value == 0, 1, right.value / np.abs(right.value))
     return np.where(written.size, np.abs(written.value) * direction, written.value)
 
 
-def _earlier(right: Right, wrong: Real, n: int, k: int) -> Iterable[int]:
+def _find_earlier(right: RightAnswers, wrong: Real, n: int, k: int) -> Iterable[int]:
     """Yield the indices of the student's wrong answers at the same position that are due before answer `k`."""
     asked = right.asked
     for j in np.flatnonzero(wrong[n]).tolist():
@@ -281,23 +283,25 @@ def _earlier(right: Right, wrong: Real, n: int, k: int) -> Iterable[int]:
             yield j
 
 
-def _by_mistake(right: Right, wrong: Real, claims: dict[int, list[Claim]]) -> dict[Cell, tuple[int, ...]]:
-    """Return the wrong answers due to a mistake that an earlier answer already shows, so that it is charged only once."""
+def _find_repeated_mistakes(
+    right: RightAnswers, wrong: Real, claims: dict[int, list[Claim]]
+) -> dict[Cell, tuple[int, ...]]:
+    """Return the wrong answers due to a mistake that an earlier answer already shows; it is charged only once."""
     found: dict[Cell, tuple[int, ...]] = {}
     for n, own in claims.items():
         for claim in own:
             if all(case.solves for case in claim.alternatives):
                 for k in claim.answers:
-                    before = [j for j in _earlier(right, wrong, n, k) if j in claim.answers]
+                    before = [j for j in _find_earlier(right, wrong, n, k) if j in claim.answers]
                     if before:
                         found[n, k] = (before[0],)
     return found
 
 
-def _fitting(
+def _find_consistent(
     family: VariantFamily,
-    right: Right,
-    written: Written,
+    right: RightAnswers,
+    written: WrittenAnswers,
     whole: Real,
     wanted: dict[tuple[int, ...], list[Cell]],
     known: dict[Cell, tuple[int, ...]],
@@ -314,17 +318,18 @@ def _fitting(
             continue
         students = np.array(sorted({n for n, _ in cells}))
         own = family.take(students)
-        motion = solve(own).motion
+        motion = solve_with_mistakes(own).motion
         values = [whole[students, j][:, None] for j in sources]
         rights = [right.value[students, j][:, None] for j in sources]
         made = [
-            own_answer(right.asked[j].quantity, v, motion, r) for j, v, r in zip(sources, values, rights, strict=True)
+            replace_by_own_answer(right.asked[j].quantity, v, motion, r)
+            for j, v, r in zip(sources, values, rights, strict=True)
         ]
         mistakes = [one for one in made if one is not None]
         if not mistakes:
             continue
         with np.errstate(all="ignore"):
-            value = written_down(solve(own, mistakes), right.asked)
+            value = write_down_answers(solve_with_mistakes(own, mistakes), right.asked)
             part = right.take(students)
             scale = np.maximum(1.0, np.abs(value) / part.scale)
             fits = part.error(written.take(students), value) / scale <= part.allowed

@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from tmm_cli.grading.sheet import Right, Written
+from tmm_cli.grading.sheet import RightAnswers, WrittenAnswers
 from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import NamedQuantity
 from tmm_cli.mechanics.numerics import Vector
@@ -34,7 +34,7 @@ class VariantTable:
 
 
 @dataclass(frozen=True)
-class Given:
+class ReadAnswer:
     """An answer as read from a cell: one number or two.
 
     Attributes:
@@ -67,9 +67,9 @@ class Submission:
     """
 
     student: str
-    answers: Mapping[Key, Given] = field(default_factory=dict)
+    answers: Mapping[Key, ReadAnswer] = field(default_factory=dict)
     problems: tuple[str, ...] = ()
-    by_angle: Mapping[tuple[str, float], Given] = field(default_factory=dict)
+    by_angle: Mapping[tuple[str, float], ReadAnswer] = field(default_factory=dict)
     unread: bool = False
 
 
@@ -112,7 +112,7 @@ class Mark:
     text: str = ""
 
     @property
-    def judged(self) -> bool:
+    def is_judged(self) -> bool:
         """True if the answer could be judged, i.e. the student has a variant that can be solved."""
         return self.allowed > 0
 
@@ -159,7 +159,9 @@ UNSAID: dict[Dimension, tuple[str, ...]] = {
 Cells = dict[tuple[int, int], str]  # words by student and answer
 
 
-def read(units: UnitSystem, wanted: Right, submissions: Sequence[Submission]) -> tuple[Written, Cells, Cells]:
+def read_in_si(
+    units: UnitSystem, wanted: RightAnswers, submissions: Sequence[Submission]
+) -> tuple[WrittenAnswers, Cells, Cells]:
     """Convert the answers of all students to SI. An answer without a unit gets the usual unit that makes it fit best.
 
     Args:
@@ -176,11 +178,11 @@ def read(units: UnitSystem, wanted: Right, submissions: Sequence[Submission]) ->
     how: Cells = {}
     refused: Cells = {}
     for k, asked in enumerate(wanted.asked):
-        for (form, unit, turn_unit), rows in _alike(submissions, asked.key).items():
+        for (form, unit, turn_unit), rows in _group_by_form(submissions, asked.key).items():
             given = [submissions[n].answers[asked.key] for n in rows]
             try:
-                named = _factors(asked.quantity, unit, units)
-                numbers = _numbers(given, form, factor(turn_unit or "deg", ANGLE))
+                named = _possible_factors(asked.quantity, unit, units)
+                numbers = _complex_numbers(given, form, si_factor(turn_unit or "deg", ANGLE))
             except ProblemError as no:
                 refused |= dict.fromkeys(((n, k) for n in rows), str(no))
                 continue
@@ -188,15 +190,15 @@ def read(units: UnitSystem, wanted: Right, submissions: Sequence[Submission]) ->
             meant = numbers[:, None] * np.array(list(named.values()))
             best = np.zeros(len(rows), dtype=int)
             if len(named) > 1:
-                error = wanted.side_by_side(rows, k, len(named)).error(Written(meant, size[rows, k][:, None]))
+                error = wanted.repeat_question(rows, k, len(named)).error(WrittenAnswers(meant, size[rows, k][:, None]))
                 best = np.argmin(np.nan_to_num(error, nan=np.inf), axis=1)
                 names = list(named)
                 how |= {(n, k): names[b] for n, b in zip(rows, best.tolist(), strict=True)}
             value[rows, k] = meant[np.arange(len(rows)), best]
-    return Written(value, size), how, refused
+    return WrittenAnswers(value, size), how, refused
 
 
-def _alike(submissions: Sequence[Submission], key: Key) -> dict[tuple[Form, str, str], list[int]]:
+def _group_by_form(submissions: Sequence[Submission], key: Key) -> dict[tuple[Form, str, str], list[int]]:
     """Group the students by the form and units of their answer to one question.
 
     Returns:
@@ -210,18 +212,18 @@ def _alike(submissions: Sequence[Submission], key: Key) -> dict[tuple[Form, str,
     return found
 
 
-def _factors(quantity: NamedQuantity, unit: str, units: UnitSystem) -> dict[str, float]:
+def _possible_factors(quantity: NamedQuantity, unit: str, units: UnitSystem) -> dict[str, float]:
     """Return the SI factors of the units an answer may be in: the written unit, or else all usual ones.
 
     Raises:
         UnitError: The unit does not measure this quantity.
     """
     names = (unit,) if unit else (units.symbol(quantity.dimension), *UNSAID.get(quantity.dimension, ()))
-    return {name: factor(name, quantity.dimension) for name in names}
+    return {name: si_factor(name, quantity.dimension) for name in names}
 
 
-def _numbers(given: Sequence[Given], form: Form, turn: float) -> Vector:
-    """Return answers of one form as complex numbers in their own unit; turn: SI value of the unit of their directions."""
+def _complex_numbers(given: Sequence[ReadAnswer], form: Form, turn: float) -> Vector:
+    """Return answers of one form as complex numbers in their own unit; turn: radians per unit of direction."""
     first, second = np.array([[one.first, one.second] for one in given]).T
     turned = first * np.exp(1j * second * turn) if form == "polar" else first
     found: Vector = turned + 1j * second if form == "components" else turned.astype(complex)
@@ -229,7 +231,7 @@ def _numbers(given: Sequence[Given], form: Form, turn: float) -> Vector:
 
 
 @cache
-def factor(name: str, dimension: Dimension) -> float:
+def si_factor(name: str, dimension: Dimension) -> float:
     """Return the SI value of a unit; 1 for an empty name.
 
     Raises:

@@ -28,14 +28,14 @@ from tmm_cli.batch import (
     run_here,
     split_families,
 )
-from tmm_cli.grading.diagnose import diagnose_students, with_copies
-from tmm_cli.grading.exports import write
+from tmm_cli.grading.diagnose import diagnose_students, find_copies
+from tmm_cli.grading.exports import write_formats
 from tmm_cli.grading.exports.book import Gradebook
 from tmm_cli.grading.mistakes.data import OtherZero
-from tmm_cli.grading.own_answers import following
-from tmm_cli.grading.record import Mark, State, StudentMarks, Submission, VariantTable, read
-from tmm_cli.grading.sheet import right
-from tmm_cli.grading.submissions.answers import at_positions
+from tmm_cli.grading.own_answers import find_carried_errors
+from tmm_cli.grading.record import Mark, State, StudentMarks, Submission, VariantTable, read_in_si
+from tmm_cli.grading.sheet import compute_right_answers
+from tmm_cli.grading.submissions.answers import assign_to_positions
 from tmm_cli.grading.submissions.read import read_submissions
 from tmm_cli.grading.variant_tables import read_table
 from tmm_cli.language import _, language
@@ -48,8 +48,8 @@ NAMES = tuple(field.name for field in fields(Mark))
 VECTORS = ("value", "right")
 
 
-def key_of(task: Task, table: VariantTable, submission: Submission) -> str:
-    """Return a digest of everything that a student's marks depend on: program, language, task, variant and submission."""
+def compute_marks_key(task: Task, table: VariantTable, submission: Submission) -> str:
+    """Return a digest of all that a student's marks depend on: program, language, task, variant, submission."""
     row = table.rows.get(submission.student)
     return _digest(program_digest(), language(), task.tree.data, table.names, row, submission)
 
@@ -58,14 +58,14 @@ def _digest(*parts: object) -> str:
     return blake2b(repr(parts).encode(errors="backslashreplace"), digest_size=16).hexdigest()
 
 
-def _line(key: str, marks: StudentMarks) -> str:
+def _marks_line(key: str, marks: StudentMarks) -> str:
     """Return a line of the file of saved marks, without the line break."""
-    rows = [[_plain(getattr(mark, name), name) for name in NAMES] for mark in marks.marks]
+    rows = [[_json_field(getattr(mark, name), name) for name in NAMES] for mark in marks.marks]
     text = json.dumps([marks.student, rows, marks.problems])
     return f"{key} {_digest(text)} {text}"
 
 
-def _plain(value: Any, name: str) -> Any:
+def _json_field(value: Any, name: str) -> Any:
     """Return a field of a mark as JSON data; a complex number as a list of its real and imaginary parts."""
     if name not in VECTORS or value is None:
         return value
@@ -73,7 +73,7 @@ def _plain(value: Any, name: str) -> Any:
     return [number.real, number.imag]
 
 
-def read_kept(path: Path, keys: Collection[str]) -> dict[str, StudentMarks]:
+def read_saved_marks(path: Path, keys: Collection[str]) -> dict[str, StudentMarks]:
     """Read the saved marks of earlier runs.
 
     Args:
@@ -91,23 +91,25 @@ def read_kept(path: Path, keys: Collection[str]) -> dict[str, StudentMarks]:
                 digest, _, text = rest.partition(" ")
                 if key in keys and digest == _digest(text):
                     with suppress(TypeError, ValueError, KeyError):  # of another form: graded again
-                        found[key] = _kept_marks(text)
+                        found[key] = _parse_marks(text)
     except OSError:
         pass  # there is none yet, or none that can be read
     return found
 
 
-def _kept_marks(text: str) -> StudentMarks:
+def _parse_marks(text: str) -> StudentMarks:
     student, rows, problems = json.loads(text)
-    return StudentMarks(student, tuple(_mark(dict(zip(NAMES, row, strict=True))) for row in rows), tuple(problems))
+    return StudentMarks(
+        student, tuple(_parse_mark(dict(zip(NAMES, row, strict=True))) for row in rows), tuple(problems)
+    )
 
 
-def _mark(row: dict[str, Any]) -> Mark:
+def _parse_mark(row: dict[str, Any]) -> Mark:
     vectors = {name: None if row[name] is None else complex(*row[name]) for name in VECTORS}
     return Mark(**row | vectors | {name: tuple(row[name]) for name in ("key", "reasons", "mistakes")})
 
 
-def keep(path: Path, marks: Mapping[str, StudentMarks]) -> None:
+def append_marks(path: Path, marks: Mapping[str, StudentMarks]) -> None:
     """Append marks to the file of saved marks; marks: by key.
 
     Raises:
@@ -115,7 +117,7 @@ def keep(path: Path, marks: Mapping[str, StudentMarks]) -> None:
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("a", encoding="ascii") as stream:
-        stream.writelines(f"\n{_line(key, own)}" for key, own in marks.items())
+        stream.writelines(f"\n{_marks_line(key, own)}" for key, own in marks.items())
 
 
 # The way of grading: variants solved together, every answer judged, what is wrong explained.
@@ -138,26 +140,28 @@ def grade(task: Task, table: VariantTable, submissions: Sequence[Submission]) ->
     """
     some = max(1, min(CHUNK, POSITIONS // task.positions))
     for first in range(0, len(submissions), some):
-        yield from _chunk(task, table, submissions[first : first + some])
+        yield from _grade_chunk(task, table, submissions[first : first + some])
 
 
-def _chunk(task: Task, table: VariantTable, submissions: Sequence[Submission]) -> Iterator[StudentMarks]:
+def _grade_chunk(task: Task, table: VariantTable, submissions: Sequence[Submission]) -> Iterator[StudentMarks]:
     found: dict[int, StudentMarks] = {}
     known = [n for n, s in enumerate(submissions) if s.student in table.rows]
-    dimensions, columns = numbers_of(task, table, [submissions[n].student for n in known])
+    dimensions, columns = read_parameter_values(task, table, [submissions[n].student for n in known])
     for rows, family in split_families(lambda numbers: task.make(table.names, dimensions, numbers), columns):
         own = [known[row] for row in rows]
         if isinstance(family, LinkageError):
-            found |= {n: ungraded(task, submissions[n], str(family)) for n in own}
+            found |= {n: mark_as_ungraded(task, submissions[n], str(family)) for n in own}
         else:
-            for part, begun in _begun(task, family, [submissions[n] for n in own]):
+            for part, begun in _group_by_zero_position(task, family, [submissions[n] for n in own]):
                 there = [own[row] for row in part]
-                found |= dict(zip(there, _marks(task, begun, [submissions[n] for n in there]), strict=True))
+                found |= dict(zip(there, _mark_family(task, begun, [submissions[n] for n in there]), strict=True))
     for n, submission in enumerate(submissions):
-        yield found.get(n) or ungraded(task, submission, _("this student has no variant"))
+        yield found.get(n) or mark_as_ungraded(task, submission, _("this student has no variant"))
 
 
-def numbers_of(task: Task, table: VariantTable, students: Sequence[str]) -> tuple[tuple[Dimension | None, ...], Real]:
+def read_parameter_values(
+    task: Task, table: VariantTable, students: Sequence[str]
+) -> tuple[tuple[Dimension | None, ...], Real]:
     """Read the parameter values of the students' variants.
 
     Returns:
@@ -177,13 +181,13 @@ def numbers_of(task: Task, table: VariantTable, students: Sequence[str]) -> tupl
     return dimensions, columns
 
 
-def ungraded(task: Task, submission: Submission, why: str) -> StudentMarks:
+def mark_as_ungraded(task: Task, submission: Submission, why: str) -> StudentMarks:
     """Return marks without points for a student whose answers cannot be judged; why: reason for the teacher."""
     marks = tuple(Mark(one.key, "missing", 0.0, one.points) for one in task.asked)
     return StudentMarks(submission.student, marks, (*submission.problems, why))
 
 
-def _begun(
+def _group_by_zero_position(
     task: Task, family: VariantFamily, submissions: Sequence[Submission]
 ) -> Iterator[tuple[Real, VariantFamily]]:
     """Group the students by the extreme position of the output from which they number the positions.
@@ -195,29 +199,29 @@ def _begun(
     if task.rules.from_ == "task" or strokes is None or len(strokes.strokes) != 2:
         yield rows, family
         return
-    both = (family, OtherZero(True).family(family))
+    both = (family, OtherZero(True).change_family(family))
     holds = []
     for one in both:
-        wanted = right(one, task.asked)
-        holds.append(np.sum(wanted.error(read(task.units, wanted, submissions)[0]) <= wanted.allowed, axis=1))
+        wanted = compute_right_answers(one, task.asked)
+        holds.append(np.sum(wanted.error(read_in_si(task.units, wanted, submissions)[0]) <= wanted.allowed, axis=1))
     other = holds[1] > holds[0]
     for one, part in zip(both, (rows[~other], rows[other]), strict=True):
         if part.size:
             yield part, one.take(part)
 
 
-def _marks(task: Task, family: VariantFamily, submissions: Sequence[Submission]) -> list[StudentMarks]:
+def _mark_family(task: Task, family: VariantFamily, submissions: Sequence[Submission]) -> list[StudentMarks]:
     """Return the marks of students whose variants form one family, with the same zero position."""
-    submissions = [at_positions(one, task, places) for one, places in zip(submissions, family.q, strict=True)]
+    submissions = [assign_to_positions(one, task, places) for one, places in zip(submissions, family.q, strict=True)]
     found: dict[int, StudentMarks] = {}
-    for rows, asked in _by_attachment(task, family, submissions):
+    for rows, asked in _group_by_attachment(task, family, submissions):
         same = [submissions[n] for n in rows.tolist()]
         part = family if len(rows) == len(submissions) else family.take(rows)
-        found |= dict(zip(rows.tolist(), _marks_of(task, asked, part, same), strict=True))
+        found |= dict(zip(rows.tolist(), _mark_students(task, asked, part, same), strict=True))
     return [marks for _row, marks in sorted(found.items())]
 
 
-def _by_attachment(
+def _group_by_attachment(
     task: Task, family: VariantFamily, submissions: Sequence[Submission]
 ) -> Iterator[tuple[Real, tuple[Question, ...]]]:
     """Group the students by how they attach links at a hinge of three or more links.
@@ -231,33 +235,33 @@ def _by_attachment(
         return
     holds = []
     for asked in (task.asked, other):
-        wanted = right(family, asked)
-        holds.append(wanted.error(read(task.units, wanted, submissions)[0]) <= wanted.allowed)
+        wanted = compute_right_answers(family, asked)
+        holds.append(wanted.error(read_in_si(task.units, wanted, submissions)[0]) <= wanted.allowed)
     patterns, which = np.unique(holds[1] & ~holds[0], axis=0, return_inverse=True)
     for number, pattern in enumerate(patterns):
         asked = tuple(b if chosen else a for a, b, chosen in zip(task.asked, other, pattern, strict=True))
         yield np.flatnonzero(which.ravel() == number), asked
 
 
-def _marks_of(
+def _mark_students(
     task: Task, asked_all: tuple[Question, ...], family: VariantFamily, submissions: Sequence[Submission]
 ) -> list[StudentMarks]:
     """Return the marks of students whose variants form one family and who have the same questions."""
-    wanted = right(family, asked_all)
-    written, how, refused = read(task.units, wanted, submissions)
+    wanted = compute_right_answers(family, asked_all)
+    written, how, refused = read_in_si(task.units, wanted, submissions)
     error = wanted.error(written)
     claims = diagnose_students(family, wanted, written)
-    follows = following(family, wanted, written, claims)
+    follows = find_carried_errors(family, wanted, written, claims)
     found = []
     for n, submission in enumerate(submissions):
         marks = []
         for k, asked in enumerate(asked_all):
-            there, given = bool(written.there[n, k]), submission.answers.get(asked.key)
+            there, given = bool(written.given[n, k]), submission.answers.get(asked.key)
             state: State = "missing"
             if there or (n, k) in refused:
                 state = "right" if error[n, k] <= wanted.allowed[n, k] else "follows" if (n, k) in follows else "wrong"
             named = [claim for claim in claims.get(n, ()) if k in claim.answers]
-            reasons = [refused[n, k]] if (n, k) in refused else [claim.told for claim in named]
+            reasons = [refused[n, k]] if (n, k) in refused else [claim.description for claim in named]
             if state == "follows":
                 sources = ", ".join(asked_all[j].name for j in follows[n, k])
                 reasons = [_("This is right with your earlier values of {sources}.").format(sources=sources)]
@@ -275,7 +279,7 @@ def _marks_of(
                     float(wanted.allowed[n, k]),
                     how.get((n, k), ""),
                     tuple(reasons),
-                    tuple(claim.called for claim in named),
+                    tuple(claim.label for claim in named),
                     given.text if given else "",
                 )
             )
@@ -317,13 +321,13 @@ class Chunk:
         except Exception as error:
             if len(self.submissions) == 1:
                 why = _("could not be graded: {error}").format(error="; ".join(map(str.strip, str(error).splitlines())))
-                return [ungraded(task, self.submissions[0], why)]
+                return [mark_as_ungraded(task, self.submissions[0], why)]
             half = len(self.submissions) // 2
             parts = self.submissions[:half], self.submissions[half:]
             return [marks for part in parts for marks in Chunk(self.tree, self.table, part)()]
 
 
-def graded(
+def grade_group(
     task: Task,
     table: VariantTable,
     submissions: Sequence[Submission],
@@ -352,22 +356,22 @@ def graded(
     """
     task.dimensions(table.names)
     task.asked  # noqa: B018  refuses what is wrong in it before the work starts
-    keys = [key_of(task, table, submission) for submission in submissions]
-    found = read_kept(kept, set(keys)) if kept else {}
+    keys = [compute_marks_key(task, table, submission) for submission in submissions]
+    found = read_saved_marks(kept, set(keys)) if kept else {}
     new = [n for n, key in enumerate(keys) if key not in found]
     seen(len(keys) - len(new))
     parts = [new[first : first + CHUNK] for first in range(0, len(new), CHUNK)]
-    chunks = [_graded_chunk(task, table, [submissions[n] for n in part]) for part in parts]
+    chunks = [_build_chunk(task, table, [submissions[n] for n in part]) for part in parts]
     for number, marks in way(chunks, stopped):
         own = {keys[n]: one for n, one in zip(parts[number], marks, strict=True)}
         found |= own
         if kept:
-            keep(kept, own)
+            append_marks(kept, own)
         seen(len(marks))
-    return with_copies([found[key] for key in keys if key in found])
+    return find_copies([found[key] for key in keys if key in found])
 
 
-def written(folder: Path, book: Gradebook, formats: Collection[str], jobs: int) -> None:
+def write_gradebook(folder: Path, book: Gradebook, formats: Collection[str], jobs: int) -> None:
     """Write a gradebook in several formats; for a large group in two processes, one for the slow formats.
 
     Args:
@@ -382,13 +386,13 @@ def written(folder: Path, book: Gradebook, formats: Collection[str], jobs: int) 
     parts = [[name for name in formats if (name in SLOW) == slow] for slow in (True, False)]
     parts = [part for part in parts if part]
     if len(book.marks) <= CHUNK or len(parts) < 2:
-        write(folder, book, formats)
+        write_formats(folder, book, formats)
         return
-    for _done in in_processes(jobs)([partial(write, folder, book, part) for part in parts], lambda: False):
+    for _done in in_processes(jobs)([partial(write_formats, folder, book, part) for part in parts], lambda: False):
         pass
 
 
-def _graded_chunk(task: Task, table: VariantTable, submissions: Sequence[Submission]) -> Chunk:
+def _build_chunk(task: Task, table: VariantTable, submissions: Sequence[Submission]) -> Chunk:
     students = [submission.student for submission in submissions]
     rows = {student: table.rows[student] for student in students if student in table.rows}
     return Chunk(task.tree, VariantTable(table.names, rows), tuple(submissions))
@@ -397,7 +401,7 @@ def _graded_chunk(task: Task, table: VariantTable, submissions: Sequence[Submiss
 HANDED_IN = ("submissions", "answers.csv", "answers.xlsx")
 
 
-def grades(task_file: Path) -> dict[str, Any]:
+def grade_example(task_file: Path) -> dict[str, Any]:
     """Grade an example: a folder with a task file, variants.csv and submissions.
 
     Returns:
@@ -412,7 +416,7 @@ def grades(task_file: Path) -> dict[str, Any]:
     if handed_in is None:
         raise ProblemError(_("nothing was handed in"), allowed=", ".join(HANDED_IN), file=str(folder))
     submissions = list(read_submissions(handed_in, task, table.rows))
-    return {"students": _as_plain_data(graded(task, table, submissions))}
+    return {"students": _as_plain_data(grade_group(task, table, submissions))}
 
 
 def _as_plain_data(found: Sequence[StudentMarks]) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from tmm_cli.batch import Question, VariantFamily, numeric_leaves, with_numbers
-from tmm_cli.grading.mistakes.base import Mistake, Solution, solve
+from tmm_cli.grading.mistakes.base import Mistake, Solution, solve_with_mistakes
 from tmm_cli.mechanics.analysis import NamedQuantity
 from tmm_cli.mechanics.groups import ClosedFormSolver
 from tmm_cli.mechanics.numerics import Real, Vector
@@ -33,7 +33,7 @@ SAME = 1e-6  # of a number that is exact, as a class is
 
 
 @dataclass(frozen=True)
-class Written:
+class WrittenAnswers:
     """Answers as the students wrote them.
 
     Attributes:
@@ -45,16 +45,16 @@ class Written:
     size: Real
 
     @cached_property
-    def there(self) -> Real:
+    def given(self) -> Real:
         return ~np.isnan(self.value)
 
-    def take(self, rows: Real) -> Written:
+    def take(self, rows: Real) -> WrittenAnswers:
         """Return the answers of the students with these indices, which may repeat."""
-        return Written(self.value[rows], self.size[rows])
+        return WrittenAnswers(self.value[rows], self.size[rows])
 
 
 @dataclass(frozen=True)
-class Right:
+class RightAnswers:
     """Right answers of the students' variants.
 
     Attributes:
@@ -69,7 +69,7 @@ class Right:
     scale: Real
     allowed: Real
 
-    def error(self, written: Written, value: Vector | None = None) -> Real:
+    def error(self, written: WrittenAnswers, value: Vector | None = None) -> Real:
         """Return the relative errors of written answers, (students, answers); nan for missing answers.
 
         value: values to compare with, SI; by default the right ones.
@@ -82,57 +82,61 @@ class Right:
         gap[..., turns] = np.abs(np.remainder(gap[..., turns] + np.pi, 2 * np.pi) - np.pi)
         with np.errstate(divide="ignore", invalid="ignore"):
             share: Real = gap / self.scale
-        return np.where(np.isnan(wanted) & written.there, 0.0, share)  # where nothing is right nothing is judged
+        return np.where(np.isnan(wanted) & written.given, 0.0, share)  # where nothing is right nothing is judged
 
-    def side_by_side(self, rows: Sequence[int], k: int, count: int) -> Right:
+    def repeat_question(self, rows: Sequence[int], k: int, count: int) -> RightAnswers:
         """Return the right answer to question `k`, for students `rows`, in `count` equal columns.
 
         With it an answer that can be understood in several ways is compared in all of them at once.
         """
         own = (part[rows, k][:, None] for part in (self.value, self.scale, self.allowed))
-        return Right((self.asked[k],) * count, *own)
+        return RightAnswers((self.asked[k],) * count, *own)
 
-    def take(self, rows: Real) -> Right:
+    def take(self, rows: Real) -> RightAnswers:
         """Return the right answers of the students with these indices, which may repeat."""
-        return Right(self.asked, self.value[rows], self.scale[rows], self.allowed[rows])
+        return RightAnswers(self.asked, self.value[rows], self.scale[rows], self.allowed[rows])
 
 
-def predicted(family: VariantFamily, asked: Sequence[Question], mistakes: Sequence[Mistake] = ()) -> Vector:
+def predict_answers(family: VariantFamily, asked: Sequence[Question], mistakes: Sequence[Mistake] = ()) -> Vector:
     """Return the answers that students who make these mistakes would write, (students, answers), SI."""
-    return written_down(solve(family, mistakes), asked, mistakes)
+    return write_down_answers(solve_with_mistakes(family, mistakes), asked, mistakes)
 
 
-def written_down(solution: Solution, asked: Sequence[Question], mistakes: Sequence[Mistake] = ()) -> Vector:
+def write_down_answers(solution: Solution, asked: Sequence[Question], mistakes: Sequence[Mistake] = ()) -> Vector:
     """Return the answers of a solution, (students, answers), SI, changed by mistakes made in writing them down."""
-    return np.stack([_value(one, solution, mistakes) for one in asked], axis=1)
+    return np.stack([_write_down_answer(one, solution, mistakes) for one in asked], axis=1)
 
 
-def _value(asked: Question, solution: Solution, mistakes: Sequence[Mistake]) -> Vector:
-    values = values_of(asked.quantity, solution)
+def _write_down_answer(asked: Question, solution: Solution, mistakes: Sequence[Mistake]) -> Vector:
+    values = evaluate_quantity(asked.quantity, solution)
     for mistake in mistakes:
-        values = mistake.value(asked.quantity, values, solution)
+        values = mistake.change_values(asked.quantity, values, solution)
     return values[:, asked.position or 0].astype(complex)
 
 
-def values_of(quantity: NamedQuantity, solution: Solution) -> Real:
+def evaluate_quantity(quantity: NamedQuantity, solution: Solution) -> Real:
     """Return the values of a quantity, (variants, positions); (variants, 1) for a quantity of the whole mechanism."""
     found = np.asarray(quantity.read(solution))
     return np.broadcast_to(found, (len(solution.family), found.shape[-1]))
 
 
-def right(family: VariantFamily, asked: Sequence[Question]) -> Right:
+def compute_right_answers(family: VariantFamily, asked: Sequence[Question]) -> RightAnswers:
     """Compute the right answers of a family of variants with their tolerances.
 
     A tolerance combines the one set in the task with the effect of drawing or rounding errors of the lengths.
     """
-    solution = solve(family)
-    value = np.stack([_value(one, solution, ()) for one in asked], axis=1)
-    scale = _scales(asked, solution)
+    solution = solve_with_mistakes(family)
+    value = np.stack([_write_down_answer(one, solution, ()) for one in asked], axis=1)
+    scale = _reference_values(asked, solution)
     places = sorted({0, *(one.position or 0 for one in asked)})  # the motion starts in position 0
     there = [replace(one, position=places.index(one.position or 0)) for one in asked]
     close = family.changed(family.linkage, family.q[:, places])
     change = (
-        np.abs(np.concatenate([predicted(other, there).reshape(-1, *value.shape) - value for other in _nearby(close)]))
+        np.abs(
+            np.concatenate(
+                [predict_answers(other, there).reshape(-1, *value.shape) - value for other in _perturb_lengths(close)]
+            )
+        )
         / STEP
     )
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -140,16 +144,16 @@ def right(family: VariantFamily, asked: Sequence[Question]) -> Right:
     exactly = np.array([DRAWN if one.drawn else COMPUTED for one in asked])
     allowed = np.hypot([one.tolerance for one in asked], exactly * np.nan_to_num(response))
     exact = [one.quantity.against == "exact" for one in asked]
-    return Right(tuple(asked), value, scale, np.where(exact, SAME, allowed))
+    return RightAnswers(tuple(asked), value, scale, np.where(exact, SAME, allowed))
 
 
-def _scales(asked: Sequence[Question], solution: Solution) -> Real:
+def _reference_values(asked: Sequence[Question], solution: Solution) -> Real:
     """Return the reference values (SI) of relative errors, (variants, answers).
 
     For a quantity that is zero throughout the cycle, the reference value is a typical magnitude of its dimension.
     """
-    found = np.stack([_scale(one.quantity, solution) for one in asked], axis=1)
-    usual = _usual(solution)
+    found = np.stack([_reference_value(one.quantity, solution) for one in asked], axis=1)
+    usual = _typical_magnitudes(solution)
     for k, one in enumerate(asked):
         if one.quantity.against in ("largest", "range"):
             size = usual[one.quantity.dimension]
@@ -157,8 +161,8 @@ def _scales(asked: Sequence[Question], solution: Solution) -> Real:
     return found
 
 
-def _usual(solution: Solution) -> dict[Dimension, Real]:
-    """Return typical magnitudes (SI) by dimension, (variants,), from the longest link, the driver speed and the loads."""
+def _typical_magnitudes(solution: Solution) -> dict[Dimension, Real]:
+    """Return typical magnitudes (SI) by dimension, (variants,), from longest link, driver speed and loads."""
     motion, loads = solution.motion, solution.reactions.applied
     size = np.reshape(np.max([np.max(kernel.size, initial=0.0) for kernel in motion.kernels] or [1.0]), (-1,))
     rate = np.maximum(np.nanmax(np.abs(motion.rate), axis=1), NOTHING)
@@ -178,9 +182,9 @@ def _usual(solution: Solution) -> dict[Dimension, Real]:
     }
 
 
-def _scale(quantity: NamedQuantity, solution: Solution) -> Real:
-    """Return the value (SI) to which relative errors of a quantity refer, (variants,): its largest value or its range."""
-    values = values_of(quantity, solution)
+def _reference_value(quantity: NamedQuantity, solution: Solution) -> Real:
+    """Return the value (SI) to which relative errors of a quantity refer: its largest value or range, (variants,)."""
+    values = evaluate_quantity(quantity, solution)
     if quantity.against in ("angle", "exact"):
         return np.ones(len(values))
     if quantity.against == "range":
@@ -188,7 +192,7 @@ def _scale(quantity: NamedQuantity, solution: Solution) -> Real:
     return np.asarray(np.nanmax(np.abs(values), axis=1))
 
 
-def _nearby(family: VariantFamily) -> Iterator[VariantFamily]:
+def _perturb_lengths(family: VariantFamily) -> Iterator[VariantFamily]:
     """Yield the family with slightly changed data: the lengths of one link after another, then the driver coordinate.
 
     All changes are made in one family with repeated variants, or one after another if a group solver does not allow it.

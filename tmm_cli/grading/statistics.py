@@ -10,7 +10,7 @@ import numpy as np
 
 from tmm_cli.batch import Task
 from tmm_cli.grading.record import State, StudentMarks
-from tmm_cli.grading.untrusted_tables import sentence, shown
+from tmm_cli.grading.untrusted_tables import printable_sentence, printable_text
 from tmm_cli.language import _
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.mechanics.quantities import NUMBER
@@ -42,25 +42,25 @@ class Difficulty:
         return (self.answers["right"] + self.answers["follows"]) / max(1, self.answers.total())
 
 
-def handed_in(marks: Sequence[StudentMarks]) -> list[StudentMarks]:
+def select_handed_in(marks: Sequence[StudentMarks]) -> list[StudentMarks]:
     """Return the students who gave at least one answer."""
     return [student for student in marks if any(mark.state != "missing" for mark in student.marks)]
 
 
-def percents(marks: Sequence[StudentMarks]) -> Real:
+def percents_of_points(marks: Sequence[StudentMarks]) -> Real:
     """Return the points of each student who handed in answers, in per cent of the maximum."""
-    return np.array([100 * student.points / student.of for student in handed_in(marks) if student.of])
+    return np.array([100 * student.points / student.of for student in select_handed_in(marks) if student.of])
 
 
-def histogram(marks: Sequence[StudentMarks]) -> Real:
+def count_by_points(marks: Sequence[StudentMarks]) -> Real:
     """Return the numbers of students with 0 to 10 %, 10 to 20 %, ... of the points; the last range includes 100 %."""
-    return np.histogram(np.round(percents(marks), 6), np.arange(0, 101, STEP))[0]
+    return np.histogram(np.round(percents_of_points(marks), 6), np.arange(0, 101, STEP))[0]
 
 
-def hardest(task: Task, marks: Sequence[StudentMarks]) -> list[Difficulty]:
+def rank_difficulties(task: Task, marks: Sequence[StudentMarks]) -> list[Difficulty]:
     """Return the results for each quantity, the hardest quantity first."""
     found = {asked.quantity.name: Difficulty(asked.quantity.name) for asked in task.asked}
-    for student in handed_in(marks):
+    for student in select_handed_in(marks):
         for mark in student.marks:
             own = found[mark.key[0]]
             own.answers[mark.state] += 1
@@ -69,7 +69,7 @@ def hardest(task: Task, marks: Sequence[StudentMarks]) -> list[Difficulty]:
     return sorted(found.values(), key=lambda own: round(own.share, 9))
 
 
-def commonest(marks: Sequence[StudentMarks]) -> list[tuple[str, int, int]]:
+def rank_mistakes(marks: Sequence[StudentMarks]) -> list[tuple[str, int, int]]:
     """Return the mistakes, the most frequent first: name, number of students, number of answers."""
     students: defaultdict[str, set[int]] = defaultdict(set)
     answers = Counter[str]()
@@ -84,8 +84,8 @@ def commonest(marks: Sequence[StudentMarks]) -> list[tuple[str, int, int]]:
 
 def statistics_tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Table]:
     """Yield the tables with the statistics of a group; empty tables are omitted."""
-    own = percents(marks)
-    absent = len(marks) - len(handed_in(marks))
+    own = percents_of_points(marks)
+    absent = len(marks) - len(select_handed_in(marks))
     notes = [_("students: {count}").format(count=len(marks))]
     notes += [_("without an answer (not counted): {count}").format(count=absent)] if absent else []
     if own.size:
@@ -97,25 +97,33 @@ def statistics_tables(task: Task, marks: Sequence[StudentMarks]) -> Iterator[Tab
             _("lower quartile"): np.quantile(own, 0.25),
             _("lowest"): own.min(),
         }
-        shares = _numbers(_("points, %"), np.round(list(rows.values()), 1))
+        shares = _number_column(_("points, %"), np.round(list(rows.values()), 1))
         yield Table("group", _("Group"), (Column(_("of those who handed in"), list(rows)), shares), notes=tuple(notes))
         ranges = [f"{low} - {low + STEP} %" for low in range(0, 100, STEP)]
-        yield Table("histogram", _("Points"), (Column(_("score"), ranges), _numbers(_("students"), histogram(marks))))
-        yield _difficulties(hardest(task, marks))
-    mistakes = commonest(marks)
+        yield Table(
+            "histogram",
+            _("Points"),
+            (Column(_("score"), ranges), _number_column(_("students"), count_by_points(marks))),
+        )
+        yield _difficulty_table(rank_difficulties(task, marks))
+    mistakes = rank_mistakes(marks)
     if mistakes:
         names, students, answers = zip(*mistakes, strict=True)
-        counts = _numbers(_("students"), students), _numbers(_("answers"), answers)
+        counts = _number_column(_("students"), students), _number_column(_("answers"), answers)
         yield Table("mistakes", _("Commonest mistakes"), (Column(_("mistake"), list(names)), *counts))
-    copied = [(shown(student.student), shown(student.copied)) for student in marks if student.copied]
+    copied = [(printable_text(student.student), printable_text(student.copied)) for student in marks if student.copied]
     if copied:
         yield text_table("copies", _("Answers that fit another variant"), (_("student"), _("variant of")), copied)
-    unread = [(shown(student.student), sentence(problem)) for student in marks for problem in student.problems]
+    unread = [
+        (printable_text(student.student), printable_sentence(problem))
+        for student in marks
+        for problem in student.problems
+    ]
     if unread:
         yield text_table("problems", _("Could not be read"), (_("student"), _("reason")), unread)
 
 
-def _difficulties(found: Sequence[Difficulty]) -> Table:
+def _difficulty_table(found: Sequence[Difficulty]) -> Table:
     states: dict[str, State] = {
         _("right, %"): "right",
         _("carried forward, %"): "follows",
@@ -124,13 +132,13 @@ def _difficulties(found: Sequence[Difficulty]) -> Table:
     }
     columns = [
         Column(_("quantity"), [own.name for own in found]),
-        _numbers(_("points earned, %"), [round(100 * own.share, 1) for own in found]),
+        _number_column(_("points earned, %"), [round(100 * own.share, 1) for own in found]),
     ]
     for header, state in states.items():
         shares = [round(100 * own.answers[state] / max(1, own.answers.total()), 1) for own in found]
-        columns.append(_numbers(header, shares))
+        columns.append(_number_column(header, shares))
     return Table("hardest", _("Hardest quantities"), tuple(columns))
 
 
-def _numbers(header: str, values: object) -> Column:
+def _number_column(header: str, values: object) -> Column:
     return Column(header, np.asarray(values, dtype=float), NUMBER)

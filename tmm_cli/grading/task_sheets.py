@@ -15,7 +15,7 @@ from tmm_cli.batch import Question, Task
 from tmm_cli.drawing.formats import write_png
 from tmm_cli.drawing.sheets import task_picture
 from tmm_cli.grading.record import VariantTable
-from tmm_cli.grading.untrusted_tables import shown
+from tmm_cli.grading.untrusted_tables import printable_text
 from tmm_cli.language import N_, _, spelt, translated
 from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.quantities import DIMENSIONS, LENGTH, NUMBER, Dimension
@@ -94,29 +94,29 @@ class TaskSheets:
 
     def __init__(self, task: Task, text: str, table: VariantTable) -> None:
         self.task, self.text, self.table = task, text, table
-        self.names, self.measures = file_names(table.rows), _measures(task)
+        self.names, self.measures = file_names(table.rows), _parameter_dimensions(task)
 
-    def of(self, student: str) -> Iterator[tuple[str, bytes]]:
-        """Yield the names and contents of a student's files: problem file, scheme, and task sheet in Markdown and HTML."""
+    def build_files(self, student: str) -> Iterator[tuple[str, bytes]]:
+        """Yield names and contents of a student's files: problem file, scheme, task sheet in Markdown and HTML."""
         name, title = self.names[student], self.task.problem.title
-        who = _("Variant {number}").format(number=student) if student.isdigit() else shown(student)
+        who = _("Variant {number}").format(number=student) if student.isdigit() else printable_text(student)
         values = dict(zip(self.table.names, self.table.rows[student], strict=True))
-        yield f"{name}.yaml", problem_text(self.text, values).encode()
+        yield f"{name}.yaml", variant_problem_text(self.text, values).encode()
         results = structure_of(self.task.variant(values))
         figure = task_picture(results)
         picture = None if figure is None else write_png(figure)
         if picture is not None:
             yield f"{name}.png", picture
         tables = [
-            _dimensions(self.task, values, self.measures),
-            *map(_told, input_data_tables(results.problem)),
-            *_asked(self.task),
+            _parameter_table(self.task, values, self.measures),
+            *map(_reduce_facts, input_data_tables(results.problem)),
+            *_question_tables(self.task),
         ]
         yield f"{name}.md", _markdown(title, who, f"{name}.png" if picture else "", tables).encode()
         yield f"{name}.html", _page(title, who, picture, tables).encode()
 
 
-def problem_text(text: str, values: Mapping[str, str]) -> str:
+def variant_problem_text(text: str, values: Mapping[str, str]) -> str:
     """Return the text of a task file with the parameter values of a variant, without the blocks for the teacher."""
     tree = read_text(text, "")
     ends = {}
@@ -131,10 +131,10 @@ def problem_text(text: str, values: Mapping[str, str]) -> str:
         changes.append((*place, value if PLAIN.fullmatch(value) else json.dumps(value, ensure_ascii=False)))
     for first, last, value in sorted(changes, reverse=True):
         text = text[:first] + value + text[last:]
-    return _without(text)
+    return _remove_teacher_blocks(text)
 
 
-def _without(text: str) -> str:
+def _remove_teacher_blocks(text: str) -> str:
     tree = read_text(text, "")
     lines = text.splitlines(keepends=True)
     starts = sorted(mark.line for path, mark in tree.key_marks.items() if len(path) == 1)
@@ -146,7 +146,7 @@ def _without(text: str) -> str:
     return "".join(lines)
 
 
-def _dimensions(task: Task, values: Mapping[str, str], measures: Mapping[str, Dimension | None]) -> Table:
+def _parameter_table(task: Task, values: Mapping[str, str], measures: Mapping[str, Dimension | None]) -> Table:
     """Return the table of all parameters of a variant with their units."""
     rows = []
     for name, own in (task.tree.data.get("parameters") or {}).items():
@@ -158,7 +158,7 @@ def _dimensions(task: Task, values: Mapping[str, str], measures: Mapping[str, Di
     return text_table("dimensions", _("Dimensions"), (_("name"), _("value"), _("unit")), rows)
 
 
-def _told(table: Table) -> Table:
+def _reduce_facts(table: Table) -> Table:
     """Reduce the table of facts to the driver, the gravitational acceleration and the positions; keep other tables."""
     if table.name != "facts":
         return table
@@ -167,16 +167,16 @@ def _told(table: Table) -> Table:
     return text_table(table.name, _("Driver, positions"), [translated(column.header) for column in table.columns], kept)
 
 
-def _measures(task: Task) -> dict[str, Dimension | None]:
+def _parameter_dimensions(task: Task) -> dict[str, Dimension | None]:
     """Return the dimension of each parameter; for a number without a unit, the first that the task accepts."""
     found: dict[str, Dimension | None] = {}
     for name in task.tree.data.get("parameters") or {}:
         (own,) = task.own((name,))
-        found[name] = own.dimension or next((d for d in MEASURES if _takes(task, name, own.value, d)), None)
+        found[name] = own.dimension or next((d for d in MEASURES if _accepts_dimension(task, name, own.value, d)), None)
     return found
 
 
-def _takes(task: Task, name: str, value: float, dimension: Dimension) -> bool:
+def _accepts_dimension(task: Task, name: str, value: float, dimension: Dimension) -> bool:
     try:
         task.make((name,), (dimension,), (task.units.si(value, dimension),))
     except (ProblemError, LinkageError):
@@ -184,7 +184,7 @@ def _takes(task: Task, name: str, value: float, dimension: Dimension) -> bool:
     return True
 
 
-def _asked(task: Task) -> Iterator[Table]:
+def _question_tables(task: Task) -> Iterator[Table]:
     if task.blocks.grading is None:
         return
     if task.rules.from_ == "either":
@@ -196,7 +196,7 @@ def _asked(task: Task) -> Iterator[Table]:
         every = list(group)
         numbers = ", ".join(str(one.number) for one in every if one.number is not None)
         points = f"{sum(one.points for one in every):.10g}"
-        rows.append((name, numbers, _unit(task, every[0]), points, meaning(name)))
+        rows.append((name, numbers, _unit(task, every[0]), points, explain_quantity(name)))
     headers = (_("quantity"), _("at positions"), _("unit"), _("worth"), _("meaning"))
     notes = [told.format(first=task.rules.count)]
     if any(one.quantity.vector for one in task.asked):
@@ -209,7 +209,7 @@ def _asked(task: Task) -> Iterator[Table]:
     yield text_table("asked", _("Requested quantities"), headers, rows, notes)
 
 
-def meaning(name: str) -> str:
+def explain_quantity(name: str) -> str:
     """Return what the name of a quantity means, as a phrase for the student; "" if the name is unknown."""
     kind, _of, thing = name.partition(" of ")
     kind = f"{kind} on" if f"{kind} on" in MEANINGS and " on " in thing else kind

@@ -1,4 +1,4 @@
-"""Reading of CSV and XLSX files from unknown sources as rows of text, with limits on their size; nothing is executed."""
+"""Reading of CSV and XLSX files from unknown sources as rows of text; size is limited, nothing is executed."""
 
 from __future__ import annotations
 
@@ -29,20 +29,20 @@ LONGEST_SENTENCE = 600
 JOINERS = "\u200c\u200d"  # that words of Persian and of Indian languages need
 
 
-def shown(text: str, longest: int = LONGEST_SHOWN) -> str:
+def printable_text(text: str, longest: int = LONGEST_SHOWN) -> str:
     """Return an untrusted text as one line: control characters removed, cut to `longest` characters."""
     if len(text) > longest:
         text = text[: longest - 1] + "…"
-    return text if text.isprintable() else re.sub(r"\s", " ", "".join(map(_shown, text)))
+    return text if text.isprintable() else re.sub(r"\s", " ", "".join(map(_printable_character, text)))
 
 
-def _shown(sign: str) -> str:
+def _printable_character(sign: str) -> str:
     return sign if sign.isprintable() or sign.isspace() or sign in JOINERS else "\ufffd"
 
 
-def sentence(text: str) -> str:
-    """Return a sentence that may quote an untrusted text as one printable line of at most LONGEST_SENTENCE characters."""
-    return shown(text, LONGEST_SENTENCE)
+def printable_sentence(text: str) -> str:
+    """Return a sentence that quotes an untrusted text as one printable line of at most LONGEST_SENTENCE characters."""
+    return printable_text(text, LONGEST_SENTENCE)
 
 
 # Calls that may exhaust the memory or abort, in one process that is started again after its end.
@@ -77,7 +77,7 @@ class GuardedProcess:
             ProcessEndedError: The process ended, e.g. for lack of memory; the next call starts another one.
         """
         if self._pool is None:
-            self._pool = ProcessPoolExecutor(1, get_context("spawn"), _limit, (self._memory,))
+            self._pool = ProcessPoolExecutor(1, get_context("spawn"), _limit_process, (self._memory,))
         try:
             return self._pool.submit(function, *args, **named).result()
         except BrokenProcessPool:
@@ -86,7 +86,7 @@ class GuardedProcess:
             raise ProcessEndedError from None
 
 
-def _limit(memory: int) -> None:
+def _limit_process(memory: int) -> None:
     """Limit the memory of the current process, discard its error output and ignore Ctrl-C."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
@@ -128,7 +128,7 @@ REFUSED = {  # parts of an XLSX
 }
 
 
-def rows_of(path: Path | str, largest: int = LARGEST, most: int = MOST_ROWS) -> list[list[str]]:
+def read_rows(path: Path | str, largest: int = LARGEST, most: int = MOST_ROWS) -> list[list[str]]:
     """Read the non-empty rows of a CSV file, or of the first sheet of an XLSX file, as texts.
 
     Args:
@@ -142,18 +142,18 @@ def rows_of(path: Path | str, largest: int = LARGEST, most: int = MOST_ROWS) -> 
     """
     file = os.fspath(path)
     try:
-        data = bytes_of(file, largest)
-        rows = _of_xlsx(data, largest, most) if data.startswith(b"PK\x03\x04") else _of_csv(data, most)
+        data = read_file_bytes(file, largest)
+        rows = _parse_xlsx(data, largest, most) if data.startswith(b"PK\x03\x04") else _parse_csv(data, most)
         found = [[cell.strip() for cell in row] for row in rows]
         long = next((cell for row in found for cell in row if len(cell) > LONGEST), None)
         if long is not None:
-            raise _too_much(_("a cell is too long"), len(long), LONGEST)
+            raise _limit_error(_("a cell is too long"), len(long), LONGEST)
         return [row for row in found if any(row)]
     except ProblemError as error:
         raise error.located(file) from None
 
 
-def bytes_of(path: Path | str, largest: int) -> bytes:
+def read_file_bytes(path: Path | str, largest: int) -> bytes:
     """Read a regular file of at most `largest` bytes.
 
     Raises:
@@ -165,7 +165,7 @@ def bytes_of(path: Path | str, largest: int) -> bytes:
         if not stat.S_ISREG(found.st_mode):
             raise ProblemError(_("this is not a regular file but a link, a folder or a device"))
         if found.st_size > largest:
-            raise _too_much(_("the file is too large"), found.st_size, largest)
+            raise _limit_error(_("the file is too large"), found.st_size, largest)
         with open(file, "rb") as stream:
             return stream.read(largest + 1)
     except FileNotFoundError:
@@ -175,12 +175,12 @@ def bytes_of(path: Path | str, largest: int) -> bytes:
         raise ProblemError(_("the file cannot be read: {reason}").format(reason=reason)) from None
 
 
-def _too_much(message: str, found: int, allowed: int) -> ProblemError:
+def _limit_error(message: str, found: int, allowed: int) -> ProblemError:
     return ProblemError(message, found=f"{found}", allowed=_("at most {most}").format(most=allowed))
 
 
-def _of_csv(data: bytes, most: int) -> list[list[str]]:
-    text = decoded(data)
+def _parse_csv(data: bytes, most: int) -> list[list[str]]:
+    text = decode_text(data)
     if "\0" in text:
         raise ProblemError(_("this is not a text file"), allowed=_("a table in CSV or XLSX"))
     told = re.match(r"sep=(.)\r?\n", text)  # as Excel begins some
@@ -191,7 +191,7 @@ def _of_csv(data: bytes, most: int) -> list[list[str]]:
     try:
         for row in csv.reader(io.StringIO(body, newline=""), delimiter=between, skipinitialspace=True):
             if len(row) > MOST_COLUMNS:
-                raise _too_much(_("there are too many columns"), len(row), MOST_COLUMNS)
+                raise _limit_error(_("there are too many columns"), len(row), MOST_COLUMNS)
             if len(found) == most:
                 raise ProblemError(_("there are too many rows"), allowed=_("at most {most}").format(most=most))
             if row:
@@ -201,7 +201,7 @@ def _of_csv(data: bytes, most: int) -> list[list[str]]:
     return found
 
 
-def decoded(data: bytes) -> str:
+def decode_text(data: bytes) -> str:
     """Decode a text in UTF-8, in UTF-16 with a byte-order mark, or else in cp1251."""
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return data.decode("utf-16", errors="replace")
@@ -211,13 +211,13 @@ def decoded(data: bytes) -> str:
         return data.decode("cp1251", errors="replace")
 
 
-def _of_xlsx(data: bytes, largest: int, most: int) -> list[list[str]]:
+def _parse_xlsx(data: bytes, largest: int, most: int) -> list[list[str]]:
     """Read the rows of the first sheet in a separate process; report a crash of that process as an error.
 
     Raises:
         ProblemError: The file cannot be read or is too large.
     """
-    _inspect(data, largest, most)
+    _inspect_archive(data, largest, most)
     try:
         return READER.call(_read_sheet, data)
     except ImportError:
@@ -231,7 +231,7 @@ def _of_xlsx(data: bytes, largest: int, most: int) -> list[list[str]]:
             allowed=_("a table in CSV"),
         ) from None
     except ValueError as error:
-        raise _damaged(error) from None
+        raise _damaged_file_error(error) from None
 
 
 def _read_sheet(data: bytes) -> list[list[str]]:
@@ -245,7 +245,7 @@ def _read_sheet(data: bytes) -> list[list[str]]:
     try:
         with CalamineWorkbook.from_filelike(io.BytesIO(data)) as book:
             sheet = book.get_sheet_by_index(0)
-            return [[_text(cell) for cell in row] for row in sheet.to_python()]
+            return [[_cell_text(cell) for cell in row] for row in sheet.to_python()]
     except (CalamineError, OSError, ValueError, IndexError) as error:
         raise ValueError(str(error)) from None
     except BaseException as error:
@@ -254,11 +254,11 @@ def _read_sheet(data: bytes) -> list[list[str]]:
         raise ValueError(str(error)) from None
 
 
-def _damaged(error: BaseException) -> ProblemError:
+def _damaged_file_error(error: BaseException) -> ProblemError:
     return ProblemError(_("damaged XLSX file: {reason}").format(reason=error))
 
 
-def _inspect(data: bytes, largest: int, most: int) -> None:
+def _inspect_archive(data: bytes, largest: int, most: int) -> None:
     """Check an XLSX archive before it is read: refuse one that would fill the memory or contains more than tables.
 
     Raises:
@@ -278,10 +278,10 @@ def _inspect(data: bytes, largest: int, most: int) -> None:
             cells, longest, whole = 0, 0, sum(part.file_size for part in parts)
             for part in parts:
                 content = packed.read(part)  # with its checksum: its size is what it says
-                _refuse_announced(content, whole)
+                _refuse_declared_sizes(content, whole)
                 here = len(CELL.findall(content))
                 if b"sheetData" in content:
-                    _refuse_far(content, here, most)
+                    _refuse_distant_cells(content, here, most)
                 cells += here
                 if b"sst" in content:
                     longest = max(longest, *map(len, TEXT.split(content)))
@@ -290,10 +290,10 @@ def _inspect(data: bytes, largest: int, most: int) -> None:
                     _("the file unpacks to far more than a table can hold"), allowed=_("shorter texts in the cells")
                 )
     except (zipfile.BadZipFile, zlib.error, lzma.LZMAError, EOFError, OSError, RuntimeError, ValueError) as error:
-        raise _damaged(error) from None
+        raise _damaged_file_error(error) from None
 
 
-def _refuse_announced(content: bytes, whole: int) -> None:
+def _refuse_declared_sizes(content: bytes, whole: int) -> None:
     """Refuse a part of an XLSX archive that declares more texts or cells than the file can contain.
 
     Args:
@@ -314,7 +314,7 @@ def _refuse_announced(content: bytes, whole: int) -> None:
     for cells in DIMENSION.findall(content):
         for corner in cells.split(b":"):
             match = CORNER.fullmatch(corner)
-            if match is None or int(match[2]) > SHEET[0] or _column(match[1]) > SHEET[1]:
+            if match is None or int(match[2]) > SHEET[0] or _column_number(match[1]) > SHEET[1]:
                 raise ProblemError(
                     _("the file declares more content than it contains"),
                     found=quote(cells[:40].decode(errors="replace")),
@@ -322,14 +322,14 @@ def _refuse_announced(content: bytes, whole: int) -> None:
                 )
 
 
-def _column(letters: bytes) -> int:
+def _column_number(letters: bytes) -> int:
     column = 0
     for letter in letters[:8].upper():
         column = column * 26 + letter - 64
     return column
 
 
-def _refuse_far(content: bytes, cells: int, most: int) -> None:
+def _refuse_distant_cells(content: bytes, cells: int, most: int) -> None:
     """Refuse a cell with a distant address: reading it would create all the empty cells before it.
 
     Args:
@@ -344,7 +344,7 @@ def _refuse_far(content: bytes, cells: int, most: int) -> None:
     if len(places) != cells:
         raise ProblemError(_("a cell has no address"), allowed=_("a file saved by a spreadsheet program"))
     for letters, digits in set(places):
-        if len(digits) > 8 or int(digits) > most or _column(letters) > MOST_COLUMNS:
+        if len(digits) > 8 or int(digits) > most or _column_number(letters) > MOST_COLUMNS:
             raise ProblemError(
                 _("a cell is outside the permitted range"),
                 found=quote((letters + digits).decode()),
@@ -352,7 +352,7 @@ def _refuse_far(content: bytes, cells: int, most: int) -> None:
             )
 
 
-def _text(cell: Any) -> str:
+def _cell_text(cell: Any) -> str:
     """Return a cell as a spreadsheet shows it; a number with at most 15 significant figures."""
     if isinstance(cell, bool | str):
         return str(cell)

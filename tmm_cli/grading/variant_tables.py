@@ -10,7 +10,7 @@ from typing import Any
 
 from tmm_cli.batch import NUMBER_WITH_UNIT, Task
 from tmm_cli.grading.record import VariantTable
-from tmm_cli.grading.untrusted_tables import rows_of
+from tmm_cli.grading.untrusted_tables import read_rows
 from tmm_cli.language import _
 from tmm_cli.problem import ProblemError, parse_unit, prefix_errors, quote, unknown_name_error
 from tmm_cli.reports import csv_cell, open_workbook
@@ -30,9 +30,9 @@ def read_table(path: Path | str, task: Task) -> VariantTable:
     Raises:
         ProblemError: The table is wrong.
     """
-    rows = rows_of(path, LARGEST, MOST_ROWS)
+    rows = read_rows(path, LARGEST, MOST_ROWS)
     try:
-        return _table(rows, task)
+        return _parse_table(rows, task)
     except ProblemError as error:
         raise error.located(str(path)) from None
 
@@ -43,8 +43,8 @@ def read_students(path: Path | str) -> tuple[str, ...]:
     Raises:
         ProblemError: The table contains no names.
     """
-    head, *rows = rows_of(path) or [[]]
-    at = _named(head, WHO)
+    head, *rows = read_rows(path) or [[]]
+    at = _find_column(head, WHO)
     rows = rows if at is not None else [head, *rows]
     names = [FORMULA.sub("", row[at or 0]) for row in rows if len(row) > (at or 0)]
     found = tuple(dict.fromkeys(" ".join(name.split()) for name in names if name))
@@ -53,7 +53,7 @@ def read_students(path: Path | str) -> tuple[str, ...]:
     return found
 
 
-def variant_in(table: VariantTable, asked: str) -> dict[str, str]:
+def find_variant(table: VariantTable, asked: str) -> dict[str, str]:
     """Return the parameter values of one variant by parameter name.
 
     Args:
@@ -72,13 +72,13 @@ def variant_in(table: VariantTable, asked: str) -> dict[str, str]:
     return dict(zip(table.names, table.rows[asked], strict=True))
 
 
-def csv_of(rows: Iterable[Sequence[str]]) -> bytes:
+def csv_bytes(rows: Iterable[Sequence[str]]) -> bytes:
     """Return rows of cells as the contents of a CSV file with a byte-order mark."""
     lines = (",".join(csv_cell(cell) for cell in row) for row in rows)
     return ("\ufeff" + "".join(f"{line}\n" for line in lines)).encode()
 
 
-def xlsx_of(sheets: dict[str, Sequence[Sequence[str]]]) -> bytes | None:
+def xlsx_bytes(sheets: dict[str, Sequence[Sequence[str]]]) -> bytes | None:
     """Return the contents of an XLSX file without formulas and links; None if XLSX cannot be written here.
 
     sheets: rows of cells by the name of the worksheet.
@@ -96,18 +96,18 @@ def xlsx_of(sheets: dict[str, Sequence[Sequence[str]]]) -> bytes | None:
             sheet.set_column(0, 0, max((min(len(row[0]), 40) for row in rows), default=8) + 2)
             for n, row in enumerate(rows):
                 for k, cell in enumerate(row):
-                    _put(sheet, n, k, cell, bold if n == 0 else None)
+                    _write_cell(sheet, n, k, cell, bold if n == 0 else None)
     return stream.getvalue()
 
 
-def _put(sheet: Any, n: int, k: int, cell: str, form: Any) -> None:
+def _write_cell(sheet: Any, n: int, k: int, cell: str, form: Any) -> None:
     if n and k and re.fullmatch(r"-?\d+(\.\d+)?(e[-+]?\d+)?", cell):
         sheet.write_number(n, k, float(cell))
     else:
         sheet.write_string(n, k, cell, form)
 
 
-def rows_of_table(table: VariantTable) -> list[list[str]]:
+def variant_table_rows(table: VariantTable) -> list[list[str]]:
     """Return a table of variants as rows of cells with a header; a unit common to a column is put in its heading."""
     columns = []
     for k, name in enumerate(table.names):
@@ -120,17 +120,17 @@ def rows_of_table(table: VariantTable) -> list[list[str]]:
     return [list(row) for row in zip(["student", *table.rows], *columns, strict=True)]
 
 
-def _named(head: Sequence[str], names: Sequence[str]) -> int | None:
+def _find_column(head: Sequence[str], names: Sequence[str]) -> int | None:
     return next((k for k, text in enumerate(head) if text.casefold() in names), None)
 
 
-def _table(rows: list[list[str]], task: Task) -> VariantTable:
+def _parse_table(rows: list[list[str]], task: Task) -> VariantTable:
     if len(rows) < 2:
         raise ProblemError(_("expected a header row and one row for each variant"), allowed="student;OA, mm;n1, rpm")
     head, *rest = rows
-    who, which = _named(head, WHO), _named(head, WHICH)
+    who, which = _find_column(head, WHO), _find_column(head, WHICH)
     key = which if who is None else who
-    columns = [(k, *_heading(text)) for k, text in enumerate(head) if k not in (who, which) and text]
+    columns = [(k, *_split_heading(text)) for k, text in enumerate(head) if k not in (who, which) and text]
     names = tuple(name for _k, name, _unit in columns)
     dimensions = task.dimensions(names)
     if len(set(names)) < len(names):
@@ -146,13 +146,13 @@ def _table(rows: list[list[str]], task: Task) -> VariantTable:
                     _("each row needs its own student"), found=quote(student), allowed=_("each name once")
                 )
             found[student] = tuple(
-                _value(task, name, cells[k], unit, dimension)
+                _parse_cell(task, name, cells[k], unit, dimension)
                 for (k, name, unit), dimension in zip(columns, dimensions, strict=True)
             )
     return VariantTable(names, found)
 
 
-def _heading(text: str) -> tuple[str, str]:
+def _split_heading(text: str) -> tuple[str, str]:
     """Split the heading of a column into the parameter name and the unit."""
     found = HEADING.fullmatch(text)
     assert found is not None
@@ -163,7 +163,7 @@ def _heading(text: str) -> tuple[str, str]:
     return found[1], unit
 
 
-def _value(task: Task, name: str, cell: str, unit: str, dimension: Any) -> str:
+def _parse_cell(task: Task, name: str, cell: str, unit: str, dimension: Any) -> str:
     """Return a cell as a parameter value of a problem file, with the unit of the column if the cell has none."""
     text = COMMA.sub(r"\1.\2", cell.translate(MINUS))
     with prefix_errors(name):

@@ -1,4 +1,4 @@
-"""Output formats of grading. To add one, write a function that yields file names and contents, and list it in EXPORTS."""
+"""Output formats of grading. To add one, write a function that yields files by name, and list it in EXPORTS."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tmm_cli.reports import StagedFolder, write_atomically
 
 EXPORTS: Final[Mapping[str, Export]] = {
     "csv": csv_files.csv_tables,
-    "xlsx": xlsx.files,
+    "xlsx": xlsx.xlsx_file,
     "feedback": feedback.feedback_files,
     "gradescope": gradescope_junit.gradescope_files,
     "moodle": csv_files.moodle_file,
@@ -24,7 +24,7 @@ EXPORTS: Final[Mapping[str, Export]] = {
 }
 
 
-def write(
+def write_formats(
     folder: Path,
     book: Gradebook,
     formats: Collection[str] = tuple(EXPORTS),

@@ -12,8 +12,8 @@ from functools import cached_property, lru_cache
 from typing import Literal
 
 from tmm_cli.batch import Question, Task
-from tmm_cli.grading.record import Mark, StudentMarks, factor
-from tmm_cli.grading.untrusted_tables import sentence, shown
+from tmm_cli.grading.record import Mark, StudentMarks, si_factor
+from tmm_cli.grading.untrusted_tables import printable_sentence, printable_text
 from tmm_cli.language import N_, _, numeral, spelt
 from tmm_cli.problem import typeset_unit
 from tmm_cli.reports import folder_name
@@ -50,7 +50,7 @@ class Answer:
             unit: Unit to write it in; by default that of the answer.
             size: True if only the magnitude of a vector is known.
         """
-        scale = factor(unit, self.asked.quantity.dimension) if unit else self.scale
+        scale = si_factor(unit, self.asked.quantity.dimension) if unit else self.scale
         number = f"{numeral(self.number(value) / scale + 0.0, '.5g')} {typeset_unit(spelt(unit or self.unit))}".rstrip()
         if not self.asked.quantity.vector or size:
             return number
@@ -61,7 +61,7 @@ class Answer:
         return abs(value) if self.asked.quantity.vector else value.real
 
     @property
-    def of(self) -> str:
+    def reference_name(self) -> str:
         """Name of the quantity to which relative errors refer, e.g. "the largest value in the cycle"."""
         return _(OF[self.asked.quantity.against])
 
@@ -124,15 +124,15 @@ Export = Callable[[Gradebook], Iterable[tuple[str, Iterable[str | bytes]]]]  # f
 @lru_cache(maxsize=1024)
 def points_text(points: float) -> str:
     """Return a number of points as text, e.g. 4 or 3.5."""
-    return f"{rounded(points):.10g}"
+    return f"{round_points(points):.10g}"
 
 
-def rounded(points: float) -> float:
+def round_points(points: float) -> float:
     """Round points to three decimals."""
     return round(points, 3) + 0.0
 
 
-def percent(student: StudentMarks) -> float | None:
+def percent_of_points(student: StudentMarks) -> float | None:
     """Return a student's points in per cent of the maximum, or None if the maximum is zero."""
     return round(100 * student.points / student.of, 1) if student.of else None
 
@@ -150,7 +150,7 @@ def direction(value: complex) -> float:
     return 0.0 if found >= 359.95 else found
 
 
-def fitting(mark: Mark) -> bool:
+def earns_points(mark: Mark) -> bool:
     """Return True if the answer earns its points: it is right, or right with the student's own earlier values."""
     return mark.state in ("right", "follows")
 
@@ -169,14 +169,14 @@ def marks_header(book: Gradebook) -> list[str]:
 def marks_rows(book: Gradebook) -> Iterator[list[Cell]]:
     """Yield the rows of the table of marks, one per student."""
     for student in book.marks:
-        points = rounded(student.points), rounded(student.of), percent(student)
-        yield [shown(student.student), *points, *student.marks, _notes(student)]
+        points = round_points(student.points), round_points(student.of), percent_of_points(student)
+        yield [printable_text(student.student), *points, *student.marks, _notes(student)]
 
 
 def _notes(student: StudentMarks) -> str:
     """Return the notes on a student for the teacher: what could not be read, and whose variant the answers fit."""
-    copied = (_("the answers fit the variant of {student}").format(student=shown(student.copied)),)
-    return "; ".join((*map(sentence, student.problems), *(copied if student.copied else ())))
+    copied = (_("the answers fit the variant of {student}").format(student=printable_text(student.copied)),)
+    return "; ".join((*map(printable_sentence, student.problems), *(copied if student.copied else ())))
 
 
 ANSWERS_HEADER = (
@@ -205,25 +205,25 @@ def answers_rows(book: Gradebook) -> Iterator[list[Cell]]:
     Values are in the units of the task file; vectors are given by magnitude and direction.
     """
     for student in book.marks:
-        name = shown(student.student)
+        name = printable_text(student.student)
         for answer, mark in zip(book.answers, student.marks, strict=True):
-            right, allowed = (mark.right, mark.allowed) if mark.judged else (None, None)
+            right, allowed = (mark.right, mark.allowed) if mark.is_judged else (None, None)
             error = None if mark.value is None else mark.error
             yield [
                 name,
                 answer.asked.quantity.name,
                 answer.asked.number,
-                shown(mark.text),
+                printable_text(mark.text),
                 *_value(answer, mark.value, mark.size),
                 *_value(answer, right),
                 answer.unit,
                 _percent(error),
                 _percent(allowed),
                 mark.state,
-                rounded(mark.points),
-                rounded(mark.of),
+                round_points(mark.points),
+                round_points(mark.of),
                 mark.reading,
-                reasons(mark),
+                join_reasons(mark),
             ]
 
 
@@ -232,18 +232,18 @@ def _value(answer: Answer, value: complex | None, size: bool = False) -> tuple[C
         return None, None
     number = answer.number(value) / answer.scale + 0.0
     turned = answer.asked.quantity.vector and not size
-    return finite(number), finite(round(direction(value), 2)) if turned else None
+    return round_if_finite(number), round_if_finite(round(direction(value), 2)) if turned else None
 
 
 def _percent(share: float | None) -> float | None:
-    return None if share is None else finite(100 * share)
+    return None if share is None else round_if_finite(100 * share)
 
 
-def finite(number: float) -> float | None:
+def round_if_finite(number: float) -> float | None:
     """Round a number to six significant figures; return None if it is infinite or nan."""
     return float(f"{number:.6g}") if math.isfinite(number) else None
 
 
-def reasons(mark: Mark) -> str:
+def join_reasons(mark: Mark) -> str:
     """Join the sentences that explain a mark to one text."""
-    return " ".join(map(sentence, mark.reasons))
+    return " ".join(map(printable_sentence, mark.reasons))

@@ -12,10 +12,10 @@ from tmm_cli.grading.exports.book import (
     marks_header,
     marks_rows,
     points_text,
-    rounded,
+    round_points,
 )
 from tmm_cli.grading.record import Mark
-from tmm_cli.grading.untrusted_tables import shown
+from tmm_cli.grading.untrusted_tables import printable_text
 from tmm_cli.reports import csv_cell
 
 
@@ -50,5 +50,5 @@ def _cell(cell: Cell, comma: bool) -> str:
 def moodle_file(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
     """Yield moodle.csv with the points of each student, who is named as in the teacher's list (login, id or e-mail)."""
     known = [one for one in book.marks if book.users is None or one.student in book.users]
-    rows = ((shown(student.student), rounded(student.points)) for student in known)
+    rows = ((printable_text(student.student), round_points(student.points)) for student in known)
     yield "moodle.csv", csv_lines(book, ("user", "grade"), rows)

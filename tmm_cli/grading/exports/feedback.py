@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from html import escape
 from typing import Final
 
-from tmm_cli.grading.exports.book import STATES, Answer, Gradebook, percent, rounded, share_text
+from tmm_cli.grading.exports.book import STATES, Answer, Gradebook, percent_of_points, round_points, share_text
 from tmm_cli.grading.record import Mark, State, StudentMarks
-from tmm_cli.grading.untrusted_tables import sentence, shown
+from tmm_cli.grading.untrusted_tables import printable_sentence, printable_text
 from tmm_cli.language import N_, _, numeral
 
 WIDENED = 1.05  # times the usual error: less more is not worth telling
@@ -59,73 +59,75 @@ class StudentSheet:
     notes: tuple[str, ...]
 
 
-def sheets(book: Gradebook) -> Iterator[StudentSheet]:
+def build_feedback_sheets(book: Gradebook) -> Iterator[StudentSheet]:
     """Yield the feedback sheet of each student, in the order of the gradebook."""
     reveal = book.task.rules.reveal
     right = (_("right value"),) if reveal else ()
     headers = (_("quantity"), _("your answer"), *right, _("off by"), _("allowed"), _("score"), _("result"))
-    title, general = shown(book.title), _notes(book)
+    title, general = printable_text(book.title), _notes(book)
     for student in book.marks:
         both = list(zip(book.answers, student.marks, strict=True))
-        unsaid = (_unsaid(),) if any(mark.reading and mark.value is not None for mark in student.marks) else ()
+        unsaid = (
+            (_assumed_unit_note(),) if any(mark.reading and mark.value is not None for mark in student.marks) else ()
+        )
         yield StudentSheet(
             title,
-            shown(student.student),
-            _total(student),
-            tuple(map(sentence, student.problems)),
+            printable_text(student.student),
+            _total_text(student),
+            tuple(map(printable_sentence, student.problems)),
             headers,
             tuple(StudentSheetRow(mark.state, _cells(answer, mark, reveal)) for answer, mark in both),
             tuple(_reasons(both)),
-            (*unsaid, *general, *_why_more(both)),
+            (*unsaid, *general, *_explain_wide_tolerances(both)),
         )
 
 
-def _unsaid() -> str:
+def _assumed_unit_note() -> str:
     return _("{mark} no unit given: the one that fits was assumed.").format(mark=UNSAID)
 
 
-def _total(student: StudentMarks) -> str:
-    share = percent(student)
+def _total_text(student: StudentMarks) -> str:
+    share = percent_of_points(student)
     points = _("{points} of {of} points").format(points=_points(student.points), of=_points(student.of))
     return points if share is None else f"{points} ({numeral(share, 'g')} %)"
 
 
 def _points(points: float) -> str:
-    return numeral(rounded(points), ".10g")
+    return numeral(round_points(points), ".10g")
 
 
 def _cells(answer: Answer, mark: Mark, reveal: bool) -> tuple[str, ...]:
-    right = (answer.text(mark.right) if mark.judged else "-",) if reveal else ()
+    right = (answer.text(mark.right) if mark.is_judged else "-",) if reveal else ()
     points = f"{_points(mark.points)} / {_points(mark.of)}"
     return (
         answer.name,
-        written(answer, mark),
+        answer_text(answer, mark),
         *right,
-        _error(answer, mark),
-        _allowed(answer, mark),
+        _error_text(answer, mark),
+        _tolerance_text(answer, mark),
         points,
         _(STATES[mark.state]),
     )
 
 
-def written(answer: Answer, mark: Mark) -> str:
+def answer_text(answer: Answer, mark: Mark) -> str:
     """Return the student's value with the unit in which it was read, or the original text if it is not a value."""
     if mark.value is None or not cmath.isfinite(mark.value):
-        return shown(mark.text) or "-"
+        return printable_text(mark.text) or "-"
     return answer.text(mark.value, mark.reading, mark.size) + (f" {UNSAID}" if mark.reading else "")
 
 
-def _error(answer: Answer, mark: Mark) -> str:
+def _error_text(answer: Answer, mark: Mark) -> str:
     return "-" if mark.value is None or answer.asked.quantity.against == "exact" else share_text(mark.error)
 
 
-def _allowed(answer: Answer, mark: Mark) -> str:
+def _tolerance_text(answer: Answer, mark: Mark) -> str:
     """Return the tolerance as text; a tolerance widened for this variant is followed by the usual one."""
     if answer.asked.quantity.against == "exact":
         return _("exact")
-    if not mark.judged:
+    if not mark.is_judged:
         return share_text(answer.asked.tolerance)
-    if not _widened(answer, mark):
+    if not _is_widened(answer, mark):
         return share_text(mark.allowed)
     usual = share_text(answer.asked.tolerance)
     return _("{allowed}, usually {usual}").format(allowed=share_text(mark.allowed), usual=usual)
@@ -137,9 +139,9 @@ def _notes(book: Gradebook) -> tuple[str, ...]:
     return tuple(_(SHARES[one]) for one in SHARES if one in against)
 
 
-def _why_more(both: Iterable[tuple[Answer, Mark]]) -> Iterator[str]:
+def _explain_wide_tolerances(both: Iterable[tuple[Answer, Mark]]) -> Iterator[str]:
     """Yield sentences that explain why some tolerances are larger than usual."""
-    drawn = {answer.asked.drawn for answer, mark in both if _widened(answer, mark)}
+    drawn = {answer.asked.drawn for answer, mark in both if _is_widened(answer, mark)}
     if True in drawn:
         yield _(
             "The tolerance is larger than usual where an error of 0.5 mm per 100 mm in the drawn lengths "
@@ -152,12 +154,12 @@ def _why_more(both: Iterable[tuple[Answer, Mark]]) -> Iterator[str]:
         )
 
 
-def _widened(answer: Answer, mark: Mark) -> bool:
+def _is_widened(answer: Answer, mark: Mark) -> bool:
     return answer.asked.quantity.against != "exact" and mark.allowed > WIDENED * answer.asked.tolerance
 
 
 def _reasons(both: list[tuple[Answer, Mark]]) -> Iterator[tuple[str, str]]:
-    """Yield each explanation once, with the names of all answers it concerns; answers without an explanation come last."""
+    """Yield each explanation once, with the names of all answers it concerns; unexplained answers come last."""
     found: dict[str, list[str]] = {}
     left = []
     for answer, mark in both:
@@ -166,24 +168,28 @@ def _reasons(both: list[tuple[Answer, Mark]]) -> Iterator[tuple[str, str]]:
         if mark.state == "wrong" and not mark.reasons:
             left.append(answer.name)
     for reason, names in found.items():
-        yield sentence(reason), ", ".join(names)
+        yield printable_sentence(reason), ", ".join(names)
     if left:
         yield _("No typical mistake explains this error."), ", ".join(left)
 
 
-def output(answer: Answer, mark: Mark, reveal: bool) -> str:
+def feedback_text(answer: Answer, mark: Mark, reveal: bool) -> str:
     """Return the feedback on one answer as a few lines of text; reveal: True to include the right value."""
     lines = [_("result: {result}").format(result=_(STATES[mark.state]))]
     if mark.state != "missing":
-        lines.append(_("your answer: {answer}").format(answer=written(answer, mark)))
-    if reveal and mark.judged:
+        lines.append(_("your answer: {answer}").format(answer=answer_text(answer, mark)))
+    if reveal and mark.is_judged:
         lines.append(_("right value: {value}").format(value=answer.text(mark.right)))
     if mark.value is not None and answer.asked.quantity.against != "exact":
         told = _("error: {error} of {whole}; allowed: {allowed}")
-        lines.append(told.format(error=share_text(mark.error), whole=answer.of, allowed=_allowed(answer, mark)))
+        lines.append(
+            told.format(
+                error=share_text(mark.error), whole=answer.reference_name, allowed=_tolerance_text(answer, mark)
+            )
+        )
     if mark.reading and mark.value is not None:
-        lines.append(_unsaid())
-    return "\n".join((*lines, *map(sentence, mark.reasons)))
+        lines.append(_assumed_unit_note())
+    return "\n".join((*lines, *map(printable_sentence, mark.reasons)))
 
 
 SIGNS = re.compile(r"([\\`*\[\]|#~])")
@@ -238,7 +244,7 @@ PAGE_HEAD = (
 
 
 def html_page(sheet: StudentSheet) -> str:
-    """Return a feedback sheet as a self-contained HTML page; a name in a right-to-left script is displayed correctly."""
+    """Return a feedback sheet as a self-contained HTML page; right-to-left names are displayed correctly."""
     problems = _html_list(f"<li>{escape(problem)}</li>" for problem in sheet.problems)
     header = "".join(f"<th>{escape(header)}</th>" for header in sheet.headers)
     rows = "\n".join(
@@ -270,5 +276,5 @@ FEEDBACK_FORMATS: Final[Mapping[str, Callable[[StudentSheet], str]]] = {
 
 def feedback_files(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
     """Yield the feedback files of all students: file names with their contents, Markdown and HTML."""
-    for name, sheet in zip(book.files, sheets(book), strict=True):
+    for name, sheet in zip(book.files, build_feedback_sheets(book), strict=True):
         yield from ((f"feedback/{name}.{ending}", (text(sheet),)) for ending, text in FEEDBACK_FORMATS.items())

@@ -6,10 +6,10 @@ import json
 from collections.abc import Iterable, Iterator
 from xml.sax.saxutils import escape, quoteattr
 
-from tmm_cli.grading.exports.book import Gradebook, fitting, rounded
-from tmm_cli.grading.exports.feedback import output
+from tmm_cli.grading.exports.book import Gradebook, earns_points, round_points
+from tmm_cli.grading.exports.feedback import feedback_text
 from tmm_cli.grading.record import StudentMarks
-from tmm_cli.grading.untrusted_tables import sentence, shown
+from tmm_cli.grading.untrusted_tables import printable_sentence, printable_text
 
 
 def gradescope_files(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
@@ -22,17 +22,17 @@ def _gradescope_record(book: Gradebook, student: StudentMarks) -> str:
     tests = [
         {
             "name": answer.name,
-            "score": rounded(mark.points),
-            "max_score": rounded(mark.of),
-            "status": "passed" if fitting(mark) else "failed",
-            "output": output(answer, mark, book.task.rules.reveal),
+            "score": round_points(mark.points),
+            "max_score": round_points(mark.of),
+            "status": "passed" if earns_points(mark) else "failed",
+            "output": feedback_text(answer, mark, book.task.rules.reveal),
             "output_format": "text",
             "visibility": "visible",
         }
         for answer, mark in zip(book.answers, student.marks, strict=True)
     ]
-    told = "\n".join(map(sentence, student.problems))
-    found = {"score": rounded(student.points), "output": told, "output_format": "text", "tests": tests}
+    told = "\n".join(map(printable_sentence, student.problems))
+    found = {"score": round_points(student.points), "output": told, "output_format": "text", "tests": tests}
     return json.dumps(found, ensure_ascii=False, allow_nan=False)
 
 
@@ -44,16 +44,16 @@ def junit_file(book: Gradebook) -> Iterator[tuple[str, Iterable[str]]]:
 def _junit_lines(book: Gradebook) -> Iterator[str]:
     """Yield the lines of junit.xml; in a test case, classname is the student and name is the answer."""
     marks = [mark for student in book.marks for mark in student.marks]
-    counted = f'tests="{len(marks)}" failures="{sum(not fitting(mark) for mark in marks)}"'
+    counted = f'tests="{len(marks)}" failures="{sum(not earns_points(mark) for mark in marks)}"'
     yield f'<?xml version="1.0" encoding="UTF-8"?>\n<testsuites {counted}>\n'
-    yield f"<testsuite name={quoteattr(shown(book.title))} {counted}>\n"
+    yield f"<testsuite name={quoteattr(printable_text(book.title))} {counted}>\n"
     for student in book.marks:
-        classname = quoteattr(shown(student.student))
+        classname = quoteattr(printable_text(student.student))
         for answer, mark in zip(book.answers, student.marks, strict=True):
-            text = escape(output(answer, mark, book.task.rules.reveal))
+            text = escape(feedback_text(answer, mark, book.task.rules.reveal))
             inner = (
                 f"<system-out>{text}</system-out>"
-                if fitting(mark)
+                if earns_points(mark)
                 else (f'<failure message="{mark.state}" type="{mark.state}">{text}</failure>')
             )
             yield f"<testcase classname={classname} name={quoteattr(answer.name)}>{inner}</testcase>\n"

@@ -9,11 +9,19 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.grading.exports.book import Cell, Gradebook, finite, marks_header, marks_rows, reasons, rounded
-from tmm_cli.grading.exports.feedback import written
+from tmm_cli.grading.exports.book import (
+    Cell,
+    Gradebook,
+    join_reasons,
+    marks_header,
+    marks_rows,
+    round_if_finite,
+    round_points,
+)
+from tmm_cli.grading.exports.feedback import answer_text
 from tmm_cli.grading.record import Mark
 from tmm_cli.grading.statistics import statistics_tables
-from tmm_cli.grading.untrusted_tables import shown
+from tmm_cli.grading.untrusted_tables import printable_text
 from tmm_cli.mechanics.quantities import NUMBER
 from tmm_cli.reports import CREATED, Column, open_workbook
 
@@ -24,7 +32,7 @@ ANSWERS_HEADER = ("student", "asked", "answer", "right value", "error, %", "poin
 HEAD_HEIGHT = 32  # points: two lines
 
 
-def files(book: Gradebook) -> Iterator[tuple[str, Iterable[bytes]]]:
+def xlsx_file(book: Gradebook) -> Iterator[tuple[str, Iterable[bytes]]]:
     """Yield marks.xlsx with its contents."""
     yield "marks.xlsx", (_workbook(book),)
 
@@ -41,23 +49,23 @@ def _workbook(book: Gradebook) -> bytes:
         formats = {name: workbook.add_format({"bg_color": colour}) for name, colour in COLOURS.items()}
         head = workbook.add_format({"bold": True, "bottom": 1, "text_wrap": True, "valign": "top"})
         marks = marks_header(book)
-        _sheets(workbook, "Marks", marks, marks_rows(book), formats, head, [MARKS_WIDTH] * (len(marks) - 2))
-        _sheets(workbook, "Answers", ANSWERS_HEADER, _answers(book), formats, head, ANSWERS_WIDTHS)
-        _group(workbook, book, head)
+        _write_table(workbook, "Marks", marks, marks_rows(book), formats, head, [MARKS_WIDTH] * (len(marks) - 2))
+        _write_table(workbook, "Answers", ANSWERS_HEADER, _answer_rows(book), formats, head, ANSWERS_WIDTHS)
+        _write_statistics(workbook, book, head)
     return stream.getvalue()
 
 
-def _answers(book: Gradebook) -> Iterator[list[Cell]]:
+def _answer_rows(book: Gradebook) -> Iterator[list[Cell]]:
     """Yield the rows of the sheet of answers: fewer columns than in answers.csv, values as texts for reading."""
     for student in book.marks:
-        name = shown(student.student)
+        name = printable_text(student.student)
         for answer, mark in zip(book.answers, student.marks, strict=True):
-            value = answer.text(mark.right) if mark.judged else ""
-            error = finite(float(f"{100 * mark.error:.3g}")) if mark.value is not None else None
-            yield [name, answer.name, written(answer, mark), value, error, mark, reasons(mark)]
+            value = answer.text(mark.right) if mark.is_judged else ""
+            error = round_if_finite(float(f"{100 * mark.error:.3g}")) if mark.value is not None else None
+            yield [name, answer.name, answer_text(answer, mark), value, error, mark, join_reasons(mark)]
 
 
-def _sheets(
+def _write_table(
     workbook: Any,
     name: str,
     header: Sequence[str],
@@ -85,22 +93,22 @@ def _sheets(
             sheet.write_string(0, k, text, head)
         last = 0
         for last, row in enumerate(() if first is None else (first, *some), 1):
-            _row(sheet, last, row, formats)
+            _write_row(sheet, last, row, formats)
         sheet.autofilter(0, 0, last, len(header) - 1)
 
 
-def _row(sheet: Any, at: int, row: Sequence[Cell], formats: dict[str, Any]) -> None:
+def _write_row(sheet: Any, at: int, row: Sequence[Cell], formats: dict[str, Any]) -> None:
     for k, cell in enumerate(row):
         if isinstance(cell, str):
             if cell:
                 sheet.write_string(at, k, cell)
         elif isinstance(cell, Mark):
-            sheet.write_number(at, k, rounded(cell.points), formats[cell.state])
+            sheet.write_number(at, k, round_points(cell.points), formats[cell.state])
         elif cell is not None:
             sheet.write_number(at, k, cell)
 
 
-def _group(workbook: Any, book: Gradebook, head: Any) -> None:
+def _write_statistics(workbook: Any, book: Gradebook, head: Any) -> None:
     """Write all statistics tables to the worksheet Group, one below another."""
     sheet, at = workbook.add_worksheet("Group"), 0
     sheet.set_column(0, 0, 40)
@@ -113,7 +121,7 @@ def _group(workbook: Any, book: Gradebook, head: Any) -> None:
         for k, column in enumerate(table.columns):
             sheet.write_string(at + 1, k, column.heading(book.task.units), head)
         for n, row in enumerate(zip(*(_cells(book, column) for column in table.columns), strict=True)):
-            _row(sheet, at + 2 + n, row, {})
+            _write_row(sheet, at + 2 + n, row, {})
         at += table.rows + 2
         for note in table.notes:
             sheet.write_string(at, 0, note)

@@ -42,6 +42,6 @@ MISTAKES: tuple[type[Mistake], ...] = (
 )
 
 
-def cases(family: VariantFamily) -> tuple[Mistake, ...]:
+def list_cases(family: VariantFamily) -> tuple[Mistake, ...]:
     """Return all cases of all typical mistakes that are possible for the variants of a family."""
     return tuple(case for kind in MISTAKES for case in kind.cases(family))

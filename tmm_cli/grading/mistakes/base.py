@@ -35,26 +35,26 @@ class Solution:
         return self.family.strokes
 
 
-def solve(family: VariantFamily, mistakes: Sequence[Mistake] = ()) -> Solution:
+def solve_with_mistakes(family: VariantFamily, mistakes: Sequence[Mistake] = ()) -> Solution:
     """Solve the variants of a family as a student would who makes the given mistakes.
 
     Each mistake changes the stage of the solution that it concerns; several mistakes act in the given order.
     """
     for mistake in mistakes:
-        family = mistake.family(family)
+        family = mistake.change_family(family)
     lead = family.linkage.driver
     at: Any = family.linkage.sketch.at if family.linkage.others else family.q[:, :1]
     law = DriverMotion(at, lead.rate, lead.acceleration, lead.sense)
     kernels = family.kernels
     for mistake in mistakes:
-        kernels = tuple(mistake.kernel(kernel, family) for kernel in kernels)
+        kernels = tuple(mistake.change_solver(kernel, family) for kernel in kernels)
     motion = compute_motion(family.linkage, kernels, family.q, law)
     for mistake in mistakes:
-        motion = mistake.motion(motion)
+        motion = mistake.change_motion(motion)
     with np.errstate(all="ignore"):
         loads = collect_loads(motion, family.strokes)
         for mistake in mistakes:
-            loads = tuple(mistake.load(load, motion, family) for load in loads)
+            loads = tuple(mistake.change_load(load, motion, family) for load in loads)
         reactions = solve_reactions(motion, family.structure, loads)
         if family.linkage.friction:
             reactions = solve_friction(motion, family.structure, loads, reactions).reactions
@@ -86,32 +86,32 @@ class Mistake:
         yield cls()
 
     @property
-    def told(self) -> str:
+    def description(self) -> str:
         """Sentence about this mistake for the student."""
         return _(self.sentence).format(**vars(self))
 
     @property
-    def called(self) -> str:
+    def label(self) -> str:
         """Name of this mistake for tables and statistics."""
         return _(self.name).format(**vars(self))
 
-    def family(self, family: VariantFamily) -> VariantFamily:
+    def change_family(self, family: VariantFamily) -> VariantFamily:
         """Return the variants as a student who makes this mistake would have them; by default unchanged."""
         return family
 
-    def kernel(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
+    def change_solver(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
         """Return the group solver with this mistake built in; by default unchanged."""
         return kernel
 
-    def motion(self, motion: Motion) -> Motion:
+    def change_motion(self, motion: Motion) -> Motion:
         """Return the motion as a student who makes this mistake would compute it; by default unchanged."""
         return motion
 
-    def load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
+    def change_load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
         """Return a load as a student who makes this mistake would apply it; by default unchanged."""
         return load
 
-    def value(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
+    def change_values(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
         """Return values (variants, positions) as a student who makes this mistake would write them; by default
         unchanged.
         """

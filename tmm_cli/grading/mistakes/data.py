@@ -29,7 +29,7 @@ class Degrees(Mistake):
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
         yield from (cls(180 / np.pi), cls(np.pi / 180))
 
-    def value(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
+    def change_values(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
         return values * self.factor if quantity.dimension.angle and quantity.against != "angle" else values
 
 
@@ -50,7 +50,7 @@ class Millimetres(Mistake):
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
         yield from (cls(1000.0), cls(0.001))
 
-    def value(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
+    def change_values(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
         return values * self.factor if quantity.dimension.length else values
 
 
@@ -69,7 +69,7 @@ class Rpm(Mistake):
         if family.linkage.driver.kind == "turn":
             yield cls()
 
-    def family(self, family: VariantFamily) -> VariantFamily:
+    def change_family(self, family: VariantFamily) -> VariantFamily:
         driver = family.linkage.driver
         return family.changed(replace(family.linkage, driver=replace(driver, rate=driver.rate * (30 / np.pi))))
 
@@ -96,7 +96,7 @@ class OtherZero(Mistake):
         if family.linkage.driver.kind == "turn":
             yield cls(False)
 
-    def family(self, family: VariantFamily) -> VariantFamily:
+    def change_family(self, family: VariantFamily) -> VariantFamily:
         first: Real = np.zeros(1)
         if self.extreme:
             assert family.strokes is not None
@@ -123,7 +123,7 @@ class Neighbour(Mistake):
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
         yield from (cls(1), cls(-1))
 
-    def value(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
+    def change_values(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
         return np.roll(values, self.step, axis=1)
 
 
@@ -146,7 +146,7 @@ class Sense(Mistake):
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
         yield from (cls(False), cls(True))
 
-    def family(self, family: VariantFamily) -> VariantFamily:
+    def change_family(self, family: VariantFamily) -> VariantFamily:
         driver = family.linkage.driver
         linkage = replace(family.linkage, driver=replace(driver, sense=-driver.sense))
         if family.strokes is not None:  # the same ways of the driver, from their other ends
@@ -189,5 +189,5 @@ class ScaleInverted(Mistake):
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
         yield from (cls(stage, scale) for stage in ("velocities", "accelerations", "forces") for scale in SIZES)
 
-    def value(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
+    def change_values(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
         return values * self.scale**2 if quantity.stage == self.stage else values

@@ -20,7 +20,7 @@ from tmm_cli.mechanics.numerics import Real
 
 @dataclass(frozen=True)
 class InertiaReversed(Mistake):
-    """Mistake: inertia forces, inertia couples or both are directed along the acceleration instead of opposite to it."""
+    """Mistake: inertia forces, inertia couples or both are directed along the acceleration, not opposite to it."""
 
     parts: tuple[str, ...] = ()
 
@@ -33,7 +33,7 @@ class InertiaReversed(Mistake):
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
         yield from (cls(parts) for parts in (("force",), ("moment",), ("force", "moment")))
 
-    def load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
+    def change_load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
         if load.kind != "inertia":
             return load
         return replace(load, **{part: -getattr(load, part) for part in self.parts})
@@ -59,19 +59,23 @@ class HingeInertia(Mistake):
     @classmethod
     def cases(cls, family: VariantFamily) -> Iterable[Self]:
         links = family.linkage.links
-        own = [n for n in family.linkage.moving if np.any(links[n].inertia != 0) and np.any(_arm(family, n) != 0)]
+        own = [
+            n
+            for n in family.linkage.moving
+            if np.any(links[n].inertia != 0) and np.any(_hinge_to_centre(family, n) != 0)
+        ]
         yield from (cls(name) for name in own)
         if len(own) > 1:
             yield cls()
 
-    def load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
+    def change_load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
         if load.kind != "inertia" or self.link not in ("", load.link):
             return load
-        extra = family.linkage.links[load.link].mass * np.abs(_arm(family, load.link)) ** 2
+        extra = family.linkage.links[load.link].mass * np.abs(_hinge_to_centre(family, load.link)) ** 2
         return replace(load, moment=load.moment - extra * motion.link(load.link).epsilon)
 
 
-def _arm(family: VariantFamily, name: str) -> Real:
+def _hinge_to_centre(family: VariantFamily, name: str) -> Real:
     """Return the vector (m) from a link's hinge, preferably one on the frame, to its centre of mass."""
     link = family.linkage.links[name]
     frame = family.linkage.links[FRAME].points
@@ -100,7 +104,7 @@ class NoInertia(Mistake):
         if len(own) > 1:
             yield cls()
 
-    def load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
+    def change_load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
         if load.kind != "inertia" or self.link not in ("", load.link):
             return load
         return replace(load, **{self.part: getattr(load, self.part) * 0})
@@ -143,7 +147,7 @@ class NoWeight(Mistake):
         yield from (cls(name) for name in own)
         yield from (cls("", mass) for mass in (False, True))
 
-    def load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
+    def change_load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
         if load.kind != "weight" or self.link not in ("", load.link):
             return load
         return replace(load, force=load.force * (1 / np.abs(family.linkage.gravity) if self.mass else 0.0))
@@ -166,7 +170,7 @@ class WeightForMass(Mistake):
         if np.any(family.linkage.gravity != 0):
             yield cls()
 
-    def load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
+    def change_load(self, load: AppliedLoad, motion: Motion, family: VariantFamily) -> AppliedLoad:
         return replace(load, force=load.force * np.abs(family.linkage.gravity)) if load.kind == "inertia" else load
 
 
@@ -184,7 +188,7 @@ class GuideThroughHinge(Mistake):
     )
     solves = False
 
-    def value(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
+    def change_values(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
         return values * 0 if quantity.name.startswith("arm of R_") else values
 
 
@@ -199,7 +203,7 @@ class OppositeReaction(Mistake):
     sentence = N_("This is the opposite of the requested reaction: R_ik acts from link i on link k.")
     solves = False
 
-    def value(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
+    def change_values(self, quantity: NamedQuantity, values: Real, solution: Solution) -> Real:
         return -values if quantity.name.startswith("R_") else values
 
 
@@ -223,7 +227,7 @@ class WrongStroke(Mistake):
         if family.strokes is not None and any(load.working_stroke_only for load in family.linkage.loads):
             yield from (cls(False), cls(True))
 
-    def family(self, family: VariantFamily) -> VariantFamily:
+    def change_family(self, family: VariantFamily) -> VariantFamily:
         assert family.strokes is not None
         strokes = family.strokes.changed(lambda s: replace(s, working=self.both or not s.working))
         return replace(family, strokes=strokes)

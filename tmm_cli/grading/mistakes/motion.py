@@ -44,7 +44,7 @@ class Mirror(Mistake):
             if isinstance(kernel, ClosedFormSolver) and kernel.assemblies == 2:
                 yield cls(", ".join(kernel.group.links))
 
-    def kernel(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
+    def change_solver(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
         if isinstance(kernel, ClosedFormSolver) and ", ".join(kernel.group.links) == self.links:
             return replace(kernel, sign=-kernel.sign)
         return kernel
@@ -57,7 +57,7 @@ Terms = Callable[[PairConstraint, Poses, Rates], Any]  # the velocity terms of a
 
 
 @dataclass(frozen=True)
-class Equations(NewtonSolver):
+class EquationsWithTerms(NewtonSolver):
     """Solver of a group as a system of equations in which `terms` replaces the velocity terms of the pairs."""
 
     terms: Terms = field(kw_only=True)
@@ -67,17 +67,17 @@ class Equations(NewtonSolver):
 
 
 @dataclass(frozen=True)
-class OtherTerms(WrappedSolver):
+class SolverWithTerms(WrappedSolver):
     """Solver of a group whose accelerations follow from equations with modified velocity terms; all else is right."""
 
-    equations: Equations
+    equations: EquationsWithTerms
 
     @classmethod
-    def of(cls, right: GroupSolver, linkage: Linkage, terms: Terms) -> OtherTerms:
+    def of(cls, right: GroupSolver, linkage: Linkage, terms: Terms) -> SolverWithTerms:
         """Build the solver from the right one, with the velocity terms of the pairs replaced."""
         plain = NewtonSolver.of(right.group.rebind(linkage), linkage)
         own = {f.name: getattr(plain, f.name) for f in fields(plain)}
-        return cls.around(right, Equations(**own, terms=terms))
+        return cls.around(right, EquationsWithTerms(**own, terms=terms))
 
     def accelerations(
         self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
@@ -102,29 +102,29 @@ class Normal(Mistake):
         linkage = family.linkage
         yield from (cls(link) for link in linkage.moving if not linkage.slides_on_frame(link))
 
-    def kernel(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
+    def change_solver(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
         if self.link in kernel.group.links:
-            return OtherTerms.of(kernel, family.linkage, self._terms)
-        return Unturned.around(kernel, self.link)
+            return SolverWithTerms.of(kernel, family.linkage, self._change_terms)
+        return WithoutNormal.around(kernel, self.link)
 
-    def _terms(self, pair: PairConstraint, poses: Poses, rates: Rates) -> Any:
-        still = without(rates, self.link)
+    def _change_terms(self, pair: PairConstraint, poses: Poses, rates: Rates) -> Any:
+        still = stop_rotation(rates, self.link)
         if not isinstance(pair, SlideConstraint):
             return pair.velocity_terms(poses, still)
         here, (turned, across) = GuideGeometry.at(pair.slide, poses), pair.velocity_terms(poses, rates)
         return turned, across + cross(here.u, here.bend(pair.slide, still) - here.bend(pair.slide, rates))
 
-    def motion(self, motion: Motion) -> Motion:
-        return UnturnedMotion(**vars(motion), link_without=self.link)
+    def change_motion(self, motion: Motion) -> Motion:
+        return MotionWithoutNormal(**vars(motion), link_without=self.link)
 
 
-def without(rates: Rates, link: str) -> Rates:
+def stop_rotation(rates: Rates, link: str) -> Rates:
     """Return the velocities of the links with the rotation of one link set to zero."""
     return {**rates, link: replace(rates[link], w=rates[link].w * 0)}
 
 
 @dataclass(frozen=True)
-class Unturned(WrappedSolver):
+class WithoutNormal(WrappedSolver):
     """Solver of a group attached to a link whose normal acceleration is left out."""
 
     link: str
@@ -132,12 +132,12 @@ class Unturned(WrappedSolver):
     def accelerations(
         self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
-        known = without(rates, self.link) if self.link in self.group.known and self.link in rates else rates
+        known = stop_rotation(rates, self.link) if self.link in self.group.known and self.link in rates else rates
         return self.inner.accelerations(at, poses, known, accels, drives)
 
 
 @dataclass(frozen=True, kw_only=True)
-class UnturnedMotion(Motion):
+class MotionWithoutNormal(Motion):
     """Motion of the mechanism with the normal accelerations of one link left out."""
 
     link_without: str
@@ -170,17 +170,17 @@ class Tangential(Mistake):
                 if pair.kind == "R":
                     yield cls(kernel.group.own(pair))
 
-    def kernel(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
+    def change_solver(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
         if self.link not in kernel.group.links:
             return kernel
         pair = next(p for p in kernel.group.outer if p.kind == "R" and kernel.group.own(p) == self.link)
         linkage, other = family.linkage, pair.other(self.link)
         there, here = linkage.local(other, pair.point), linkage.local(self.link, pair.point)
-        return NotTurningFaster.around(kernel, self.link, other, there, here)
+        return WithoutAngularAcceleration.around(kernel, self.link, other, there, here)
 
 
 @dataclass(frozen=True)
-class NotTurningFaster(WrappedSolver):
+class WithoutAngularAcceleration(WrappedSolver):
     """Solver of a group in which the angular acceleration of one link is set to zero.
 
     Attributes:
@@ -232,13 +232,13 @@ class Coriolis(Mistake):
             if FRAME not in (slide.carrier, slide.runner):
                 yield from (cls(slide.runner, slide.carrier, sense) for sense in (0, -1))
 
-    def kernel(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
+    def change_solver(self, kernel: GroupSolver, family: VariantFamily) -> GroupSolver:
         slides = [pair.slide for pair in (*kernel.group.inner, *kernel.group.outer) if pair.slide is not None]
         if all(slide.runner != self.runner for slide in slides):
             return kernel
-        return OtherTerms.of(kernel, family.linkage, self._terms)
+        return SolverWithTerms.of(kernel, family.linkage, self._change_terms)
 
-    def _terms(self, pair: PairConstraint, poses: Poses, rates: Rates) -> Any:
+    def _change_terms(self, pair: PairConstraint, poses: Poses, rates: Rates) -> Any:
         found = pair.velocity_terms(poses, rates)
         if not (isinstance(pair, SlideConstraint) and pair.links == (self.carrier, self.runner)):
             return found

@@ -10,13 +10,13 @@ from typing import NamedTuple
 import numpy as np
 
 from tmm_cli.batch import Task
-from tmm_cli.grading.record import Given, Key, Submission
+from tmm_cli.grading.record import Key, ReadAnswer, Submission
 from tmm_cli.grading.submissions.numbers import (
     Heading,
     Headings,
     Part,
     UnknownQuantityError,
-    checked_unit,
+    check_unit,
     read_answer,
     read_position,
 )
@@ -33,7 +33,7 @@ LIMIT = 10_000  # headings that are kept read
 Cells = dict[Part, tuple[str, str]]  # text and unit of every part of an answer
 
 
-class Entry(NamedTuple):
+class AnswerCell(NamedTuple):
     """A cell of a submitted table with the texts that say what it answers.
 
     Attributes:
@@ -50,7 +50,7 @@ class Entry(NamedTuple):
     unit: str = ""
 
 
-class Over(NamedTuple):
+class HeadingMeaning(NamedTuple):
     """Meaning of a heading.
 
     Attributes:
@@ -66,7 +66,7 @@ class Over(NamedTuple):
     asked: bool
 
 
-class Answers:
+class AnswerConverter:
     """Converter of table cells to the answers that a task requests.
 
     Raises:
@@ -78,9 +78,9 @@ class Answers:
         self.vectors = {one.quantity.name: one.quantity.vector for one in task.asked}
         self.names = list(self.vectors)
         self.headings = Headings(task.quantities)
-        self.known: dict[Entry, Over | ProblemError] = {}
+        self.known: dict[AnswerCell, HeadingMeaning | ProblemError] = {}
 
-    def heading(self, entry: Entry) -> Over:
+    def read_heading(self, entry: AnswerCell) -> HeadingMeaning:
         """Return the meaning of the heading of a cell.
 
         Raises:
@@ -90,7 +90,7 @@ class Answers:
         found = self.known.get(key)
         if found is None:
             try:
-                found = self._heading(key)
+                found = self._read_heading(key)
             except ProblemError as error:
                 found = error
             if len(self.known) < LIMIT:
@@ -99,16 +99,16 @@ class Answers:
             raise found.with_traceback(None)
         return found
 
-    def _heading(self, entry: Entry) -> Over:
+    def _read_heading(self, entry: AnswerCell) -> HeadingMeaning:
         over = self.headings.read(entry.heading)
         position, angle = read_position(entry.position)
         if position is not None or angle is not None:
             over = replace(over, position=position, angle=angle)
         place = replace(over, part="", unit="")
         asked = over.quantity in self.names if over.angle is not None else _key(place) in self.asked
-        return Over(place, entry.part or over.part, checked_unit(entry.unit) or over.unit, asked)
+        return HeadingMeaning(place, entry.part or over.part, check_unit(entry.unit) or over.unit, asked)
 
-    def submission(self, student: str, entries: Iterable[Entry], problems: Iterable[str] = ()) -> Submission:
+    def convert(self, student: str, entries: Iterable[AnswerCell], problems: Iterable[str] = ()) -> Submission:
         """Convert the cells of one student to a submission; empty cells and dashes are not answers.
 
         problems: sentences on what could not be read in the file itself.
@@ -123,32 +123,32 @@ class Answers:
             if not entry.cell.strip(" -–—"):
                 continue
             try:
-                over = self.heading(entry)
+                over = self.read_heading(entry)
             except ProblemError as error:
                 told.append(error)
                 continue
             if not over.asked:
                 unasked[over.place] = None
             elif over.part in (parts := cells.setdefault(over.place, {})):
-                told.append(twice(over.place))
+                told.append(repeated_answer_message(over.place))
             else:
                 parts[over.part] = entry.cell, over.unit
-        answers: dict[Key, Given] = {}
-        by_angle: dict[tuple[str, float], Given] = {}
+        answers: dict[Key, ReadAnswer] = {}
+        by_angle: dict[tuple[str, float], ReadAnswer] = {}
         for place, parts in cells.items():
             try:
-                given = _given(parts)
+                given = _join_components(parts)
                 if given is None:
                     continue
                 if given.form != "number" and not self.vectors[place.quantity]:
                     raise ProblemError(_("expected one number"), found=quote(given.text))
             except ProblemError as error:
-                told.append(error.at(_called(place)))
+                told.append(error.at(_answer_name(place)))
                 continue
             if {"x", "y"} & parts.keys() and {"", "size", "angle"} & parts.keys():
                 told.append(
                     _("{name}: the components count; the size and direction beside them are ignored").format(
-                        name=_called(place)
+                        name=_answer_name(place)
                     )
                 )
             if place.angle is None:
@@ -156,24 +156,24 @@ class Answers:
             else:
                 by_angle[place.quantity, place.angle] = given
         if unasked:
-            told.insert(0, self._not_asked(list(unasked)))
-        lines = [line if isinstance(line, str) else self._line(line) for line in told[:MOST_TOLD]]
+            told.insert(0, self._not_requested_message(list(unasked)))
+        lines = [line if isinstance(line, str) else self._error_line(line) for line in told[:MOST_TOLD]]
         if len(told) > MOST_TOLD:
             lines.append(_("and {count} more").format(count=len(told) - MOST_TOLD))
         return Submission(student, answers, tuple(lines), by_angle)
 
-    def _line(self, error: ProblemError) -> str:
+    def _error_line(self, error: ProblemError) -> str:
         if isinstance(error, UnknownQuantityError):
             near = nearest_name(error.name, self.names)
             error = ProblemError(error.message, found=error.found, near=near)
         return one_line(error)
 
-    def _not_asked(self, places: list[Heading]) -> str:
+    def _not_requested_message(self, places: list[Heading]) -> str:
         """Return a message on answers that the task does not request, with similar requested names if there are any."""
         names = []
         for place in places[:MOST_TOLD]:
             near = None if place.quantity in self.names else nearest_name(place.quantity, self.names)
-            names.append(_called(place) + (_(" (requested: {near})").format(near=near) if near else ""))
+            names.append(_answer_name(place) + (_(" (requested: {near})").format(near=near) if near else ""))
         more = [_("{count} more").format(count=len(places) - MOST_TOLD)] if len(places) > MOST_TOLD else []
         return _("not requested, so not counted: {names}").format(names=", ".join([*names, *more]))
 
@@ -183,16 +183,16 @@ def one_line(error: ProblemError) -> str:
     return "; ".join(" ".join(line.split()) for line in str(error).splitlines())
 
 
-def twice(place: Heading) -> str:
+def repeated_answer_message(place: Heading) -> str:
     """Return the message that the same answer is given twice."""
-    return _("{name} is given twice: the first counts").format(name=_called(place))
+    return _("{name} is given twice: the first counts").format(name=_answer_name(place))
 
 
 def _key(place: Heading) -> Key:
     return place.quantity, place.position
 
 
-def _called(place: Heading) -> str:
+def _answer_name(place: Heading) -> str:
     if place.angle is not None:
         return _("{quantity} at phi = {angle:.6g} deg").format(quantity=place.quantity, angle=math.degrees(place.angle))
     if place.position is None:
@@ -200,7 +200,7 @@ def _called(place: Heading) -> str:
     return _("{quantity} at {position}").format(quantity=place.quantity, position=place.position)
 
 
-def _given(cells: Cells) -> Given | None:
+def _join_components(cells: Cells) -> ReadAnswer | None:
     """Join the cells with the components of one answer; return None if they are empty.
 
     Raises:
@@ -209,18 +209,18 @@ def _given(cells: Cells) -> Given | None:
     if "x" in cells or "y" in cells:
         if not {"x", "y"} <= cells.keys():
             raise ProblemError(_("one component is missing"), found=", ".join(cells), allowed="x, y")
-        x, y = (_number(*cells[part]) for part in ("x", "y"))
+        x, y = (_read_single_number(*cells[part]) for part in ("x", "y"))
         if x.unit and y.unit and x.unit != y.unit:
             raise ProblemError(_("the components have different units"), found=f"{quote(x.unit)}, {quote(y.unit)}")
-        return Given(x.first, y.first, "components", x.unit or y.unit, text=f"{x.text}; {y.text}")
+        return ReadAnswer(x.first, y.first, "components", x.unit or y.unit, text=f"{x.text}; {y.text}")
     size = cells.get("size") or cells.get("")
     if size is None:
         raise ProblemError(_("the magnitude is missing"), found=", ".join(cells), allowed="size, angle")
     if "angle" in cells:
-        given, turn = _number(*size), _number(*cells["angle"])
+        given, turn = _read_single_number(*size), _read_single_number(*cells["angle"])
         if turn.unit and parse_unit(turn.unit).dimension != ANGLE:
             raise ProblemError(_("expected an angle as the direction"), found=quote(turn.unit), allowed="deg, rad")
-        return Given(
+        return ReadAnswer(
             given.first,
             turn.first,
             "polar",
@@ -231,7 +231,7 @@ def _given(cells: Cells) -> Given | None:
     return read_answer(*size)
 
 
-def _number(text: str, unit: str) -> Given:
+def _read_single_number(text: str, unit: str) -> ReadAnswer:
     found = read_answer(text, unit)
     if found is None or found.form != "number":
         raise ProblemError(_("expected one number"), found=quote(text))
@@ -244,7 +244,7 @@ def _number(text: str, unit: str) -> Given:
 NEAR = np.radians(2.0)  # as angles are read off a drawing
 
 
-def at_positions(submission: Submission, task: Task, places: Real) -> Submission:
+def assign_to_positions(submission: Submission, task: Task, places: Real) -> Submission:
     """Assign answers given at a driver angle to the nearest position of the student's variant.
 
     Args:
@@ -275,7 +275,7 @@ def at_positions(submission: Submission, task: Task, places: Real) -> Submission
         elif (quantity, number) not in asked:
             told.append(_("not requested, so not counted: {names}").format(names=f"{quantity} at {number}"))
         elif (quantity, number) in answers:
-            told.append(twice(Heading(quantity, number)))
+            told.append(repeated_answer_message(Heading(quantity, number)))
         else:
             answers[quantity, number] = given
     return replace(submission, answers=answers, by_angle={}, problems=(*submission.problems, *told[:MOST_TOLD]))

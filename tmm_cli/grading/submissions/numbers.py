@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal, cast, get_args
 
-from tmm_cli.grading.record import Given
+from tmm_cli.grading.record import ReadAnswer
 from tmm_cli.language import _
 from tmm_cli.mechanics.quantities import ANGLE
 from tmm_cli.problem import (
@@ -52,7 +52,7 @@ _BETWEEN = re.compile(r", +|(?<=[^\d ]),")
 _DIRECTIONS = ("phi", "φ", "angle", "alpha", "α")
 
 
-def read_answer(text: str, unit: str = "", turn_unit: str = "") -> Given | None:
+def read_answer(text: str, unit: str = "", turn_unit: str = "") -> ReadAnswer | None:
     """Read the answer in a cell.
 
     Args:
@@ -67,30 +67,30 @@ def read_answer(text: str, unit: str = "", turn_unit: str = "") -> Given | None:
         ProblemError: The text is not an answer.
     """
     if len(text) < LONGEST and _PLAIN.fullmatch(text):
-        return Given(read_number(text)[0], unit=unit, text=text)
-    source = plainly(text)
+        return ReadAnswer(read_number(text)[0], unit=unit, text=text)
+    source = use_keyboard_characters(text)
     if not source.strip("- "):
         return None
     told = clean(source, 80)
     if roman := CLASSES.get(to_latin(source).upper()):
-        return Given(roman, unit=unit, text=told)
-    parts, of_both, polar = _parts(source)
+        return ReadAnswer(roman, unit=unit, text=told)
+    parts, of_both, polar = _split_answer(source)
     if parts == [source]:
         number, own = read_number(source)
-        return Given(number, unit=own or unit, text=told)
+        return ReadAnswer(number, unit=own or unit, text=told)
     if len(parts) != 2:
         raise ProblemError(
             _("a vector needs two numbers"), found=quote(source), allowed=_("(1,2; -3,4) N or 1,2 kN at 34 deg")
         )
-    labels, numbers = zip(*(_labelled(part) for part in parts), strict=True)
+    labels, numbers = zip(*(_split_label(part) for part in parts), strict=True)
     (first, one), (second, other) = (read_number(part) for part in numbers)
-    polar = polar or labels[1] in _DIRECTIONS or (_turns(other) and not _turns(one))
+    polar = polar or labels[1] in _DIRECTIONS or (_is_angle_unit(other) and not _is_angle_unit(one))
     if polar:
-        if other and not _turns(other):
+        if other and not _is_angle_unit(other):
             raise ProblemError(
                 _("expected an angle as the direction"), found=quote(other), allowed=_("1,2 kN at 34 deg")
             )
-        return Given(first, second, "polar", one or of_both or unit, other or turn_unit, told)
+        return ReadAnswer(first, second, "polar", one or of_both or unit, other or turn_unit, told)
     units = {name for name in (one, other, of_both) if name}
     if len(units) > 1:
         raise ProblemError(_("the components have different units"), found=quote(source), allowed=_("(1,2; -3,4) N"))
@@ -100,10 +100,10 @@ def read_answer(text: str, unit: str = "", turn_unit: str = "") -> Given | None:
             _("these are not the components x and y"), found=quote(source), allowed=_("Fx = 1,2 N, Fy = -3,4 N")
         )
     x, y = (second, first) if ends == ("y", "x") else (first, second)
-    return Given(x, y, "components", units.pop() if units else unit, text=told)
+    return ReadAnswer(x, y, "components", units.pop() if units else unit, text=told)
 
 
-def plainly(text: str) -> str:
+def use_keyboard_characters(text: str) -> str:
     """Replace typographic minus signs, dots, spaces and superscripts by characters of a keyboard.
 
     Raises:
@@ -145,11 +145,11 @@ def read_number(source: str) -> tuple[float, str]:
     if len(tens) > 4:
         raise ProblemError(_("the number is too large or too small"), found=quote(source))
     number = finite_float(f"{sign}{digits.replace(',', '.')}e{tens}")
-    return number, checked_unit(source[found.end() :])
+    return number, check_unit(source[found.end() :])
 
 
 @lru_cache(maxsize=1024)
-def checked_unit(text: str) -> str:
+def check_unit(text: str) -> str:
     """Return the unit as written, without a final full stop; "" for an empty text.
 
     Raises:
@@ -164,17 +164,17 @@ def checked_unit(text: str) -> str:
 
 
 @lru_cache(maxsize=1024)
-def _turns(unit: str) -> bool:
+def _is_angle_unit(unit: str) -> bool:
     return bool(unit) and parse_unit(unit).dimension == ANGLE
 
 
-def _labelled(part: str) -> tuple[str, str]:
+def _split_label(part: str) -> tuple[str, str]:
     """Split a text such as `Fx = 1.2 N` into label and value; the label is "" if there is none."""
     label = _LABEL.match(part)
     return (label[1], part[label.end() :]) if label else ("", part)
 
 
-def _parts(source: str) -> tuple[list[str], str, bool]:
+def _split_answer(source: str) -> tuple[list[str], str, bool]:
     """Split an answer into the texts of its numbers.
 
     Returns:
@@ -184,7 +184,7 @@ def _parts(source: str) -> tuple[list[str], str, bool]:
     inside, unit = source, ""
     brackets = _BRACKETS.fullmatch(source)
     if brackets:
-        inside, unit = brackets[1], checked_unit(brackets[2])
+        inside, unit = brackets[1], check_unit(brackets[2])
     if not brackets and _DIRECTION.search(source):
         return [part.strip() for part in _DIRECTION.split(source)], "", True
     if "=" in inside:
@@ -243,7 +243,7 @@ class Headings:
         Raises:
             ProblemError: The heading cannot be read.
         """
-        source = " ".join(plainly(text).split())
+        source = " ".join(use_keyboard_characters(text).split())
         alike = to_latin(source)
         for known, name in self.names.items():
             if not alike.startswith(known):
@@ -263,7 +263,7 @@ def _heading(name: str, part: str, position: str, rest: str, unit: str) -> Headi
         elif piece:
             unit = piece
     number, angle = read_position(position)
-    return Heading(name, number, angle, cast(Part, part), checked_unit(unit))
+    return Heading(name, number, angle, cast(Part, part), check_unit(unit))
 
 
 def read_position(text: str) -> tuple[int | None, float | None]:
@@ -275,7 +275,7 @@ def read_position(text: str) -> tuple[int | None, float | None]:
     Raises:
         ProblemError: The text is not a position.
     """
-    source = plainly(text)
+    source = use_keyboard_characters(text)
     if not source.strip("- "):
         return None, None
     by_angle, rest = _PLACE.fullmatch(source).groups()  # type: ignore[union-attr]  # anything matches

@@ -12,9 +12,9 @@ from typing import Any
 
 from tmm_cli.batch import Task
 from tmm_cli.grading.record import Submission
-from tmm_cli.grading.submissions.answers import Answers, Entry, one_line
-from tmm_cli.grading.submissions.numbers import PARTS, Part, checked_unit
-from tmm_cli.grading.untrusted_tables import bytes_of, decoded, rows_of
+from tmm_cli.grading.submissions.answers import AnswerCell, AnswerConverter, one_line
+from tmm_cli.grading.submissions.numbers import PARTS, Part, check_unit
+from tmm_cli.grading.untrusted_tables import decode_text, read_file_bytes, read_rows
 from tmm_cli.grading.variant_tables import WHO
 from tmm_cli.language import N_, _
 from tmm_cli.problem import Composer, ProblemError, clean, quote, read_text, to_latin
@@ -44,19 +44,19 @@ class AnswerColumns:
     """
 
     student: int | None
-    entries: Callable[[Row], Iterator[Entry]]
+    entries: Callable[[Row], Iterator[AnswerCell]]
     width: int
 
-    def named(self, row: Row) -> str:
+    def student_in(self, row: Row) -> str:
         """Return the name of the student in a row, "" if there is none."""
         return "" if self.student is None else _cell(row, self.student)
 
-    def longer(self, row: Row) -> bool:
+    def has_extra_cells(self, row: Row) -> bool:
         """Return True if a row has more cells than the header."""
         return any(row[self.width :])
 
 
-def shape_of(header: Row, answers: Answers, *, filled: bool = True) -> AnswerColumns:
+def recognise_table(header: Row, answers: AnswerConverter, *, filled: bool = True) -> AnswerColumns:
     """Recognise the structure of a table from its header.
 
     Args:
@@ -73,31 +73,31 @@ def shape_of(header: Row, answers: Answers, *, filled: bool = True) -> AnswerCol
         name = " ".join(word.casefold().replace(".", " ").split())
         columns.setdefault(_WORDS.get(name, name), (n, unit.strip()))
     if "quantity" in columns:
-        return _long(columns, len(header))
-    first = 0 if _known(header[0], answers) else 1
-    if filled and "student" not in columns and not any(_known(text, answers) for text in header):
+        return _recognise_long_table(columns, len(header))
+    first = 0 if _is_known_heading(header[0], answers) else 1
+    if filled and "student" not in columns and not any(_is_known_heading(text, answers) for text in header):
         raise ProblemError(
             _("none of the headings of this table is recognised"),
             found=quote("; ".join(header)),
             allowed=_("quantity; position; unit; value, or names of answers such as v of E at 7"),
         )
     for text in header[first:]:
-        if _is_unit(text) and not _known(text, answers):
+        if _is_unit(text) and not _is_known_heading(text, answers):
             raise ProblemError(
                 _("a heading that contains a comma must be in quotes"),
                 found=quote(text),
                 allowed=_('"H, mm" or H [mm]'),
             )
 
-    def entries(row: Row) -> Iterator[Entry]:
-        return (Entry(cell, over) for over, cell in zip(header[first:], row[first:], strict=False))
+    def entries(row: Row) -> Iterator[AnswerCell]:
+        return (AnswerCell(cell, over) for over, cell in zip(header[first:], row[first:], strict=False))
 
     return AnswerColumns(0 if first else None, entries, len(header))
 
 
-def _known(heading: str, answers: Answers) -> bool:
+def _is_known_heading(heading: str, answers: AnswerConverter) -> bool:
     try:
-        answers.heading(Entry("", heading))
+        answers.read_heading(AnswerCell("", heading))
     except ProblemError:
         return False
     return True
@@ -105,21 +105,21 @@ def _known(heading: str, answers: Answers) -> bool:
 
 def _is_unit(text: str) -> bool:
     try:
-        return bool(checked_unit(text))
+        return bool(check_unit(text))
     except ProblemError:
         return False
 
 
-def _long(columns: dict[str, tuple[int, str]], width: int) -> AnswerColumns:
+def _recognise_long_table(columns: dict[str, tuple[int, str]], width: int) -> AnswerColumns:
     """Return the structure of a table with an answer per row: columns quantity, position, unit, value, x, y, ..."""
     places = {name: place for name, (place, _unit) in columns.items()}
     parts: list[tuple[Part, int, str]] = [("", *columns["value"])] if "value" in columns else []
     parts += [(part, *columns[part]) for part in PARTS if part in columns]
 
-    def entries(row: Row) -> Iterator[Entry]:
+    def entries(row: Row) -> Iterator[AnswerCell]:
         quantity, position, unit = (_cell(row, places.get(name)) for name in ("quantity", "position", "unit"))
         for part, place, own in parts:
-            yield Entry(_cell(row, place), quantity, part, position, own or ("" if part == "angle" else unit))
+            yield AnswerCell(_cell(row, place), quantity, part, position, own or ("" if part == "angle" else unit))
 
     return AnswerColumns(places.get("student"), entries, width)
 
@@ -131,7 +131,7 @@ def _cell(row: Row, place: int | None) -> str:
 # An answer sheet in YAML: `v of E at 7, m/s: 1,31` line by line, a vector perhaps as a mapping of its parts.
 
 
-class Texts(Composer):
+class TextComposer(Composer):
     """YAML reader that keeps every value as its text, since students write numbers differently from YAML."""
 
     def parsed(self) -> Iterator[Any]:
@@ -149,7 +149,7 @@ class Texts(Composer):
         return self.text[start.start_mark.index : self.last.end_mark.index] if start.flow_style else found
 
 
-def read_sheet(text: str, file: str) -> tuple[str, list[Entry]]:
+def read_sheet(text: str, file: str) -> tuple[str, list[AnswerCell]]:
     """Read an answer sheet in YAML.
 
     Args:
@@ -162,22 +162,22 @@ def read_sheet(text: str, file: str) -> tuple[str, list[Entry]]:
     Raises:
         ProblemError: The file is not an answer sheet.
     """
-    data = read_text(text, file, Texts).data
+    data = read_text(text, file, TextComposer).data
     student: Any = data.pop("student", "")
     answers: Any = data.pop("answers", data) or {}
     if not isinstance(student, str) or not isinstance(answers, dict):
         raise ProblemError(
             _("not an answer sheet"), found=quote(answers), allowed="answers: {v of E at 7: 1.31 m/s}", file=file
         )
-    return student, list(_entries(answers))
+    return student, list(_yaml_cells(answers))
 
 
-def _entries(answers: dict[str, Any]) -> Iterator[Entry]:
+def _yaml_cells(answers: dict[str, Any]) -> Iterator[AnswerCell]:
     for over, value in answers.items():
         if isinstance(value, dict):
-            yield from (Entry(_text(cell), f"{over}, {part}") for part, cell in value.items())
+            yield from (AnswerCell(_text(cell), f"{over}, {part}") for part, cell in value.items())
         else:
-            yield Entry(_text(value), over)
+            yield AnswerCell(_text(value), over)
 
 
 def _text(value: Any) -> str:
@@ -209,7 +209,7 @@ def read_submissions(path: str | os.PathLike[str], task: Task, students: Collect
     real = Path(os.path.realpath(path))
     reader = _Reader(task, students)
     seen = set()
-    for submission in reader.folder(real) if real.is_dir() else reader.table(real):
+    for submission in reader.read_folder(real) if real.is_dir() else reader.read_table(real):
         seen.add(submission.student)
         yield submission
     for student in students:
@@ -219,80 +219,84 @@ def read_submissions(path: str | os.PathLike[str], task: Task, students: Collect
 
 class _Reader:
     def __init__(self, task: Task, students: Collection[str]) -> None:
-        self.answers = Answers(task)
+        self.answers = AnswerConverter(task)
         self.students = frozenset(students)
         self.alike: dict[str, list[str]] = {}
         for student in students:
-            self.alike.setdefault(_folded(student), []).append(student)
+            self.alike.setdefault(_fold_name(student), []).append(student)
 
-    def student(self, name: str) -> str:
+    def find_student(self, name: str) -> str:
         """Return the known student meant by a name; otherwise the name itself, without unprintable characters.
 
         Differences of case, spaces and lookalike Cyrillic letters are ignored.
         """
         if name in self.students:
             return name
-        found = self.alike.get(_folded(name), [])
+        found = self.alike.get(_fold_name(name), [])
         if len(found) == 1:
             return found[0]
         return clean(name.encode(errors="replace").decode().translate(NO_PATH).strip(" ."), 100) or "?"
 
-    def folder(self, folder: Path) -> Iterator[Submission]:
-        """Yield the submissions in a folder in the order of file names; a student with more than one file is not read."""
+    def read_folder(self, folder: Path) -> Iterator[Submission]:
+        """Yield the submissions in a folder in the order of file names; several files of a student are refused."""
         files: dict[str, list[str]] = {}
         for name in sorted(os.listdir(folder)):
             if not name.startswith((".", "~$")) and name.casefold() not in OF_WINDOWS:  # ~$: of an editor that is open
-                files.setdefault(self.student(Path(name).stem), []).append(name)
+                files.setdefault(self.find_student(Path(name).stem), []).append(name)
         for student, names in files.items():
             if len(names) == 1:
-                yield self.file(folder / names[0], student)
+                yield self.read_file(folder / names[0], student)
             else:
                 told = ", ".join(clean(name, 60) for name in names[:4])
-                yield _unread(
+                yield _unreadable_submission(
                     student,
                     _("more than one file of this student ({count}): {names}").format(count=len(names), names=told),
                 )
 
-    def file(self, path: Path, student: str) -> Submission:
+    def read_file(self, path: Path, student: str) -> Submission:
         """Read the file of one student."""
         problems: dict[str, None] = {}
-        own: list[Entry] = []
+        own: list[AnswerCell] = []
         try:
             if path.suffix.lower() in SHEETS:
-                found = [read_sheet(decoded(bytes_of(path, LARGEST)), path.name)]
+                found = [read_sheet(decode_text(read_file_bytes(path, LARGEST)), path.name)]
             elif path.suffix.lower() in TABLES or path.is_dir() or path.is_symlink():
-                rows = rows_of(path, LARGEST, MOST_ROWS)
-                shape = self.shape(rows)
-                found = [(shape.named(row), list(shape.entries(row))) for row in rows[1:] if not shape.longer(row)]
-                problems = dict.fromkeys([_(LONGER)] if any(map(shape.longer, rows[1:])) else [])
+                rows = read_rows(path, LARGEST, MOST_ROWS)
+                shape = self.recognise_table(rows)
+                found = [
+                    (shape.student_in(row), list(shape.entries(row)))
+                    for row in rows[1:]
+                    if not shape.has_extra_cells(row)
+                ]
+                problems = dict.fromkeys([_(LONGER)] if any(map(shape.has_extra_cells, rows[1:])) else [])
             else:
                 raise ProblemError(_("not an answer sheet"), allowed=_("CSV, XLSX without macros, YAML"))
         except ProblemError as error:
-            return _unread(student, one_line(error.located(clean(path.name))))
+            return _unreadable_submission(student, one_line(error.located(clean(path.name))))
         for name, entries in found:
-            other = self.student(name)
+            other = self.find_student(name)
             if name and other != student:
                 problems[_("the file contains the name of another student: {name}").format(name=quote(other))] = None
                 if other in self.students:
                     continue
             own += entries
-        read = self.answers.submission(student, own, problems)
+        read = self.answers.convert(student, own, problems)
         if read.answers or read.by_angle or read.problems:
             return read
         return replace(read, problems=(_("there is no answer in {file}").format(file=clean(path.name)),))
 
-    def table(self, path: Path) -> Iterator[Submission]:
+    def read_table(self, path: Path) -> Iterator[Submission]:
         """Yield the submissions in a single file: a table with all students, or a YAML sheet of one student.
 
         Raises:
             ProblemError: The table cannot be read.
         """
         if path.suffix.lower() in SHEETS:
-            yield self.file(path, self.student(path.stem))
+            yield self.read_file(path, self.find_student(path.stem))
             return
         by_student: dict[str, list[list[str]]] = {}
-        rows = rows_of(path, LARGEST_TABLE, MOST_ROWS_OF_ALL)
-        shape = self.shape(rows, str(path))
+        rows = read_rows(path, LARGEST_TABLE, MOST_ROWS_OF_ALL)
+        shape = self.recognise_table(rows, str(path))
         if shape.student is None:
             raise ProblemError(
                 _("no column contains the names of the students"),
@@ -301,13 +305,13 @@ class _Reader:
                 file=str(path),
             )
         for row in rows[1:]:
-            by_student.setdefault(self.student(shape.named(row)), []).append(row)
+            by_student.setdefault(self.find_student(shape.student_in(row)), []).append(row)
         for student, own in by_student.items():
-            problems = (_(LONGER),) if any(map(shape.longer, own)) else ()
-            entries = (entry for row in own if not shape.longer(row) for entry in shape.entries(row))
-            yield self.answers.submission(student, entries, problems)
+            problems = (_(LONGER),) if any(map(shape.has_extra_cells, own)) else ()
+            entries = (entry for row in own if not shape.has_extra_cells(row) for entry in shape.entries(row))
+            yield self.answers.convert(student, entries, problems)
 
-    def shape(self, rows: list[list[str]], file: str | None = None) -> AnswerColumns:
+    def recognise_table(self, rows: list[list[str]], file: str | None = None) -> AnswerColumns:
         """Recognise the structure of a table from its first row.
 
         Raises:
@@ -315,13 +319,13 @@ class _Reader:
         """
         if not rows:
             raise ProblemError(_("the table is empty"), file=file)
-        return shape_of(rows[0], self.answers, filled=len(rows) > 1)
+        return recognise_table(rows[0], self.answers, filled=len(rows) > 1)
 
 
-def _unread(student: str, why: str) -> Submission:
+def _unreadable_submission(student: str, why: str) -> Submission:
     return Submission(student, problems=(why,), unread=True)
 
 
-def _folded(name: str) -> str:
+def _fold_name(name: str) -> str:
     """Return a name in a form for comparison: without differences of case, spaces or lookalike Cyrillic letters."""
     return to_latin(" ".join(unicodedata.normalize("NFC", name).replace("_", " ").split())).casefold()
