@@ -1,9 +1,10 @@
 """Power balance, kinetic energy, and the mechanism reduced to its driver.
 
-With q the coordinate of the first driver: T = J q'^2 / 2, J = sum(m |dx/dq|^2 + I (dphi/dq)^2) and M =
-sum(F dx/dq + M dphi/dq); the drivers give J q'' + J_q q'^2 / 2 - M. I. I. Artobolevsky, Theory of
-Mechanisms and Machines, ch. 15. The Zhukovsky lever uses accelerations as given; here they enter through
-the derivative of the reduced inertia, so this balance checks them.
+With q the coordinate of the first driver, the kinetic energy is T = J q'^2 / 2, with the reduced inertia J
+= sum(m |dx/dq|^2 + I (dphi/dq)^2), and the reduced moment of the loads is M = sum(F dx/dq + M dphi/dq). The
+drivers must supply J q'' + J_q q'^2 / 2 - M. I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 15.
+The Zhukovsky lever takes the computed accelerations, whereas this balance takes the derivative of the
+reduced inertia; so it also checks the accelerations.
 """
 
 from __future__ import annotations
@@ -19,12 +20,17 @@ from tmm_cli.mechanics.numerics import Real, dot, squared_length
 
 @dataclass(frozen=True)
 class Energy:
-    """Energy of the mechanism reduced to its first driver, and its powers, at every position.
+    """Kinetic energy and powers of the mechanism, and the mechanism reduced to its first driver, at every
+    position.
 
-    inertia: reduced inertia (kg m2; kg for a cylinder). slope: its derivative by q. moment: reduced moment (N
-    m) or force (N) of all loads except inertia. kinetic: kinetic energy (J). rate: its time derivative (W).
-    drivers, weights, loads, friction: powers (W). balance: sum of all powers minus the rate of kinetic
-    energy, divided by the largest of these powers.
+    Attributes:
+        inertia: reduced inertia, kg m2 (kg if the driver is a cylinder).
+        slope: derivative of the reduced inertia with respect to the driver coordinate.
+        moment: reduced moment (N m) or force (N) of all loads except inertia.
+        kinetic: kinetic energy, J.
+        rate: time derivative of the kinetic energy, W.
+        drivers, weights, loads, friction: powers, W.
+        balance: sum of all powers minus `rate`, divided by the largest of these powers; zero but for rounding.
     """
 
     inertia: Real
@@ -45,7 +51,7 @@ def compute_energy(motion: Motion, loads: tuple[AppliedLoad, ...], drivers: Real
     Args:
         motion: solved motion of the mechanism.
         loads: all loads on the links; inertia loads are skipped.
-        drivers: work of all drivers per unit of the first driver's motion (N m or N), shape (positions,).
+        drivers: power of all drivers divided by the speed of the first one (N m or N), shape (positions,).
     """
     still = np.zeros(np.shape(motion.q))
     inertia, slope = still, still
@@ -68,7 +74,10 @@ def compute_energy(motion: Motion, loads: tuple[AppliedLoad, ...], drivers: Real
 
 
 def reduced_inertias(motion: Motion) -> dict[str, tuple[Real, Real]]:
-    """Return, for each moving link, its inertia reduced to the first driver and the derivative of that by q."""
+    """Return the reduced inertia of each moving link and its derivative with respect to the driver coordinate.
+
+    The keys are the names of the links; both arrays have the shape (positions,).
+    """
     inertias = {}
     for name in motion.linkage.moving:
         link = motion.linkage.links[name]
@@ -79,6 +88,6 @@ def reduced_inertias(motion: Motion) -> dict[str, tuple[Real, Real]]:
 
 
 def reduced_moment(motion: Motion, load: AppliedLoad) -> Real:
-    """Work of a load per unit of the first driver's motion (N m or N)."""
+    """Compute the reduced moment (N m) or force (N) of a load: its power divided by the speed of the first driver."""
     moment: Real = dot(load.force, motion.point(load.link, load.at).first) + load.moment * motion.link(load.link).first
     return moment

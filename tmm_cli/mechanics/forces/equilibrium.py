@@ -1,8 +1,9 @@
 """Equilibrium equations of an Assur group or a driving link: moments about points, and sums of forces along
 guides.
 
-A sum along a guide gives what no moment equation gives: the part of a reaction along the guide, and the
-driving force. The guide itself has no reaction along its direction.
+A sum of forces along a guide supplements the moment equations: it gives the component of an external
+reaction along the guide, or the driving force of a cylinder. The reaction of the guide itself is
+perpendicular to it and has no term in the sum.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ from tmm_cli.mechanics.structure import Group, Pair
 
 
 def distinct_letter(taken: Collection[str], letter: str) -> str:
-    """Append primes to a letter until it is not among those taken."""
+    """Append primes to `letter` until it differs from all letters in `taken`."""
     while letter in taken:
         letter += "′"
     return letter
@@ -39,7 +40,7 @@ def distinct_letter(taken: Collection[str], letter: str) -> str:
 
 @dataclass(frozen=True)
 class GuideComponent:
-    """A force and its component along the guide (N)."""
+    """A force (`acting`) and its component along a guide (`along`, N)."""
 
     acting: ForceOrCouple
     along: float
@@ -52,9 +53,14 @@ class GuideComponent:
 
 @dataclass(frozen=True)
 class ForceSum:
-    """Sum of forces along a guide: the components of all forces on one link add up to zero.
+    """Sum of forces along a guide: the components of all forces on one link along the guide add up to zero.
 
-    parts: components that are not zero. found: the one among them that the equation gives.
+    Attributes:
+        link: the link whose forces are summed.
+        guide: name of the prismatic pair.
+        direction: unit vector along the guide.
+        parts: components that are not zero.
+        found: the unknown component, one of `parts`, which follows from the others.
     """
 
     link: str
@@ -65,7 +71,7 @@ class ForceSum:
 
     @property
     def value(self) -> float:
-        """Value of the unknown component from the others (N); its force is along the guide."""
+        """Unknown component (N) computed from the other components; positive in the direction in which it is drawn."""
         others = sum(component.along for component in self.parts if component is not self.found)
         return -others if self.found.along > 0 else others
 
@@ -73,8 +79,16 @@ class ForceSum:
 def sums_along_guides(
     position: LoadedPosition, group: Group, leads: Sequence[ExternalPair], axes: Mapping[str, complex]
 ) -> tuple[ForceSum, ...]:
-    """Return the sums that give normal reactions of sliding external pairs, then those that give cylinder
-    forces.
+    """Return the force sums of a group along its internal guides.
+
+    The sums that give normal components of external hinge reactions come first, then those that give the forces
+    of cylinders.
+
+    Args:
+        position: position of the mechanism, with its loads and reactions.
+        group: the Assur group.
+        leads: external pairs of the group.
+        axes: direction of the normal component of each external hinge reaction, by name of the pair.
     """
     sums: list[ForceSum] = []
     for lead in leads:
@@ -89,7 +103,7 @@ def sums_along_guides(
 
 
 def sums_of_driver(position: LoadedPosition, pair: Pair) -> tuple[ForceSum, ...]:
-    """Return the sum that gives the driving force of a slider on the frame."""
+    """Return the force sum along the guide of a slider driven from the frame; it gives the driving force."""
     return tuple(_sum_along_guide(position, {}, pair.j if pair.i == FRAME else pair.i, pair, DRIVE, "reaction"))
 
 
@@ -100,7 +114,10 @@ def _is_driven(group: Group, guide: Pair) -> bool:
 def _sum_along_guide(
     position: LoadedPosition, axes: Mapping[str, complex], link: str, guide: Pair, pair: str, kind: str
 ) -> Iterable[ForceSum]:
-    """Yield the sum of forces on a link along a guide, or nothing if the unknown component is zero."""
+    """Yield the sum of forces on a link along a guide, or nothing if the unknown component is zero.
+
+    The unknown is the component of the given kind in the given pair.
+    """
     u = position.guide(guide)
     forces = [a for a in position.acting((link,), axes) if not a.couple]
     largest = max((a.size for a in forces), default=0.0)
@@ -125,10 +142,14 @@ MARKS = {"tangential": "τ", "normal": "n"}
 
 @dataclass(frozen=True)
 class MomentTerm:
-    """Moment of a force or couple about the centre of an equation (N m), with the moment arm of a force (m).
+    """Term of a moment equation: the moment of a force or couple about the centre of the equation.
 
-    foot: foot of the perpendicular from the centre on the line of action (m). number: index of the arm h₁,
-    h₂, ...; zero for a couple.
+    Attributes:
+        acting: the force or couple.
+        moment: its moment, N m.
+        arm: moment arm of the force, m; 0 for a couple.
+        foot: foot of the perpendicular from the centre on the line of action of the force, m.
+        number: number of the arm in h₁, h₂, ...; 0 for a couple.
     """
 
     acting: ForceOrCouple
@@ -145,7 +166,10 @@ class MomentTerm:
 
 @dataclass(frozen=True)
 class EquationUnknown:
-    """Unknown of an equation: a component of a reaction (or of a driver), or with `arm` the arm of a reaction."""
+    """Unknown of an equilibrium equation: the force, couple or component of this kind in this pair or driver.
+
+    If `arm` is True, the unknown is the arm of a guide reaction instead.
+    """
 
     symbol: Symbol
     pair: str
@@ -155,11 +179,15 @@ class EquationUnknown:
 
 @dataclass(frozen=True)
 class MomentEquation:
-    """Moment equation of some links about a point; forces through the point are left out.
+    """Moment equation of some links about a point. Forces whose lines pass through the point have no term.
 
-    special: the point is an Assur point. sought: the unknown, None if all reactions of the group are found
-    together. The unknown may have no term: then a component of a reaction is zero, or the reaction of a guide
-    passes through the point.
+    Attributes:
+        links: the links that are cut free together.
+        about, centre: name and position (m) of the point.
+        terms: moments that are not zero.
+        sought: the unknown; None if all reactions of the group are solved simultaneously. There is no term for
+            it if the component is zero, or if the guide reaction passes through the point.
+        special: True if the point is an Assur point.
     """
 
     links: tuple[str, ...]
@@ -171,13 +199,15 @@ class MomentEquation:
 
     @property
     def found(self) -> MomentTerm | None:
-        """Term of the unknown, or None; if a guide also carries a couple, the term of the couple."""
+        """Term of the unknown, or None if it has no term; for a guide reaction with a couple, the term of the couple."""
         unknowns = [t for t in self.terms if self.sought and _is_unknown(t.acting, self.sought)]
         return min(unknowns, key=lambda t: not t.acting.couple, default=None)
 
     @property
     def value(self) -> float:
-        """Value of the unknown (N, N m or m) from the moments of the other terms; positive in its drawn sense."""
+        """Unknown (N, N m, or m for an arm) computed from the other terms; positive in the direction in which it is
+        drawn.
+        """
         unknown = self.found
         assert unknown is not None and self.sought is not None
         others = sum(t.moment for t in self.terms if t is not unknown)
@@ -189,8 +219,10 @@ class MomentEquation:
 
 @dataclass(frozen=True)
 class FreeBody:
-    """Free body of an Assur group or a driving link: all external forces, its moment equations and sums along
-    guides.
+    """Free body of an Assur group or a driving link: external forces and couples, moment equations and force sums
+    along guides.
+
+    driving: True for a driving link.
     """
 
     links: tuple[str, ...]
@@ -201,7 +233,7 @@ class FreeBody:
 
 
 def list_free_bodies(motion: Motion, reactions: Reactions, k: int) -> tuple[FreeBody, ...]:
-    """Return the free bodies at position k: groups from the last one to the first, then driving links."""
+    """Return the free bodies at position k: the Assur groups from the last to the first, then the driving links."""
     position = LoadedPosition.at(motion, reactions, k)
     groups = [_group_body(position, group) for group in reversed(reactions.groups)]
     return (*groups, *(_driving_link_body(position, frame) for frame in reactions.frames))
@@ -259,7 +291,9 @@ def _equations_of_external_pairs(
 def _equations_of_higher_pairs(
     position: LoadedPosition, group: Group, axes: Mapping[str, complex]
 ) -> Iterable[MomentEquation]:
-    """Yield moments of a gear or cam follower about its only hinge, which give the reaction in the higher pair."""
+    """Yield moment equations of gears and cam followers about their only hinge; each gives the reaction in the
+    higher pair.
+    """
     for pair in group.outer:
         follower = group.own(pair)
         joined = [p for p in (*group.inner, *group.outer) if follower in (p.i, p.j) and p != pair]
@@ -273,9 +307,9 @@ def _equations_of_higher_pairs(
 def _equations_of_guides(
     position: LoadedPosition, group: Group, axes: Mapping[str, complex]
 ) -> Iterable[MomentEquation]:
-    """Yield moments of one link of each prismatic pair, which give the arm of its reaction.
+    """Yield a moment equation of one link of each prismatic pair, which gives the arm of the guide reaction.
 
-    Inner prismatic pairs are included only where the group has no hinge of its own (type RPP).
+    Internal prismatic pairs are included only for the type RPP, which has no internal hinge.
     """
     pairs = (*group.inner, *group.outer)
     inner = group.inner if group.type == "RPP" else ()
@@ -287,7 +321,9 @@ def _equations_of_guides(
 
 
 def _driving_link_body(position: LoadedPosition, frame: Reaction) -> FreeBody:
-    """Free body of a driving link: moments of a crank about its pivot, of a slider about its sliding point."""
+    """Build the free body of a driving link: moments of a crank about its pivot, of a slider about its sliding
+    point.
+    """
     link, pair = frame.on, frame.pair
     if pair.slide is not None:
         sought = EquationUnknown(reaction_symbol(frame.by, link), pair.name, arm=True)
@@ -306,8 +342,11 @@ def _unknown_component(group: Group, pair: Pair, kind: VectorKind) -> EquationUn
 
 
 def _moment_centre(position: LoadedPosition, group: Group, link: str, guide: Pair | None = None) -> tuple[str, complex]:
-    """Name and place of the point for moments of a link: a hinge, inner ones first, else the sliding point of a
-    guide.
+    """Choose the point for the moment equation of a link: an internal hinge, else an external one, else the
+    sliding point.
+
+    Returns:
+        Name and position (m) of the point.
     """
     hinges = [p for p in (*group.inner, *group.outer) if link in (p.i, p.j) and p.kind == "R"]
     pair = hinges[0] if hinges else guide or next(p for p in (*group.inner, *group.outer) if link in (p.i, p.j))
@@ -327,9 +366,10 @@ def _moment_equation(
     sought: EquationUnknown | None = None,
     carried: Mapping[str, complex] | None = None,
 ) -> MomentEquation:
-    """Moment equation of all forces on some links.
+    """Build the moment equation of all external forces on some links about a centre.
 
-    carried: places to which reactions of guides are moved, by name of the pair; moving one adds a couple.
+    carried: new points of application (m) of guide reactions, by name of the pair. A couple is added for each
+    force that is moved.
     """
     to = carried or {}
     acting = [
@@ -339,9 +379,12 @@ def _moment_equation(
 
 
 def moment_terms(acting: Iterable[ForceOrCouple], centre: complex, extent: float) -> tuple[MomentTerm, ...]:
-    """Compute moments of forces and couples about a centre, without those that are zero but for rounding.
+    """Compute the moments of forces and couples about a centre; moments that are zero to rounding are left out.
 
-    extent: size of the linkage (m), the scale for arms.
+    Args:
+        acting: forces and couples.
+        centre: point for moments, m.
+        extent: size of the linkage (m), with which the arms are compared.
     """
     terms = []
     for one in acting:
@@ -368,7 +411,11 @@ def _moved_to(acting: ForceOrCouple, place: complex | None, size: float) -> Iter
 
 
 def number_arms(equations: Iterable[MomentEquation]) -> tuple[MomentEquation, ...]:
-    """Number the moment arms; forces with the same line of action (weight and inertia) share a number."""
+    """Number the moment arms h₁, h₂, ... of all equations.
+
+    Forces with the same centre and line of action, such as the weight and the inertia force of a link in
+    vertical motion, share a number.
+    """
     numbered: list[MomentEquation] = []
     feet: list[tuple[complex, complex]] = []
     for equation in equations:

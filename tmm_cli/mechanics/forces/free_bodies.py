@@ -1,4 +1,6 @@
-"""Free bodies of one position: symbols of forces, loads, reactions in pairs and drivers on any set of links."""
+"""Forces and couples on any set of links at one position, with their symbols: loads, reactions in pairs,
+drivers.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,7 @@ VectorKind = Literal[
 
 @dataclass(frozen=True)
 class Symbol:
-    """Letter of a quantity with its subscript and superscript, as in formulas: a, BA below, n above."""
+    """Symbol of a quantity in a formula: its letter with a subscript (`below`) and a superscript (`above`)."""
 
     letter: str
     below: str = ""
@@ -29,23 +31,23 @@ class Symbol:
 
     @property
     def name(self) -> str:
-        """Symbol in one line of text: R₃₄ᵗ."""
+        """Symbol as one line of text, e.g. R₃₄ᵗ."""
         below = f"({self.below})" if "," in self.below else self.below.translate(SUBSCRIPTS)
         return self.letter + below + self.above.translate(_SUPERSCRIPTS)
 
     @property
     def plain(self) -> str:
-        """Symbol with its index as plain figures: U3."""
+        """Symbol with its subscript in ordinary characters, e.g. U3."""
         return self.letter + self.below
 
     @property
     def primed(self) -> Symbol:
-        """Symbol with a prime: P′ for P."""
+        """Symbol with a prime, e.g. P′ for P."""
         return Symbol(f"{self.letter}′", self.below, self.above)
 
 
 class CourseSymbol(Symbol):
-    """Symbol that depends on the current language or course notation: M_d, in Russian M_д."""
+    """Symbol in the notation of the current language: M_d in English, M_д in Russian."""
 
     mark: str
 
@@ -66,27 +68,34 @@ _SUPERSCRIPTS = str.maketrans("τn", "ᵗⁿ")
 
 
 def subscript(text: str) -> str:
-    """Return decimal figures as subscripts; put any other name in brackets."""
+    """Return a number as subscript digits, and any other name in parentheses."""
     return text.translate(SUBSCRIPTS) if text.isdecimal() and text.isascii() else f"({text})"
 
 
 def reaction_symbol(by: str, on: str, mark: str = "", letter: str = "R") -> Symbol:
-    """Symbol of a reaction: R₃₄ is the force of link 3 on link 4.
+    """Return the symbol of a reaction: R₃₄ is the force of link 3 on link 4.
 
-    mark: τ tangential, n normal. letter: M for the couple in a guide or cam.
+    Args:
+        by: link that exerts the force.
+        on: link on which it acts.
+        mark: τ for the tangential component, n for the normal one; empty for the whole reaction.
+        letter: M for the couple in a guide or cam pair.
     """
     by, on = printed(by), printed(on)
     return Symbol(letter, by + on if len(by) == len(on) == 1 else f"{by},{on}", mark)
 
 
 def course_symbol(mark: str, index: str = "") -> Symbol:
-    """Symbol of an indexed quantity in the notation of the course: U₃, in Russian Φ₃."""
+    """Return a symbol in the notation of the current language, with an index: U₃ in English, Φ₃ in Russian."""
     letter, _, below = symbol(mark).partition("_")
     return Symbol(letter, below + index)
 
 
 def balance_symbol(link: str, several: bool, *, turns: bool = False) -> Symbol:
-    """Symbol of the balancing force Fb or, with `turns`, moment Mb; with `several` drivers indexed by link: Fb₄."""
+    """Return the symbol of the balancing force F_b or, with `turns`, of the balancing moment M_b.
+
+    With `several` drivers the name of the link is added to the subscript: F_b4.
+    """
     index = link if several else ""
     return course_symbol("M_b", index) if turns else course_symbol("F_b", index)
 
@@ -98,9 +107,9 @@ LONGEST_INDEX = 2  # letters after the first one that form an index: Fc; Fcut is
 
 @dataclass(frozen=True)
 class ForceOrCouple:
-    """Force (N) at a point of a link (m), or a couple (N m), which has no force.
+    """Force (N) at a point of a link (m), or couple (N m), for which `force` is zero.
 
-    pair: name of the pair that it comes from, or DRIVE; empty for loads.
+    pair: name of the pair if it is a reaction, DRIVE if it is exerted by a driver, empty for a load.
     """
 
     symbol: Symbol
@@ -117,17 +126,17 @@ class ForceOrCouple:
 
     @property
     def size(self) -> float:
-        """Magnitude in N, for a couple in N m."""
+        """Magnitude, N; of a couple N m."""
         return abs(self.moment) if self.couple else abs(self.force)
 
     def about(self, centre: complex) -> float:
-        """Moment about a point, N m, positive counterclockwise."""
+        """Return the moment about a point (N m), positive counterclockwise."""
         return self.moment + float(cross(self.at - centre, self.force))
 
 
 @dataclass(frozen=True)
 class LoadedPosition:
-    """One position of a mechanism with its loads and reactions. size: size of the linkage (m)."""
+    """Position k of a mechanism with its loads and reactions; `size` is the size of the linkage (m)."""
 
     motion: Motion
     reactions: Reactions
@@ -136,10 +145,10 @@ class LoadedPosition:
 
     @classmethod
     def at(cls, motion: Motion, reactions: Reactions, k: int) -> LoadedPosition:
-        """Build the position with index k.
+        """Select position k of a solved mechanism.
 
-        Its size is the largest distance between moving points or between points of one link, as in a single
-        position all moving points may coincide.
+        The size of the linkage is the largest distance between any two moving points or between two points of one
+        link: at a single position all moving points may coincide.
         """
         moving = [complex(motion.named(p).x[k]) for p in motion.linkage.moving_points]
         bodies = [moving, *([complex(p) for p in link.points.values()] for link in motion.linkage.links.values())]
@@ -148,29 +157,31 @@ class LoadedPosition:
         )
 
     def place(self, link: str, local: complex) -> complex:
-        """Return the place (m) of a point given in the axes of a link."""
+        """Return the position (m) of a point whose coordinates are given in the axes of a link."""
         return complex(local) if link == FRAME else complex(self.motion.poses[link].at(local)[self.k])
 
     def hinge(self, point: str) -> complex:
-        """Return the place (m) of a named point."""
+        """Return the position (m) of a named point."""
         link = self.motion.linkage.owner(point)
         return self.place(link, self.motion.linkage.local(link, point))
 
     def pair(self, pair: Pair) -> complex:
-        """Return the place (m) of a hinge, or of the sliding point of a prismatic pair."""
+        """Return the position (m) of a hinge, or of the sliding point of a prismatic pair."""
         return self.hinge(pair.point) if pair.slide is None else self.place(pair.slide.runner, pair.slide.at)
 
     def guide(self, pair: Pair) -> complex:
-        """Return the direction of the guide of a prismatic pair."""
+        """Return the unit vector along the guide of a prismatic pair."""
         assert pair.slide is not None
         carrier = pair.slide.carrier
         turned = 1.0 if carrier == FRAME else complex(self.motion.poses[carrier].z[self.k])
         return complex(turned * unit(pair.slide.direction))
 
     def acting(self, links: Collection[str], axes: Mapping[str, complex]) -> tuple[ForceOrCouple, ...]:
-        """Return all external forces and couples on some links, without those negligible beside the largest.
+        """Return the external forces and couples on some links; those negligible compared with the largest are left
+        out.
 
-        axes: directions by names of hinges; reactions of these hinges are resolved along and across them.
+        axes: direction of the normal component, by name of the hinge. The reactions of these hinges are resolved
+        into normal and tangential components.
         """
         forces = [*self._loads(links), *self._drives(links)]
         for reaction in self.reactions.all:
@@ -180,7 +191,7 @@ class LoadedPosition:
         return drop_negligible(forces, self.size)
 
     def given(self) -> tuple[ForceOrCouple, ...]:
-        """Return the loads on all links and the balancing force or couple of each driver on its driven link."""
+        """Return the loads on all links and the balancing force or couple of each driver on the link that it drives."""
         drives = [self._drive(balance, balance.driver.link, 1) for balance in self.reactions.balances]
         return drop_negligible([*self._loads(self.motion.linkage.moving), *drives], self.size)
 
@@ -213,8 +224,10 @@ class LoadedPosition:
         return ForceOrCouple(symbol, "reaction", link, complex(balance.at[k]), force, pair=DRIVE)
 
     def _reaction(self, reaction: Reaction, link: str, axis: complex | None) -> Iterable[ForceOrCouple]:
-        """Yield the reaction on one link of a pair: of a guide at its line of action, of a hinge with an axis in two
-        parts.
+        """Yield the reaction on one link of a pair.
+
+        A guide reaction is placed on its line of action. A hinge reaction is resolved into two components if `axis`
+        is given.
         """
         k, pair, forward = self.k, reaction.pair, link == reaction.on
         by, at, force = (
@@ -248,21 +261,25 @@ def component_across(force: complex, axis: complex) -> complex:
 
 
 def drop_negligible(acting: Iterable[ForceOrCouple], extent: float) -> tuple[ForceOrCouple, ...]:
-    """Drop forces and couples that are zero but for rounding beside the largest. extent: size of the linkage (m)."""
+    """Drop forces and couples that are zero to rounding, compared with the largest.
+
+    extent: size of the linkage (m), for comparing couples with forces.
+    """
     acting = tuple(acting)
     largest = max((a.size / extent if a.couple else a.size for a in acting), default=0.0)
     return tuple(a for a in acting if a.size > NO_FORCE * largest * (extent if a.couple else 1.0))
 
 
 def vector_kind(load: AppliedLoad) -> VectorKind:
-    """Kind of a load as a vector of a plan: inertia or load."""
+    """Return the kind of vector that represents a load in a force plan: "inertia" or "load"."""
     return "inertia" if load.kind == "inertia" else "load"
 
 
 def load_symbols(load: AppliedLoad) -> tuple[Symbol, Symbol]:
-    """Return the symbols of a load's force and couple.
+    """Return the symbols of the force and of the couple of a load.
 
-    Weight and inertia have the link as subscript, friction the pair; a load of the file keeps its name.
+    Weights and inertia loads carry the number of the link as subscript, friction the name of the pair. A load
+    defined in the problem file keeps its name.
     """
     if load.kind == "weight":
         return course_symbol("G", load.link), course_symbol("G", load.link)
@@ -277,7 +294,10 @@ def load_symbols(load: AppliedLoad) -> tuple[Symbol, Symbol]:
 
 
 def load_names(load: AppliedLoad) -> tuple[str, str]:
-    """Return plain names of a load's force and couple, as used in tables; a load of the file keeps its name."""
+    """Return the names of the force and of the couple of a load in plain text, as used in tables.
+
+    A load defined in the problem file keeps its name.
+    """
     if load.kind == "load":
         return load.name, load.couple_name or load.name
     force, couple = load_symbols(load)
@@ -285,7 +305,9 @@ def load_names(load: AppliedLoad) -> tuple[str, str]:
 
 
 def symbol_of_name(name: str, letter: str) -> Symbol:
-    """Turn a name into a symbol: F₅ for F5, F_c for Fc or F_c; a word becomes a subscript of `letter`: P_press."""
+    """Convert a name to a symbol: F₅ for F5, F_c for Fc or F_c. A word becomes a subscript of `letter`, e.g.
+    P_press.
+    """
     base = name.rstrip("'")
     first, rest = base[:1], base[1:].removeprefix("_")
     short = not rest or rest.isdigit() or base[1] == "_" or (first.isupper() and len(rest) <= LONGEST_INDEX)
@@ -301,11 +323,15 @@ LEAST_SINE = 0.02  # lines at a smaller angle meet too far away to be drawn
 
 @dataclass(frozen=True)
 class ExternalPair:
-    """External pair of an Assur group, with all links that slide on its own link and so rotate with it.
+    """External pair of an Assur group, and what is known of its reaction before the equations are solved.
 
-    axis: direction of the normal part of a hinge reaction, if it is resolved. about: point about which
-    moments of these links give the tangential part. rest: line (point and direction) of the part that is
-    still unknown then.
+    Attributes:
+        pair: the pair.
+        links: the group's link in this pair, and all links that rotate together with it because they slide on
+            one another.
+        axis: direction of the normal component of a hinge reaction; None if it is not resolved.
+        about: hinge about which the moments of `links` give the tangential component; None if there is none.
+        rest: point and direction of the line of the component that these moments leave unknown.
     """
 
     pair: Pair
@@ -316,19 +342,19 @@ class ExternalPair:
 
     @property
     def open_part(self) -> VectorKind:
-        """Part of the reaction whose line is `rest`."""
+        """Kind of the component that lies on the line `rest`."""
         if self.pair.slide is not None:
             return "reaction"
         return "tangential" if self.about is None else "normal"
 
 
 def external_pairs(position: LoadedPosition, group: Group) -> tuple[ExternalPair, ...]:
-    """Return the external lower pairs of a group, in its own order."""
+    """Return the lower external pairs of a group, in the order of the group."""
     return tuple(_external_pair(position, group, pair) for pair in group.outer if pair.lower)
 
 
 def hinge_names(pairs: Iterable[Pair], links: Collection[str]) -> list[str]:
-    """Return the points at which these links are hinged to other links."""
+    """Return the names of the hinges that join one of these links to any other link."""
     return list(dict.fromkeys(p.point for p in pairs if p.kind == "R" and len({p.i, p.j} & {*links}) == 1))
 
 
@@ -357,7 +383,6 @@ def _external_pair(position: LoadedPosition, group: Group, pair: Pair) -> Extern
 
 
 def _sliding_together(group: Group, link: str) -> tuple[str, ...]:
-    """Return the links of a group that rotate together with one of its links."""
     joined = {link}
     for _ in group.links:
         for pair in group.inner:
@@ -371,9 +396,11 @@ def find_assur_point(
 ) -> tuple[ExternalPair, complex] | None:
     """Find the Assur point of a group with three external pairs.
 
+    The lines of the unknown reaction components of two external pairs meet in it, so the moments about it give
+    the reaction of the third pair.
+
     Returns:
-        The external pair whose reaction follows from moments about the point, and the point (m), where the
-        lines of the unknown parts of the other two meet; None if there is none near enough.
+        The third external pair and the point (m); None if there is no such point near the mechanism.
     """
     if len(leads) != 3 or len(group.outer) != 3 or group.drivers or any(lead.rest is None for lead in leads):
         return None

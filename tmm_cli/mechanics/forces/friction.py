@@ -1,9 +1,8 @@
-"""Coulomb friction in pairs: the force plan whose friction agrees with its own reactions.
+"""Coulomb friction in pairs: reactions and the friction that they cause are solved simultaneously.
 
-A journal of radius r resists with the moment mu R r, a guide with the force mu N, both against the
-relative motion. I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 11. Where the friction of a
-growing reaction grows faster than the driver can overcome, there is no solution: the mechanism is
-self-locking.
+A journal of radius r resists with the moment mu R r, a guide with the force mu N, both against the relative
+motion. I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 11. There is no solution where a growing
+reaction increases friction faster than the driver can overcome it: there the mechanism is self-locking.
 """
 
 from __future__ import annotations
@@ -40,9 +39,14 @@ OUTER_ROUNDS = 30  # largest number of repeated force plans where friction is no
 class FrictionSolution:
     """Reactions with friction at every position.
 
-    loads: all loads, friction included. locked: positions where the mechanism is self-locking; forces are nan
-    there. pair: pair with the largest friction work at each position. work: work of friction in each pair per
-    unit of the first driver's motion (N m or N, negative). drivers: the same for all drivers.
+    Attributes:
+        reactions: reactions in all pairs, and the balancing moments or forces.
+        loads: all loads, friction included.
+        locked: True at the positions where the mechanism is self-locking; all forces are nan there.
+        pair: name of the pair with the largest friction work at each position.
+        work: for each pair, the power of friction divided by the speed of the first driver (N m or N);
+            negative.
+        drivers: power of all drivers, divided by the speed of the first one (N m or N).
     """
 
     reactions: Reactions
@@ -55,8 +59,9 @@ class FrictionSolution:
 
 @dataclass(frozen=True)
 class LockedRange:
-    """Range of driver coordinates (rad or m, start < end) in which the mechanism locks; pair: the one with most
-    friction.
+    """Range of driver coordinates (rad or m, start < end) in which the mechanism is self-locking.
+
+    pair: name of the pair with the largest friction work.
     """
 
     start: float
@@ -66,9 +71,13 @@ class LockedRange:
 
 @dataclass(frozen=True)
 class FrictionLosses:
-    """Work of the drivers and of friction in each pair (J, negative) over a cycle or the driver's range.
+    """Work of the drivers and of friction over a cycle or over the range of the driver.
 
-    locked: the mechanism is self-locking somewhere, so the work and the efficiency are not defined.
+    Attributes:
+        drivers: work of all drivers, J.
+        pairs: work of friction in each pair, J; negative.
+        locked: True if the mechanism is self-locking somewhere; then work and efficiency are not defined.
+        ranges: the ranges in which it is self-locking.
     """
 
     drivers: float
@@ -78,7 +87,10 @@ class FrictionLosses:
 
     @property
     def efficiency(self) -> float | None:
-        """Useful share of the drivers' work; None if the drivers do no work or the mechanism locks."""
+        """Efficiency: the fraction of the drivers' work that is not lost to friction.
+
+        None if the drivers do no work or the mechanism is self-locking.
+        """
         if self.locked or not self.drivers > 0:
             return None
         useful = without_rounding(self.drivers + sum(self.pairs.values()), self.drivers)
@@ -86,9 +98,11 @@ class FrictionLosses:
 
 
 def compute_losses(rubbed: FrictionSolution, motion: Motion) -> FrictionLosses:
-    """Integrate the work of drivers and friction over a motion.
+    """Integrate the work of the drivers and of friction over a motion.
 
-    motion: closely spaced positions; the first and the last are a cycle apart, or the ends of the range.
+    Args:
+        rubbed: friction solution of the motion.
+        motion: closely spaced positions, from the beginning to the end of a cycle or of the driver's range.
     """
     pairs = {pair: _integrate(work, motion) for pair, work in rubbed.work.items()}
     drivers = without_rounding(_integrate(rubbed.drivers, motion), _integrate(np.abs(rubbed.drivers), motion))
@@ -96,8 +110,9 @@ def compute_losses(rubbed: FrictionSolution, motion: Motion) -> FrictionLosses:
 
 
 def _integrate(work: Real, motion: Motion) -> float:
-    """Integrate by the trapezoidal rule, exact to rounding for a smooth cycle; positions without values count as
-    zero.
+    """Integrate over the driver coordinate by the trapezoidal rule; positions without a value count as zero.
+
+    For a smooth function over a whole cycle the rule is exact to rounding.
     """
     values = np.where(motion.moving & np.isfinite(work), work, 0.0)
     return float(np.sum((values[1:] + values[:-1]) / 2 * np.diff(motion.q)))
@@ -106,14 +121,14 @@ def _integrate(work: Real, motion: Motion) -> float:
 def find_locked_ranges(
     q: Real, rubbed: FrictionSolution, locked_at: Callable[[Real], Real], *, cyclic: bool
 ) -> tuple[LockedRange, ...]:
-    """Find the ranges of the driver in which the mechanism locks; their ends by bisection.
+    """Find the ranges of the driver coordinate in which the mechanism is self-locking; bisection gives their ends.
 
     Args:
-        q: increasing driver coordinates (rad or m) of the solution; if cyclic, the last one begins the next
-            cycle.
+        q: increasing driver coordinates (rad or m) of the friction solution; if cyclic, the last one is also
+            the beginning of the next cycle.
         rubbed: friction solution at these coordinates.
-        locked_at: returns True for each driver coordinate at which the mechanism locks.
-        cyclic: the motion repeats after the range.
+        locked_at: function of driver coordinates, True where the mechanism is self-locking.
+        cyclic: True if the motion repeats after the last coordinate.
     """
     locked, pairs = rubbed.locked, np.array(rubbed.pair)
     if not np.any(locked):
@@ -139,11 +154,11 @@ def find_locked_ranges(
 def solve_friction(
     motion: Motion, structure: Structure, loads: tuple[AppliedLoad, ...], free: Reactions
 ) -> FrictionSolution:
-    """Solve the force plan with friction that agrees with its own reactions.
+    """Solve the reactions and the friction that they cause simultaneously.
 
-    Reactions are linear in friction, so one plan for unit friction in each pair gives all of them; the
-    magnitudes f of the pair forces then solve f = |R0 + sum f_k R_k| position by position. Gear teeth are not
-    linear, and are met by repeating the plan.
+    Reactions are linear in the friction forces, so the reactions R_k to unit friction in each pair suffice: the
+    magnitudes f of the pair forces satisfy f = |R0 + sum f_k R_k| at each position, where R0 are the reactions
+    without friction. With gear teeth the relation is not linear, and the solution is iterated.
 
     Args:
         motion: solved motion.
@@ -195,10 +210,13 @@ def _pair_forces(reactions: Reactions, names: list[str]) -> Vector:
 
 
 def _solve_magnitudes(start: Vector, response: Vector) -> tuple[Real, Real]:
-    """Solve f = |start + sum f_k response_k| for the force magnitudes f, shape (pairs, positions).
+    """Solve f = |start + sum f_k response_k| for the magnitudes f of the pair forces.
 
-    Friction is increased in steps; each step starts Newton's method from the last solution. Returns also a
-    mask of the positions without a solution, where the mechanism locks.
+    Friction is increased in steps; at each step Newton's method starts from the solution of the step before.
+
+    Returns:
+        The magnitudes, shape (pairs, positions), and a mask of the positions without a solution, where the
+        mechanism is self-locking.
     """
     number, count = start.shape
     sizes = np.abs(start)
@@ -223,13 +241,15 @@ def _solve_magnitudes(start: Vector, response: Vector) -> tuple[Real, Real]:
 
 
 def _blank_locked(load: AppliedLoad, lost: Real) -> AppliedLoad:
-    """Set a load to nan at the positions where the mechanism locks."""
+    """Set a load to nan at the positions where the mechanism is self-locking."""
     return replace(load, force=np.where(lost, np.nan, load.force), moment=np.where(lost, np.nan, load.moment))
 
 
 def _relative_motion(pair: Reaction, motion: Motion) -> tuple[Real, Real]:
-    """Return the sense (+1, 0, -1) and the magnitude per unit of the driver of the motion of link `on` relative
-    to `by`.
+    """Compute the motion of link `on` of a pair relative to link `by`.
+
+    Returns:
+        Its sense (+1, 0 or -1) and the magnitude of its velocity per unit velocity of the driver.
     """
     largest = motion.largest
     if pair.pair.slide is not None:
@@ -242,7 +262,7 @@ def _relative_motion(pair: Reaction, motion: Motion) -> tuple[Real, Real]:
 
 
 def _friction_loads(friction: Friction, motion: Motion, reactions: Reactions, force: Real) -> Iterable[AppliedLoad]:
-    """Yield the friction on both links of a pair."""
+    """Yield the friction load on each moving link of a pair."""
     pair = reactions.of(friction.pair)
     sign, _ = _relative_motion(pair, motion)
     still = np.zeros(np.shape(motion.q))

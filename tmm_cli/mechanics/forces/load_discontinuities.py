@@ -1,6 +1,4 @@
-"""Driver coordinates at which loads jump or bend, between which integrals over the driver's range are
-smooth.
-"""
+"""Driver coordinates at which loads jump or have a kink. Integrals are computed piecewise between them."""
 
 from __future__ import annotations
 
@@ -20,8 +18,9 @@ if TYPE_CHECKING:
 
 
 def find_load_jumps(mechanism: Mechanism) -> Iterable[float]:
-    """Yield coordinates (rad) of a fully rotating crank at which loads jump or bend, in any order and
-    revolution.
+    """Yield the angles (rad) of a fully rotating crank at which loads jump or have a kink.
+
+    They come in any order and may lie in any revolution.
     """
     linkage = mechanism.linkage
     sense, cycle = linkage.driver.sense, 2 * np.pi * linkage.turns
@@ -39,7 +38,7 @@ def find_load_jumps(mechanism: Mechanism) -> Iterable[float]:
 
 
 def find_table_jumps(mechanism: Mechanism) -> Iterable[float]:
-    """Yield driver coordinates (rad) at which load tables jump, in any order and revolution."""
+    """Yield the driver coordinates (rad) at which load tables jump, in any order and any revolution."""
     for load in mechanism.linkage.loads:
         if load.table is not None and load.table.jumps:
             rows = [load.table.arguments[k] for k in load.table.jumps]
@@ -47,12 +46,12 @@ def find_table_jumps(mechanism: Mechanism) -> Iterable[float]:
 
 
 def _load_cycles(mechanism: Mechanism) -> range:
-    """Indices of the load cycles within one cycle of the motion."""
+    """Return a range with one number for each repetition of the loads within a cycle of the motion."""
     return range(max(1, mechanism.driver_range.turns // mechanism.linkage.turns))
 
 
 def _coordinates_of_arguments(mechanism: Mechanism, table: LoadTable, arguments: Iterable[float]) -> Iterable[float]:
-    """Yield driver coordinates (rad) at which the given arguments of a table are reached."""
+    """Yield the driver coordinates (rad) that correspond to the given arguments of a load table."""
     if table.against == "stroke":
         yield from _coordinates_in_strokes(mechanism, table, arguments)
         return
@@ -65,7 +64,9 @@ def _coordinates_of_arguments(mechanism: Mechanism, table: LoadTable, arguments:
 
 
 def _coordinates_in_strokes(mechanism: Mechanism, table: LoadTable, arguments: Iterable[float]) -> Iterable[float]:
-    """Yield driver coordinates (rad), inside strokes, at which the output reaches arguments of a table."""
+    """Yield the driver coordinates (rad) inside strokes at which the output link reaches the given arguments of a
+    load table.
+    """
     linkage, strokes = mechanism.linkage, mechanism.strokes
     strokes = strokes and strokes.of_link(table.stroke_link)
     if strokes is None or not strokes.strokes:
@@ -87,8 +88,9 @@ def _coordinates_in_strokes(mechanism: Mechanism, table: LoadTable, arguments: I
 
 
 def _distance_from_run(curve: OutputCurve, target: float, middle: float) -> Callable[[Real], Real]:
-    """Return a function of q: distance of the output from a value; angles are taken about the middle of the
-    stroke.
+    """Return a function of q: the output coordinate minus `target`.
+
+    Angles are reduced to the revolution centred on `middle`, the middle of the stroke.
     """
 
     def missed(q: Real) -> Real:
@@ -101,7 +103,7 @@ def _distance_from_run(curve: OutputCurve, target: float, middle: float) -> Call
 
 
 def _find_reversals(mechanism: Mechanism, load: Load) -> Iterable[float]:
-    """Yield driver coordinates at which the motion resisted by a load reverses."""
+    """Yield the driver coordinates (rad) at which the motion that a load resists reverses."""
     linkage, whole = mechanism.linkage, mechanism.driver_range
     law = DriverMotion(whole.start, 1.0, 0.0, linkage.driver.sense)
 

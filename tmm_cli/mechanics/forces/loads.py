@@ -1,4 +1,4 @@
-"""Loads on the links: weights, inertia forces, loads of the problem file, springs."""
+"""Loads on the links: weights, inertia forces, springs, and loads defined in the problem file."""
 
 from __future__ import annotations
 
@@ -15,10 +15,18 @@ from tmm_cli.mechanics.numerics import SAME_DRIVER_POSITION, SEAM, Real, Vector,
 
 @dataclass(frozen=True)
 class AppliedLoad:
-    """Force (N) at a point `at` of a link (m, in its axes) and a couple (N m), at every position.
+    """Load on a link: a force and a couple at every position.
 
-    ambiguous: the name of a load of the file is also the symbol of another quantity (M3 is the inertia couple
-    of link 3); formulas then use the whole name as subscript.
+    Attributes:
+        name: name of the force.
+        kind: origin of the load; "load" is one defined in the problem file, or a spring.
+        link: the loaded link.
+        at: point of application in the axes of the link, m.
+        force: force, N, shape (positions,).
+        moment: couple, N m, shape (positions,).
+        couple_name: name of the couple, if it differs from `name`.
+        ambiguous: True if the name is also the symbol of another quantity (M3 is the inertia couple of link 3);
+            formulas then show the name as a subscript.
     """
 
     name: str
@@ -32,7 +40,7 @@ class AppliedLoad:
 
     @property
     def has_force(self) -> bool:
-        """True if the force is not zero at some position; nan (unreachable positions) does not count."""
+        """True if the force differs from zero at some position; nan does not count."""
         return bool(np.any(np.abs(self.force) > 0))
 
     @property
@@ -44,7 +52,7 @@ class AppliedLoad:
 
 
 def spring_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLoad]:
-    """Yield the equal and opposite loads of each spring on the moving links that it joins."""
+    """Yield the loads that springs exert on the moving links that they join, equal and opposite on the two links."""
     still = np.zeros(np.shape(motion.q))
     moving = motion.linkage.moving
     for spring in motion.linkage.springs:
@@ -66,14 +74,13 @@ def spring_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLoa
 
 
 def twist_angle(spring: Spring, motion: Motion) -> Real:
-    """Return the twist of a torsion spring from its free angle, within half a turn (rad)."""
+    """Return the twist of a torsion spring from its unloaded angle, from -pi to pi (rad)."""
     turned = motion.poses[spring.j].z * np.conj(motion.poses[spring.i].z) * np.conj(unit(spring.free))
     angle: Real = np.angle(turned)
     return angle
 
 
 def _torsion_moment(spring: Spring, motion: Motion) -> Real:
-    """Return the moment of a torsion spring (N m)."""
     speed = motion.link(spring.j).omega - (motion.link(spring.i).omega if spring.i in motion.linkage.moving else 0.0)
     return spring.preload + spring.rate * twist_angle(spring, motion) + spring.damping * speed
 
@@ -86,9 +93,10 @@ BEYOND_END = 0.02  # of the stroke: tolerance for a table that ends later
 
 
 def problem_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLoad]:
-    """Yield the loads of the file and, if the other link also moves, the equal and opposite loads on it.
+    """Yield the loads defined in the problem file.
 
-    Loads limited to working strokes act at all positions if the mechanism has no strokes.
+    If the load acts between two moving links, its reaction on the second link follows, equal and opposite.
+    Loads restricted to working strokes act at all positions if the mechanism has no strokes.
     """
     for load in motion.linkage.loads:
         factor = _load_factor(load, motion, strokes)
@@ -104,7 +112,9 @@ def problem_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLo
 
 
 def _load_factor(load: Load, motion: Motion, strokes: Strokes | None) -> Real:
-    """Factor of the force and moment of a load, from its table and the range in which it acts."""
+    """Compute the factor of a load's force and moment: the value of its table, and zero outside the range in which
+    it acts.
+    """
     factor = np.ones(np.shape(motion.q))
     if load.table is not None:
         factor = load.table(table_argument(load.table, motion, strokes))
@@ -116,7 +126,10 @@ def _load_factor(load: Load, motion: Motion, strokes: Strokes | None) -> Real:
 
 
 def is_acting(load: Load, q: Real, linkage: Linkage, strokes: Strokes | None) -> Real:
-    """Return True at the driver coordinates at which a load acts; without strokes it acts at all of them."""
+    """Return True at the driver coordinates q at which a load acts.
+
+    A load restricted to working strokes acts everywhere if the mechanism has no strokes.
+    """
     if load.window is not None:
         return in_window(load.window, q, linkage)
     if always_acts(load, strokes):
@@ -126,14 +139,18 @@ def is_acting(load: Load, q: Real, linkage: Linkage, strokes: Strokes | None) ->
 
 
 def always_acts(load: Load, strokes: Strokes | None) -> bool:
-    """Return True if a load acts at all positions, limited neither to a window nor to existing working strokes."""
+    """Return True if a load acts at all positions.
+
+    That is, it is not restricted to a range of crank angles, nor to working strokes of a mechanism that has
+    strokes.
+    """
     if load.window is not None:
         return False
     return not load.working_stroke_only or strokes is None or not strokes.of_link(load.stroke_link).strokes
 
 
 def _opposite_load(load: Load, motion: Motion, force: Vector, moment: Real) -> AppliedLoad:
-    """Opposite load on the other link: at the shared point, or along the same line of action."""
+    """Return the equal and opposite load on the other link, at a shared point or along the same line of action."""
     name, points = f"{load.name}'", motion.linkage.links[load.base].points
     if load.point in points:
         return AppliedLoad(name, "load", load.base, points[load.point], -force, -moment, name)
@@ -142,10 +159,13 @@ def _opposite_load(load: Load, motion: Motion, force: Vector, moment: Real) -> A
 
 
 def motion_direction(load: Load, motion: Motion) -> tuple[Vector, Real]:
-    """Unit direction in which the point of a load moves, and sense of rotation of its link, relative to its
-    base.
+    """Compute the direction of the motion that a load resists.
 
-    At the ends of a motion it is the direction in which the motion starts; for links at rest it is zero.
+    At the ends of a motion it is the direction in which the motion starts.
+
+    Returns:
+        Unit vector of the velocity of the load's point, and sense of rotation of its link (+1 or -1), both
+        relative to the load's base link. Both are zero at rest.
     """
     largest = motion.largest
     velocity, spin = motion_on_base(load, motion)
@@ -163,8 +183,10 @@ def motion_direction(load: Load, motion: Motion) -> tuple[Vector, Real]:
 
 
 def motion_on_base(load: Load, motion: Motion) -> tuple[Vector, Real]:
-    """Velocity of the point of a load and angular velocity of its link relative to its base, per unit of the
-    driver.
+    """Compute the velocity of a load's point and the angular velocity of its link, both relative to the load's
+    base link.
+
+    They are divided by the magnitude of the driver's velocity.
     """
     sense = np.where(motion.rate == 0, motion.linkage.driver.sense, np.sign(motion.rate))
     pose, first, base = motion.poses[load.link], motion.first[load.link], motion.first[load.base]
@@ -173,7 +195,10 @@ def motion_on_base(load: Load, motion: Motion) -> tuple[Vector, Real]:
 
 
 def in_window(window: tuple[float, float], q: Real, linkage: Linkage) -> Real:
-    """Return True for crank angles between two angles; the one reached first is included, the other is not."""
+    """Return True for driver coordinates q inside a window of two crank angles.
+
+    The angle that the crank reaches first belongs to the window, the other does not.
+    """
     low, high = window
     first = low if linkage.driver.sense > 0 else high
     cycle = 2 * np.pi * linkage.turns
@@ -183,10 +208,10 @@ def in_window(window: tuple[float, float], q: Real, linkage: Linkage) -> Real:
 
 
 def table_argument(table: LoadTable, motion: Motion, strokes: Strokes | None) -> Real:
-    """Compute the argument of a load table at every position: crank angle, or run of a link in its working
-    stroke.
+    """Compute the argument of a load table at every position.
 
-    The run is in m or rad, or a fraction of the working stroke.
+    It is a crank angle (rad), or the travel of the output link in its working stroke, in m or rad or as a
+    fraction of the stroke.
     """
     driver = motion.linkage.driver
     if table.against == "crank angle":
@@ -208,10 +233,9 @@ def table_argument(table: LoadTable, motion: Motion, strokes: Strokes | None) ->
 
 
 def table_lengths(linkage: Linkage, strokes: Strokes | None) -> Iterator[tuple[Load, Any, Any]]:
-    """Yield each load tabulated against the stroke in lengths or angles, its last argument and the stroke (m or
-    rad).
+    """Yield each load tabulated against the stroke in m or rad, the last argument of its table, and the stroke.
 
-    Both are arrays (variants, 1) if the linkage stands for many variants.
+    The last two are arrays of shape (variants, 1) if the linkage represents many variants.
     """
     for load in () if strokes is None else linkage.loads:
         assert strokes is not None
@@ -221,14 +245,15 @@ def table_lengths(linkage: Linkage, strokes: Strokes | None) -> Iterator[tuple[L
 
 
 def ends_with_stroke(last: Any, stroke: Any) -> Any:
-    """Return True where the last row of a table coincides with the end of the stroke, within the tolerances."""
+    """Return True where the last argument of a table agrees with the end of the stroke, within the tolerances."""
     return (last >= (1 - BEFORE_END) * stroke) & (last <= (1 + BEYOND_END) * stroke)
 
 
 def _angle_in_cycle(angle: Real, cycle: Real | float) -> Real:
-    """Reduce an angle to its cycle; an angle that rounding puts just before the seam counts as the seam.
+    """Reduce an angle to the range of one cycle; an angle just below the end of the range, within rounding,
+    becomes zero.
 
-    A table may jump between its end and its beginning, so rounding must not decide the side.
+    A table may jump between its end and its beginning, and rounding must not decide which value applies.
     """
     seam = SEAM * (1 + np.abs(angle))
     return np.mod(angle + seam, cycle) - seam
@@ -241,7 +266,7 @@ BALANCING = ("Mb", "M_b", "Fb", "F_b")  # symbols of the balancing moment and fo
 
 
 def collect_loads(motion: Motion, strokes: Strokes | None) -> tuple[AppliedLoad, ...]:
-    """Return all loads on the moving links except friction, in the order of the links."""
+    """Return all loads on the moving links except friction, ordered by link."""
     order = {name: k for k, name in enumerate(motion.linkage.links)}
     collected = [load for kind in LOAD_SOURCES for load in kind(motion, strokes)]
     symbols = {
@@ -255,7 +280,10 @@ def collect_loads(motion: Motion, strokes: Strokes | None) -> tuple[AppliedLoad,
 
 
 def weights_and_inertia(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLoad]:
-    """Yield weights and inertia forces at the centres of mass, with inertia couples; massless links have none."""
+    """Yield the weight, the inertia force and the inertia couple of each link, at its centre of mass.
+
+    Links without mass have none.
+    """
     still = np.zeros(np.shape(motion.q))
     for name in motion.linkage.moving:
         link = motion.linkage.links[name]

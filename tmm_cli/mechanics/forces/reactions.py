@@ -1,5 +1,5 @@
-"""Reactions in all pairs: Assur groups are solved from the last to the first, each under its loads and known
-reactions.
+"""Reactions in all pairs: Assur groups are solved from the last to the first, under their loads and the
+reactions already known.
 
 Kinetostatics by d'Alembert's principle: V. A. Chufistov, L. S. Shuvalova, Force analysis of lever
 mechanisms, MATI 2006, section 2.
@@ -23,14 +23,20 @@ from tmm_cli.mechanics.structure import Group, Pair, Structure
 
 @dataclass(frozen=True)
 class Reaction:
-    """Force (N) of link `by` on link `on` in a pair, at the point `at` (m), with a couple (N m) in a prismatic
-    pair.
+    """Force of link `by` on link `on` in a pair at every position, and the couple if the pair transmits one.
 
-    arm: distance of the line of action of a guide reaction from its sliding point, along the guide (m;
-    infinite for a pure couple). signed: reaction of a guide, positive to the left of the guide. tangential,
-    normal: components of an external hinge reaction. back: couple on `by` where it is not the opposite
-    (oscillating cam follower given by its law). angle: direction of the force (rad), set in
-    `Reactions.directed` only.
+    Attributes:
+        pair: the pair.
+        at: point of application, m.
+        force: force on link `on`, N.
+        couple: couple on link `on`, N m; None in a hinge.
+        tangential, normal: components of an external hinge reaction, N; None if it is not resolved.
+        signed: guide reaction (N) with its sign, positive to the left of the guide.
+        arm: distance along the guide from the sliding point to the line of action, m; infinite for a pure
+            couple.
+        back: couple on link `by`, N m, if it is not the opposite of `couple` (oscillating cam follower given by
+            its law of motion).
+        angle: direction of the force, rad; None except in `Reactions.directed`.
     """
 
     pair: Pair
@@ -53,7 +59,9 @@ class Reaction:
 
 @dataclass(frozen=True)
 class PinForce:
-    """Force of the pin of a compound hinge on one of its links (N), whatever pairs the hinge is counted as."""
+    """Force (N) that the pin of a compound hinge exerts on one of its links, whichever way the hinge is divided
+    into pairs.
+    """
 
     point: str
     link: str
@@ -63,7 +71,10 @@ class PinForce:
 
 @dataclass(frozen=True)
 class GroupForces:
-    """Reactions of a group. borne: reactions of later groups on its links, which are known loads here."""
+    """Reactions in the external and internal pairs of a group.
+
+    borne: reactions of later groups on its links, already known when this group is solved.
+    """
 
     group: Group
     outer: tuple[Reaction, ...]
@@ -73,11 +84,18 @@ class GroupForces:
 
 @dataclass(frozen=True)
 class Balance:
-    """Balancing moment (N m) or force (N) of a driver: at the crank end across the crank, or along the cylinder.
+    """Balancing moment or force of a driver, on the driven link; its opposite acts on the base of the driver.
 
-    For a crank both are given, force = moment / arm; the frame reaction belongs to the one chosen in the
-    file. It acts on the driven link and with opposite sign on the base. `generalized` is the one conjugate to
-    the driver coordinate: moment of a crank, force of a cylinder.
+    For a crank both the moment and the force = moment / arm are given; the reaction of the frame is computed
+    with the one that the file requests.
+
+    Attributes:
+        kind: "moment" or "force", as requested.
+        moment: balancing moment of a crank, N m; None for a cylinder.
+        force: balancing force, N: perpendicular to the crank at its end, or along the cylinder.
+        vector, at: the force as a vector (N) and its point of application (m).
+        arm: length of the crank, m; 1 for a cylinder; nan for an angle driven between two moving links, which
+            has no force.
     """
 
     driver: Driver
@@ -95,9 +113,14 @@ class Balance:
 
 @dataclass(frozen=True)
 class Reactions:
-    """Complete force solution. frames: reactions on links driven from the frame; balances: one for each driver.
+    """Reactions and balancing moments or forces of the whole mechanism.
 
-    borne: for each link, the reactions of later groups on it.
+    Attributes:
+        applied: the loads.
+        groups: reactions of each Assur group, in solution order of the motion.
+        frames: reactions of the frame on the links driven from it.
+        balances: balancing moment or force of each driver.
+        borne: for each link, the reactions that later groups exert on it.
     """
 
     applied: tuple[AppliedLoad, ...]
@@ -108,24 +131,22 @@ class Reactions:
 
     @property
     def balance(self) -> Balance:
-        """Balance of the first driver."""
+        """Balancing moment or force of the first driver."""
         return self.balances[0]
 
     @property
     def loaded(self) -> bool:
-        """True if any load acts; without weight, inertia and loads all reactions are zero."""
+        """True if any load acts; otherwise all reactions are zero."""
         return any(load.has_force or load.has_moment for load in self.applied)
 
     @property
     def all(self) -> tuple[Reaction, ...]:
-        """Reactions in all pairs: drivers on the frame first, then groups in solution order."""
+        """Reactions in all pairs: those of the frame on driving links first, then those of the groups."""
         return (*self.frames, *(r for g in self.groups for r in (*g.outer, *g.inner)))
 
     @cached_property
     def directed(self) -> tuple[Reaction, ...]:
-        """Reactions with the directions of their forces; a force that is zero to rounding has neither angle nor arm
-        (nan).
-        """
+        """All reactions with the angles of their forces; where a force is zero to rounding, angle and arm are nan."""
         sizes = [np.abs(r.force) for r in self.all]
         least, directed = NO_FORCE * reduce(np.maximum, sizes), []
         for r, magnitude in zip(self.all, sizes, strict=True):
@@ -134,11 +155,11 @@ class Reactions:
         return tuple(directed)
 
     def of(self, name: str) -> Reaction:
-        """Return the reaction in the pair of this name."""
+        """Return the reaction in the pair with this name."""
         return next(r for r in self.all if r.pair.name == name)
 
     def pins(self, linkage: Linkage) -> tuple[PinForce, ...]:
-        """Return the forces of the pins of compound hinges on each of their links; those of one pin add up to zero."""
+        """Return the force of the pin of each compound hinge on each of its links. For one pin they add up to zero."""
         return tuple(
             PinForce(
                 hinge.point,
@@ -152,7 +173,7 @@ class Reactions:
         )
 
     def pin_force(self, point: str, link: str) -> Vector:
-        """Return the force (N) of the pin of a compound hinge on one of its links."""
+        """Return the force (N) of the pin of a compound hinge on one of its links, (positions,)."""
         return reduce(np.add, [reaction.onto(link) for reaction in self._at_pin(point, link)])
 
     def _at_pin(self, point: str, link: str) -> list[Reaction]:
@@ -209,7 +230,7 @@ def solve_reactions(motion: Motion, structure: Structure, loads: tuple[AppliedLo
 
 
 def _loads_by_point(loads: tuple[AppliedLoad, ...]) -> list[list[AppliedLoad]]:
-    """Group loads that act at the same point of a link, such as weight and inertia."""
+    """Collect in one list the loads that act at the same point of a link, such as weight and inertia force."""
     by_point: dict[tuple[str, int], list[AppliedLoad]] = {}
     for load in loads:
         by_point.setdefault((load.link, id(load.at)), []).append(load)
@@ -217,8 +238,9 @@ def _loads_by_point(loads: tuple[AppliedLoad, ...]) -> list[list[AppliedLoad]]:
 
 
 def reduced_driving_moment(motion: Motion, reactions: Reactions) -> Real:
-    """Work of all drivers per unit of the first driver's motion (N m or N); for one driver its balancing moment
-    or force.
+    """Return the power of all drivers divided by the speed of the first one (N m or N).
+
+    With one driver it is the balancing moment or force.
     """
     total = np.zeros(np.shape(motion.q))
     for balance in reactions.balances:
@@ -245,14 +267,14 @@ def _reaction(motion: Motion, pair: Pair, link: str, solution: PairReaction) -> 
 
 
 def _guide_reaction_arm(motion: Motion, couple: Real, signed: Real) -> Real:
-    """Arm of a guide reaction (m); infinite if the force is only the rounding error of a pure couple."""
+    """Compute the arm of a guide reaction (m); infinite if the force is only the rounding error of a pure couple."""
     far = INFINITELY_FAR * reduce(np.maximum, [kernel.size for kernel in motion.kernels] or [1.0])
     arm = couple / signed
     return np.where(np.abs(arm) > far, np.sign(arm) * np.inf, arm)
 
 
 def _opposite_wrench(reaction: Reaction, motion: Motion) -> Wrench:
-    """Opposite of a reaction, on the other link, reduced to the origin of that link."""
+    """Return the force and couple of a reaction on the link `by`, reduced to the origin of that link."""
     by, pair = motion.poses[reaction.by], reaction.pair
     hinged = pair.slide is None and pair.mesh is None
     arm = motion.linkage.local(reaction.by, pair.point) * by.z if hinged else reaction.at - by.x
@@ -265,7 +287,9 @@ def _opposite_wrench(reaction: Reaction, motion: Motion) -> Wrench:
 
 
 def _moving_driver_balance(motion: Motion, driver: Driver, magnitude: Real) -> Balance:
-    """Balance of a driver between two moving links, from its equation in the group."""
+    """Return the balancing moment or force of a driver between two moving links, of the magnitude solved in its
+    group.
+    """
     linkage = motion.linkage
     if driver.kind == "turn":
         at = motion.poses[driver.link].at(linkage.local(driver.link, driver.joint))
@@ -275,14 +299,16 @@ def _moving_driver_balance(motion: Motion, driver: Driver, magnitude: Real) -> B
 
 
 def _cylinder_axis(motion: Motion, driver: Driver) -> tuple[Vector, Vector]:
-    """Direction in which a cylinder drives its link, and the point of its force (m)."""
+    """Return the direction in which a cylinder drives its link, and the point of application of its force (m)."""
     slide = motion.linkage.slide(driver.joint)
     u = motion.poses[slide.carrier].z * unit(slide.direction) * (1 if slide.runner == driver.link else -1)
     return u, motion.poses[slide.runner].at(slide.at)
 
 
 def _driver_wrench(motion: Motion, balance: Balance, link: str, sense: int) -> Wrench:
-    """Wrench of a driver on its driven link (sense 1) or its base (-1), reduced to the origin of that link."""
+    """Return the force and couple of a driver on its driven link (sense 1) or its base (-1), reduced to the origin
+    of that link.
+    """
     if balance.moment is not None:
         return Wrench(balance.moment * 0j, sense * balance.moment)
     force = sense * balance.vector
@@ -290,7 +316,10 @@ def _driver_wrench(motion: Motion, balance: Balance, link: str, sense: int) -> W
 
 
 def _frame_driver(motion: Motion, structure: Structure, driver: Driver, total: Wrench) -> tuple[Reaction, Balance]:
-    """Frame reaction and balance of a link driven from the frame, under the total wrench on it."""
+    """Compute the frame reaction and the balancing moment or force of a link driven from the frame.
+
+    total: resultant force and couple of all loads and reactions on the link.
+    """
     linkage = motion.linkage
     pair = structure.driving_pair(driver)
     pose = motion.poses[driver.link]
@@ -322,8 +351,9 @@ def _frame_driver(motion: Motion, structure: Structure, driver: Driver, total: W
 
 
 def _crank_end(linkage: Linkage, driver: Driver) -> complex:
-    """Point of the balancing force in the axes of the crank: the named end, or the first point that is not its
-    pivot.
+    """Return the point of application of the balancing force, in the axes of the crank.
+
+    It is the end named in the file, or the first point that differs from the pivot.
     """
     points = linkage.links[driver.link].points
     if driver.end:
@@ -337,10 +367,13 @@ def _crank_end(linkage: Linkage, driver: Driver) -> complex:
 
 @dataclass(frozen=True)
 class TransmittedForce:
-    """Reaction that drives a link, and its component along the velocity of its point, both (positions,), N.
+    """Reaction that drives a link, and its component along the velocity of the point of application.
 
-    group, link, pair: names. driving: magnitude P of the reaction in the pair. useful: magnitude of its
-    component Q along the velocity; without weights, inertia and friction Q = P cos(pressure angle).
+    Attributes:
+        group, link, pair: names of the group, the driven link and the pair.
+        driving: magnitude P of the reaction, N, (positions,).
+        useful: magnitude of its component Q along the velocity, N, (positions,). Without weights, inertia and
+            friction Q = P cos(pressure angle).
     """
 
     group: str
@@ -351,9 +384,9 @@ class TransmittedForce:
 
 
 def find_transmitted_forces(motion: Motion, reactions: Reactions) -> tuple[TransmittedForce, ...]:
-    """Compute P and Q of every link that is driven in one pair.
+    """Compute P and Q for every link that is driven through a single pair.
 
-    The direction of the velocity is taken from the pivot or the guide of the link, so it also exists at rest.
+    The direction of the velocity follows from the pivot or the guide of the link, so it is defined at rest too.
     """
     leads = [(kernel.group, lead) for kernel in motion.kernels for lead in driven_links(kernel.group)]
     return tuple(_transmitted(motion, reactions, group.title, lead) for group, lead in leads if len(lead[2]) == 1)

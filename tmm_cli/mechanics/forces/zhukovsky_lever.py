@@ -1,9 +1,9 @@
-"""The Zhukovsky lever: the balancing moment from velocities alone, independent of the force plan.
+"""The Zhukovsky lever: the balancing moment from the velocities alone, independent of the force plan.
 
-The velocity plan rotated through 90 degrees is a rigid lever on its pole. Every force acts at the end of
-its point's velocity, a couple on a link as two forces; moments about the pole give the balancing moment.
-Taken per unit speed of the driver, so it also exists at rest. N. E. Zhukovsky 1909; I. I. Artobolevsky,
-ch. 16.
+The velocity plan, rotated through 90 degrees, is taken as a rigid lever that can rotate about its pole.
+Every force acts on it at the end of the velocity vector of its point; a couple on a link is replaced by two
+forces. The moments about the pole give the balancing moment. Velocities are taken per unit velocity of the
+driver, so the lever exists at rest too. N. E. Zhukovsky 1909; I. I. Artobolevsky, ch. 16.
 """
 
 from __future__ import annotations
@@ -22,9 +22,15 @@ from tmm_cli.mechanics.numerics import NO_MOMENT, Real, Vector, dot
 class LeverItem:
     """Force or couple on the lever.
 
-    arm: arm of the force about the pole (m per unit of the driver's motion; nan without a force); for a
-    couple the ratio omega_link / omega_driver. moment = size * arm (N m, or N for a cylinder). end: end of
-    the velocity of its point on the plan.
+    Attributes:
+        name: name of the force or couple.
+        link: link on which it acts.
+        size: magnitude of the force (N), or the couple with its sign (N m).
+        arm: arm of the force about the pole (m per unit of the driver coordinate; nan where the force is zero);
+            for a couple the ratio omega_link / omega_driver.
+        moment: moment about the pole, size * arm (N m, or N if the driver is a cylinder).
+        end: end of the velocity vector of the point of application; None for a couple.
+        force: the force as a vector, N; None for a couple.
     """
 
     name: str
@@ -37,16 +43,18 @@ class LeverItem:
 
     @property
     def key(self) -> tuple[str, str, bool]:
-        """Name, link, and True for a force: a force and a couple may have the same name."""
+        """Name, link, and True for a force. A force and a couple on one link may have the same name."""
         return self.name, self.link, self.end is not None
 
 
 @dataclass(frozen=True)
 class ZhukovskyLever:
-    """Moments about the pole and the balancing moment, compared with the force plan.
+    """Moments of all loads about the pole and the balancing moment, compared with the force plan.
 
-    balancing: N m for a crank, N for a cylinder. difference: relative to the largest balancing value of all
-    positions.
+    Attributes:
+        items: forces and couples on the lever.
+        balancing: balancing moment of a crank (N m) or force of a cylinder (N).
+        difference: deviation from the force plan, relative to the largest balancing value of all positions.
     """
 
     items: tuple[LeverItem, ...]
@@ -54,10 +62,10 @@ class ZhukovskyLever:
     difference: Real
 
     def with_rows_of(self, other: ZhukovskyLever, motion: Motion) -> ZhukovskyLever:
-        """Return this lever with the items of another one, in the order of that one.
+        """Return this lever with the same forces and couples, in the same order, as another lever.
 
-        With other numbers a load may become zero everywhere and lose its item, or gain one. A missing force has
-        no arm; a missing couple keeps its speed ratio.
+        For other input numbers a load may be zero at all positions, and so be missing here, or be absent from
+        `other`. A missing force is added as zero without an arm, a missing couple as zero with its speed ratio.
         """
         items_by_key, zero = dict(zip(_numbered_keys(self.items), self.items, strict=True)), 0 * self.balancing
 
@@ -70,9 +78,7 @@ class ZhukovskyLever:
 
 
 def _numbered_keys(items: tuple[LeverItem, ...]) -> list[tuple[tuple[str, str, bool], int]]:
-    """Return keys of items, each with its number among equal keys, as a load may have the name of an inertia
-    couple.
-    """
+    """Return the keys of items, numbering equal keys, since a load may have the name of an inertia couple."""
     seen: Counter[tuple[str, str, bool]] = Counter()
     keys = []
     for item in items:
@@ -82,12 +88,13 @@ def _numbered_keys(items: tuple[LeverItem, ...]) -> list[tuple[tuple[str, str, b
 
 
 def compute_lever(motion: Motion, loads: tuple[AppliedLoad, ...], plan: Real) -> ZhukovskyLever:
-    """Compute the lever at every position and compare it with the force plan.
+    """Compute the moments on the lever at every position and compare the balancing moment with that of the force
+    plan.
 
     Args:
         motion: solved motion.
         loads: all loads on the links.
-        plan: reduced driving moment (N m or N) of the force plan, shape (positions,).
+        plan: reduced driving moment (N m or N) from the force plan, shape (positions,).
     """
     items = []
     for load in loads:
