@@ -1,5 +1,5 @@
-"""Velocity, acceleration and force plans and the Zhukovsky lever as named vectors with scale factors,
-without drawing.
+"""Velocity, acceleration and force plans and the Zhukovsky lever as named vectors with scale factors; nothing
+is drawn here.
 """
 
 from .force_polygons import ForcePlan as ForcePlan, force_plans as force_plans

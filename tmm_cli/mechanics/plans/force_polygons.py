@@ -1,5 +1,6 @@
-"""Force plans of a position: the closed force polygon of each Assur group and of the driving link, in course
-order.
+"""Force plans of one position: the closed force polygon of each Assur group and of each driving link.
+
+The groups are taken from the last to the first, as in a course project.
 """
 
 from __future__ import annotations
@@ -29,9 +30,14 @@ PolygonPart = tuple[Symbol, complex, VectorKind]
 
 @dataclass(frozen=True)
 class ForcePlan:
-    """Closed force polygon of some links. driving: it belongs to a driving link on the frame, not to a group.
+    """Closed force polygon of an Assur group or of a driving link.
 
-    full: reactions drawn as two components, from the start of the first component to the end of the second.
+    Attributes:
+        links: the links that are cut free together.
+        plan: the vectors of the polygon.
+        driving: True for a driving link on the frame.
+        full: whole reactions whose two components are vectors of the polygon; each closes its two components to
+            a triangle.
     """
 
     links: tuple[str, ...]
@@ -41,10 +47,11 @@ class ForcePlan:
 
 
 def force_plans(reactions: Reactions, k: int, motion: Motion | None = None) -> tuple[ForcePlan, ...]:
-    """Return the force polygons at position k: groups from the last one to the first, then driving links.
+    """Return the force polygons at position k: the Assur groups from the last to the first, then the driving
+    links.
 
-    motion: if given, reactions in external pairs of groups of any class are resolved into components, as
-    those of dyads are.
+    motion: if given, hinge reactions in external pairs are resolved into components for groups of any class,
+    not only for dyads.
     """
     position = None if motion is None else LoadedPosition.at(motion, reactions, k)
     groups = [_group_plan(group, reactions, k, position) for group in reversed(reactions.groups)]
@@ -52,7 +59,7 @@ def force_plans(reactions: Reactions, k: int, motion: Motion | None = None) -> t
 
 
 def _group_plan(group: GroupForces, reactions: Reactions, k: int, position: LoadedPosition | None) -> ForcePlan:
-    """Polygon of a group of any class: external reactions and borne forces link by link; internal reactions
+    """Build the polygon of a group of any class, link by link, from the external forces; internal reactions
     cancel.
     """
     if len(group.group.links) == 2 and len(group.outer) == 2 and len(group.inner) == 1 and not group.group.drivers:
@@ -77,10 +84,11 @@ def _group_plan(group: GroupForces, reactions: Reactions, k: int, position: Load
 
 
 def _dyad_plan(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
-    """Polygon of a dyad: tangential components, borne forces, then normal components and guide reactions.
+    """Build the polygon of a dyad.
 
-    The forces of link a are consecutive, and so are those of link b; the internal reaction on b closes the
-    part of b.
+    The tangential components and the loads come first; normal components or guide reactions close the polygon.
+    The forces on each link are consecutive, so one vector more, the internal reaction, closes the polygon of
+    each link.
     """
     first, last = group.outer
     a, b = group.group.links
@@ -100,7 +108,7 @@ def _dyad_plan(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
 
 
 def _whole_reaction(reaction: Reaction, parts: Sequence[NamedVector]) -> NamedVector:
-    """Vector of a reaction from its consecutive components."""
+    """Join two consecutive components of a reaction to the vector of the whole reaction."""
     symbol = reaction_symbol(reaction.by, reaction.on)
     return NamedVector(symbol.name, parts[0].start, parts[-1].end, "reaction", symbol)
 
@@ -117,7 +125,7 @@ def _tangential_part(reaction: Reaction, mark: str, k: int) -> Iterable[PolygonP
 
 
 def _closing_part(reaction: Reaction, k: int) -> Iterable[PolygonPart]:
-    """Yield what closes the polygon: the normal component of a hinge reaction, or the whole reaction of a guide."""
+    """Yield the last vector of a reaction: the normal component in a hinge, the whole reaction of a guide."""
     if reaction.normal is not None:
         yield reaction_symbol(reaction.by, reaction.on, "n"), complex(reaction.normal[k]), "normal"
     else:
@@ -127,9 +135,14 @@ def _closing_part(reaction: Reaction, k: int) -> Iterable[PolygonPart]:
 def _borne_forces(
     borne: tuple[Reaction, ...], reactions: Reactions, links: tuple[str, ...], link: str, k: int
 ) -> Iterable[PolygonPart]:
-    """Yield the forces on a link besides its group's reactions: reactions of later groups, loads, then drivers.
+    """Yield the known forces on a link: reactions of later groups, loads, and driving forces.
 
-    links: all links of the plan; a driver between two of them is internal.
+    Args:
+        borne: reactions of later groups.
+        reactions: the force solution.
+        links: all links of the polygon; the force of a driver between two of them is internal and left out.
+        link: the link.
+        k: index of the position.
     """
     for reaction in borne:
         if reaction.by == link:

@@ -1,6 +1,4 @@
-"""The Zhukovsky lever of a position: the velocity plan rotated through 90 degrees and loaded with all
-forces.
-"""
+"""The Zhukovsky lever at one position: the rotated velocity plan with all forces on it."""
 
 from __future__ import annotations
 
@@ -44,7 +42,15 @@ MOST_FORCES = 22  # largest number of forces on a lever; with more, couples are 
 
 @dataclass(frozen=True)
 class CoupleAsForces:
-    """Couple M (N m) on a link, replaced by two forces P and P′ at two of its points, each M / distance (m)."""
+    """Couple on a link, replaced by two equal and opposite forces P and P′ at two points of the link.
+
+    Attributes:
+        symbol: symbol of the force P.
+        couple: symbol of the couple.
+        moment: the couple, N m.
+        points: names of the two points.
+        distance: distance of the points, m.
+    """
 
     symbol: Symbol
     couple: Symbol
@@ -54,18 +60,25 @@ class CoupleAsForces:
 
     @property
     def force(self) -> float:
-        """Magnitude of each force, N."""
+        """Magnitude of each of the two forces, N."""
         return abs(self.moment) / self.distance
 
 
 @dataclass(frozen=True)
 class LeverPlan:
-    """Lever of one position. ends: lettered points of the rotated plan (m per unit of the driver's motion);
-    bars: its lines.
+    """Zhukovsky lever at one position, with all forces and couples on it.
 
-    acting: all forces at these points, and couples: balancing couples, and M′ = M ω/ω₁ where M is not
-    replaced by two forces (links of one point, levers with many forces). pairs: couples replaced by forces.
-    couples: these M′ with their loads. equation: moments about the pole.
+    A couple M that cannot be replaced by two forces (link with one point, or too many forces for a drawing)
+    acts on the lever as M′ = M ω/ω₁.
+
+    Attributes:
+        ends: letters and coordinates of the points of the rotated velocity plan, m per unit of the driver
+            coordinate.
+        bars: lines of the rotated plan.
+        acting: forces at these points, couples M′ and balancing couples.
+        pairs: couples replaced by two forces.
+        couples: the loads whose couple is not replaced, each with its M′.
+        equation: moments about the pole.
     """
 
     ends: dict[str, complex]
@@ -77,11 +90,11 @@ class LeverPlan:
 
 
 def lever_plan(motion: Motion, reactions: Reactions, lever: ZhukovskyLever, k: int) -> LeverPlan:
-    """Build the lever at position k: velocities per unit of the driver's motion, rotated clockwise; forces keep
-    their directions.
+    """Build the lever at position k.
 
-    The balancing moment of a single driver follows from the moments of the loads; with several drivers it is
-    taken from the force plan.
+    Velocities, per unit velocity of the driver, are rotated clockwise through 90 degrees; forces keep their
+    directions. With a single driver the balancing moment follows from the moments of the loads; with several
+    drivers it is taken from the force plan.
     """
     linkage = motion.linkage
     ends = plan_ends(linkage, LEVER_POLE, lambda point: ROTATED * complex(motion.named(point).first[k]))
@@ -123,17 +136,18 @@ def _lever_force(motion: Motion, load: AppliedLoad, k: int) -> Iterable[ForceOrC
 
 
 def _lever_couple(motion: Motion, load: AppliedLoad, k: int) -> ForceOrCouple:
-    """Couple M′ = M times the speed ratio of the link to the driver."""
+    """Return the couple M′ on the lever: M times the speed ratio of its link to the driver."""
     ratio, at = float(motion.link(load.link).first[k]), ROTATED * complex(motion.point(load.link, load.at).first[k])
     symbol = load_symbols(load)[1].primed
     return ForceOrCouple(symbol, vector_kind(load), load.link, at, 0j, float(load.moment[k]) * ratio)
 
 
 def _couple_as_forces(motion: Motion, load: AppliedLoad, k: int, taken: Container[Symbol]) -> CoupleAsForces | None:
-    """Replace the couple on a link by two forces at its first two points; None if the link has only one point.
+    """Replace the couple on a link by two forces at the first two points of the link; None if it has only one
+    point.
 
-    taken: symbols of other forces. P₃ replaces M₃; if that is taken, P with the whole symbol of the couple as
-    index.
+    taken: symbols of other forces. P₃ replaces M₃; if P₃ is taken, the whole symbol of the couple becomes the
+    index of P.
     """
     points = list(motion.linkage.links[load.link].points.items())
     if load.moment[k] == 0 or len(points) < 2 or points[0][1] == points[1][1]:
@@ -161,9 +175,10 @@ def _forces_of_couple(motion: Motion, load: AppliedLoad, pair: CoupleAsForces, k
 def _balancing_forces(
     motion: Motion, balance: Balance, k: int, moment: float | None, *, several: bool
 ) -> Iterable[ForceOrCouple]:
-    """Yield the balancing force or couple of a driver.
+    """Yield the balancing force or couple of a driver on the lever.
 
-    moment: result of the lever for a single driver (N m or N); None: the value of the force plan.
+    moment: balancing moment (N m) or force (N) from the lever, for a single driver; None to take it from the
+    force plan.
     """
     driver, turns = balance.driver, balance.kind == "moment"
     symbol = balance_symbol(driver.link, several, turns=turns)
@@ -184,7 +199,7 @@ def _balancing_forces(
 
 
 def _point_transfer_function(motion: Motion, link: str, place: complex, k: int) -> complex:
-    """Velocity of a point of a link per unit of the driver's motion."""
+    """Return the velocity of a point of a link per unit velocity of the driver."""
     if link == FRAME:
         return 0j
     pose = motion.poses[link]
@@ -202,7 +217,7 @@ READING_STEP = 0.5  # mm: resolution of a reading from paper
 
 @dataclass(frozen=True)
 class DrawingScales:
-    """Scales (SI units per mm) of the drawings of the input link, its force plan and the Zhukovsky lever."""
+    """Scales (SI units per mm) of three drawings: the input link, its force plan and the Zhukovsky lever."""
 
     link: float
     forces: float
@@ -211,9 +226,9 @@ class DrawingScales:
 
 @dataclass(frozen=True)
 class DrawnCheck:
-    """Balancing moment (N m) or force (N) measured on the force plan and on the lever.
+    """Balancing moment (N m) or force (N), measured on the drawing of the force plan and on that of the lever.
 
-    difference: relative to the largest balancing value of all positions.
+    difference: difference of the two, relative to the largest balancing value of all positions.
     """
 
     plan: float
@@ -223,14 +238,14 @@ class DrawnCheck:
 
 @dataclass(frozen=True)
 class BalanceDrawings:
-    """The three drawings of a position from which the balancing moment is measured."""
+    """The three drawings of a position on which the balancing moment is measured."""
 
     link: FreeBody
     forces: ForcePlan
     lever: LeverPlan
 
     def scales(self) -> DrawingScales:
-        """Return the scales at which each drawing fills a sheet A4."""
+        """Return the scale at which each drawing fills an A4 sheet."""
         terms = [term for equation in self.link.equations for term in equation.terms]
         positions = [*(e.centre for e in self.link.equations), *(p for t in terms for p in (t.acting.at, t.foot))]
         polygon = [p for vector in self.forces.plan.vectors for p in (vector.start, vector.end)]
@@ -239,7 +254,9 @@ class BalanceDrawings:
 
 
 def balance_drawings(motion: Motion, reactions: Reactions, lever: ZhukovskyLever, k: int) -> BalanceDrawings | None:
-    """Return the drawings of position k; None with several drivers, or if the driving link is not on the frame."""
+    """Return the drawings of position k; None if there are several drivers or the input link is not paired with
+    the frame.
+    """
     bodies = [body for body in list_free_bodies(motion, reactions, k) if body.links == (reactions.balance.driver.link,)]
     plans = [plan for plan in force_plans(reactions, k, motion) if plan.driving]
     if len(reactions.balances) > 1 or not bodies or not bodies[-1].driving or not plans:
@@ -248,7 +265,7 @@ def balance_drawings(motion: Motion, reactions: Reactions, lever: ZhukovskyLever
 
 
 def drawn_check(motion: Motion, reactions: Reactions, drawn: BalanceDrawings, scales: DrawingScales) -> DrawnCheck:
-    """Measure the balancing moment on drawings of these scales, by the force plan and by the lever."""
+    """Measure the balancing moment on the force plan and on the lever, drawn at these scales."""
     balance = reactions.balance
     symbol = balance_symbol(balance.driver.link, False, turns=balance.kind == "moment")
     segments = {v.symbol: _read_off(abs(v.value), scales.forces) for v in drawn.forces.plan.vectors}
@@ -261,12 +278,15 @@ def drawn_check(motion: Motion, reactions: Reactions, drawn: BalanceDrawings, sc
 
 
 def _read_off(length: float, mu: float) -> float:
-    """Round a length (SI) to what can be read off a drawing of scale `mu` (SI units per mm)."""
+    """Round a length (SI) to the resolution of a reading from a drawing whose scale is `mu` (SI units per mm)."""
     return round(length / mu / READING_STEP) * READING_STEP * mu
 
 
 def _measured_unknown(equation: MomentEquation, mu: float, segments: Mapping[Symbol, float]) -> float:
-    """Value of the unknown of a moment equation with measured arms. segments: forces that are measured too, N."""
+    """Solve a moment equation for its unknown with measured moment arms.
+
+    segments: magnitudes (N) of the forces that are measured as well, by symbol.
+    """
     unknown = equation.found
     if unknown is None:
         return 0.0

@@ -1,4 +1,4 @@
-"""Velocity and acceleration plans of a position, and the values that are read off them."""
+"""Velocity and acceleration plans of one position, and the values that are read off them."""
 
 from __future__ import annotations
 
@@ -25,8 +25,9 @@ from tmm_cli.mechanics.structure import Group
 
 
 def plan_letters(linkage: Linkage) -> dict[str, str]:
-    """Return the letter of each point on plans: lower case, distinct from the poles p and π and from one
-    another.
+    """Return the lower-case letter that marks each point on the plans, by name of the point.
+
+    Moving points have different letters, none of them p or π, the letters of the poles.
     """
     fixed = linkage.links[FRAME].points
     letters = {point: point.lower() for point in fixed}
@@ -40,15 +41,16 @@ def plan_letters(linkage: Linkage) -> dict[str, str]:
 
 
 def plan_ends(linkage: Linkage, pole: str, value: Callable[[str], complex]) -> dict[str, complex]:
-    """Return the ends of the vectors of all moving points by their letters, and the pole. value: vector of a
-    point by name.
+    """Return the pole and the ends of the vectors of all moving points, by letter.
+
+    value: function that returns the vector of a point from the name of the point.
     """
     letter_of = plan_letters(linkage)
     return {pole: 0j} | {letter_of[point]: complex(value(point)) for point in linkage.moving_points}
 
 
 def relative_vectors(motion: Motion, ends: Mapping[str, complex]) -> list[NamedVector]:
-    """Return relative vectors ab, ac, ... of each link, from its point that is solved first to its others."""
+    """Return the relative vectors ab, ac, ... of each link, from the point of the link that is solved first."""
     linkage = motion.linkage
     fixed, letter_of = linkage.links[FRAME].points, plan_letters(linkage)
     rank = solution_rank(linkage, groups_of(motion))
@@ -71,9 +73,13 @@ def groups_of(motion: Motion) -> list[Group]:
 def absolute_vectors(
     ends: Mapping[str, complex], pole: str, letter: str = "v", names: Mapping[str, str] | None = None
 ) -> list[NamedVector]:
-    """Return vectors pa, pb, ... from the pole to every end.
+    """Return the vectors pa, pb, ... from the pole to every end.
 
-    letter: letter of their symbols. names: names of points by their letters.
+    Args:
+        ends: ends of the vectors by letter.
+        pole: letter of the pole.
+        letter: v or a, the letter of the symbols.
+        names: name of the point for each letter, used as subscript; default: the letter itself.
     """
     names = names or {}
     return [
@@ -85,10 +91,13 @@ def absolute_vectors(
 
 @dataclass(frozen=True)
 class SlidingBlock:
-    """A sliding block on a moving guide and the coincident point of the guide, at `local` in the axes of the
-    guide's link.
+    """Sliding block on a moving guide, and the point of the guide that coincides with it.
 
-    letter, under: letters of both on the plan. name, below: names of both.
+    Attributes:
+        slide: the prismatic pair.
+        letter, under: letters of the block and of the coincident point on the plan.
+        name, below: names of the two points.
+        local: coincident point in the axes of the guide's link, m.
     """
 
     slide: Slide
@@ -100,7 +109,10 @@ class SlidingBlock:
 
 
 def sliding_blocks(motion: Motion, ends: Collection[str], k: int) -> Iterable[SlidingBlock]:
-    """Yield the sliding blocks on moving guides. ends: letters that are taken."""
+    """Yield the sliding blocks on moving guides at position k.
+
+    ends: letters already used on the plan.
+    """
     letter_of = plan_letters(motion.linkage)
     for slide in motion.linkage.slides:
         if FRAME not in (slide.carrier, slide.runner):
@@ -112,7 +124,7 @@ def sliding_blocks(motion: Motion, ends: Collection[str], k: int) -> Iterable[Sl
 
 
 def velocity_plan(motion: Motion, k: int) -> Plan:
-    """Build the velocity plan at position k: pole p, vectors pa, ab, ... in m/s."""
+    """Build the velocity plan at position k: pole p and the vectors pa, ab, ... in m/s."""
     linkage = motion.linkage
     ends = plan_ends(linkage, "p", lambda point: motion.named(point).v[k])
     vectors, names = relative_vectors(motion, ends), {letter: point for point, letter in plan_letters(linkage).items()}
@@ -133,12 +145,16 @@ def velocity_plan(motion: Motion, k: int) -> Plan:
 
 
 def links_with_mass(linkage: Linkage) -> list[str]:
-    """Return the moving links that have a mass, and so a centre of mass."""
+    """Return the names of the moving links that have a mass, and so a centre of mass."""
     return [link for link in linkage.moving if np.any(linkage.links[link].mass != 0)]
 
 
 def pitch_points(motion: Motion, k: int) -> Iterable[tuple[str, str, complex]]:
-    """Yield pitch points of gears and racks: name, moving gear, place (m); both bodies have one velocity there."""
+    """Yield the pitch point of each pair of gears, or gear and rack, at which both bodies have the same velocity.
+
+    Yields:
+        Name of the pitch point, name of the moving gear, position of the pitch point (m).
+    """
     linkage = motion.linkage
     for mesh in linkage.meshes:
         if mesh.kind == "cam":
@@ -162,9 +178,9 @@ VectorPair = tuple[NamedVector, NamedVector]
 
 
 def acceleration_plan(motion: Motion, k: int) -> Plan:
-    """Build the acceleration plan at position k: vectors πa, a^n_BA, a^τ_BA, a^k, a^r in m/s2.
+    """Build the acceleration plan at position k: pole π and the vectors πa, a^n_BA, a^τ_BA, a^k, a^r in m/s2.
 
-    Each pair of components leads from the end of one absolute acceleration to the end of another.
+    Two components together lead from the end of one absolute acceleration to the end of another.
     """
     linkage = motion.linkage
     ends = plan_ends(linkage, ACCELERATION_POLE, lambda point: motion.named(point).a[k])
@@ -196,10 +212,15 @@ def acceleration_plan(motion: Motion, k: int) -> Plan:
 def _rotation_parts(
     motion: Motion, k: int, about: SameLinkEquation, local: Mapping[str, complex], start: complex
 ) -> VectorPair:
-    """Normal (towards the base) and tangential components of a point's acceleration relative to another point of
+    """Compute the normal and the tangential component of the acceleration of a point relative to another point of
     its link.
 
-    local: points of guides under sliding blocks, in the axes of their links.
+    Args:
+        motion: solved motion.
+        k: index of the position.
+        about: equation that relates the two points.
+        local: points of guides that coincide with sliding blocks, in the axes of their links (m).
+        start: end of the other point's acceleration, where the normal component begins.
     """
     link, index = about.link, about.point.name + about.base.name
     rotation, points = motion.link(link), {**motion.linkage.links[link].points, **local}
@@ -213,7 +234,11 @@ def _rotation_parts(
 
 
 def _sliding_parts(motion: Motion, k: int, stone: SlidingBlock, start: complex) -> VectorPair:
-    """Coriolis and sliding components of a block's acceleration relative to the coincident point of its guide."""
+    """Compute the Coriolis and the sliding component of a block's acceleration relative to the coincident point of
+    its guide.
+
+    start: end of the acceleration of that point, where the Coriolis component begins.
+    """
     sliding, index = motion.slide(stone.slide), stone.name + stone.below
     bend = start + complex(sliding.coriolis[k])
     end = bend + complex(sliding.a[k] * sliding.u[k])
@@ -224,7 +249,10 @@ def _sliding_parts(motion: Motion, k: int, stone: SlidingBlock, start: complex) 
 
 
 def _corners(pairs: Sequence[VectorPair], ends: Mapping[str, complex], least: float) -> dict[str, complex]:
-    """Return letters of the points in which two components meet: n₁, n₂, ..., k; none if one of them is zero."""
+    """Return letters and positions of the points at which two components meet: n₁, n₂, ..., k.
+
+    There is none where one of the components is zero.
+    """
     corners: dict[str, complex] = {}
     for letter, kind in (("n", "normal"), ("k", "coriolis")):
         bends = [
@@ -238,9 +266,10 @@ def _corners(pairs: Sequence[VectorPair], ends: Mapping[str, complex], least: fl
 
 
 def _segment_letters(vector: NamedVector, lettered: Mapping[str, complex], least: float) -> str:
-    """Return the letters at both ends of a vector; empty for a zero vector.
+    """Return the letters at the two ends of a vector; empty for a zero vector.
 
-    Ends are matched to the nearest lettered points, as near a dead position rounding separates them.
+    The nearest lettered points are taken, since near a dead position rounding errors separate ends that
+    coincide.
     """
     if abs(vector.value) <= least:
         return ""
@@ -257,8 +286,12 @@ PART_KINDS = ("normal", "tangential")
 
 @dataclass(frozen=True)
 class PlanReading:
-    """One measured vector of a plan: all symbols that it stands for, its segment, its size (SI; zero for a
-    point).
+    """Vector measured on a plan.
+
+    Attributes:
+        symbols: symbols of all quantities that this vector represents.
+        segment: letters at its two ends; empty if it is zero.
+        size: magnitude in SI units.
     """
 
     symbols: tuple[Symbol, ...]
@@ -275,9 +308,10 @@ class AngularValue:
 
 
 def plan_readings(plan: Plan) -> list[PlanReading]:
-    """Return the vectors of a plan in its order; equal absolute vectors are one reading.
+    """Return the vectors to be measured on a plan, in the order of the plan.
 
-    Links that do not rotate have no normal and tangential components.
+    Absolute vectors that are equal make one reading. Normal and tangential components of links that do not
+    rotate are left out.
     """
     least = NO_VECTOR * plan.size
     turning = {v.symbol.below for v in plan.vectors if v.kind in PART_KINDS and abs(v.value) > least}
@@ -303,7 +337,7 @@ def plan_readings(plan: Plan) -> list[PlanReading]:
 
 
 def angular_values(motion: Motion, k: int, quantity: Literal["omega", "epsilon"]) -> Iterable[AngularValue]:
-    """Yield omega or epsilon at position k of all links that rotate in any of the positions."""
+    """Yield omega or epsilon at position k for each link that rotates at some position."""
     letter = {"omega": "ω", "epsilon": "ε"}[quantity]
     links = {link: motion.link(link) for link in motion.linkage.moving}
     rates = {link: getattr(rotation, quantity) for link, rotation in links.items()}

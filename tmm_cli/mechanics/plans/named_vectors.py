@@ -1,4 +1,4 @@
-"""Plans as named vectors in one plane, and the scale at which they are drawn on paper."""
+"""Plans as named vectors in one plane, and the scales at which they are drawn on paper."""
 
 from __future__ import annotations
 
@@ -24,9 +24,12 @@ PAD = 22.0  # mm around the figure, for labels
 
 @dataclass(frozen=True)
 class NamedVector:
-    """Vector from start to end (SI) with its name on the plan and the symbol of its value.
+    """Vector of a plan, from `start` to `end` (SI).
 
-    The name of a velocity or an acceleration is its segment on the plan: pa, with the value v_A.
+    Attributes:
+        name: its name on the plan; for a velocity or an acceleration the letters of its ends, e.g. pa.
+        kind: kind of vector, which determines how it is drawn.
+        symbol: symbol of its value, e.g. v_A.
     """
 
     name: str
@@ -42,8 +45,12 @@ class NamedVector:
 
 @dataclass(frozen=True)
 class Plan:
-    """Vectors of a plan. ends: lettered points, the pole among them; corners: points where components meet (n,
-    k).
+    """Vectors of a plan with its lettered points.
+
+    Attributes:
+        vectors: the vectors.
+        ends: coordinates (SI) of the lettered points, the pole among them.
+        corners: coordinates (SI) of the points n, k, ... at which two components meet.
     """
 
     vectors: tuple[NamedVector, ...]
@@ -52,18 +59,18 @@ class Plan:
 
     @property
     def size(self) -> float:
-        """Largest extent, SI."""
+        """Larger side of the bounding box, SI."""
         points = [*self.ends.values(), *(p for v in self.vectors for p in (v.start, v.end))]
         return extent(points)[0] if points else 0.0
 
     def drawn(self) -> tuple[NamedVector, ...]:
-        """Return the vectors that are longer than rounding errors."""
+        """Return the vectors that are not zero to rounding."""
         least = NO_VECTOR * self.size
         return tuple(v for v in self.vectors if abs(v.value) > least)
 
 
 def extent(points: Iterable[complex]) -> tuple[float, float, float, complex]:
-    """Return the larger side, width, height and centre of the bounding box of points."""
+    """Return the larger side, the width, the height and the centre of the bounding box of points."""
     points = list(points)
     xs, ys = [p.real for p in points], [p.imag for p in points]
     width, height = max(xs) - min(xs), max(ys) - min(ys)
@@ -71,12 +78,12 @@ def extent(points: Iterable[complex]) -> tuple[float, float, float, complex]:
 
 
 def drawing_area(paper: tuple[float, float]) -> tuple[complex, complex]:
-    """Return the corners of the area below the title strip, mm."""
+    """Return two opposite corners (mm) of the area below the title strip of a sheet."""
     return MARGIN * (1 + 1j), complex(paper[0] - MARGIN, paper[1] - MARGIN - STRIP)
 
 
 def round_scale(width: float, height: float, paper_width: float, paper_height: float) -> float:
-    """Return the smallest round scale factor (SI units per mm) at which a box fits on paper (mm)."""
+    """Return the smallest round scale factor (SI units per mm) at which a box (SI) fits on the paper (mm)."""
     least = max(width / paper_width, height / paper_height)
     if not least > 0 or not math.isfinite(least):
         return 1.0
@@ -86,7 +93,15 @@ def round_scale(width: float, height: float, paper_width: float, paper_height: f
 
 
 def sheet_scale(points: Iterable[complex], pad: float = PAD) -> tuple[tuple[float, float], float]:
-    """Return the paper size (mm) on which points (SI) are drawn largest, and the scale (SI units per mm)."""
+    """Choose portrait or landscape A4 for a figure, whichever shows it larger.
+
+    Args:
+        points: points of the figure, SI.
+        pad: margin around the figure for labels, mm.
+
+    Returns:
+        Paper size (mm) and scale (SI units per mm).
+    """
     _, width, height, _ = extent(list(points) or [0j])
     scales = {
         paper: round_scale(width, height, paper[0] - 2 * (MARGIN + pad), paper[1] - STRIP - 2 * (MARGIN + pad))
@@ -97,5 +112,5 @@ def sheet_scale(points: Iterable[complex], pad: float = PAD) -> tuple[tuple[floa
 
 
 def with_subscripts(segment: str) -> str:
-    """Write the figures of a segment or a lettered point as subscripts: pa₃, s₁."""
+    """Write the digits of a name as subscripts, e.g. pa₃ or s₁."""
     return segment.translate(SUBSCRIPTS)

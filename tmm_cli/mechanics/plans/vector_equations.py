@@ -1,9 +1,8 @@
-"""Vector equations of velocities and accelerations, as solved on paper: driving links, then groups in
-solution order.
+"""Vector equations of velocities and accelerations, as solved on paper: for the driving links, then group by
+group.
 
-Points of a link are related to one another; a sliding block is related to the coincident point of its
-guide. What is known before the equations of a group are solved, and how many magnitudes are unknown,
-follows from the structure alone.
+An equation relates two points of one link, or a sliding block and the coincident point of its guide. Which
+magnitudes are known before a group is solved, and how many are unknown, follows from the structure alone.
 """
 
 from __future__ import annotations
@@ -19,7 +18,13 @@ MOST_UNKNOWNS = 2  # unknown magnitudes that one vector polygon can give
 
 @dataclass(frozen=True)
 class PlanPoint:
-    """Point of a link; link is the frame if it does not move. at: named point at the same place (A for A3)."""
+    """Point on a plan.
+
+    Attributes:
+        name: its name, e.g. A, or A3 for the point of link 3 that coincides with A.
+        at: name of the point with which it coincides: A for A3, and A for A itself.
+        link: the link to which it belongs; the frame if it does not move.
+    """
 
     name: str
     at: str
@@ -32,10 +37,10 @@ class PlanPoint:
 
 @dataclass(frozen=True)
 class SameLinkEquation:
-    """Equation of a point through another point of the same link.
+    """Equation for a point, from another point (`base`) of the same link.
 
-    known: the angular velocity of the link is known. idle: the link does not rotate, so both points move
-    alike.
+    known: True if the angular velocity of the link is known. idle: True if the link does not rotate, so that
+    both points have the same velocity.
     """
 
     point: PlanPoint
@@ -47,8 +52,9 @@ class SameLinkEquation:
 
 @dataclass(frozen=True)
 class MovingGuideEquation:
-    """Equation of a sliding block through the coincident point of its moving guide. known: the sliding motion is
-    known.
+    """Equation for a sliding block, from the coincident point (`base`) of its moving guide.
+
+    known: True if the sliding motion is known.
     """
 
     point: PlanPoint
@@ -59,7 +65,7 @@ class MovingGuideEquation:
 
 @dataclass(frozen=True)
 class FixedGuideEquation:
-    """Equation of a point on a guide of the frame. known: its motion along the guide is known."""
+    """Equation for a point that moves along a guide of the frame; known: True if this motion is known."""
 
     point: PlanPoint
     slide: Slide
@@ -71,7 +77,7 @@ VectorEquation = SameLinkEquation | MovingGuideEquation | FixedGuideEquation
 
 @dataclass(frozen=True)
 class HigherPairRatio:
-    """Higher pair that gives the rotation of a link, or the motion in a prismatic pair."""
+    """Higher pair whose ratio gives the rotation of a link, or the motion in a prismatic pair."""
 
     mesh: Mesh
     link: str = ""
@@ -80,11 +86,18 @@ class HigherPairRatio:
 
 @dataclass(frozen=True)
 class SolutionStep:
-    """One step of the solution: a driving link on the frame, or a group with the drivers between its links.
+    """One step of the solution: a link driven from the frame, or an Assur group with the drivers between its
+    links.
 
-    ratios: ratios of higher pairs, used before the equations. equations: solved together. after: equations of
-    further points. same: links that rotate together, with one that was known before if there is one.
-    on_paper: no more magnitudes are unknown than a polygon gives.
+    Attributes:
+        links: the links.
+        drivers: their drivers.
+        group: the group; None for a link driven from the frame.
+        ratios: ratios of higher pairs, used before the equations.
+        equations: equations that are solved simultaneously.
+        after: equations of further points of the links, solved afterwards.
+        same: sets of links that rotate together; the first may be a link solved in an earlier step.
+        on_paper: True if one vector polygon gives all unknown magnitudes.
     """
 
     links: tuple[str, ...]
@@ -98,14 +111,18 @@ class SolutionStep:
 
 
 def solution_steps(linkage: Linkage, groups: Sequence[Group]) -> list[SolutionStep]:
-    """Return the steps: driving links on the frame, then the groups in their order."""
+    """Return the steps of the solution: the links driven from the frame, then the groups in solution order."""
     builder = _EquationBuilder(linkage, solution_rank(linkage, groups))
-    return [*(builder.driving(driver) for driver in linkage.cranks), *(builder.group(group) for group in groups)]
+    return [
+        *(builder.driving_step(driver) for driver in linkage.cranks),
+        *(builder.group_step(group) for group in groups),
+    ]
 
 
 def motion_points(linkage: Linkage, link: str) -> list[str]:
-    """Return the points that determine the motion of a link: those it shares with others, or all if fewer than
-    two.
+    """Return the points of a link that serve in vector equations.
+
+    They are the points at which it is paired with other links, or all points if there are fewer than two.
     """
     points = list(linkage.links[link].points)
     shared = {h.point for h in linkage.hinges if link in h.links}
@@ -115,8 +132,10 @@ def motion_points(linkage: Linkage, link: str) -> list[str]:
 
 
 def solution_rank(linkage: Linkage, groups: Iterable[Group]) -> dict[str, int]:
-    """Return when each named point is solved: -1 on the frame, 0 on driving links, then the number of its first
-    group.
+    """Return when the motion of each named point becomes known.
+
+    -1 for points of the frame, 0 for points of driving links, else the number of the first group that contains
+    the point.
     """
     rank = {FRAME: -1} | {driver.link: 0 for driver in linkage.cranks}
     rank |= {link: number for number, group in enumerate(groups, 1) for link in group.links}
@@ -125,10 +144,14 @@ def solution_rank(linkage: Linkage, groups: Iterable[Group]) -> dict[str, int]:
 
 
 class _EquationBuilder:
-    """Builds the equations step by step, with what is known so far.
+    """Build the vector equations step by step, keeping account of which motions are already known.
 
-    turns: for each link the first link that rotates with it. known: such first links with known rotation.
-    slid: names of prismatic pairs with known motion.
+    Attributes:
+        linkage: the linkage.
+        rank: see `solution_rank`.
+        turns: for each link, the first of the links that rotate with it.
+        known: first links whose rotation is known.
+        slid: names of the prismatic pairs whose motion is known.
     """
 
     def __init__(self, linkage: Linkage, rank: Mapping[str, int]) -> None:
@@ -142,19 +165,20 @@ class _EquationBuilder:
         self.known = {FRAME}
         self.slid: set[str] = set()
 
-    def driving(self, driver: Driver) -> SolutionStep:
-        """Return the step of the solution for a link driven from the frame."""
+    def driving_step(self, driver: Driver) -> SolutionStep:
         link = driver.link
         self.known.add(self.turns[link])
         if driver.kind == "turn":
-            return SolutionStep((link,), (driver,), after=self._others(link, self._spot(driver.joint), ()))
+            return SolutionStep(
+                (link,), (driver,), after=self._further_points(link, self._plan_point(driver.joint), ())
+            )
         slide = self.linkage.slide(driver.joint)
         self.slid.add(slide.name)
-        base = self._running(link, slide)
-        after = self._others(link, base, (base.name,))
+        base = self._sliding_point(link, slide)
+        after = self._further_points(link, base, (base.name,))
         return SolutionStep((link,), (driver,), equations=(FixedGuideEquation(base, slide, True),), after=after)
 
-    def group(self, group: Group) -> SolutionStep:
+    def group_step(self, group: Group) -> SolutionStep:
         """Return the step of a group whose external pairs have known motion."""
         before = [link for link in self.turns if self.turns[link] in self.known]
         for driver in group.drivers:
@@ -162,19 +186,19 @@ class _EquationBuilder:
                 self.slid.add(driver.joint)
             else:
                 self.known.add(self.turns[driver.link])
-        ratios = self._ratios(group)
-        spots = {link: self._of_group(group, link) for link in group.links}
-        base = {link: min(link_points, key=self._order) for link, link_points in spots.items() if link_points}
+        ratios = self._usable_ratios(group)
+        spots = {link: self._paired_points(group, link) for link in group.links}
+        base = {link: min(link_points, key=self._solution_order) for link, link_points in spots.items() if link_points}
         equations: list[VectorEquation] = [
-            self._about(spot, base[link], link) for link in base for spot in spots[link] if spot != base[link]
+            self._relate_points(spot, base[link], link) for link in base for spot in spots[link] if spot != base[link]
         ]
-        equations += self._of_slides(group)
+        equations += self._slide_equations(group)
         turned = {self.turns[link] for link in group.links} - self.known
         unknown = len(turned) + sum(not e.known for e in equations if not isinstance(e, SameLinkEquation))
         self.known |= turned
         self.slid |= {pair.slide.name for pair in (*group.inner, *group.outer) if pair.slide is not None}
         solved = [spot.name for link_points in spots.values() for spot in link_points]
-        after = [about for link in base for about in self._others(link, base[link], solved)]
+        after = [about for link in base for about in self._further_points(link, base[link], solved)]
         return SolutionStep(
             group.links,
             group.drivers,
@@ -182,63 +206,71 @@ class _EquationBuilder:
             ratios,
             tuple(equations),
             tuple(after),
-            self._same(group, before),
+            self._links_rotating_together(group, before),
             unknown <= MOST_UNKNOWNS,
         )
 
-    def _spot(self, point: str) -> PlanPoint:
+    def _plan_point(self, point: str) -> PlanPoint:
         return PlanPoint(point, point, FRAME if FRAME in self.linkage.carriers(point) else self.linkage.owner(point))
 
-    def _running(self, link: str, slide: Slide) -> PlanPoint:
-        """Point of a link that determines its motion along a guide of the frame."""
+    def _sliding_point(self, link: str, slide: Slide) -> PlanPoint:
+        """Return the point of a link whose motion along a guide of the frame represents the motion of the link."""
         if slide.runner == link and slide.point in self.linkage.links[link].points:
-            return self._spot(slide.point)
-        return self._spot(next(iter(self.linkage.links[link].points)))
+            return self._plan_point(slide.point)
+        return self._plan_point(next(iter(self.linkage.links[link].points)))
 
-    def _order(self, spot: PlanPoint) -> float:
+    def _solution_order(self, spot: PlanPoint) -> float:
         return -1 if spot.fixed else self.rank[spot.at] if spot.name == spot.at else float("inf")
 
-    def _of_group(self, group: Group, link: str) -> list[PlanPoint]:
-        """Return the points at which a link is paired within its group, in the order in which they are solved."""
+    def _paired_points(self, group: Group, link: str) -> list[PlanPoint]:
+        """Return the points at which a link is paired within a group; those whose motion becomes known first come
+        first.
+        """
         points: list[PlanPoint] = []
         for pair in (*group.outer, *group.inner):
             if link not in (pair.i, pair.j) or not pair.lower:
                 continue
             slide = pair.slide
             if slide is None:
-                points.append(self._spot(pair.point))
+                points.append(self._plan_point(pair.point))
             elif FRAME in (slide.carrier, slide.runner):
-                points.append(self._running(link, slide))
+                points.append(self._sliding_point(link, slide))
             else:
-                points.append(self._spot(slide.point) if link == slide.runner else coincident_point(slide))
-        return sorted(dict.fromkeys(points), key=self._order)
+                points.append(self._plan_point(slide.point) if link == slide.runner else coincident_point(slide))
+        return sorted(dict.fromkeys(points), key=self._solution_order)
 
-    def _about(self, point: PlanPoint, base: PlanPoint, link: str) -> SameLinkEquation:
+    def _relate_points(self, point: PlanPoint, base: PlanPoint, link: str) -> SameLinkEquation:
         return SameLinkEquation(point, base, link, self.turns[link] in self.known, self.turns[link] == FRAME)
 
-    def _of_slides(self, group: Group) -> Iterable[VectorEquation]:
+    def _slide_equations(self, group: Group) -> Iterable[VectorEquation]:
         for slide in (pair.slide for pair in (*group.outer, *group.inner) if pair.slide is not None):
             solved = slide.name in self.slid
             if FRAME in (slide.carrier, slide.runner):
                 yield FixedGuideEquation(
-                    self._running(slide.runner if slide.carrier == FRAME else slide.carrier, slide), slide, solved
+                    self._sliding_point(slide.runner if slide.carrier == FRAME else slide.carrier, slide), slide, solved
                 )
                 continue
             if slide.carrier not in group.links:  # its guide is known as a whole
                 points = motion_points(self.linkage, slide.carrier)
-                yield self._about(coincident_point(slide), min(map(self._spot, points), key=self._order), slide.carrier)
-            yield MovingGuideEquation(self._spot(slide.point), coincident_point(slide), slide, solved)
+                yield self._relate_points(
+                    coincident_point(slide), min(map(self._plan_point, points), key=self._solution_order), slide.carrier
+                )
+            yield MovingGuideEquation(self._plan_point(slide.point), coincident_point(slide), slide, solved)
 
-    def _others(self, link: str, base: PlanPoint, solved: Collection[str]) -> tuple[SameLinkEquation, ...]:
-        """Equations of further points of a link, without free ends of cylinders and oscillating rods."""
+    def _further_points(self, link: str, base: PlanPoint, solved: Collection[str]) -> tuple[SameLinkEquation, ...]:
+        """Return the equations of further points of a link, without the free ends of cylinders and oscillating rods."""
         points = [p for p in motion_points(self.linkage, link) if p not in solved and p != base.name]
         if not base.fixed and any(link in (slide.carrier, slide.runner) for slide in self.linkage.slides):
             running = {slide.point for slide in self.linkage.slides}
             points = [p for p in points if len(self.linkage.carriers(p)) > 1 or p in running]
-        return tuple(self._about(self._spot(p), base, link) for p in points if not self._spot(p).fixed)
+        return tuple(
+            self._relate_points(self._plan_point(p), base, link) for p in points if not self._plan_point(p).fixed
+        )
 
-    def _same(self, group: Group, before: Collection[str]) -> tuple[tuple[str, ...], ...]:
-        """Return links of the group that rotate together, after one that was known before."""
+    def _links_rotating_together(self, group: Group, before: Collection[str]) -> tuple[tuple[str, ...], ...]:
+        """Return sets of links that rotate together; each contains at most one link from before this group, in first
+        place.
+        """
         rotating = []
         for first in dict.fromkeys(self.turns[link] for link in group.links):
             earlier = [link for link in before if self.turns[link] == first][:1]
@@ -247,8 +279,8 @@ class _EquationBuilder:
                 rotating.append(tuple(links))
         return tuple(rotating)
 
-    def _ratios(self, group: Group) -> tuple[HigherPairRatio, ...]:
-        """Return higher pairs of the group with a single unknown, in the order in which they can be used."""
+    def _usable_ratios(self, group: Group) -> tuple[HigherPairRatio, ...]:
+        """Return the higher pairs of a group that give one unknown each, in the order in which they can be used."""
         meshes = [pair.mesh for pair in (*group.outer, *group.inner) if pair.mesh is not None]
         ratios: list[HigherPairRatio] = []
         for _ in meshes:
