@@ -23,8 +23,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class CounterweightPlace:
-    """Position of a counterweight: on a link, at `radius` from a point of it (its axes, m); 0 if the radius is
-    not given.
+    """Position of a counterweight on a link.
+
+    Attributes:
+        link: name of the link.
+        about: point at which the counterweight is attached, in the axes of the link, m.
+        radius: distance of its centre of mass from that point, m; 0 if not given.
     """
 
     link: str
@@ -34,7 +38,12 @@ class CounterweightPlace:
 
 @dataclass(frozen=True)
 class CorrectionPlane:
-    """Plane across a shaft at the axial position `at` (m), with a mass at a radius (m; 0 if it is not given)."""
+    """Plane perpendicular to a shaft in which a correction mass is placed.
+
+    Attributes:
+        at: axial position of the plane, m.
+        radius: radius of the correction mass, m; 0 if not given.
+    """
 
     at: float
     radius: float = 0.0
@@ -42,10 +51,12 @@ class CorrectionPlane:
 
 @dataclass(frozen=True)
 class UnbalancedShaft:
-    """Shaft with unbalanced masses.
+    """Shaft with unbalanced masses in several planes.
 
-    sizes: mass times radius as complex numbers (kg m). at: axial positions (m). planes: planes of one or two
-    correction masses.
+    Attributes:
+        sizes: unbalances, mass times radius as complex numbers, kg m.
+        at: axial positions of the masses, m.
+        planes: one or two correction planes.
     """
 
     sizes: Vector
@@ -53,9 +64,9 @@ class UnbalancedShaft:
     planes: tuple[CorrectionPlane, ...]
 
     def corrections(self) -> Vector:
-        """Return mass times radius of the corrections (kg m, complex).
+        """Compute the correction masses, as mass times radius (complex, kg m), one for each plane.
 
-        One plane removes the resultant force; two planes remove the resultant couple as well.
+        A mass in one plane removes the resultant force; masses in two planes remove the resultant couple as well.
         """
         force, (first, *more) = -np.sum(self.sizes), self.planes
         if not more:
@@ -64,10 +75,11 @@ class UnbalancedShaft:
         return np.array([force - second, second])
 
     def unbalance(self, added: Vector | None = None) -> tuple[complex, complex]:
-        """Return the sum of mass times radius (kg m) and of its moments about the first plane (kg m2).
+        """Return the resultant unbalance (kg m) and its moment about the first plane (kg m2), both complex.
 
-        Times the square of the angular velocity they are the force and the couple on the bearings. added:
-        corrections.
+        Multiplied by the square of the angular velocity, they are the force and the couple on the bearings.
+
+        added: corrections to include, kg m.
         """
         sizes, at = self.sizes, self.at
         if added is not None:
@@ -77,11 +89,15 @@ class UnbalancedShaft:
 
 @dataclass(frozen=True)
 class BalancingTask:
-    """Counterweights to be found, and a shaft to be balanced.
+    """Counterweights whose size is to be found, and a shaft to be balanced.
 
-    share: weight of the force component along the direction `along`; the other component has the weight 1 -
-    share. For a crank-slider it is the fraction of the reciprocating masses that a counterweight on the crank
-    balances.
+    Attributes:
+        counterweights: positions of the counterweights.
+        share: weight (0 to 1) given to the component of the shaking force along `along`; the other component
+            has the weight 1 - share. For a crank-slider it is the fraction of the reciprocating masses that a
+            counterweight on the crank balances.
+        along: direction of the first component, a unit complex number.
+        rotor: the shaft, or None.
     """
 
     counterweights: tuple[CounterweightPlace, ...] = ()
@@ -106,8 +122,12 @@ SETTLED = 1e-15  # of the largest counterweight: convergence
 
 @dataclass(frozen=True)
 class ShakingLoads:
-    """Inertia load of the links on the frame at every position: shaking force (N), shaking moment about `about`
-    (N m).
+    """Resultant of the inertia loads of all links on the frame, at every position.
+
+    Attributes:
+        force: shaking force, N.
+        moment: shaking moment about `about`, N m.
+        about: point of the frame, m.
     """
 
     force: Vector
@@ -117,7 +137,9 @@ class ShakingLoads:
 
 @dataclass(frozen=True)
 class CounterweightSolution:
-    """Counterweight at its place: mass times radius (kg m) at an angle from the x axis of the link (rad)."""
+    """Counterweight that was found: mass times radius (`size`, kg m), at an angle from the x axis of the link
+    (rad).
+    """
 
     place: CounterweightPlace
     size: float
@@ -131,9 +153,9 @@ class CounterweightSolution:
 
 @dataclass(frozen=True)
 class BalancedCycle:
-    """Counterweights, and the shaking loads before and after balancing over a whole cycle.
+    """Counterweights, and the shaking loads over a whole cycle before and after balancing.
 
-    alike: some counterweights have the same effect as others, so their sizes are not unique.
+    alike: True if some counterweights have the same effect, so that their sizes are not unique.
     """
 
     counterweights: tuple[CounterweightSolution, ...]
@@ -148,20 +170,20 @@ class BalancedCycle:
 
     @property
     def left(self) -> float:
-        """Largest shaking force after balancing, relative to that before."""
+        """Largest shaking force after balancing, divided by the largest one before."""
         most = float(np.nanmax(np.abs(self.before.force)))
         return float(np.nanmax(np.abs(self.after.force))) / most if most > 0 else 0.0
 
 
 def compute_shaking(motion: Motion, about: complex = 0j, weights: Sequence[CounterweightSolution] = ()) -> ShakingLoads:
-    """Compute the shaking force and moment of all links with mass and of counterweights.
+    """Compute the shaking force and moment of all links with mass, and of counterweights.
 
-    A counterweight without a radius counts by its mass times radius alone: neither the mass on its pivot nor
-    its own moment of inertia is included.
+    For a counterweight without a given radius only its mass times radius counts; neither the force of its mass
+    at the point of attachment nor its moment of inertia is included.
 
     Args:
         motion: solved motion.
-        about: point of the frame for moments (m).
+        about: point of the frame for moments, m.
         weights: counterweights to include.
     """
     force, moment = np.zeros(np.shape(motion.q), complex), np.zeros(np.shape(motion.q))
@@ -186,20 +208,20 @@ def compute_shaking(motion: Motion, about: complex = 0j, weights: Sequence[Count
 
 
 def balance_cycle(motion: Motion, task: BalancingTask, about: complex = 0j) -> BalancedCycle:
-    """Find the counterweights that leave the least shaking force.
+    """Find the counterweights that minimize the shaking force.
 
-    The shaking force is F = -sum m a of all links, and a counterweight on a link adds c z to sum m r, with c
-    = mr exp(i angle) in its axes and z their direction, so counterweights follow from linear least squares. A
-    given radius gives a mass, which loads the pivot; if the pivot moves, the counterweights are found again
-    with that mass until they no longer change.
+    The shaking force is F = -sum m a of all links. A counterweight adds c z to sum m r, where c = mr exp(i
+    angle) is given in the axes of its link and z is their direction, so the counterweights follow from linear
+    least squares. If a radius is given, the mass of the counterweight also loads its point of attachment; if
+    that point moves, the solution is repeated with the mass until it converges.
 
     Args:
         motion: a whole cycle at equal steps, without the repeated end; dead positions are skipped.
         task: counterweights to be found.
-        about: point of the frame for moments (m).
+        about: point of the frame for moments, m.
 
     Raises:
-        UnsettledError: the counterweights do not converge.
+        CounterweightError: the counterweights do not converge.
     """
     before = compute_shaking(motion, about)
     if not task.counterweights:
@@ -230,8 +252,11 @@ def balance_cycle(motion: Motion, task: BalancingTask, about: complex = 0j) -> B
 
 
 def _least_squares(columns: Vector, force: Vector, task: BalancingTask) -> tuple[Vector, int]:
-    """Counterweights (kg m, complex) that leave the least force, and the rank: the number of independent
-    components.
+    """Solve for the counterweights (kg m, complex) that minimize the force.
+
+    Returns:
+        The counterweights, and the rank of the equations: the number of counterweight components with
+            independent effects.
     """
     rotated, rest = columns * task.along.conjugate(), -force * task.along.conjugate()
     share, other = np.sqrt(task.share), np.sqrt(1 - task.share)
@@ -242,12 +267,12 @@ def _least_squares(columns: Vector, force: Vector, task: BalancingTask) -> tuple
 
 
 def _direction(c: complex) -> float:
-    """Angle of a counterweight, rad; for a direction straight back pi, not -pi."""
+    """Return the angle of a counterweight (rad), pi rather than -pi for the negative x axis."""
     return float(np.angle(c if abs(c.imag) > NO_ANGLE * abs(c) else complex(c.real)))
 
 
 def _direction_acceleration(motion: Motion, link: str) -> Vector:
-    """Second time derivative of the direction of a link's x axis, 1/s2."""
+    """Compute the second time derivative of the unit vector along the x axis of a link, 1/s2."""
     rotation, z = motion.link(link), motion.poses[link].z
     acceleration: Vector = (1j * rotation.epsilon - rotation.omega**2) * z
     return acceleration
@@ -261,10 +286,15 @@ STEPS_PER_TURN = 720  # positions per revolution
 
 @dataclass(frozen=True)
 class BalancingResults:
-    """Results of a balancing task over the whole cycle (driver coordinates q) and at the positions of the
-    problem.
+    """Results of a balancing task, over the whole cycle and at the positions of the problem.
 
-    pivot: point for moments. corrections: mass times radius of the corrections of a shaft, kg m.
+    Attributes:
+        task: the task.
+        q: driver coordinates over the cycle, rad.
+        cycle: counterweights and shaking loads over the cycle.
+        before, after: shaking loads at the positions of the problem, without and with counterweights.
+        pivot: name of the point about which moments are taken.
+        corrections: mass times radius of the correction masses of a shaft, kg m.
     """
 
     task: BalancingTask
@@ -276,7 +306,7 @@ class BalancingResults:
     corrections: Vector = field(default_factory=lambda: np.empty(0, complex))
 
     def at(self, mechanism: Mechanism, q: Real) -> tuple[ShakingLoads, ShakingLoads]:
-        """Return the shaking loads at other driver coordinates, without and with counterweights."""
+        """Compute the shaking loads at other driver coordinates, without and with counterweights."""
         return _shaking_at(mechanism, self.cycle, q)
 
 
@@ -285,13 +315,13 @@ def balance_machine(mechanism: Mechanism, start: float, positions: Real, task: B
 
     Args:
         mechanism: the mechanism; its driver runs at constant speed.
-        start: driver coordinate of position 0 (rad).
-        positions: driver coordinates of the positions (rad).
+        start: driver coordinate of position 0, rad.
+        positions: driver coordinates of the positions, rad.
         task: balancing task.
 
     Raises:
-        NoCycleError: the driver is not a fully rotating crank, or not the only one.
-        UnsettledError: the counterweights do not converge.
+        NoCycleError: the driver is not a fully rotating crank, or there are several drivers.
+        CounterweightError: the counterweights do not converge.
     """
     linkage, whole = mechanism.linkage, mechanism.driver_range
     driver = linkage.driver
@@ -308,19 +338,18 @@ def balance_machine(mechanism: Mechanism, start: float, positions: Real, task: B
 
 
 def _shaking_at(mechanism: Mechanism, balanced: BalancedCycle, q: Real) -> tuple[ShakingLoads, ShakingLoads]:
-    """Shaking loads at driver coordinates, without and with counterweights."""
     motion, about = constant_speed_motion(mechanism, q), balanced.before.about
     return compute_shaking(motion, about), compute_shaking(motion, about, balanced.counterweights)
 
 
 def constant_speed_motion(mechanism: Mechanism, q: Real) -> Motion:
-    """Return the motion at constant speed of the driver."""
+    """Compute the motion at driver coordinates q (rad) for a driver at constant speed."""
     driver = mechanism.linkage.driver
     law = DriverMotion(float(q[0]), driver.rate, 0.0, driver.sense)
     return compute_motion(mechanism.linkage, mechanism.kernels, q, law)
 
 
 def _crank_pivot(linkage: Linkage) -> str:
-    """Name of the crank's pivot on the frame; empty if it has no such point."""
+    """Return the name of the point at which the crank is hinged to the frame; empty if there is none."""
     link = linkage.driver.link
     return next((h.point for h in linkage.hinges if {FRAME, link} <= set(h.links)), "")

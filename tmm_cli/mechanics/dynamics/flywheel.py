@@ -1,19 +1,20 @@
-"""Flywheel for a given fluctuation of speed: exact, by Wittenbauer and by Mertsalov.
+"""Flywheel for a required fluctuation of speed: exact, by Wittenbauer and by Mertsalov.
 
-With E(x) the work of all moments from the beginning of the cycle, T0 the energy there and J the inertia
-without the flywheel Jf, the speed is w^2 = 2 (T0 + E) / (Jf + J). The conditions that its largest value
-is w1 and its least w2 are linear in T0 and Jf, so the flywheel follows without iteration:
+Let E(x) be the work of all moments from the beginning of the cycle, T0 the energy at the beginning, J the
+reduced inertia without the flywheel and Jf the inertia of the flywheel. The speed is w^2 = 2 (T0 + E) / (Jf
++ J). The conditions that the largest speed is w1 and the least w2 are linear in T0 and Jf, so the flywheel
+follows without iteration:
 
     Jf = (max(w2^2 J / 2 - E) - min(w1^2 J / 2 - E)) / ((w1^2 - w2^2) / 2).
 
-These are the tangents to the energy-mass diagram (J, E) with slopes w1^2 / 2 and w2^2 / 2: F.
-Wittenbauer, Graphische Dynamik (1923); I. I. Artobolevsky, Theory of Mechanisms and Machines (1988), ch.
-19. In the course one takes w^2 (1 +- delta) for w1^2 and w2^2.
+The two conditions are the tangents to the energy-mass diagram (J, E) with the slopes w1^2 / 2 and w2^2 / 2:
+F. Wittenbauer, Graphische Dynamik (1923); I. I. Artobolevsky, Theory of Mechanisms and Machines (1988), ch.
+19. In course projects w^2 (1 +- delta) is taken for w1^2 and w2^2.
 
 N. I. Mertsalov divides the machine into a first group, the flywheel and the links with a constant speed
 ratio to the driver (inertia Jc), and a second group, all other links (inertia J - Jc). The energy of the
-second group is taken at the mean speed, so the first group has the inertia J_I = (largest less least of E
-- (J - Jc) w^2 / 2) / (delta w^2), and the flywheel Jf = J_I - Jc: K. V. Frolov (ed.), Theory of
+second group is computed at the mean speed. The inertia of the first group is then J_I = (max - min of E -
+(J - Jc) w^2 / 2) / (delta w^2), and that of the flywheel Jf = J_I - Jc: K. V. Frolov (ed.), Theory of
 Mechanisms and Machines (1987).
 """
 
@@ -33,10 +34,12 @@ REFINEMENT_WIDTH = 1e-4  # rad (or m): accuracy of the least of many values as a
 
 @dataclass(frozen=True)
 class Tangent:
-    """Tangent to the energy-mass diagram, which lies on one side of it.
+    """Tangent to the energy-mass diagram, with the whole diagram on one side.
 
-    x: driver travel of the point of contact. inertia, energy: coordinates of that point (kg m2, J). slope:
-    w^2 / 2 (J / kg m2). offset: energy at zero inertia (J).
+    Attributes:
+        x: driver travel at the point of contact.
+        inertia, energy: coordinates of the point of contact, kg m2 and J.
+        slope: w^2 / 2, J / (kg m2).
     """
 
     x: float
@@ -51,10 +54,12 @@ class Tangent:
 
 @dataclass(frozen=True)
 class FlywheelSolution:
-    """Flywheel on the driver. inertia: kg m2, negative if none is needed; energy: kinetic energy T0 at the
-    beginning (J).
+    """Flywheel on the shaft of the driver.
 
-    upper, lower: tangents of the largest and the least speed for this inertia.
+    Attributes:
+        inertia: moment of inertia, kg m2; negative if no flywheel is needed.
+        energy: kinetic energy T0 at the beginning of the cycle, J.
+        upper, lower: tangents to the energy-mass diagram for the largest and the least speed.
     """
 
     inertia: float
@@ -64,28 +69,29 @@ class FlywheelSolution:
 
 
 def exact_flywheel(machine: ReducedMachine, work: PanelCurve, mean: float, delta: float) -> FlywheelSolution:
-    """Find the flywheel that keeps the speed between w (1 - delta/2) and w (1 + delta/2), both of which are
-    reached.
+    """Find the flywheel with which the speed varies exactly from w (1 - delta/2) to w (1 + delta/2).
 
     Args:
         machine: the reduced machine.
-        work: work of all moments from the beginning of the cycle (J).
-        mean: mean speed w (rad/s).
+        work: work of all moments from the beginning of the cycle, J.
+        mean: mean speed w, rad/s.
         delta: coefficient of fluctuation of speed.
     """
     return _flywheel_between(machine, work, mean * (1 - delta / 2), mean * (1 + delta / 2))
 
 
 def wittenbauer_flywheel(machine: ReducedMachine, work: PanelCurve, mean: float, delta: float) -> FlywheelSolution:
-    """Find the flywheel by tangents of slopes w^2 (1 +- delta) / 2, as drawn in courses."""
+    """Find the flywheel from tangents with the slopes w^2 (1 +- delta) / 2, as drawn in course projects.
+
+    The arguments are those of `exact_flywheel`.
+    """
     return _flywheel_between(machine, work, mean * np.sqrt(max(1 - delta, 0.0)), mean * np.sqrt(1 + delta))
 
 
 def mertsalov_inertia(machine: ReducedMachine, work: PanelCurve, mean: float, delta: float) -> float:
-    """Inertia J_I of the first group (kg m2): the flywheel and the links with a constant speed ratio.
+    """Compute the inertia J_I of the first group (kg m2): the flywheel and the links with a constant speed ratio.
 
-    The energy of the other links is taken at the mean speed; a constant part of the inertia cancels in the
-    difference.
+    The energy of the other links is computed at the mean speed. The arguments are those of `exact_flywheel`.
     """
     slope = mean**2 / 2
     upper, lower = find_tangent(machine, work, slope, top=True), find_tangent(machine, work, slope, top=False)
@@ -95,17 +101,19 @@ def mertsalov_inertia(machine: ReducedMachine, work: PanelCurve, mean: float, de
 def energy_at_mean_speed(
     machine: ReducedMachine, work: PanelCurve, mean: float, flywheel: float = 0.0
 ) -> tuple[float, float]:
-    """Find the initial energy (J) at which the mean of the largest and the least speed is `mean`, and the
-    fluctuation.
+    """Find the energy at the beginning of the cycle for which the mean of the largest and the least speed is
+    `mean`.
 
-    Both are nan if the machine does not run through at that speed, or has no inertia somewhere.
+    Returns:
+        The energy (J) and the coefficient of fluctuation. Both are nan if the machine stops at that mean speed,
+        or has no inertia somewhere.
     """
     nodes = work.places()
     if flywheel + float(np.min(machine.inertia(nodes))) <= 0:
         return float("nan"), float("nan")
 
     def speeds(energy: Real) -> Real:
-        """Least and largest speed for each initial energy."""
+        """Return the least and the largest speed for each initial energy, (energies, 2)."""
         square = [
             (find_minimum(squared_speed, nodes)[1], -find_minimum(partial(_negated, squared_speed), nodes)[1])
             for squared_speed in (partial(_squared_speed, machine, work, flywheel, float(e)) for e in np.ravel(energy))
@@ -130,7 +138,7 @@ def _flywheel_between(machine: ReducedMachine, work: PanelCurve, low: float, hig
 
 
 def find_tangent(machine: ReducedMachine, work: PanelCurve, slope: float, *, top: bool) -> Tangent:
-    """Return the tangent of this slope above the diagram, or below it."""
+    """Find the tangent of this slope that touches the diagram from above (`top`) or from below."""
     sign = -1.0 if top else 1.0
 
     def height(x: Real) -> Real:
@@ -156,9 +164,9 @@ def _negated(function: Callable[[Real], Real], x: Real) -> Real:
 
 
 def refine_minimum(rate: Callable[[Real], Real], x: float, length: float) -> float:
-    """Refine a minimum near x, inside 0..length, to full precision from the sign change of the rate.
+    """Refine a minimum near x, inside 0..length, to full precision by the sign change of the derivative `rate`.
 
-    Values alone give only half the digits. The sign may also change at a jump of the load.
+    Function values alone give only half the digits. The sign may also change at a jump of the load.
     """
     ends = np.clip([x - REFINEMENT_WIDTH, x + REFINEMENT_WIDTH], 0.0, np.nextafter(length, 0.0))
     below, above = rate(ends)
@@ -166,7 +174,7 @@ def refine_minimum(rate: Callable[[Real], Real], x: float, length: float) -> flo
 
 
 def find_minimum(function: Callable[[Real], Real], nodes: Real) -> tuple[float, float]:
-    """Return argument and value of the minimum of a function whose minima are farther apart than `nodes`."""
+    """Return the argument and the value of the minimum of a function; `nodes` must separate its local minima."""
     values = function(nodes)
     best = int(np.argmin(values))
     x, value = find_minima(function, float(nodes[max(best - 1, 0)]), float(nodes[min(best + 1, len(nodes) - 1)]))

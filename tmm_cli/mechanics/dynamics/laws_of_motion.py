@@ -1,7 +1,9 @@
-"""Laws of motion of steady running: speed, acceleration and time along the travel of the driver, the same every cycle.
+"""Laws of motion in steady running: speed, acceleration and time along the travel of the driver, the same
+every cycle.
 
-Under a constant driving moment Md the kinetic energy T along the travel x follows by integration, dT/dx = M(x) + Md,
-and the speed from w^2 = 2 T / (Jf + J), with the reduced inertia J and that of the flywheel, Jf.
+Under a constant driving moment Md the kinetic energy T along the travel x follows by integration, dT/dx =
+M(x) + Md, and the speed from w^2 = 2 T / (Jf + J), where J is the reduced inertia and Jf that of the
+flywheel.
 """
 
 from __future__ import annotations
@@ -32,10 +34,14 @@ from tmm_cli.mechanics.numerics import LAST_STEP, SEAM, Real, to_float
 
 @dataclass(frozen=True)
 class SteadyLaw:
-    """Law of motion along the travel x of a cycle (rad, or m for a slider).
+    """Law of motion over a cycle of steady running, as functions of the driver travel x (rad, or m for a slider).
 
-    flywheel: inertia of the flywheel on the driver (kg m2, or kg). energy: kinetic energy (J), flywheel
-    included. driving: driving moment (N m, or N). time: time since the beginning (s).
+    Attributes:
+        machine: the reduced machine.
+        flywheel: inertia of the flywheel on the driver, kg m2 or kg.
+        energy: kinetic energy, flywheel included, J.
+        driving: driving moment, N m or N.
+        time: time since the beginning of the cycle, s.
     """
 
     machine: ReducedMachine
@@ -45,11 +51,11 @@ class SteadyLaw:
     time: PanelCurve
 
     def speed(self, x: Real) -> Real:
-        """Speed at travel x, rad/s or m/s."""
+        """Return the speed at travel x, rad/s or m/s."""
         return np.sqrt(2 * self.energy(x) / (self.flywheel + self.machine.inertia(x)))
 
     def acceleration(self, x: Real) -> Real:
-        """Acceleration at travel x, rad/s2 or m/s2; at a jump of the load the value after it."""
+        """Return the acceleration at travel x, rad/s2 or m/s2; where the load jumps, the value after the jump."""
         moment = self.driving(x) + self.machine.moment(x) - self.machine.slope(x) * self.speed(x) ** 2 / 2
         acceleration: Real = moment / (self.flywheel + self.machine.inertia(x))
         return acceleration
@@ -61,13 +67,13 @@ class SteadyLaw:
 
 
 def constant_moment_law(machine: ReducedMachine, flywheel: float, energy: float, moment: float) -> SteadyLaw:
-    """Return the law of motion under a constant driving moment.
+    """Compute the law of motion under a constant driving moment.
 
     Args:
         machine: the reduced machine.
-        flywheel: inertia of the flywheel (kg m2).
-        energy: kinetic energy at the beginning of the cycle (J).
-        moment: driving moment (N m).
+        flywheel: inertia of the flywheel, kg m2.
+        energy: kinetic energy at the beginning of the cycle, J.
+        moment: driving moment, N m.
 
     Raises:
         StandstillError: the energy falls to zero somewhere.
@@ -113,10 +119,12 @@ VALUES_TO_ENDS: Real = (
 
 @dataclass
 class _Panel:
-    """Panel of the cycle with inertia without flywheel, its slope, and load moment at the nodes between low and
-    high.
+    """Part of the cycle on which the slip is a polynomial of the travel.
 
-    slips: last solution at the nodes, from which the next search starts.
+    Attributes:
+        low, high: travel at both ends.
+        inertia, slope, moment: reduced inertia without flywheel, its derivative, and load moment at the nodes.
+        slips: slip at the nodes from the last solution, used as the next initial guess.
     """
 
     low: float
@@ -134,9 +142,14 @@ class _Panel:
 
 @dataclass
 class MotorCycle:
-    """Cycle of a machine driven by a motor, on panels that are halved where needed, for any number of flywheels.
+    """Cycle of a machine driven by a motor, to be solved for one or more flywheels.
 
-    whole: panels before halving. slip: slip at the beginning of the cycle in the last solution.
+    Attributes:
+        machine: the reduced machine.
+        motor: the characteristic of the motor.
+        whole: panels of the cycle before any is halved.
+        slip: slip at the beginning of the cycle in the last solution.
+        panels: panels of the last solution.
     """
 
     machine: ReducedMachine
@@ -150,7 +163,7 @@ class MotorCycle:
         """Prepare the cycle of a machine with a motor.
 
         Raises:
-            WeakMotorError: the load exceeds the largest moment of the motor.
+            WeakMotorError: the mean load exceeds the largest moment of the motor.
             RunawayError: the load drives the machine harder than the motor can brake it.
         """
         mean_moment = -machine.work_of_cycle / machine.length
@@ -172,7 +185,7 @@ class MotorCycle:
         """
         slip, values, idle, self.panels = self.slip, np.zeros((NODES, 1)), self.motor.idle, list(self.whole)
         for _ in range(NEWTON_STEPS):
-            end, slope, values = self._run(flywheel, slip)
+            end, slope, values = self._integrate_cycle(flywheel, slip)
             step = (slip - end) / (1 - slope) if slope < 1 else slip - end
             slip = min(slip - step, (slip + 1) / 2)
             largest = float(np.max(np.abs(values)))
@@ -183,8 +196,8 @@ class MotorCycle:
                     raise self._lost_digits_error(values, 1 - slope)
                 break
         else:
-            raise self._unsteady(values)
-        values = self._run(flywheel, slip)[2]
+            raise self._unsteady_error(values)
+        values = self._integrate_cycle(flywheel, slip)[2]
         inertia = flywheel + np.stack([panel.inertia for panel in self.panels], axis=1)
         speed = idle * (1 - values)
         energy, driving, pace = (
@@ -199,8 +212,8 @@ class MotorCycle:
         self.slip = slip if np.all(self.motor.at_slip(values)[1] > 0) else 0.0
         return SteadyLaw(self.machine, flywheel, energy, driving, pace.summed())
 
-    def _unsteady(self, values: Real) -> LinkageError:
-        """Error for a machine that does not run steadily: it runs away, or stops where its slip is largest."""
+    def _unsteady_error(self, values: Real) -> LinkageError:
+        """Return the error for a machine that runs away, or that stops where its slip is largest."""
         x, slips = panel_nodes(self._edges), values.T.ravel()
         if np.mean(values) < RUNAWAY:
             pushing, quickest = self.machine.work_of_cycle / self.machine.length, int(np.argmin(slips))
@@ -209,21 +222,24 @@ class MotorCycle:
         return StandstillError(float(x[np.argmax(slips)]))
 
     def _lost_digits_error(self, values: Real, share: float) -> LinkageError:
-        """Error for a slip with too few digits left by rounding, or for a machine that runs away."""
-        return self._unsteady(values) if np.mean(values) < RUNAWAY else LostDigitsError(share)
+        """Return the error for a machine that runs away, or for a slip of which rounding leaves too few digits."""
+        return self._unsteady_error(values) if np.mean(values) < RUNAWAY else LostDigitsError(share)
 
     @property
     def _edges(self) -> Real:
         return np.array([0.0, *(panel.high for panel in self.panels)])
 
-    def _run(self, flywheel: float, begin: float) -> tuple[float, float, Real]:
-        """Return the slip after the cycle, its derivative by the initial slip, and slips at the nodes (nodes,
-        panels).
+    def _integrate_cycle(self, flywheel: float, begin: float) -> tuple[float, float, Real]:
+        """Integrate the slip over one cycle, from the slip `begin`; panels on which it is not smooth are halved.
+
+        Returns:
+            Slip at the end of the cycle, its derivative with respect to `begin`, and the slip at the nodes, shape
+            (nodes, panels).
         """
         left, done, slope, largest_slip = self.panels[::-1], list[_Panel](), 1.0, abs(begin)
         while left:
             panel = left.pop()
-            solution = self._solved(panel, flywheel, begin)
+            solution = self._solve_panel(panel, flywheel, begin)
             largest = largest_slip if solution is None else max(largest_slip, float(np.abs(solution[:, 0]).max()))
             if solution is None or _is_rough(solution[:, 0], begin, largest):
                 if panel.high - panel.low < NARROWEST * self.machine.length:
@@ -240,8 +256,13 @@ class MotorCycle:
         return begin, slope, np.stack([panel.slips for panel in done if panel.slips is not None], axis=1)
 
     @np.errstate(all="ignore")  # at rest the rate is not finite, and there is no solution
-    def _solved(self, panel: _Panel, flywheel: float, begin: float) -> Real | None:
-        """Slips at the nodes and their derivatives by the initial slip, (nodes, 2); None if there is no solution."""
+    def _solve_panel(self, panel: _Panel, flywheel: float, begin: float) -> Real | None:
+        """Solve the slip on one panel by collocation and Newton's method.
+
+        Returns:
+            Slip at the nodes and its derivative with respect to the slip at the beginning of the panel, shape
+            (nodes, 2); None if there is no solution.
+        """
         idle, sums = self.motor.idle, (panel.high - panel.low) / 2 * VALUES_TO_INTEGRALS[:-1]
         values = np.full(NODES, begin) if panel.slips is None else panel.slips
         inertia, right = idle * (flywheel + panel.inertia), np.ones((NODES, 2))
@@ -266,7 +287,9 @@ class MotorCycle:
 
 
 def _is_rough(values: Real, begin: float, largest_slip: float) -> bool:
-    """Return True if slips are not a polynomial that begins at `begin`, relative to the largest slip."""
+    """Return True if a polynomial does not resolve the slip on a panel, to a tolerance relative to the largest
+    slip.
+    """
     tail = max(
         float(np.abs(VALUES_TO_COEFFICIENTS[-2:] @ values).max()), abs(float(VALUES_TO_ENDS[0] @ values) - begin)
     )
@@ -284,10 +307,13 @@ LEAST_SQUARE = 1e-9  # of the largest squared speed: below it the travel time is
 
 @dataclass(frozen=True)
 class SpeedTableLaw:
-    """Law of motion of a crank from a table of its speeds.
+    """Law of motion of a crank whose speed is given by a table.
 
-    start: crank angle at t = 0 (rad). sense: sense of rotation. cycle: angle after which the motion repeats
-    (rad).
+    Attributes:
+        table: the table.
+        start: crank angle at t = 0, rad.
+        sense: sense of rotation, +1 or -1.
+        cycle: angle after which the motion repeats, rad.
     """
 
     table: SpeedTable
@@ -296,11 +322,11 @@ class SpeedTableLaw:
     cycle: float
 
     def speed(self, q: Real) -> Real:
-        """Angular velocity, rad/s, with its sign; nan beyond the table."""
+        """Return the angular velocity with its sign (rad/s) at crank angles q; nan outside the table."""
         return self.sense * np.sqrt(np.maximum(self._within(self.table.squares(self._angle(q)), q), 0.0))
 
     def accelerated(self, q: Real) -> Real:
-        """Angular acceleration, rad/s2, with its sign; nan beyond the table."""
+        """Return the angular acceleration with its sign (rad/s2) at crank angles q; nan outside the table."""
         accelerations = self.table.accelerations
         if accelerations is not None:
             return self.sense * self._within(accelerations(self._angle(q)), q)
@@ -309,7 +335,9 @@ class SpeedTableLaw:
         return self._within(self.table.squares.slope(self._angle(after)) / 2, q)
 
     def time(self, q: Real) -> Real:
-        """Time since the start, s; nan beyond the table, or if the table contains a rest."""
+        """Return the time since the start (s) at crank angles q; nan outside the table, or if the crank rests
+        somewhere.
+        """
         (laps, inner), (first, begun) = (
             self._laps_and_time(to_float(q)),
             self._laps_and_time(to_float(self.start) + np.zeros(1)),
@@ -318,19 +346,19 @@ class SpeedTableLaw:
         return inner - begun + np.where(laps == first, 0.0, (laps - first) * period)
 
     def _angle(self, q: Real) -> Real:
-        """Reduce an angle to the cycle that begins with the table."""
+        """Reduce an angle to the cycle that begins with the first row of the table."""
         first, seam = self.table.squares.arguments[0], SEAM * (1 + np.abs(q))
         reduced: Real = first + np.maximum(np.mod(q - first + seam, self.cycle) - seam, 0.0)
         return reduced
 
     def _within(self, values: Real, q: Real) -> Real:
-        """Replace values beyond the table by nan."""
+        """Replace values at angles outside the table by nan."""
         last = self.table.squares.arguments[-1]
         return np.where(self._angle(q) <= last + SEAM * (1 + np.abs(last)), values, np.nan)
 
     @cached_property
     def _first(self) -> float:
-        """End of the table that the driver reaches first."""
+        """Angle at the end of the table that the crank reaches first."""
         return float(to_float(self.table.squares.arguments[0 if self.sense > 0 else -1]))
 
     @cached_property
@@ -340,7 +368,7 @@ class SpeedTableLaw:
 
     @cached_property
     def _times(self) -> PanelCurve:
-        """Time as a function of the travel from the first end of the table, s."""
+        """Time (s) as a function of the travel from that end."""
         squares = self.table.squares
         edges = [self.sense * (float(to_float(row)) - self._first) for row in squares.arguments]
 
@@ -353,7 +381,7 @@ class SpeedTableLaw:
         return fit_curves(pace, edges)[0].summed()
 
     def _laps_and_time(self, q: Real) -> tuple[Real, Real]:
-        """Whole cycles since the first end of the table, and the time in the current one, s."""
+        """Return the number of whole cycles since the first end of the table, and the time (s) in the current cycle."""
         travel = self.sense * (q - self._first)
         laps = np.floor((travel + SEAM * (1 + np.abs(travel))) / self.cycle)
         rest = travel - laps * self.cycle

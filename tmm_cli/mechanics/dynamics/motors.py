@@ -1,8 +1,7 @@
-"""Motor characteristics (linear, asynchronous by Kloss, ...): driving moment as a function of the speed of the input
-link. A new kind is a class here.
+"""Motor characteristics: the driving moment as a function of the speed of the input link.
 
-S. A. Popov, G. A. Timofeev, Course project in the theory of mechanisms (2017), ch. 5: characteristics of
-motors.
+A new kind of motor is a class in this module. S. A. Popov, G. A. Timofeev, Course project in the theory of
+mechanisms (2017), ch. 5.
 """
 
 from __future__ import annotations
@@ -15,9 +14,11 @@ from tmm_cli.mechanics.numerics import Real
 
 
 class MotorCharacteristic(Protocol):
-    """Characteristic reduced to the input link, as a function of the slip s = 1 - w / w0 (w0: no-load speed).
+    """Characteristic of a motor, reduced to the input link, as a function of the slip s = 1 - w / w0 (w0: no-load
+    speed).
 
-    For a motor that is strong for its load the slip keeps all digits of the moment, the speed only a few.
+    If the motor is strong compared with the load, the slip determines the moment to all digits, the speed only
+    to a few.
     """
 
     @property
@@ -37,16 +38,18 @@ class MotorCharacteristic(Protocol):
 
     @abstractmethod
     def at_slip(self, slip: Real) -> tuple[Real, Real]:
-        """Return the moment, N m (N for a slider), and its derivative by the slip."""
+        """Return the moment, N m (N for a slider), and its derivative with respect to the slip."""
 
     def moment(self, speed: Real) -> Real:
-        """Return the moment (N m) at speeds (rad/s); N at m/s for a slider."""
+        """Return the moment, N m (N for a slider), at these speeds, rad/s (m/s for a slider)."""
         return self.at_slip(1 - speed / self.idle)[0]
 
 
 @dataclass(frozen=True)
 class LinearMotor(MotorCharacteristic):
-    """Shunt-wound direct-current motor: linear from `stall` (N m) at rest to zero at the speed `free` (rad/s)."""
+    """Shunt-wound DC motor: the moment falls linearly from `stall` (N m) at rest to zero at the speed `free`
+    (rad/s).
+    """
 
     stall: float
     free: float
@@ -69,10 +72,13 @@ class LinearMotor(MotorCharacteristic):
 
 @dataclass(frozen=True)
 class KlossMotor(MotorCharacteristic):
-    """Asynchronous motor by Kloss's formula: M = 2 Mk / (s / sk + sk / s).
+    """Induction motor by Kloss's formula, M = 2 Mk / (s / sk + sk / s). M. Kloss, Archiv fuer Elektrotechnik 5
+    (1916).
 
-    M. Kloss, Archiv fuer Elektrotechnik 5 (1916). synchronous: synchronous speed (rad/s). breakdown:
-    breakdown torque Mk (N m) at the slip sk (`slip`).
+    Attributes:
+        synchronous: synchronous speed, rad/s.
+        breakdown: breakdown torque Mk, N m.
+        slip: slip sk at the breakdown torque.
     """
 
     synchronous: float
@@ -81,8 +87,9 @@ class KlossMotor(MotorCharacteristic):
 
     @classmethod
     def rated(cls, synchronous: float, speed: float, moment: float, overload: float) -> KlossMotor:
-        """Build the characteristic from rated speed and torque; overload: breakdown torque over rated torque (at
-        least 1).
+        """Build the characteristic from the rated speed (rad/s) and torque (N m).
+
+        overload: breakdown torque divided by rated torque, at least 1.
         """
         rated_slip = 1 - speed / synchronous
         return cls(synchronous, overload * moment, rated_slip * (overload + (overload**2 - 1) ** 0.5))

@@ -1,7 +1,7 @@
-"""The machine reduced to its driver: functions of the driver's travel as polynomials on panels.
+"""The machine reduced to its driver: functions of the driver travel, represented by polynomials on panels.
 
-Panels end where a function may jump or bend (ends of strokes, rows of a table), and are halved until the
-polynomials have full precision; so an integral over a cycle is exact to rounding with a few hundred
+Panels end where a function may jump or have a kink (ends of strokes, rows of a table), and are halved until
+the polynomials have full precision. So an integral over a cycle is exact to rounding with a few hundred
 positions. L. N. Trefethen, Approximation Theory and Approximation Practice (2013), ch. 3 and 19.
 """
 
@@ -33,7 +33,12 @@ VALUES_TO_INTEGRALS: Real = chebyshev.chebvander(np.append(NODE_POINTS, 1.0), NO
 
 @dataclass(frozen=True)
 class PanelCurve:
-    """Function on 0..length. edges: (panels + 1,); coefficients: (nodes, panels), of Chebyshev polynomials."""
+    """Piecewise polynomial function on the interval from 0 to `length`.
+
+    Attributes:
+        edges: ends of the panels, (panels + 1,).
+        coefficients: Chebyshev coefficients on each panel, (nodes, panels).
+    """
 
     edges: Real
     coefficients: Real
@@ -43,7 +48,7 @@ class PanelCurve:
         return float(self.edges[-1])
 
     def __call__(self, x: Real) -> Real:
-        """Return its values; at an edge, where it may jump, the value after it."""
+        """Return the values at x; at an edge, where the function may jump, the value after the jump."""
         x = np.asarray(x, float)
         panel = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, len(self.edges) - 2)
         low, high = self.edges[panel], self.edges[panel + 1]
@@ -53,11 +58,11 @@ class PanelCurve:
         return heights
 
     def slope(self) -> PanelCurve:
-        """Return its derivative, panel by panel."""
+        """Return the derivative of the function."""
         return PanelCurve(self.edges, chebyshev.chebder(self.coefficients) / (np.diff(self.edges) / 2))
 
     def summed(self) -> PanelCurve:
-        """Return its integral from 0."""
+        """Return the integral of the function from 0 as a function of its upper limit."""
         half = np.diff(self.edges) / 2
         integrals = chebyshev.chebint(self.coefficients, lbnd=-1) * half
         gone = np.concatenate([[0.0], np.cumsum(chebyshev.chebval(1.0, integrals))])
@@ -66,17 +71,20 @@ class PanelCurve:
 
     @property
     def total(self) -> float:
-        """Integral over the whole length."""
+        """Integral of the function over its whole length."""
         integrals = chebyshev.chebval(1.0, chebyshev.chebint(self.coefficients, lbnd=-1))
         return float(np.sum(np.diff(self.edges) / 2 * integrals))
 
     def places(self) -> Real:
-        """Return closely spaced arguments: both ends of each panel, just inside it, and its nodes."""
+        """Return closely spaced arguments: the nodes of each panel, and two points just inside its ends."""
         return panel_nodes(self.edges, ends=True)
 
 
 def panel_nodes(edges: Real, *, ends: bool = False) -> Real:
-    """Return the nodes of all panels in order; ends: with both ends of each panel, just inside it."""
+    """Return the nodes of all panels in ascending order.
+
+    ends: if True, two points just inside the ends of each panel are included.
+    """
     points = np.concatenate([[-1 + 1e-15], NODE_POINTS, [1 - 1e-15]]) if ends else NODE_POINTS
     low, high = edges[:-1, None], edges[1:, None]
     nodes: Real = ((low + high) / 2 + (high - low) / 2 * points).ravel()
@@ -84,13 +92,13 @@ def panel_nodes(edges: Real, *, ends: bool = False) -> Real:
 
 
 def fit_curves(function: Callable[[Real], Sequence[Real]], edges: Sequence[float] | Real) -> tuple[PanelCurve, ...]:
-    """Fit functions, computed together, by polynomials on common panels.
+    """Approximate several functions by polynomials on common panels.
+
+    A panel on which a value is not finite is not halved further.
 
     Args:
-        function: returns the values of all functions at many arguments.
-        edges: arguments where they may jump, both ends included.
-
-    A panel with values that are not finite keeps them and is not halved.
+        function: returns the values of all functions at an array of arguments.
+        edges: arguments at which the functions may jump, including both ends of the interval.
     """
     at = _divide_wide_panels(np.unique(np.asarray(edges, float)))
     values = _node_values(function, at)
@@ -110,7 +118,7 @@ def fit_curves(function: Callable[[Real], Sequence[Real]], edges: Sequence[float
 
 
 def _divide_wide_panels(edges: Real) -> Real:
-    """Divide panels that are wider than WIDEST_PANEL."""
+    """Divide panels wider than WIDEST_PANEL."""
     parts = [
         np.linspace(low, high, int(np.ceil((high - low) / WIDEST_PANEL - 1e-9)) + 1)[:-1]
         for low, high in pairwise(edges)
@@ -119,14 +127,14 @@ def _divide_wide_panels(edges: Real) -> Real:
 
 
 def _node_values(function: Callable[[Real], Sequence[Real]], edges: Real, selected: Real | None = None) -> Real:
-    """Values at the nodes, (functions, nodes, panels), of all panels or of the selected ones."""
+    """Evaluate the functions at the nodes of all panels, or of the selected ones, (functions, nodes, panels)."""
     x = panel_nodes(edges).reshape(-1, NODES)
     x = x if selected is None else x[selected]
     return np.stack([np.asarray(function_values).reshape(x.shape).T for function_values in function(x.ravel())])
 
 
 def _rough_panels(values: Real) -> Real:
-    """Mark panels on which the last coefficients of a function are not negligible."""
+    """Return True for each panel on which the last coefficients of some function are not negligible."""
     tails = np.abs(VALUES_TO_COEFFICIENTS[-2:] @ values).max(axis=1)
     sizes = np.nanmax(np.abs(values), axis=(1, 2), initial=0.0, where=np.isfinite(values))
     rough: Real = np.any(tails > TAIL * NODES * sizes[:, None], axis=0)
@@ -143,13 +151,17 @@ Sample = Callable[[Real], tuple[Real, Real, Real]]  # at ways x: inertia, its sl
 
 @dataclass(frozen=True)
 class ReducedMachine:
-    """Machine reduced to its driver, over a cycle, as functions of the driver's travel x (rad, or m for a
-    slider).
+    """Machine reduced to its driver over a cycle, as functions of the driver travel x (rad, or m for a slider).
 
-    inertia (kg m2, or kg). slope: its derivative by x. moment: moment of all loads except inertia, along the
-    sense of motion (N m, or N). work: work of these loads from the beginning (J). constant: inertia of the
-    driver and of the links with a constant speed ratio to it; with a flywheel they are the first group of N.
-    I. Mertsalov (kg m2). For a slider as driver, speeds are m/s and moments are forces.
+    For a slider as driver, inertias are masses (kg), moments are forces (N) and speeds are in m/s.
+
+    Attributes:
+        inertia: reduced inertia, kg m2.
+        slope: its derivative with respect to x.
+        moment: moment of all loads except inertia, positive in the sense of motion, N m.
+        work: work of these loads from the beginning of the cycle, J.
+        constant: inertia of the driver and of the links with a constant speed ratio to it, kg m2; together with
+            the flywheel it is N. I. Mertsalov's first group.
     """
 
     inertia: PanelCurve
@@ -160,7 +172,7 @@ class ReducedMachine:
 
     @property
     def work_of_cycle(self) -> float:
-        """Work of the loads in a cycle, J."""
+        """Work of the loads over a cycle, J."""
         return self.moment.total
 
     @property
@@ -169,8 +181,10 @@ class ReducedMachine:
 
 
 def reduce_machine(sample: Sample, edges: Sequence[float], constant: float = 0.0) -> ReducedMachine:
-    """Build the reduced machine from a function that samples it; edges: where loads may jump, and the ends of
-    the cycle.
+    """Build the reduced machine from a function that returns its inertia, the derivative of the inertia, and the
+    load moment.
+
+    edges: driver travels at which loads may jump, including both ends of the cycle.
     """
     inertia, slope, moment = fit_curves(sample, edges)
     return ReducedMachine(inertia, slope, moment, moment.summed(), constant)

@@ -1,10 +1,10 @@
-"""A single run: starting, stopping, a press that works once, a cylinder under pressure.
+"""A single run of a machine: starting, stopping, a press that works once, a cylinder under pressure.
 
-J w' + J' w^2 / 2 = M + Md is integrated over time until the travel x of the driver is complete or the
-machine stops; works are integrated with it. Method of Dormand and Prince of order 8, in pieces at whose
-ends moments may jump: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I
-(1993), II.10. With a motor too strong for its load the equation is stiff, and LSODA (Petzold, Hindmarsh)
-is used.
+The equation J w' + J' w^2 / 2 = M + Md is integrated over time until the driver has completed its travel x
+or the machine stops; the works of the moments are integrated with it. The method is that of Dormand and
+Prince of order 8; integration restarts wherever a moment may jump: E. Hairer, S. P. Norsett, G. Wanner,
+Solving Ordinary Differential Equations I (1993), II.10. If the motor is so strong compared with the load
+that the equation is stiff, LSODA (Petzold, Hindmarsh) is used.
 """
 
 from __future__ import annotations
@@ -39,10 +39,15 @@ RunEnding = Literal["way", "standstill", "time"]
 
 @dataclass(frozen=True)
 class RunHistory:
-    """History of a run, one value per integration step.
+    """Course of a single run: one value per integration step.
 
-    time (s); way, speed and acceleration of the driver; kinetic energy (J); driven, loaded, braked: works (J)
-    of the drive, the loads and the brake. ending: what ended the run. steps: dense output of the integration.
+    Attributes:
+        time: time, s.
+        way, speed, acceleration: distance covered by the driver (rad or m), its speed and acceleration.
+        kinetic: kinetic energy, J.
+        driven, loaded, braked: work of the drive, of the loads and of the brake, J.
+        ending: why the run ended: the travel was complete, the machine stopped, or the time limit was reached.
+        steps: interpolants of the solution between the steps.
     """
 
     time: Real
@@ -58,15 +63,15 @@ class RunHistory:
 
     @property
     def balance(self) -> float:
-        """Largest error of the energy balance over all times, relative to the largest energy."""
+        """Largest error of the energy balance during the run, relative to the largest energy."""
         parts = (self.kinetic, self.driven, self.loaded, self.braked)
         scale = max(float(np.max(np.abs(energies))) for energies in parts)
         left = self.kinetic - self.kinetic[0] - self.driven - self.loaded - self.braked
         return float(np.max(np.abs(left))) / scale if scale > 0 else 0.0
 
     def at(self, travel: Real) -> tuple[Real, Real]:
-        """Return time (s) and speed at which the driver has covered these distances; nan where it does not get
-        there.
+        """Return the time (s) and the speed at which the driver has covered these distances; nan for distances not
+        reached.
         """
         travel = np.asarray(travel, float)
         if self.steps:
@@ -84,10 +89,11 @@ class RunHistory:
         return np.where(begins, self.time[0], time), np.where(begins, self.speed[0], speed)
 
     def closely(self, count: int) -> list[tuple[Real, Real]]:
-        """Return, for each piece, `count` times just inside its ends, and there the travel, speed and works, (5,
-        count).
+        """Sample the run at `count` evenly spaced times in each interval of integration, just inside its ends.
 
-        Works are those of the drive, of the loads and of the brake.
+        Returns:
+            For each interval the times (s), and an array (5, count) of travel, speed and the works of the drive,
+            the loads and the brake.
         """
         ends = [(step.ts[0], step.ts[-1]) for step in self.steps]
         inner = [
@@ -106,7 +112,7 @@ def integrate_run(machine: ReducedMachine, task: RunTask) -> RunHistory:
     Raises:
         NoInertiaError: the machine has no inertia somewhere.
         StandstillError: the machine does not start.
-        LongRunError: too many evaluations.
+        LongRunError: the number of evaluations exceeds the limit.
     """
     nodes = machine.inertia.places()
     inertia = task.flywheel + machine.inertia(nodes)
@@ -141,9 +147,19 @@ def _integrate_piece(
     state: Real,
     left: Iterator[int],
 ) -> Any:
-    """Integrate one piece to its end, to rest, or to the end of the time span.
+    """Integrate over one interval of travel, until the end of the interval, standstill, or the end of the time
+    span.
 
-    left: remaining evaluations. Raises LongRunError if there are none.
+    Args:
+        machine: the reduced machine.
+        task: the task of the run.
+        piece: ends of the interval of travel.
+        times: ends of the time span, s.
+        state: travel, speed, and the works of the drive, the loads and the brake at the beginning.
+        left: counts down the evaluations that are still allowed.
+
+    Raises:
+        LongRunError: no evaluations are left.
     """
 
     last = float(np.nextafter(times[1], times[0]))  # at the end of a piece what drives may have jumped already
@@ -170,10 +186,10 @@ def _integrate_piece(
 
 
 def _with_last_step(done: Any, integrate: Callable[..., Any]) -> Any:
-    """Repeat the last step of an integration up to the event that ended it.
+    """Repeat the last step of an integration, now only up to the event that ended it.
 
-    The step went beyond the end of the piece, where moments are no longer smooth, and this would spoil its
-    interpolation.
+    The step went beyond the end of the interval, where moments are no longer smooth, so its interpolant is
+    inaccurate.
     """
     if done.status != 1 or not done.t[-1] > done.t[-2]:
         return done
@@ -197,13 +213,13 @@ def _is_stiff(machine: ReducedMachine, task: RunTask) -> bool:
 
 
 def _distance_past(step: Any, travel: Real, time: Real) -> Real:
-    """Travel of an integration step beyond a given travel."""
+    """Return how far beyond `travel` the driver is at this time of an integration step."""
     excess: Real = step(time)[0] - travel
     return excess
 
 
 def driver_acceleration(machine: ReducedMachine, task: RunTask, time: Real, travel: Real, speed: Real) -> Real:
-    """Return the driver's acceleration (rad/s2, or m/s2) at these times, distances and speeds."""
+    """Compute the acceleration of the driver (rad/s2, or m/s2) from time, travel and speed."""
     states = np.stack([travel, speed, 0 * travel, 0 * travel, 0 * travel], axis=-1)
     return np.array(
         [
@@ -214,7 +230,7 @@ def driver_acceleration(machine: ReducedMachine, task: RunTask, time: Real, trav
 
 
 def _rates(machine: ReducedMachine, task: RunTask, piece: tuple[float, float], t: float, state: Real) -> list[float]:
-    """Time derivatives of travel, speed, and the works of the drive, the loads and the brake."""
+    """Return the time derivatives of the travel, the speed, and the works of the drive, the loads and the brake."""
     speed = float(state[1])
     x = np.array([min(max(float(state[0]), piece[0]), np.nextafter(piece[1], piece[0]))])
     load, driving = float(machine.moment(x)[0]), _driving_moment(task, t, x, speed)
@@ -230,7 +246,7 @@ def _driving_moment(task: RunTask, t: float, x: Real, speed: float) -> float:
 
 
 def _pieces(moment: PanelCurve, way_edges: Sequence[float]) -> Iterator[tuple[float, float]]:
-    """Yield intervals of the travel between points where the load moment jumps or the drive has a jump or a kink."""
+    """Yield the intervals of travel between points where the load moment jumps or the drive has a jump or a kink."""
     inner = moment.edges[1:-1]
     before, after = moment(np.nextafter(inner, 0.0)), moment(inner)
     jumps = inner[np.abs(after - before) > NO_JUMP * float(np.max(np.abs(moment(moment.places()))))]
@@ -251,11 +267,16 @@ def _run_history(machine: ReducedMachine, task: RunTask, time: Real, states: Rea
 
 @dataclass(frozen=True, eq=False)
 class SingleRun:
-    """Single run of a mechanism from the driver coordinate `first` (rad, or m); it is also the driver's law of
-    motion.
+    """Single run of a mechanism, which is also the law of motion of its driver.
 
-    task: its drive is positive along the run. turn: rotation after which a crank is at the same angle again,
-    2 pi; None if the driver does not rotate fully.
+    Attributes:
+        task: the task, with its drive counted positive in the direction of the run.
+        machine: the reduced machine.
+        run: course of the run.
+        first: driver coordinate at the beginning, rad or m.
+        sense: direction of the run, +1 or -1.
+        turn: angle after which a crank is in the same position again, 2 pi; None if the driver does not rotate
+            fully.
     """
 
     task: RunTask
@@ -270,7 +291,7 @@ class SingleRun:
         return self.first + self.sense * np.linspace(0, float(self.run.way[-1]), count)
 
     def way(self, q: Real) -> Real:
-        """Distance that the driver has covered at coordinate q."""
+        """Return the distance that the driver has covered when it reaches the coordinate q."""
         gone: Real = self.sense * (to_float(q) - self.first)
         again = gone if self.turn is None else np.mod(gone + SAME_DRIVER_POSITION, self.turn) - SAME_DRIVER_POSITION
         gone = np.where(
@@ -279,51 +300,51 @@ class SingleRun:
         return np.clip(gone, 0.0, None) if self.turn else np.where(np.abs(gone) < SAME_DRIVER_POSITION, 0.0, gone)
 
     def driving(self, travel: Real, speed: Real, accelerated: Real) -> Real:
-        """Driving moment (N m) or force (N) for a given motion of the driver."""
+        """Compute the driving moment (N m) or force (N) that produces a given motion of the driver."""
         machine = self.machine
         inertial = (self.task.flywheel + machine.inertia(travel)) * accelerated + machine.slope(travel) * speed**2 / 2
         moment: Real = inertial + self.task.brake - machine.moment(travel)
         return moment
 
     def speed(self, q: Real) -> Real:
-        """Speed with its sign, rad/s or m/s; nan where the run does not get."""
+        """Return the speed with its sign, rad/s or m/s; nan at coordinates that the run does not reach."""
         return self.sense * self.run.at(self.way(q))[1]
 
     def time(self, q: Real) -> Real:
-        """Time since the beginning, s; nan where the run does not get."""
+        """Return the time since the beginning, s; nan at coordinates that the run does not reach."""
         return self.run.at(self.way(q))[0]
 
     def kinetic(self, q: Real) -> Real:
-        """Kinetic energy, J; nan where the run does not get."""
+        """Return the kinetic energy, J; nan at coordinates that the run does not reach."""
         return self.energy(self.way(q), self.speed(q))
 
     def energy(self, travel: Real, speed: Real) -> Real:
-        """Kinetic energy at a distance and speed of the driver, J."""
+        """Compute the kinetic energy (J) from the distance covered by the driver and its speed."""
         energy: Real = (self.task.flywheel + self.machine.inertia(travel)) * speed**2 / 2
         return energy
 
     def acceleration(self, time: Real, travel: Real, speed: Real) -> Real:
-        """Acceleration of the driver at these times, distances and speeds."""
+        """Compute the acceleration of the driver from time, distance covered and speed."""
         return driver_acceleration(self.machine, self.task, time, travel, speed)
 
     def accelerated(self, q: Real) -> Real:
-        """Acceleration with its sign, rad/s2 or m/s2; nan where the run does not get."""
+        """Return the acceleration with its sign, rad/s2 or m/s2; nan at coordinates that the run does not reach."""
         travel = self.way(q)
         time, speed = self.run.at(travel)
         return self.sense * self.acceleration(time, travel, speed)
 
 
 def compute_single_run(mechanism: Mechanism, positions: Real, task: RunTask) -> SingleRun:
-    """Compute the run between the coordinates of the task, or between the first and the last requested position.
+    """Compute a run between the coordinates named in the task; default: the first and the last requested position.
 
     Args:
         mechanism: the mechanism with its loads.
-        positions: driver coordinates of the requested positions (rad or m).
+        positions: driver coordinates of the requested positions, rad or m.
         task: drive, brake, flywheel, initial speed, ends of the run.
 
     Raises:
         NoCycleError: the mechanism has several drivers.
-        OutOfRangeError: an end lies outside the driver's range.
+        OutOfRangeError: an end lies outside the range of the driver.
         StandstillError: the machine does not start.
     """
     first, last = (float(positions[k]) if end is None else end for k, end in ((0, task.first), (-1, task.last)))

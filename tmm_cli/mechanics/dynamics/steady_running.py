@@ -1,4 +1,6 @@
-"""Steady running: driving moment, flywheel for a fluctuation of speed, and the law of motion with it."""
+"""Steady running: driving moment, flywheel for a required fluctuation of speed, and the resulting law of
+motion.
+"""
 
 from __future__ import annotations
 
@@ -58,11 +60,19 @@ FLUCTUATION_TOLERANCE = 1e-12  # relative tolerance of the fluctuation
 class SteadySolution:
     """Steady running of a reduced machine.
 
-    moment: mean driving moment over the cycle (N m, or N). work: work of all moments from the beginning of
-    the cycle (J). own: fluctuation with the given flywheel alone, nan if the machine stops then. found: the
-    exact flywheel, given one included. wittenbauer: its inertia by the tangents of a course (kg m2).
-    first_group: inertia J_I by Mertsalov of the flywheel with the links of constant speed ratio (kg m2). With
-    a motor the last three do not exist.
+    The last three attributes are not computed for a machine driven by a motor.
+
+    Attributes:
+        task: the task.
+        machine: the reduced machine.
+        moment: mean driving moment over the cycle, N m or N.
+        work: work of all moments from the beginning of the cycle, J.
+        law: the law of motion.
+        own: coefficient of fluctuation without the computed flywheel; nan if the machine then stops.
+        found: exact flywheel, including the flywheel that the task specifies.
+        wittenbauer: its inertia by Wittenbauer's tangents, kg m2.
+        first_group: inertia J_I of Mertsalov's first group, the flywheel and the links with a constant speed
+            ratio, kg m2.
     """
 
     task: SteadyTask
@@ -77,23 +87,23 @@ class SteadySolution:
 
     @property
     def mertsalov(self) -> float:
-        """Inertia of the flywheel by Mertsalov: J_I without the links of constant speed ratio (kg m2)."""
+        """Inertia of the flywheel by Mertsalov, kg m2: J_I less the links with a constant speed ratio."""
         return self.first_group - self.machine.constant
 
     @property
     def on_shaft(self) -> float:
-        """Inertia of the flywheel on its own shaft, kg m2: the computed one, or the given one if none is computed."""
+        """Inertia of the flywheel on its own shaft, kg m2; of the specified flywheel if none is computed."""
         return self.law.flywheel / self.task.ratio**2
 
     @property
     def errors(self) -> tuple[float, float]:
-        """Relative errors of Wittenbauer's and Mertsalov's methods against the exact flywheel."""
+        """Relative errors of Wittenbauer's and Mertsalov's methods, compared with the exact flywheel."""
         exact = float("nan") if self.found is None else self.found.inertia
         return self.wittenbauer / exact - 1, self.mertsalov / exact - 1
 
     @property
     def diameter(self) -> float:
-        """Diameter of the flywheel, for a rim the mean diameter, m."""
+        """Diameter of a disk flywheel, mean diameter of a rim, m."""
         return self.task.size.diameter(self.on_shaft)
 
     @property
@@ -113,28 +123,28 @@ class SteadySolution:
 
     @property
     def delta(self) -> float:
-        """Coefficient of fluctuation of speed that is reached."""
+        """Coefficient of fluctuation of speed with the flywheel."""
         return speed_fluctuation(self.law)
 
     @property
     def tangents(self) -> tuple[Tangent, Tangent]:
-        """Tangents to the energy-mass diagram for the largest and the least speed, whatever the drive.
+        """Tangents to the energy-mass diagram for the largest and the least speed; defined with a motor too.
 
-        They pass through the point with inertia -Jf and energy -T0.
+        They meet at the point with inertia -Jf and energy -T0.
         """
         start = float(self.law.energy(np.zeros(1))[0])
-        low, high = (self._touching(x, speed, start) for x, speed in speed_extreme_places(self.law))
+        low, high = (self._tangent_at(x, speed, start) for x, speed in speed_extreme_places(self.law))
         return high, low
 
-    def _touching(self, x: float, speed: float, start: float) -> Tangent:
+    def _tangent_at(self, x: float, speed: float, start: float) -> Tangent:
         inertia = float(self.machine.inertia(np.array([x]))[0])
         return Tangent(x, inertia, (self.law.flywheel + inertia) * speed**2 / 2 - start, speed**2 / 2)
 
     @property
     def at_mean(self) -> tuple[Tangent, Tangent]:
-        """Tangents of the mean speed above and below the diagram, by Mertsalov.
+        """Tangents with the slope of the mean speed, above and below the diagram, for Mertsalov's method.
 
-        The inertia is that of the second group, the links without a constant speed ratio.
+        The inertia is that of the second group: the links without a constant speed ratio.
         """
         slope = self.task.mean**2 / 2
         tangents = (find_tangent(self.machine, self.work, slope, top=top) for top in (True, False))
@@ -154,7 +164,7 @@ def speed_extremes(law: SteadyLaw) -> tuple[float, float]:
 
 
 def speed_extreme_places(law: SteadyLaw) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return travel and speed of the least and of the largest speed."""
+    """Return two pairs: driver travel and speed where the speed is least, and where it is largest."""
     nodes = law.energy.places()
     (slowest, low), (quickest, high) = find_minimum(law.speed, nodes), find_minimum(lambda x: -law.speed(x), nodes)
     length = law.energy.length
@@ -165,7 +175,7 @@ def speed_extreme_places(law: SteadyLaw) -> tuple[tuple[float, float], tuple[flo
 
 
 def speed_fluctuation(law: SteadyLaw) -> float:
-    """Coefficient of fluctuation: largest minus least speed, divided by the mean of both."""
+    """Compute the coefficient of fluctuation: largest minus least speed, divided by the mean of the two."""
     low, high = speed_extremes(law)
     return 2 * (high - low) / (high + low)
 
@@ -175,7 +185,7 @@ def find_steady_running(machine: ReducedMachine, task: SteadyTask) -> SteadySolu
 
     Raises:
         StandstillError: the machine stops.
-        NoFlywheelError: the given flywheel already keeps the fluctuation.
+        NoFlywheelError: the fluctuation is small enough without a further flywheel.
         NoInertiaError: the machine has no inertia somewhere.
     """
     if task.motor is not None:
@@ -207,7 +217,10 @@ def find_steady_running(machine: ReducedMachine, task: SteadyTask) -> SteadySolu
 
 
 def _steady_with_motor(machine: ReducedMachine, task: SteadyTask, motor: MotorCharacteristic) -> SteadySolution:
-    """Steady running with a motor: a flywheel changes the driving moment, so its size is found iteratively."""
+    """Solve steady running with a motor.
+
+    A flywheel changes the driving moment, so its inertia is found iteratively.
+    """
 
     cycle, nodes = MotorCycle.of(machine, motor), machine.inertia.places()
     inertia = machine.inertia(nodes)
@@ -244,10 +257,15 @@ def _steady_with_motor(machine: ReducedMachine, task: SteadyTask, motor: MotorCh
 
 
 def _search_flywheel(delta: float, delta_of: Callable[[float], float], low: float, unit: float) -> float:
-    """Find the flywheel inertia that gives the fluctuation delta; with the lower bound `low` the fluctuation is
-    larger.
+    """Find the flywheel inertia that gives the coefficient of fluctuation `delta`.
 
-    The reciprocal of the fluctuation grows almost linearly with the flywheel, so few trials are needed.
+    The reciprocal of the coefficient grows almost linearly with the inertia, so few trials are needed.
+
+    Args:
+        delta: required coefficient of fluctuation.
+        delta_of: coefficient of fluctuation as a function of the inertia.
+        low: inertia with which the fluctuation is too large, the lower bound of the search.
+        unit: first increment of the inertia.
     """
 
     def over(flywheel: Real) -> Real:
@@ -269,11 +287,11 @@ CONSTANT_SAMPLES = 97  # positions of a cycle at which the reduced inertias of l
 
 
 def reduce_mechanism(mechanism: Mechanism, start: float) -> ReducedMachine:
-    """Reduce a mechanism to its crank over a cycle that begins at the crank angle `start` (rad).
+    """Reduce a mechanism to its crank over the cycle that begins at the crank angle `start` (rad).
 
     Raises:
-        NoCycleError: the driver is not a fully rotating crank, or not the only one.
-        BySpeedError: a load depends on speed.
+        NoCycleError: the driver is not a fully rotating crank, or there are several drivers.
+        SpeedDependentForceError: a load depends on the speed.
     """
     linkage, whole = mechanism.linkage, mechanism.driver_range
     if linkage.driver.kind != "turn" or not whole.full:
@@ -284,10 +302,10 @@ def reduce_mechanism(mechanism: Mechanism, start: float) -> ReducedMachine:
 
 
 def _constant_inertia(mechanism: Mechanism, start: float, length: float) -> float:
-    """Reduced inertia of the links with a constant speed ratio to the driver, kg m2.
+    """Compute the reduced inertia (kg m2) of the links with a constant speed ratio to the driver.
 
-    A link counts if its reduced inertia does not change over the cycle: the crank, gears on the frame, links
-    of parallelograms.
+    They are the links whose reduced inertia does not change over the cycle: the crank, gears on the frame,
+    links of parallelograms.
     """
     q = start + mechanism.linkage.driver.sense * np.linspace(0, length, CONSTANT_SAMPLES, endpoint=False)
     motion = compute_motion(
@@ -306,11 +324,11 @@ def _constant_inertia(mechanism: Mechanism, start: float, length: float) -> floa
 
 
 def reduce_between(mechanism: Mechanism, start: float, sense: int, length: float) -> ReducedMachine:
-    """Reduce a mechanism to its driver over a travel `length` (rad, or m) from the coordinate `start`.
+    """Reduce a mechanism to its driver over a travel `length` (rad, or m) from the driver coordinate `start`.
 
     Raises:
         NoCycleError: there are several drivers.
-        BySpeedError: a load depends on speed.
+        SpeedDependentForceError: a load depends on the speed.
     """
     linkage = mechanism.linkage
     if linkage.others:
@@ -334,7 +352,13 @@ def reduce_between(mechanism: Mechanism, start: float, sense: int, length: float
 
 @dataclass(frozen=True)
 class SteadyRunning:
-    """Steady running of a mechanism; also the law of motion of its driver from the crank angle `start` (rad)."""
+    """Steady running of a mechanism, which is also the law of motion of its driver.
+
+    Attributes:
+        steady: steady running of the reduced machine.
+        start: crank angle at the beginning of the cycle, rad.
+        sense: sense of rotation, +1 or -1.
+    """
 
     steady: SteadySolution
     start: float
@@ -345,39 +369,40 @@ class SteadyRunning:
         return self.steady.task
 
     def way(self, q: Real) -> Real:
-        """Travel of the driver in the cycle at coordinate q, rad."""
+        """Return the travel of the driver (rad) from the beginning of the cycle to the coordinate q."""
         gone = np.mod(self.sense * (to_float(q) - self.start) + SEAM, self.steady.machine.length) - SEAM
         return np.asarray(np.maximum(gone, 0.0))
 
     def speed(self, q: Real) -> Real:
-        """Angular velocity with its sign, rad/s."""
+        """Return the angular velocity with its sign, rad/s."""
         return self.sense * self.steady.law.speed(self.way(q))
 
     def accelerated(self, q: Real) -> Real:
-        """Angular acceleration with its sign, rad/s2."""
+        """Return the angular acceleration with its sign, rad/s2."""
         return self.sense * self.steady.law.acceleration(self.way(q))
 
     def time(self, q: Real) -> Real:
-        """Time since the beginning of the cycle, s."""
+        """Return the time since the beginning of the cycle, s."""
         return self.steady.law.time(self.way(q))
 
     def driving(self, q: Real) -> Real:
-        """Driving moment along the sense of rotation, N m."""
+        """Return the driving moment (N m), positive in the sense of rotation."""
         return self.steady.law.driving(self.way(q))
 
     def work(self, q: Real) -> Real:
-        """Work of all moments since the beginning of the cycle, J."""
+        """Return the work of all moments since the beginning of the cycle, J."""
         return self.steady.work(self.way(q))
 
 
 def find_running_law(mechanism: Mechanism, start: float, task: SteadyTask) -> SteadyRunning:
-    """Solve steady running of a mechanism with its loads from the crank angle `start` (rad).
+    """Solve steady running of a mechanism with its loads over the cycle that begins at the crank angle `start`
+    (rad).
 
     Raises:
-        NoCycleError: the driver is not a fully rotating crank, or not the only one.
-        BySpeedError: a load depends on speed.
+        NoCycleError: the driver is not a fully rotating crank, or there are several drivers.
+        SpeedDependentForceError: a load depends on the speed.
         StandstillError: the machine stops.
-        NoFlywheelError: the given flywheel already keeps the fluctuation.
+        NoFlywheelError: the fluctuation is small enough without a further flywheel.
     """
     return SteadyRunning(
         find_steady_running(reduce_mechanism(mechanism, start), task), start, mechanism.linkage.driver.sense

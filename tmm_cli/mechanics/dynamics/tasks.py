@@ -1,7 +1,7 @@
-"""Input data of dynamics: forms of flywheels, and the tasks of steady running and of a single run.
+"""Input data of dynamics: shapes of flywheels, and the tasks of steady running and of a single run.
 
 J = m D^2 / 8 for a disk, m D^2 / 4 for a rim of mean diameter D: I. I. Artobolevsky, Theory of Mechanisms
-and Machines (1988), ch. 19. A new form of flywheel is a class here.
+and Machines (1988), ch. 19. A new shape of flywheel is a class in this module.
 """
 
 from __future__ import annotations
@@ -20,7 +20,13 @@ from tmm_cli.mechanics.numerics import Real
 
 @dataclass(frozen=True)
 class DiskFlywheel:
-    """Solid disk. density: kg/m3; width: relative to the diameter; height: unused."""
+    """Flywheel in the shape of a solid disk.
+
+    Attributes:
+        density: density of the material, kg/m3.
+        width: width divided by the diameter.
+        height: not used.
+    """
 
     shape: ClassVar[Literal["disk", "rim"]] = "disk"
     density: float
@@ -38,7 +44,12 @@ class DiskFlywheel:
 
 @dataclass(frozen=True)
 class RimFlywheel:
-    """Rim without spokes and hub. density: kg/m3; width and height of its section relative to its mean diameter."""
+    """Flywheel in the shape of a rim; spokes and hub are neglected.
+
+    Attributes:
+        density: density of the material, kg/m3.
+        width, height: dimensions of the section of the rim, divided by its mean diameter.
+    """
 
     shape: ClassVar[Literal["disk", "rim"]] = "rim"
     density: float
@@ -64,10 +75,14 @@ FlywheelForm = DiskFlywheel | RimFlywheel
 class SteadyTask:
     """Task of steady running.
 
-    mean: mean of the largest and the least speed of the driver (rad/s, or m/s), used with a constant moment.
-    delta: required coefficient of fluctuation; None: no flywheel is computed. motor: drives instead of a
-    constant moment; the speed then follows. flywheel: inertia of a given flywheel, reduced to the driver (kg
-    m2, or kg). ratio: speed of the flywheel shaft over that of the driver. size: form of the flywheel.
+    Attributes:
+        mean: mean of the largest and the least speed of the driver (rad/s, or m/s), used with a constant
+            driving moment.
+        delta: required coefficient of fluctuation of speed; None if no flywheel is to be computed.
+        motor: motor that drives instead of a constant moment; the speed then follows from its characteristic.
+        flywheel: inertia of a flywheel that is already there, reduced to the driver, kg m2 or kg.
+        ratio: speed of the flywheel shaft divided by that of the driver.
+        size: shape of the flywheel, for its dimensions.
     """
 
     mean: float
@@ -81,9 +96,9 @@ class SteadyTask:
 
 @dataclass(frozen=True)
 class DriveProfile:
-    """Driving moment (N m) or force (N) as a function of time (s) or travel, linear between its rows.
+    """Driving moment (N m) or force (N) as a function of time (s) or travel, interpolated linearly.
 
-    Two equal arguments mark a jump; the second value holds from there on.
+    Two equal arguments mark a jump; at the jump itself the second value holds.
     """
 
     against: Literal["time", "way"]
@@ -91,7 +106,7 @@ class DriveProfile:
     values: tuple[float, ...]
 
     def __call__(self, time: Real, travel: Real) -> Real:
-        """Return the values; before the first row and after the last one they are constant."""
+        """Return the values; before the first argument and after the last one they are constant."""
         return np.interp(time if self.against == "time" else travel, self.arguments, self.values)
 
 
@@ -99,10 +114,16 @@ class DriveProfile:
 class RunTask:
     """Task of a single run.
 
-    speed: initial speed (rad/s, or m/s). first, last: driver coordinates of its ends (rad, or m); None: first
-    and last requested position. motor: drives along the motion by its characteristic. drive: profile, alone
-    or added to the motor, positive along the guide or counterclockwise. brake: moment against the motion.
-    flywheel: kg m2, or kg. longest: time limit (s).
+    Attributes:
+        speed: initial speed, rad/s or m/s.
+        motor: motor that drives in the direction of motion.
+        drive: driving moment or force as a function of time and travel, positive counterclockwise or along the
+            guide; it is added to that of the motor.
+        brake: moment against the motion, N m or N.
+        flywheel: inertia of the flywheel, kg m2 or kg.
+        first, last: driver coordinates at the beginning and the end (rad, or m); None for the first or last
+            requested position.
+        longest: time limit, s.
     """
 
     speed: float = 0.0
@@ -116,8 +137,9 @@ class RunTask:
     cyclic: ClassVar[Literal[False]] = False
 
     def along(self, sense: int) -> RunTask:
-        """Return the task with the sign of the drive counted positive in the direction of the run; sense: that
-        direction, +1 or -1.
+        """Return the task with its drive counted positive in the direction of the run.
+
+        sense: direction of the run, +1 or -1.
         """
         drive = self.drive
         if sense > 0 or drive is None:
@@ -128,10 +150,10 @@ class RunTask:
 
     @property
     def edges(self) -> tuple[float, ...]:
-        """Times at which the drive may bend or jump."""
+        """Times (s) at which the drive may jump or have a kink."""
         return self.drive.arguments if isinstance(self.drive, DriveProfile) and self.drive.against == "time" else ()
 
     @property
     def way_edges(self) -> tuple[float, ...]:
-        """Distances of the driver (rad, or m) at which the drive may bend or jump."""
+        """Distances covered by the driver (rad, or m) at which the drive may jump or have a kink."""
         return self.drive.arguments if isinstance(self.drive, DriveProfile) and self.drive.against == "way" else ()

@@ -199,7 +199,7 @@ class MomentEquation:
 
     @property
     def found(self) -> MomentTerm | None:
-        """Term of the unknown, or None if it has no term; for a guide reaction with a couple, the term of the couple."""
+        """Term of the unknown; None if it has none. If a guide reaction also has a couple, the term of the couple."""
         unknowns = [t for t in self.terms if self.sought and _is_unknown(t.acting, self.sought)]
         return min(unknowns, key=lambda t: not t.acting.couple, default=None)
 
