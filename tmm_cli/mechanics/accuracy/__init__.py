@@ -1,4 +1,4 @@
-"""Accuracy of results: bounds by rounding, and sensitivity to the lengths of the file."""
+"""Accuracy of results: bounds of rounding errors, and sensitivity to the lengths in the file."""
 
 from tmm_cli.interfaces import lazy
 

@@ -1,4 +1,4 @@
-"""Accuracy of results: bounds by rounding, and sensitivity to the lengths of the file."""
+"""Accuracy of results: bounds of rounding errors, and sensitivity to the lengths in the file."""
 
 from .length_sensitivity import (
     as_double_doubles as as_double_doubles,

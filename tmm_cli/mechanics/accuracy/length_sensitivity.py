@@ -1,4 +1,4 @@
-"""Sensitivity to the lengths of a linkage, each of them changed alone; and linkages of double-doubles."""
+"""Sensitivity to single lengths of a linkage, and linkages in double-doubles."""
 
 from __future__ import annotations
 
@@ -18,10 +18,16 @@ from tmm_cli.mechanics.numerics import NO_COORDINATE, ROUNDOFF, Real, Record, ma
 
 @dataclass(frozen=True)
 class LengthCoordinate:
-    """Nonzero coordinate (m) in the axes of one link; all vectors that contain it change together.
+    """Nonzero coordinate of one or more points in the axes of a link, which counts as one length.
 
-    along: its axis, 1 or i. Directions of guides change in the same way, with the axis 1.0. paths: places in
-    the linkage that contain it (paths as in `mapped`).
+    Directions of guides are treated in the same way, with `along` = 1.0.
+
+    Attributes:
+        link: the link.
+        along: axis of the coordinate: 1 for x, i for y.
+        value: the coordinate, m.
+        paths: paths in the linkage to all vectors that contain this coordinate, as in `map_record`; they change
+            together.
     """
 
     link: str
@@ -31,7 +37,7 @@ class LengthCoordinate:
 
 
 def list_lengths(linkage: Linkage) -> tuple[LengthCoordinate, ...]:
-    """List the nonzero coordinates of all links; the same number on the same link counts as one length."""
+    """List the nonzero coordinates of all links. Equal coordinates on one link count as one length."""
     paths_by_length: dict[tuple[str, complex, float], list[str]] = {}
     vectors = list(_link_vectors(linkage))
     least = NO_COORDINATE * max((abs(complex(value)) for _, _, value in vectors), default=0.0)
@@ -46,7 +52,7 @@ def list_lengths(linkage: Linkage) -> tuple[LengthCoordinate, ...]:
 
 
 def largest_on_link(data: Sequence[LengthCoordinate]) -> Real:
-    """For each length, return the largest length of the same link (m)."""
+    """Return, for each length, the largest length of the same link, m, (lengths,)."""
     return np.array([max(abs(other.value) for other in data if other.link == length.link) for length in data])
 
 
@@ -65,7 +71,7 @@ def change_lengths(linkage: Linkage, changes: Iterable[tuple[LengthCoordinate, A
 
 
 def _link_vectors(linkage: Linkage) -> Iterator[tuple[str, str, Any]]:
-    """Yield every vector in axes of a link: the link, its path in the linkage, its value."""
+    """Yield every vector given in axes of a link: the link, the path in the linkage, the vector."""
     for name, link in linkage.links.items():
         for point, value in link.points.items():
             yield name, f"links.{name}.points.{point}", value
@@ -84,7 +90,7 @@ def _link_vectors(linkage: Linkage) -> Iterator[tuple[str, str, Any]]:
 
 
 def as_double_doubles(record: Record) -> Record:
-    """Convert every float and complex number of a record to a double-double of the same value."""
+    """Convert every float and complex number of a record to double-double, without changing its value."""
 
     def wide(path: str, value: Any) -> Any:
         return to_double_double(value) if isinstance(value, float | complex) else value
@@ -115,20 +121,20 @@ LEAST_SYMMETRY = (
 
 
 def search_sensitivities(results: Results, data: tuple[LengthCoordinate, ...]) -> Mapping[str, Real]:
-    """Compute the derivative by each length of every number that was found by a search.
+    """Compute the derivative with respect to each length of every number that was found by a search.
 
-    Derivatives follow from the function beside the place that was found, without another search. For an
-    extreme (f' = 0) the place moves by -(df'/dp) / f'', and its value as f does. At an end of the driver's
-    range the driver turns back while the group that stops it moves on, so the end moves as the driver does
-    with that group held.
+    The search is not repeated: the derivatives follow from the function near the solution. At an extreme (f' =
+    0) the argument moves by -(df'/dp) / f'', and the value changes as f does there. At an end of the driver
+    range the group that stops the driver has reached its limit; the end moves as the driver would if that group
+    were held in place.
 
     Args:
         results: results with a motion.
         data: the lengths.
 
     Returns:
-        Derivatives (lengths,) per metre, by path in `results`; 0 for a place that is not determined (flat
-        function, length not left free by redundant constraints).
+        Derivatives per metre, (lengths,), by path in `results`; 0 if the number is not determined (flat
+        function, or a length that redundant constraints fix).
     """
     assert results.driver_range is not None
     beside = _LocalRates(results, results.driver_range, data)
@@ -158,7 +164,7 @@ def search_sensitivities(results: Results, data: tuple[LengthCoordinate, ...]) -
 
 
 def range_end_paths(driver_range: DriverRange) -> tuple[list[str], list[str]]:
-    """Return the paths in results that hold the start, and those that hold the end, of the driver's range."""
+    """Return the paths in results that hold the start of the driver range, and those that hold its end."""
     limits = [(f"driver_range.limits[{k}].place", limit.place) for k, limit in enumerate(driver_range.limits)]
     named = (("start", driver_range.start), ("end", driver_range.end))
     start, end = ([f"driver_range.{name}", *(path for path, at in limits if at == place)] for name, place in named)
@@ -166,24 +172,30 @@ def range_end_paths(driver_range: DriverRange) -> tuple[list[str], list[str]]:
 
 
 def stroke_paths(results: Results) -> dict[str, Strokes]:
-    """Return the outputs that have strokes, by their paths in results."""
+    """Return the strokes of all output links that have any, by path in results."""
     outputs = {"strokes": results.strokes} | {f"further[{k}]": strokes for k, strokes in enumerate(results.further)}
     return {path: strokes for path, strokes in outputs.items() if strokes is not None and strokes.strokes}
 
 
 @dataclass(frozen=True)
 class _LocalRates:
-    """Functions of the links near driver coordinates, and their derivatives per metre of each length."""
+    """Derivatives with respect to the lengths of functions of the link positions, near given driver coordinates."""
 
     results: Results
     driver_range: DriverRange
     data: tuple[LengthCoordinate, ...]
 
     def values(self, coordinates: Real, aside: Real | float, function: Function, change: float) -> tuple[Real, Real]:
-        """Return a function before, at and after each place, (..., 3, places), and its derivatives (..., 3, places,
-        lengths).
+        """Evaluate a function before, at and after each driver coordinate.
 
-        change: step, relative to the largest length of the same link.
+        Args:
+            coordinates: driver coordinates.
+            aside: distance before and after them.
+            function: function of the link positions.
+            change: step of each length, relative to the largest length of its link.
+
+        Returns:
+            Values (..., 3, coordinates) and derivatives per metre (..., 3, coordinates, lengths).
         """
         q = coordinates + aside * np.array([[-1], [0], [1]])
         by = change * largest_on_link(self.data)
@@ -196,8 +208,11 @@ class _LocalRates:
         return sampled[..., 0], (sampled[..., 1:] - sampled[..., :1]) / by
 
     def extremes(self, coordinates: Real, function: Function) -> tuple[Real, Real]:
-        """Return derivatives of the places where a function is extreme, and of its values there, both (places,
-        lengths).
+        """Compute how the extremes of a function shift with the lengths.
+
+        Returns:
+            Derivatives of the driver coordinates of the extremes, and of the extreme values, both (extremes,
+            lengths).
         """
         slider = self.results.linkage.driver.kind == "slide"
         aside = EXTREME_STEP * (self.driver_range.end - self.driver_range.start if slider else 1.0)
@@ -209,8 +224,11 @@ class _LocalRates:
         return np.where(bends[:, None], moved, 0.0), rates[1]
 
     def by_end(self, k: int, function: Function) -> tuple[Real, Real]:
-        """Return derivatives of a function near an end: by the driver (..., 3), and by the lengths (..., 3,
-        lengths).
+        """Differentiate a function at three distances from an end of the driver range: the start (k = 0) or the end (k
+        = 1).
+
+        Returns:
+            Derivatives with respect to the driver coordinate, (..., 3), and to the lengths, (..., 3, lengths).
         """
         span = self.driver_range.end - self.driver_range.start
         left = END_DISTANCES * span
@@ -222,7 +240,9 @@ class _LocalRates:
 
     @cached_property
     def ends(self) -> tuple[Real, Real]:
-        """Derivatives of driver coordinates near both ends with the limiting group held, each (3, lengths)."""
+        """Derivatives of the driver coordinate near both ends of its range, with the limiting group held, each (3,
+        lengths).
+        """
         return self._end(0, self.driver_range.start), self._end(1, self.driver_range.end)
 
     def _end(self, k: int, place: float) -> Real:
@@ -235,11 +255,13 @@ class _LocalRates:
         return moved
 
     def stops(self, place: float) -> set[str]:
-        """Return the titles of the groups that limit the driver at an end."""
+        """Return the titles of the groups that limit the driver at an end of its range."""
         return {limit.group for limit in self.driver_range.limits if limit.place == place}
 
     def travel(self, coordinates: Real, function: Function) -> tuple[Real, Real]:
-        """Return derivatives as `extremes` does, for places some of which are the first or the last requested one."""
+        """Compute derivatives as `extremes` does, where an extreme may also be at the first or the last requested
+        position.
+        """
         requested, driver_range = self.results.asked, self.driver_range
         moved, rates = self.extremes(coordinates, function)
         start, end = map(_extrapolate_to_end, self.ends)
@@ -249,9 +271,12 @@ class _LocalRates:
         return np.where(inner[:, None], moved, edges), rates
 
     def pressure(self, pressure: PressureAngle) -> tuple[Real, Real]:
-        """Return derivatives of the place of a largest pressure angle, and of that angle, each (lengths,).
+        """Compute how a largest pressure angle shifts with the lengths.
 
-        A right angle at a limit position stays a right angle, whatever the lengths.
+        A right angle at a limit position remains a right angle, whatever the lengths.
+
+        Returns:
+            Derivatives of its driver coordinate and of the angle, each (lengths,).
         """
         driver_range = self.driver_range
         function, close = _pressure_function(pressure), AT_END * (driver_range.end - driver_range.start)
@@ -267,15 +292,17 @@ class _LocalRates:
 
 
 def _extrapolate_to_end(rates: Real) -> Real:
-    """Extrapolate rates (3, lengths), polynomials in roots of the distance, from distances of 1, 2 and 4 root
-    units.
+    """Extrapolate derivatives (3, lengths) to the end of the driver range.
+
+    They are taken as polynomials in the square root of the distance, which is 1, 2 and 4 units at the three
+    samples.
     """
     limit: Real = (8 * rates[0] - 6 * rates[1] + rates[2]) / 3
     return limit
 
 
 def _link_coordinates(states: LinkStates, links: tuple[str, ...]) -> Real:
-    """Return coordinates and direction components of some links, stacked."""
+    """Stack the coordinates and the direction components of some links, (coordinates, positions)."""
     poses = [states.poses[link] for link in links]
     vectors = [part for pose in poses for part in (pose.x, pose.z)]
     return np.stack([part for vector in vectors for part in (vector.real, vector.imag)])

@@ -1,13 +1,13 @@
-"""Bounds of the rounding error of each value, and its sensitivity to the data.
+"""Bound of the rounding error of each value, and its sensitivity to the lengths.
 
-Every value is computed again by the same stages in double-doubles, from the decimals of the file. The
-difference is the error of float64; values near dead positions were already computed in double-doubles,
-and have their last rounding as error:
+Every value is computed again by the same stages in double-doubles, from the decimal numbers of the file.
+The difference is the error of float64. Values near dead positions were already computed in double-doubles,
+so their error is that of the final rounding:
 
     bound = |y - y_exact| + u |y| + w kappa,    u = 2^-53, w = 2^-102
 
-with kappa, the change of y per unit relative change of every length: the rounding error of double-doubles
-themselves.
+where kappa is the change of y per unit relative change of every length, so that the last term is the
+rounding error of the double-doubles themselves.
 """
 
 from __future__ import annotations
@@ -67,10 +67,15 @@ Cells = Mapping[Hashable, Real]  # one value a position
 
 @dataclass
 class Digits:
-    """Accuracy of values: bound by rounding, change when all lengths change by 0.1 %, and by 0.5 mm on paper.
+    """Accuracy of values. Keys, shapes and units are those of the values.
 
-    Changes are sums of the absolute changes by every single length: the worst case, to first order. Keys,
-    shapes and units are those of the values. mu: scale of the drawing (m per mm), nan if nothing is drawn.
+    A change is the sum of the absolute changes caused by each length alone: the worst case, to first order.
+
+    Attributes:
+        bound: bound of the rounding error.
+        lengths: change if all lengths change by 0.1 %.
+        paper: change if all lengths change by 0.5 mm on the drawing.
+        mu: scale of the drawing (m per mm); nan if nothing is drawn.
     """
 
     bound: dict[Hashable, Real] = field(default_factory=dict)
@@ -86,13 +91,13 @@ def judge_values(
     mu: float = float("nan"),
     blur: Real | float = 0.0,
 ) -> Digits:
-    """Compute the accuracy of the values that `read` reads from results, at all their positions.
+    """Compute the accuracy of the values that `read` takes from results, at all their positions.
 
     Args:
         results: results with a motion.
-        read: reads values from results, each (positions,), by key.
-        mu: scale of the drawing (m per mm).
-        blur: uncertainty of each driver coordinate (rad or m).
+        read: function that returns values from results, each (positions,), by key.
+        mu: scale of the drawing, m per mm.
+        blur: uncertainty of each driver coordinate, rad or m.
     """
     motion = results.motion
     assert motion is not None
@@ -113,18 +118,18 @@ def judge_values(
 
 
 def is_angle(key: Hashable) -> bool:
-    """Return True if a value is an angle, modulo a full turn: its key begins with True or with `angle`."""
+    """Return True if a value is an angle, modulo 360 degrees: its key begins with True or with "angle"."""
     return isinstance(key, tuple) and key[0] in (True, "angle")
 
 
 def solve_bare_linkage(linkage: Linkage, q: Real, structure: Structure, kernels: tuple[GroupSolver, ...]) -> Results:
-    """Solve motion and reactions of a linkage without a file.
+    """Solve motion and reactions of a linkage that was not read from a file.
 
     Args:
-        linkage: its numbers are exact as they stand.
-        q: driver coordinates (rad or m), that of position 0 first.
+        linkage: the linkage; its numbers are taken as exact.
+        q: driver coordinates (rad or m), beginning with position 0.
         structure: structure of the linkage.
-        kernels: its groups in their assemblies.
+        kernels: solvers of its groups.
     """
     law = driver_motion(linkage, float(q[0]))
     motion = compute_motion(linkage, kernels, q, law)
@@ -148,16 +153,17 @@ def solve_bare_linkage(linkage: Linkage, q: Real, structure: Structure, kernels:
 
 
 def bound_values(results: Results) -> tuple[Cells, Digits]:
-    """Return values and their accuracy; without a file (`solve_bare_linkage`) the numbers count as exact.
+    """Return the values of motion and reactions, and their accuracy.
 
-    Keys are (quantity, name, component): x, v, a of points ("A") and centres of mass ("S1"), angle, omega,
-    epsilon of links, force and couple of pairs, balancing of drivers.
+    Without a file (`solve_bare_linkage`) the numbers of the linkage are taken as exact. Keys are (quantity,
+    name, component): x, v, a of points ("A") and centres of mass ("S1"), angle, omega, epsilon of links, force
+    and couple of pairs, balancing moment or force of drivers.
     """
     return list_values(results), judge_values(results, list_values)
 
 
 def list_values(results: Results) -> Cells:
-    """Return motion and reactions of results by quantity, name and component."""
+    """Return the values of motion and reactions, each (positions,), by quantity, name and component."""
     assert results.motion is not None
     cells: dict[Hashable, Real] = {}
     for quantity, name, value in leading_values(results.motion, results.reactions):
@@ -170,7 +176,7 @@ def list_values(results: Results) -> Cells:
 
 @dataclass(frozen=True)
 class _ValueJudge:
-    """Computes the accuracy of values at some positions together; arrays are (values, positions)."""
+    """Computes the accuracy of values at several positions at once; arrays have the shape (values, positions)."""
 
     results: Results
     of: Callable[[Results], Cells]
@@ -178,8 +184,9 @@ class _ValueJudge:
     blur: Real
 
     def at(self, chosen: Real, near: bool, mu: float) -> Real:
-        """Return bounds and both sensitivities at the chosen positions, all of which are near a dead position, or
-        none.
+        """Return bounds and both sensitivities at the chosen positions, (3, values, positions).
+
+        near: True if all these positions are near dead positions, False if none is.
         """
         results, motion = self.results, self.results.motion
         assert motion is not None
@@ -200,10 +207,21 @@ class _ValueJudge:
         return np.stack([np.where(np.isfinite(values), bound, np.nan), share, paper * mu])
 
     def responses(self, linkage: Linkage, q: Real, first: float, chosen: Real, rows: Real, step: float) -> Any:
-        """Return changes of values by 0.1 % of all lengths, by 0.5 m of each, and their derivative by the driver.
+        """Compute how the values change with the lengths and the driver coordinate.
 
-        All in one run: the positions q are repeated once for each number that is changed, the driver coordinate
-        first. rows: values at q. step: relative change of a length.
+        All changes are computed in one run, for which the positions are repeated once for each changed number.
+
+        Args:
+            linkage: the linkage.
+            q: driver coordinates of the chosen positions.
+            first: driver coordinate of position 0.
+            chosen: indices of the positions.
+            rows: values at these positions.
+            step: relative change of a length.
+
+        Returns:
+            Change if all lengths change by 0.1 %, change if each of them changes by 0.5 m, derivative with respect
+            to the driver coordinate.
         """
         count, data = len(q), list_lengths(self.results.linkage)
         sizes = largest_on_link(data)
@@ -223,20 +241,20 @@ class _ValueJudge:
         )
 
     def rows(self, cells: Cells) -> Real:
-        """Stack values as rows; missing ones are 0."""
+        """Stack values as rows, in the order of `values`; missing ones are 0."""
         nothing = np.zeros(np.shape(next(iter(cells.values()))))
         stacked: Real = array([cells.get(key, nothing) for key in self.values])
         return stacked
 
     def gap(self, first: Real, second: Real) -> Real:
-        """Distance between values; between angles, modulo a full turn."""
+        """Return the absolute differences of values, for angles modulo 360 degrees."""
         away: Real = np.abs(first - second)
         turning = np.array([[is_angle(key)] for key in self.values])
         return np.where(turning, np.minimum(away, np.abs(2 * np.pi - away)), away)
 
 
 def _length_step(results: Results) -> float:
-    """Relative step of lengths for derivatives near dead positions, small against the margin."""
+    """Choose the relative step of lengths for derivatives near dead positions, small compared with the margin."""
     motion = results.motion
     assert motion is not None
     least = min(float(np.nanmin(np.where(motion.moving, at.margin, 1.0))) for at in motion.placements)
@@ -244,7 +262,9 @@ def _length_step(results: Results) -> float:
 
 
 def exact_linkage(results: Results) -> Linkage:
-    """Return the linkage with the decimals of its file; without a file, with its numbers as they stand."""
+    """Return the linkage in double-doubles, from the decimal numbers of its file or, without a file, from its own
+    numbers.
+    """
     extended = results.inputs.extended
     return as_double_doubles(results.linkage) if extended is None else extended().linkage
 
@@ -252,14 +272,14 @@ def exact_linkage(results: Results) -> Linkage:
 def results_with_linkage(
     results: Results, linkage: Linkage, q: Real, first: float, chosen: Real | None = None
 ) -> Results:
-    """Recompute results at driver coordinates q with other numbers of the linkage, in the same assembly.
+    """Recompute results at driver coordinates q with changed numbers of the linkage, in the same assembly.
 
     Args:
-        results: results with a motion, perhaps with forces.
-        linkage: the linkage with other numbers, perhaps double-doubles.
-        q: driver coordinates (rad or m).
+        results: results with a motion, possibly with forces.
+        linkage: the linkage with changed numbers, possibly double-doubles.
+        q: driver coordinates, rad or m.
         first: driver coordinate of position 0.
-        chosen: indices of the positions; None: all.
+        chosen: indices of the positions; None for all.
     """
     assert results.motion is not None
     kernels = tuple(kernel.rebind(linkage) for kernel in results.motion.kernels)
@@ -285,7 +305,9 @@ def results_with_linkage(
 
 
 def _strokes_with_linkage(strokes: Strokes, linkage: Linkage, kernels: tuple[GroupSolver, ...], q: Real) -> Strokes:
-    """Strokes with the ends of the output recomputed, as tables against the stroke are counted from there."""
+    """Return strokes with the ends of the output travel recomputed, since load tables against the stroke begin
+    there.
+    """
     still, law = np.zeros(np.shape(q)), DriverMotion(0.0, 1.0, 0.0, 1)
     lows: list[Any] = [
         output_coordinate(compute_motion(linkage, kernels, still + s.start, law, 0), strokes.link)
@@ -324,12 +346,14 @@ SIX_FIGURES = 0.5e-6  # of the largest value: with a larger bound six figures ar
 
 
 def relative_bound(results: Results, blur: float = 0.0) -> Real:
-    """Bound of the error at each position, relative to the largest value of each kind.
+    """Return a bound of the error at each position, relative to the largest value of each kind, (positions,).
 
-    A group with the margin m gives positions to u/m and velocities, accelerations and forces to u/m^2 (u:
-    unit roundoff), and passes its errors on to the groups after it, so bound = LOSS_FACTOR u (1 + |q|)
-    product(1/m)^2. It needs no extended precision and is wide: it promises 10 to 13 digits where 15 are
-    right. blur: uncertainty of driver coordinates (rad or m).
+    A group with the margin m gives positions to u/m and velocities, accelerations and forces to u/m^2 (u: unit
+    roundoff), and passes its errors on to the groups after it, so bound = LOSS_FACTOR u (1 + |q|)
+    product(1/m)^2. This needs no extended precision and is pessimistic: it promises 10 to 13 digits where 15
+    are right.
+
+    blur: uncertainty of driver coordinates, rad or m.
     """
     motion = results.motion
     assert motion is not None
@@ -348,7 +372,7 @@ def relative_bound(results: Results, blur: float = 0.0) -> Real:
 
 
 def error_growth(results: Results) -> Real:
-    """Growth factor of errors through the groups, at each position."""
+    """Return the factor by which errors grow from group to group, at each position, (positions,)."""
     motion = results.motion
     assert motion is not None
     lost = np.ones(np.shape(motion.q))
@@ -359,7 +383,9 @@ def error_growth(results: Results) -> Real:
 
 
 def slenderness(results: Results) -> float:
-    """Size of the mechanism over its shortest link, the factor by which position errors rotate that link."""
+    """Return the size of the mechanism divided by its shortest link; position errors rotate that link by this
+    factor.
+    """
     short = [link_extent(results.linkage, link) for link in results.linkage.moving]
     return _mechanism_size(results) / min((extent for extent in short if extent > 0), default=1.0)
 
@@ -404,7 +430,9 @@ def largest_values(results: Results) -> Mapping[Dimension, float]:
 
 
 def _mechanism_size(results: Results) -> float:
-    """Largest distance of points of links, and of loads on them, from one another and from the origin, m."""
+    """Return an upper bound of the distances between points of the mechanism, and of their distances from the
+    origin, m.
+    """
     assert results.motion is not None
     linkage = results.linkage
     spreads = (link_extent(linkage, link) for link in linkage.links)
@@ -416,6 +444,6 @@ def _mechanism_size(results: Results) -> float:
 
 
 def _largest_magnitude(values: object) -> float:
-    """Largest absolute value in arrays, nan ignored."""
+    """Return the largest absolute value in several arrays; values that are not finite are ignored."""
     magnitudes = [np.max(np.abs(v), where=np.isfinite(v), initial=0.0) for v in map(np.asarray, values)]  # type: ignore
     return float(max(magnitudes, default=0.0))

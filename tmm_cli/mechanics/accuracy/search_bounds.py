@@ -1,6 +1,6 @@
-"""Bounds of roots and extremes: how far from the result the sign of their function is certain.
+"""Bounds of roots and extremes: the distance beyond which the sign of the function is certain.
 
-In double-doubles, or with less precision in float64.
+The function is evaluated in double-doubles or, where float64 is accurate enough, in float64.
 """
 
 from __future__ import annotations
@@ -49,9 +49,9 @@ DEAD_POSITION_ERROR = 1e-9  # of the range: error of dead positions at a least m
 
 
 class PreciseLinkage:
-    """Linkage of results at any driver coordinates, with the decimals of its file in double-doubles.
+    """Linkage of results at any driver coordinates, in double-doubles from the decimal numbers of its file.
 
-    growth: growth of rounding errors of the data; if given, the linkage is used as it is, in float64.
+    growth: factor by which rounding errors grow; if given, float64 is used instead.
     """
 
     def __init__(self, results: Results, growth: float | None = None) -> None:
@@ -63,13 +63,15 @@ class PreciseLinkage:
         self.known: dict[str, tuple[Real, Real]] = {}  # of strokes, by the output
 
     def at(self, q: Real, links: Iterable[str], order: int = 0) -> LinkStates:
-        """Return the states of some links, and of those they depend on, at driver coordinates q."""
+        """Return the states of some links, and of the links on which they depend, at driver coordinates q."""
         kernels = solvers_towards(self.kernels, links)
         return link_states(self.linkage, kernels, q if isinstance(q, DoubleDouble) else self.kind(q), order)
 
     def sides(self, coordinates: Real) -> tuple[Real, Real]:
-        """Return increasing distances from each place, beginning with its last bit, and the places on both sides at
-        them.
+        """Return growing distances, beginning with the last bit, and the points at these distances on both sides.
+
+        Returns:
+            Distances, (coordinates, distances), and points, (2, coordinates, distances).
         """
         steps = 2.0 ** np.arange(DOUBLINGS) * np.spacing(np.maximum(np.abs(coordinates), 1e-3))[:, None] / 2
         precise = self.kind(coordinates)[:, None]
@@ -82,17 +84,18 @@ class PreciseLinkage:
         links: Iterable[str],
         scale: float | None = None,
     ) -> tuple[Real, LinkStates, Real]:
-        """Find the least distance from each place at which a function certainly has different signs on both sides,
-        or inf.
+        """Find the least distance from each driver coordinate at which a function certainly changes sign; inf if there
+        is none.
 
         Args:
             coordinates: driver coordinates.
-            function: the function of the link states.
-            links: links that the function depends on.
-            scale: largest value of the function; None: over the driver's range.
+            function: function of the link states.
+            links: links on which the function depends.
+            scale: largest value of the function; None to compute it over the driver range.
 
         Returns:
-            The distances, the states (at these places first), and bounds of the function at the places.
+            The distances, the link states (those at `coordinates` first), and bounds of the function at
+            `coordinates`.
         """
         steps, both = self.sides(coordinates)
         driver_range = self.results.mechanism.driver_range
@@ -108,9 +111,9 @@ class PreciseLinkage:
         return distance, states, np.abs(centre_values) + self.noise * scale
 
     def turns(self, coordinates: Real, runs: Real, link: str, inner: Real | bool = True) -> tuple[Real, Real]:
-        """Return bounds of places where an output reverses, and of its values there.
+        """Return bounds of the driver coordinates at which an output reverses, and of the output coordinates there.
 
-        inner: mask of places that are reversals; the others were requested.
+        inner: mask of the reversals; other coordinates are requested positions.
         """
         carrier = self.linkage.output_carrier(link)
         bounds, states, slope = self.brackets(coordinates, lambda states: output_slope(states, link), [carrier])
@@ -122,20 +125,26 @@ class PreciseLinkage:
         return bounds, 2 * off + 4 * (ROUNDOFF + self.noise) * np.abs(runs)
 
     def strokes(self, strokes: Strokes) -> tuple[Real, Real]:
-        """Return bounds of driver coordinates at the ends of strokes, and of the output there."""
+        """Return bounds of the driver coordinates at the ends of strokes, and of the output coordinates there."""
         if strokes.link not in self.known:
             coordinates, lows = (np.array([getattr(s, name) for s in strokes.strokes]) for name in ("start", "low"))
             self.known[strokes.link] = self.turns(coordinates, lows, strokes.link)
         return self.known[strokes.link]
 
     def travel(self, travel: OutputTravel) -> tuple[Real, Real]:
-        """Return bounds of driver coordinates at the least and the largest output, and of these outputs."""
+        """Return bounds of the driver coordinates of the least and the largest output, and of these output
+        coordinates.
+        """
         coordinates, requested = np.array([travel.low_at, travel.high_at]), self.results.asked
         inner = (np.min(requested) < coordinates) & (coordinates < np.max(requested))
         return self.turns(coordinates, np.array([travel.low, travel.high]), travel.link, inner)
 
     def end(self, place: float, towards: int, group: str, span: float) -> float:
-        """Return the bound of an end of the driver's range: the group can be placed inside it, and not outside."""
+        """Return the bound of an end of the driver range.
+
+        The group that limits the driver can certainly be assembled at this distance inside the end, and not
+        outside.
+        """
         kernel = next((k for k in self.kernels if k.group.title == group), None)
         if not isinstance(kernel, ClosedFormSolver):
             return FOLLOWED_END_ERROR * span + 4 * ROUNDOFF * abs(place)
@@ -145,7 +154,9 @@ class PreciseLinkage:
         return (sure if np.isfinite(sure) else FOLLOWED_END_ERROR * span) + self.noise * span
 
     def dead(self, place: float, group: str, span: float) -> float:
-        """Return the bound of a dead position inside the range: the gap of the group stops growing there."""
+        """Return the bound of a dead position inside the driver range, where the gap of the group has its extreme
+        value.
+        """
         kernel = next(kernel for kernel in self.kernels if kernel.group.title == group)
         if not isinstance(kernel, ClosedFormSolver):
             return DEAD_POSITION_ERROR * span
@@ -158,11 +169,10 @@ class PreciseLinkage:
         return min(float(distance[0]), DEAD_POSITION_ERROR * span)
 
     def pressure(self, group: str, link: str, place: float, largest: float, span: float) -> tuple[float, float]:
-        """Return bounds of an extreme pressure angle, and of its place; for a flat extreme the place has half the
-        digits.
+        """Return the bounds of an extreme pressure angle and of its driver coordinate.
 
-        At an end of the range the place is the end; if the angle is constant, the place is undetermined
-        (infinity).
+        The driver coordinate of a flat extreme has half the digits. At an end of the driver range it is that end.
+        If the angle is constant, the driver coordinate is undetermined and its bound infinite.
         """
         if largest < NO_PRESSURE:
             return largest + 4 * ROUNDOFF, np.inf
@@ -191,16 +201,14 @@ class PreciseLinkage:
 
 
 def choose_precision(results: Results) -> PreciseLinkage:
-    """Return the linkage in float64 if rounding errors grow little enough through the groups, else in
-    double-doubles.
-    """
+    """Return the linkage in float64 if rounding errors grow little from group to group, else in double-doubles."""
     grown = error_growth(results)
     most = slenderness(results) * float(np.max(grown, where=np.isfinite(grown), initial=1.0))
     return PreciseLinkage(results, most if NOISE * ROUNDOFF * most < MOST_NOISE else None)
 
 
 def _first_sure_step(sure: Real, steps: Real) -> Real:
-    """First step at which each place is certain, or inf."""
+    """Return the first distance at which the sign at each driver coordinate is certain, or inf."""
     return np.where(sure.any(axis=1), steps[np.arange(len(steps)), sure.argmax(axis=1)], np.inf)
 
 
@@ -220,8 +228,11 @@ LARGEST_SHIFT = 1e-6  # rad or m: keeps a shift within first order
 class SearchedNumber(NamedTuple):
     """Number of the mechanism that was found by a search.
 
-    path: where it is held in results. bound: bound of its error. shifted: returns the results with it
-    shifted. sense: side to which they are shifted.
+    Attributes:
+        path: its path in the results.
+        bound: bound of its error.
+        shifted: function that returns the results with this number shifted.
+        sense: direction of the shift, +1 or -1.
     """
 
     path: str
@@ -233,16 +244,16 @@ class SearchedNumber(NamedTuple):
 def judge_searched(
     results: Results, read: Callable[[Results], Cells], wide: PreciseLinkage, mu: float = float("nan")
 ) -> Digits:
-    """Compute the accuracy of the values that `read` reads from results and that belong to no position.
+    """Compute the accuracy of the values that `read` takes from results and that belong to no position.
 
-    A root is known as well as the sign of its function. A value that depends on several searched numbers is
-    computed with each of them shifted by its bound in turn.
+    A root is known as accurately as the sign of its function. A value that depends on several searched numbers
+    is computed with each of them shifted by its bound in turn.
 
     Args:
         results: results with a motion.
-        read: reads values from results, by key.
+        read: function that returns values from results, by key.
         wide: the linkage in higher precision.
-        mu: scale of the drawing (m per mm); nan: no sensitivities.
+        mu: scale of the drawing, m per mm; nan to leave out the sensitivities.
     """
     values, data = read(results), list_lengths(results.linkage)
     row = _value_row(values, values)
@@ -268,7 +279,7 @@ def judge_searched(
 
 
 def _value_row(moved: Cells, values: Cells) -> Real:
-    """All numbers in one row; numbers that are missing in `moved` count as unchanged."""
+    """Join all numbers in one row; numbers missing in `moved`, or of another shape, are taken from `values`."""
     kept = (
         moved[key] if key in moved and np.shape(moved[key]) == np.shape(value) else value
         for key, value in values.items()
@@ -277,14 +288,14 @@ def _value_row(moved: Cells, values: Cells) -> Real:
 
 
 def _value_changes(moved: Real, original: Real) -> Real:
-    """Changes of numbers with sign; a change by a full turn, or from or to nan, is none."""
+    """Return the changes of numbers, with sign. A change by 360 degrees, or to or from nan, counts as zero."""
     change: Real = moved - original
     turn = np.copysign(2 * np.pi, change)
     return np.where(np.abs(change - turn) < 1e-3, change - turn, np.where(np.isnan(change), 0.0, change))
 
 
 def searched_numbers(results: Results, wide: PreciseLinkage) -> Iterator[SearchedNumber]:
-    """Yield all numbers that were found by searches."""
+    """Yield all numbers of the results that were found by searches."""
     driver_range = results.driver_range
     if driver_range is None:
         return
@@ -335,7 +346,7 @@ def searched_numbers(results: Results, wide: PreciseLinkage) -> Iterator[Searche
 
 
 def _range_end_bounds(results: Results, driver_range: DriverRange, wide: PreciseLinkage) -> Iterator[float]:
-    """Yield bounds of both ends of the driver's range."""
+    """Yield the bounds of both ends of the driver range."""
     span = driver_range.end - driver_range.start
     for sense, place in ((-1, driver_range.start), (1, driver_range.end)):
         limit = None if driver_range.full else _limiting_group(results, place)
@@ -343,7 +354,7 @@ def _range_end_bounds(results: Results, driver_range: DriverRange, wide: Precise
 
 
 def start_uncertainty(results: Results, wide: PreciseLinkage) -> float:
-    """Uncertainty of the driver coordinate of position 0, rad or m."""
+    """Return the uncertainty of the driver coordinate of position 0, rad or m."""
     request, driver_range = results.inputs.request, results.driver_range
     if driver_range is None or request.places:
         return 0.0
@@ -355,9 +366,9 @@ def start_uncertainty(results: Results, wide: PreciseLinkage) -> float:
 
 
 def _shifted_results(results: Results, by: Mapping[str, float]) -> Results:
-    """Return results with numbers of the mechanism shifted by path, such as travels[0].low.
+    """Return the results with some numbers of the mechanism shifted, by path, e.g. travels[0].low.
 
-    Pressure angles at positions are not found by searches and stay.
+    Pressure angles at the positions are not found by searches and are kept.
     """
 
     def moved(field: str) -> Any:
@@ -372,6 +383,6 @@ def _shifted_results(results: Results, by: Mapping[str, float]) -> Results:
 
 
 def _limiting_group(results: Results, place: float) -> str | None:
-    """Title of the group that limits the driver at a place, or None."""
+    """Return the title of the group that limits the driver at an end of its range, or None."""
     assert results.driver_range is not None
     return next((limit.group for limit in results.driver_range.limits if limit.place == place), None)

@@ -1,6 +1,8 @@
-"""Checks of a mechanism: each with its value, its limit and the position where it is nearest to it.
+"""Checks of a mechanism: the value of each, its limit, and the driver coordinate at which it is closest to the
+limit.
 
-They cover the whole range: a cycle, or from the first to the last position, not just the positions.
+The checks cover the whole range of the driver (a cycle, or from the first to the last position), not only
+the computed positions.
 """
 
 from __future__ import annotations
@@ -24,13 +26,23 @@ CheckKind = Literal["slot", "pressure", "load", "near dead", "lever"]
 
 @dataclass(frozen=True)
 class Check:
-    """Value of a check against its limit. of: name of the object in the file; at: driver coordinate (rad or m),
-    if any.
+    """Value of a check, compared with its limit.
 
-    slot: distance of a link beyond the end `detail` of its slot (m; negative: distance left), at most 0.
-    pressure: largest pressure angle on a link (rad). load: work (J) by which a permanent load drives in one
-    stroke (`detail`: working or idle) although it resists in the other, at most 0. near dead: least margin of
-    a group, at least the limit. lever: largest difference of the lever from the force plan.
+    Attributes:
+        kind: what is checked.
+            slot: distance by which a sliding block goes beyond the end of its slot, m; negative if it stays
+                inside; at most 0.
+            pressure: largest pressure angle of a link, rad.
+            load: work of a permanent load in the stroke in which it drives although it resists in the other
+                stroke, J; at most 0.
+            near dead: least margin of a group to a dead position; at least the limit.
+            lever: largest difference of the lever from the force plan, relative.
+        of: name of the slot, link, load or group in the file; empty for the lever.
+        at: driver coordinate, rad or m; None if there is none.
+        value, limit: the value and its limit.
+        holds: True if the check is passed.
+        detail: end of the slot; group of the driven link; or "working" or "idle", the stroke in which the load
+            drives.
     """
 
     kind: CheckKind
@@ -44,7 +56,7 @@ class Check:
 
 @lru_cache(maxsize=1)
 def run_checks(results: Results) -> tuple[Check, ...]:
-    """Return all checks of results with forces; none without them, or if only some names were requested."""
+    """Run all checks. There are none if forces were not computed, or if only some points and links were requested."""
     if results.lever is None or results.of or results.driver_range is None:
         return ()
     closely = motion_at_positions(results, results.closely(SCAN * results.driver_range.turns + 1), 1)
@@ -63,7 +75,7 @@ def run_checks(results: Results) -> tuple[Check, ...]:
 
 
 def _slot_checks(results: Results) -> Iterable[Check]:
-    """Yield, for each slot, the end that its link comes nearest to, or goes farthest beyond."""
+    """Yield a check for each slot, at the end that the sliding block comes closest to or goes farthest beyond."""
     for name in dict.fromkeys(excess.slide.name for excess in results.slots):
         worst = max((excess for excess in results.slots if excess.slide.name == name), key=lambda excess: excess.far)
         yield Check("slot", name, worst.place, worst.far, 0.0, not worst.ways, worst.point)
@@ -78,7 +90,9 @@ def _pressure_checks(results: Results) -> Iterable[Check]:
 
 
 def _load_checks(results: Results, motion: Motion) -> Iterable[Check]:
-    """Yield checks of permanent loads that are constant or tabulated against the stroke."""
+    """Yield a check for each load on a link from the frame that acts all the time, constant or tabulated against
+    the stroke.
+    """
     strokes, loads = results.strokes, results.linkage.loads
     if strokes is None or not strokes.strokes:
         return
@@ -108,7 +122,7 @@ def _load_checks(results: Results, motion: Motion) -> Iterable[Check]:
 
 
 def _dead_position_checks(results: Results, motion: LinkStates) -> Iterable[Check]:
-    """Yield the least margin of each group: in its dead or change positions, or where it is nearest to one."""
+    """Yield the least margin of each group to its dead positions and change points."""
     step = abs(float(motion.q[1] - motion.q[0]))
     for kernel, placement in zip(motion.kernels, motion.placements, strict=True):
         title = kernel.group.title
@@ -127,13 +141,13 @@ def _dead_position_checks(results: Results, motion: LinkStates) -> Iterable[Chec
 
 
 def _last_margin(results: Results, upto: tuple[GroupSolver, ...], q: Real) -> Real:
-    """Margin of the last group."""
+    """Return the margin of the last of these groups at driver coordinates q."""
     states = link_states(results.linkage, upto, q, 0)
     return np.where(states.placed, states.placements[-1].margin, np.inf)
 
 
 def _lever_checks(results: Results) -> Iterable[Check]:
-    """Yield the position where the lever differs most from the force plan."""
+    """Yield the check of the lever, at the position where it differs most from the force plan."""
     assert results.lever is not None and results.motion is not None
     counted = results.motion.moving & ~results.locked
     if bool(np.any(counted)):

@@ -1,4 +1,4 @@
-"""Results for selected positions: detailed positions, instantaneous centres, all assemblies."""
+"""Results that are computed on request: detailed positions, instantaneous centres, all assemblies."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from tmm_cli.mechanics.structure import Group
 
 
 def detailed_positions(results: Results) -> tuple[int, ...]:
-    """Return indices of the detailed positions among those computed; none if nothing moves.
+    """Return the indices of the detailed positions among those computed; none if no position can be assembled.
 
-    A single position is always detailed. Where the file names none, it is the position of the largest
-    balancing moment or force of the first driver; without loads, the one after position 0, where the output
+    A single computed position is always detailed. If the file names no detailed positions, the one with the
+    largest balancing moment or force is taken; without loads, the one after position 0, where the output link
     often rests.
     """
     computed = _solved_positions(results)
@@ -37,13 +37,15 @@ def detailed_positions(results: Results) -> tuple[int, ...]:
 
 
 def detail_chosen_by_program(results: Results) -> bool:
-    """Return True if the file leaves the choice of the detailed position to the program."""
+    """Return True if the file does not say which positions are detailed, so that the program chooses one."""
     return len(results.numbers) > 1 and not results.inputs.request.detail
 
 
 def balancing_magnitude(results: Results) -> Real:
-    """Magnitude of the first driver's balancing moment (N m) or force (N) at each position; zero where there is
-    none.
+    """Return the magnitude of the first driver's balancing moment (N m) or force (N), (positions,).
+
+    It is zero at positions that cannot be assembled or lock by friction, and everywhere if forces were not
+    computed.
     """
     computed = _solved_positions(results)
     if results.reactions is None:
@@ -62,7 +64,9 @@ def _solved_positions(results: Results) -> Real:
 
 
 def with_centres(results: Results) -> Results:
-    """Add instantaneous centres, at positions that were requested one by one or are detailed."""
+    """Add the instantaneous centres at the detailed positions, or at all positions if the user requested single
+    ones.
+    """
     motion = results.motion
     assert motion is not None
     one_by_one = len(results.numbers) < len(results.asked)
@@ -74,17 +78,18 @@ def with_centres(results: Results) -> Results:
 
 
 def with_assemblies(inputs: Inputs, positions: Sequence[int] | None, problem: Any = None) -> Results:
-    """Compute kinematics with all real assemblies at the positions, or at the first detailed one.
+    """Compute the motion, and at the given positions all real assemblies.
 
-    If the sketch does not determine the assembly, the results are the structure with the assemblies.
+    If the sketch does not determine the assembly, there is no motion: the results contain the structure and the
+    assemblies.
 
     Args:
         inputs: the mechanism and its positions.
         positions: numbers of positions; None: the first detailed one.
-        problem: kept in the results, see `Results`.
+        problem: object of the caller, kept in the results.
 
     Raises:
-        LinkageError: as `solve`.
+        LinkageError: see `solve`.
     """
     try:
         results = solve(inputs, "kinematics", positions, problem=problem)
@@ -101,7 +106,10 @@ def with_assemblies(inputs: Inputs, positions: Sequence[int] | None, problem: An
 
 
 def _undecided_assemblies(inputs: Inputs, group: Group, positions: Sequence[int], problem: Any) -> Results:
-    """Assemblies of the groups up to the undetermined one, at the position of the sketch or those of the file."""
+    """Find the assemblies of the groups up to the one that the sketch does not determine.
+
+    They are found at the given positions if the file lists coordinates, else at the position of the sketch.
+    """
     results = solve(inputs, "structure", problem=problem)
     order = [g.links for g in results.structure.solved]
     kernels = assemble(inputs.linkage, results.structure, results.structure.solved[: order.index(group.links)])

@@ -1,4 +1,4 @@
-"""Least and largest values of quantities over the cycle, with the driver coordinates there."""
+"""Least and largest values of quantities over the cycle, and the driver coordinates at which they occur."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FULL_TURN = 2 * np.pi - 1e-6  # rad: an angle that varies by more has no extreme
 
 @dataclass(frozen=True)
 class QuantityExtreme:
-    """Least and largest value of a quantity (SI), and the driver coordinates there (rad or m)."""
+    """Least and largest value of a quantity (SI), and the driver coordinates at which they occur (rad or m)."""
 
     kind: str
     name: str
@@ -35,7 +35,7 @@ class QuantityExtreme:
 
 @dataclass(frozen=True)
 class SampledQuantity:
-    """Quantity sampled over driver coordinates; its values are angles if `turns`."""
+    """Values of a quantity at driver coordinates, (positions,); angles if `turns`."""
 
     kind: str
     name: str
@@ -48,8 +48,8 @@ class SampledQuantity:
 
 
 def with_extremes(results: Results) -> Results:
-    """Add extreme positions of all points, links and sliding blocks; to results with forces, extreme forces
-    instead.
+    """Add the extreme positions of all points, links and sliding blocks or, if the results have forces, the
+    extreme forces.
     """
 
     def sample(q: Real) -> list[SampledQuantity]:
@@ -97,14 +97,14 @@ def _sample_forces(reactions: Reactions, linkage: Linkage) -> list[SampledQuanti
 def find_extremes(
     sample: Callable[[Real], Sequence[SampledQuantity]], q: Real, *, cyclic: bool
 ) -> tuple[QuantityExtreme, ...]:
-    """Find the extremes of sampled quantities; links that rotate fully have no extreme angles.
+    """Find the least and the largest value of each quantity. Angles of links that rotate fully are left out.
 
-    Finer and finer grids are laid around each extreme place of the first one.
+    The extremes on a first grid of driver coordinates are refined on finer and finer grids around them.
 
     Args:
-        sample: returns the quantities at driver coordinates.
-        q: closely spaced driver coordinates.
-        cyclic: the ends of q are the same position.
+        sample: function that returns the quantities at driver coordinates.
+        q: closely spaced driver coordinates, rad or m.
+        cyclic: True if both ends of q are the same position.
     """
     courses = list(sample(q))
     rows, turning = _value_rows(courses, q), np.array([c.turns for c in courses])
@@ -140,12 +140,12 @@ def find_extremes(
 
 
 def _value_rows(courses: Iterable[SampledQuantity], q: Real) -> Real:
-    """Values of quantities, one row each."""
+    """Stack the values of quantities, (quantities, positions)."""
     return np.stack([np.broadcast_to(to_float(np.asarray(c.values)), q.shape) for c in courses]).astype(float)
 
 
 def _unwrapped(rows: Real) -> Real:
-    """Unwrap angles along each row, skipping missing positions."""
+    """Unwrap the angles in each row, skipping missing positions."""
     unwrapped = rows.copy()
     for row in unwrapped:
         finite = np.isfinite(row)

@@ -1,7 +1,7 @@
-"""Intermittent motion: a wheel that a link drives on some strokes and that rests on others.
+"""Intermittent motion: a wheel that a link drives while the link moves in one sense, and that rests otherwise.
 
-A ratchet, a one-way clutch, or a pin in the slots of a flange couples the wheel to the link while the
-link moves in one sense; what holds the wheel in between is not modelled.
+A ratchet, a one-way clutch, or a pin in the slots of a disk couples the wheel to the link. The detent that
+holds the wheel at rest is not modelled.
 """
 
 from __future__ import annotations
@@ -37,9 +37,11 @@ DrivenWhen = Literal["forward", "backward", "working stroke", "idle stroke"]
 
 @dataclass(frozen=True)
 class WheelSetting:
-    """Linkage of one setting; settings alternate from cycle to cycle. values: parameters as written in the file.
+    """Adjustment of the mechanism that applies in some cycles, such as a changed crank length.
 
-    linkage: None for that of the file.
+    Attributes:
+        values: changed parameters, as written in the file.
+        linkage: linkage with these parameters; None for that of the file.
     """
 
     values: Mapping[str, str] = field(default_factory=dict)
@@ -48,10 +50,14 @@ class WheelSetting:
 
 @dataclass(frozen=True)
 class WheelTask:
-    """Wheel (or shaft, flange) coaxial with `link`, which rotates on the frame and drives it intermittently.
+    """Wheel (or shaft, or disk) that a coaxial link drives intermittently.
 
-    when: the link drives it while it rotates forward (counterclockwise) or backward, or in strokes of the output.
-    settings: one per cycle of the driver, used in turn.
+    Attributes:
+        name: name of the wheel.
+        link: driving link, which rotates about the same pivot on the frame.
+        when: when the link drives the wheel: while it rotates forward (counterclockwise) or backward, or in the
+            working or idle strokes of the output link.
+        settings: one for each cycle of the driver, used in turn.
     """
 
     name: str
@@ -73,10 +79,13 @@ MOST_CYCLES = 1000  # largest number of cycles searched for whole turns of the w
 
 @dataclass(frozen=True)
 class OneWayMotion:
-    """Part of a cycle in which the link moves in one sense: the driver moves from `start` by `way` (rad or m) in
-    a sense.
+    """Part of a cycle in which the driving link of a wheel does not reverse.
 
-    driven: the link drives the wheel.
+    Attributes:
+        start: driver coordinate at the beginning, rad or m.
+        way: distance covered by the driver, rad or m.
+        sense: sense of motion of the driver, +1 or -1.
+        driven: True if the link drives the wheel in this part.
     """
 
     start: float
@@ -93,9 +102,14 @@ class OneWayMotion:
 class WheelMotion:
     """Motion of the wheel in one part of the cycle.
 
-    ways: driver travel from the beginning of the cycle. angles, omegas, epsilons: motion of the wheel there.
-    setting: index of the setting. time: duration, nan if the driver speed changes. omega, epsilon: largest
-    magnitudes, also between these points. Rad and s.
+    Attributes:
+        ride: the part of the cycle.
+        setting: index of the setting.
+        time: duration, s; nan if the speed of the driver is not constant.
+        ways: distance covered by the driver since the beginning of the cycle, rad or m.
+        angles, omegas, epsilons: rotation (rad), angular velocity (rad/s) and acceleration (rad/s2) of the
+            wheel at these distances.
+        omega, epsilon: largest magnitudes of the two over the whole part.
     """
 
     ride: OneWayMotion
@@ -115,7 +129,7 @@ class WheelMotion:
 
 @dataclass(frozen=True)
 class IntermittentMotion:
-    """Motion of a wheel over a cycle of all its settings: parts in their order."""
+    """Motion of a wheel over one cycle of the driver for each setting; `parts` are consecutive."""
 
     task: WheelTask
     parts: tuple[WheelMotion, ...]
@@ -126,66 +140,69 @@ class IntermittentMotion:
 
     @property
     def turn(self) -> float:
-        """Rotation of the wheel in a cycle (rad)."""
+        """Rotation of the wheel over all cycles, rad."""
         return sum(motion.step for motion in self.parts)
 
     def of_setting(self, number: int) -> float:
-        """Rotation of the wheel with one of the settings (rad)."""
+        """Return the rotation of the wheel with one of the settings, rad."""
         return sum(motion.step for motion in self.parts if motion.setting == number)
 
     @property
     def way(self) -> float:
-        """Travel of the driver in a cycle (rad, or m forward and back)."""
+        """Distance covered by the driver over all cycles (rad, or m forward and back)."""
         return sum(motion.ride.way for motion in self.parts)
 
     @property
     def standing(self) -> float:
-        """Fraction of the driver's travel during which the wheel rests."""
+        """Fraction of that distance during which the wheel rests."""
         return sum(motion.ride.way for motion in self.parts if not motion.ride.driven) / self.way
 
     def time(self, *, driven: bool) -> float:
-        """Time in a cycle in which the wheel is driven, or rests (s)."""
+        """Return the time during which the wheel is driven, or rests, s."""
         return sum(motion.time for motion in self.parts if motion.ride.driven == driven)
 
     @cached_property
     def cycles(self) -> int | None:
-        """Number of cycles after which the wheel has made whole turns; None if it exceeds MOST_CYCLES."""
+        """Number of repetitions after which the wheel has made a whole number of revolutions; None if more than
+        MOST_CYCLES.
+        """
         turns = np.arange(1, MOST_CYCLES + 1) * self.turn / (2 * np.pi)
         whole = np.abs(turns - np.round(turns)) < WHOLE_TURNS
         return int(np.argmax(whole)) + 1 if self.turn and bool(np.any(whole)) else None
 
     @property
     def omega(self) -> float:
-        """Largest angular velocity (rad/s)."""
+        """Largest angular velocity, rad/s."""
         return float(np.max([motion.omega for motion in self.driven], initial=0.0))
 
     @property
     def epsilon(self) -> float:
-        """Largest angular acceleration while driven (rad/s2)."""
+        """Largest angular acceleration while the wheel is driven, rad/s2."""
         return float(np.max([motion.epsilon for motion in self.driven], initial=0.0))
 
     @cached_property
     def jumps(self) -> tuple[float, ...]:
-        """Jumps of omega at the beginning of each part (rad/s); the first part follows the last one."""
+        """Jump of the angular velocity at the beginning of each part, rad/s. The first part follows the last one."""
         before = (self.parts[-1], *self.parts[:-1])
         jumps = [float(motion.omegas[0] - last.omegas[-1]) for last, motion in zip(before, self.parts, strict=True)]
         return tuple(0.0 if abs(jump) <= SHOCKLESS * self.omega else jump for jump in jumps)
 
     @property
     def shock(self) -> float:
-        """Largest jump of omega (rad/s); zero for motion without shock."""
+        """Largest jump of the angular velocity, rad/s; zero for motion without shock."""
         return float(np.max(np.abs(self.jumps)))
 
 
 def one_way_motions_of_rotation(task: WheelTask, strokes: Strokes, sense: int, start: float) -> list[OneWayMotion]:
-    """Divide the cycle of a fully rotating driver into one-way motions, beginning with the first one at or after
-    `start`.
+    """Divide the cycle of a fully rotating driver into one-way motions; the first is the first to begin at or
+    after `start`.
 
     Args:
         task: the wheel.
-        strokes: strokes of the task's link, or of the output if the task refers to those.
-        sense: sense of the driver, +1 or -1.
-        start: driver coordinate of position 0 (rad).
+        strokes: strokes of the link that drives the wheel, or of the output link if `task.when` refers to its
+            strokes.
+        sense: sense of rotation of the driver, +1 or -1.
+        start: driver coordinate of position 0, rad.
     """
     if task.when in ("forward", "backward"):
         chosen = [s.run > 0 if task.when == "forward" else s.run < 0 for s in strokes.strokes]
@@ -206,7 +223,7 @@ def one_way_motions_of_rotation(task: WheelTask, strokes: Strokes, sense: int, s
 def one_way_motions_of_stroke(
     linkage: Linkage, kernels: Sequence[GroupSolver], task: WheelTask, driver_range: DriverRange
 ) -> list[OneWayMotion]:
-    """Divide the stroke of a driver, forward and back, into one-way motions of the link."""
+    """Divide the stroke of a driver, forward and back, into one-way motions of the link that drives the wheel."""
     sense, curve = linkage.driver.sense, OutputCurve(linkage, solvers_towards(kernels, [task.link]), task.link)
     q = np.linspace(driver_range.start, driver_range.end, SCAN + 1)
     slope = curve.slope(q)
@@ -237,9 +254,19 @@ def wheel_motions(
     setting: int,
     before: Sequence[WheelMotion],
 ) -> list[WheelMotion]:
-    """Return the motion of the wheel in one-way motions with one of the settings, after the parts before them.
+    """Compute the motion of the wheel during one-way motions with one setting.
 
-    On its way back the driver has the same speed at each place as on its way forward.
+    A driver that moves back and forth has the same speed at a coordinate in both directions.
+
+    Args:
+        linkage: linkage of the setting.
+        kernels: its group solvers.
+        link: the link that drives the wheel.
+        rides: the one-way motions.
+        law: law of motion of the driver.
+        setting: index of the setting.
+        before: motion of the wheel with the settings before this one; distances and angles are counted on from
+            it.
     """
     travel, angle = (float(before[-1].ways[-1]), float(before[-1].angles[-1])) if before else (0.0, 0.0)
     rate = law.rate if isinstance(law, DriverMotion) and law.acceleration == 0 else float("nan")
@@ -267,7 +294,9 @@ def wheel_motions(
 
 
 def _join_rests(rides: Sequence[OneWayMotion]) -> list[OneWayMotion]:
-    """Join consecutive motions in which the wheel rests and the driver does not reverse."""
+    """Join consecutive parts between which the wheel neither starts nor stops being driven and the driver does not
+    reverse.
+    """
     joined: list[OneWayMotion] = []
     for (driven, sense), group in groupby(rides, attrgetter("driven", "sense")):
         first, *others = group
@@ -276,7 +305,7 @@ def _join_rests(rides: Sequence[OneWayMotion]) -> list[OneWayMotion]:
 
 
 def _largest_value(magnitude: Callable[[Real], Real], coordinates: Real) -> float:
-    """Largest value of a function near closely spaced places, refined between them."""
+    """Return the largest value of a function over closely spaced driver coordinates, refined between them."""
     values = magnitude(coordinates)
     if not bool(np.all(np.isfinite(values))):
         return float("nan")
@@ -296,13 +325,13 @@ def compute_intermittent(mechanism: Mechanism, start: float, law_of: LawOf) -> t
 
     Args:
         mechanism: the mechanism with its wheels.
-        start: driver coordinate of position 0 (rad or m).
-        law_of: gives the law of motion of the driver for a linkage.
+        start: driver coordinate of position 0, rad or m.
+        law_of: function that returns the law of motion of the driver for a linkage.
 
     Raises:
         NoCycleError: the driver has no cycle.
         MissingStrokesError: the link or the output has no strokes.
-        SettingError: a setting cannot be assembled or moved.
+        SettingError: with one of the settings the linkage cannot be assembled or moved.
     """
     return tuple(_wheel_cycle(mechanism, task, start, law_of) for task in mechanism.inputs.wheels)
 

@@ -1,7 +1,7 @@
-"""Properties of a mechanism that do not depend on the positions: assembly, range, strokes, dead positions,
-link names.
+"""Properties of a mechanism that do not depend on the requested positions.
 
-A Mechanism computes each of them when it is first requested, so the structure alone moves nothing.
+They are the assembly, the driver range, strokes, dead positions and link names. Each is computed when it is
+first requested, so a request for the structure alone solves no motion.
 """
 
 from __future__ import annotations
@@ -59,12 +59,19 @@ CACHED_PARTS = (
 
 @dataclass(frozen=True)
 class Inputs:
-    """Linkage, requested positions and limits.
+    """Input data of an analysis.
 
-    pressure_limits: allowed pressure angles on sliding and on rotating links (rad). lever_limit: allowed
-    relative difference of the lever. extended: makes the same inputs in double-doubles from the decimals of
-    the file; None if there are none. sized: False while lengths are still unknown, as they are not needed for
-    the structure. dynamics, balancing, wheels: tasks.
+    Attributes:
+        linkage: the linkage.
+        request: requested positions.
+        pressure_limits: allowed pressure angles on sliding and on rotating links, rad.
+        lever_limit: allowed relative difference between the lever and the force plan.
+        extended: function that returns the same inputs in double-doubles, from the decimal numbers of the file;
+            None if there is no file.
+        sized: False if some lengths are still unknown, so that only the structure can be analysed.
+        dynamics: task for the law of motion, or None.
+        balancing: balancing task, or None.
+        wheels: wheels with intermittent motion.
     """
 
     linkage: Linkage
@@ -80,10 +87,10 @@ class Inputs:
 
 @dataclass(frozen=True, eq=False)
 class Mechanism:
-    """A linkage with its structure; further properties are computed on request.
+    """Linkage with its structure. All other properties are computed when they are first requested.
 
-    Those that need the assembly raise AssemblyError, AmbiguousSketchError, SketchMismatchError,
-    GroupTooLargeError, ChangePointSearchError.
+    Properties for which the linkage must be assembled raise AssemblyError, AmbiguousSketchError,
+    SketchMismatchError, GroupTooLargeError or ChangePointSearchError.
     """
 
     inputs: Inputs
@@ -94,23 +101,23 @@ class Mechanism:
         return self.inputs.linkage
 
     def known(self, **parts: Any) -> Mechanism:
-        """Return a mechanism with these properties given; it computes the others itself."""
+        """Return a new mechanism in which the given properties are already computed."""
         other = Mechanism(self.inputs, self.structure)
         other.__dict__.update(parts)
         return other
 
     def changed(self, **parts: Any) -> Mechanism:
-        """Return the mechanism with some properties replaced; the others keep their computed values."""
+        """Return the mechanism with the given properties replaced; the values of all other properties are kept."""
         return self.known(**{name: getattr(self, name) for name in CACHED_PARTS} | parts)
 
     @cached_property
     def kernels(self) -> tuple[GroupSolver, ...]:
-        """Groups in the assemblies of the sketch, in solution order."""
+        """Group solvers in solution order, each for the assembly shown in the sketch."""
         return assemble(self.linkage, self.structure)
 
     @cached_property
     def assembles(self) -> bool:
-        """True if the sketch can be assembled; False while lengths are still unknown."""
+        """True if the linkage can be assembled as in the sketch; False while lengths are unknown."""
         if not self.inputs.sized:
             return False
         try:
@@ -120,17 +127,17 @@ class Mechanism:
 
     @cached_property
     def driver_range(self) -> DriverRange:
-        """Range of the driver."""
+        """Range in which the driver can move."""
         return find_range(self.linkage, self.kernels)
 
     @cached_property
     def dead(self) -> tuple[DeadPosition, ...]:
-        """Dead positions inside the range of the driver."""
+        """Dead positions inside the driver range."""
         return find_dead_positions(self.linkage, self.kernels, self.driver_range)
 
     @cached_property
     def output(self) -> str | None:
-        """Name of the main output link, or None."""
+        """Name of the main output link; None if there is none."""
         return output_link(self.linkage, self.structure.groups)
 
     @cached_property
@@ -140,7 +147,7 @@ class Mechanism:
 
     @cached_property
     def strokes(self) -> Strokes | None:
-        """Strokes of the main output, with those of further links on which loads depend."""
+        """Strokes of the main output link; `others` holds the strokes of further links on which loads depend."""
         main = None if self.output is None else self._strokes_of(self.output)
         if main is None:
             return None
@@ -152,7 +159,7 @@ class Mechanism:
 
     @cached_property
     def further(self) -> tuple[Strokes, ...]:
-        """Strokes of the other outputs."""
+        """Strokes of the output links other than the main one."""
         if not self.driver_range.full:
             return ()
         strokes = [self._strokes_of(link) for link in self.outputs[1:]]
@@ -160,14 +167,14 @@ class Mechanism:
 
     @cached_property
     def asked(self) -> Real:
-        """Driver coordinates of all requested positions, whether they are computed or not (rad or m)."""
+        """Driver coordinates of all requested positions (rad or m), even of those that are not computed."""
         request = self.inputs.request
         strokes = self.strokes if request.start == "working stroke" else None
         return driver_positions(request, self.driver_range, strokes, self.linkage.driver.sense)
 
     @cached_property
     def travels(self) -> tuple[OutputTravel, ...]:
-        """Travels of the outputs over the requested positions, for a driver that does not rotate fully."""
+        """Travel of each output link over the requested positions, if the driver does not rotate fully."""
         if self.driver_range.full:
             return ()
         travels = [find_travel(self.linkage, self.kernels, self.asked, link) for link in self.outputs]
@@ -175,18 +182,20 @@ class Mechanism:
 
     @cached_property
     def pressure(self) -> tuple[PressureAngle, ...]:
-        """Largest pressure angles of the driven links."""
+        """Largest pressure angle of each driven link."""
         return find_pressure(self.linkage, self.kernels, self.driver_range, self.inputs.pressure_limits)
 
     @cached_property
     def slots(self) -> tuple[SlotExcess, ...]:
-        """Distances of sliding blocks from the ends of their slots, or beyond them."""
+        """How far each sliding block stays from the ends of its slot, or goes beyond them."""
         return find_slot_excess(self.linkage, self.kernels, self.driver_range, self.inputs.request.places)
 
     @cached_property
     def roles(self) -> dict[str, str]:
-        """Name of each link: crank, rocker, ... A crank differs from a rocker by a full rotation, so the linkage is
-        moved where a name depends on it; if it cannot be assembled, names follow from the pairs alone.
+        """Kind of each link: crank, rocker, ...
+
+        A crank differs from a rocker by rotating fully, so the motion is solved where the kind depends on it. If
+        the linkage cannot be assembled, the kinds follow from the pairs alone.
         """
 
         def turns(link: str) -> bool:
@@ -198,12 +207,12 @@ class Mechanism:
 
     @property
     def turned(self) -> bool:
-        """True if the link names required moving the linkage."""
+        """True if the motion had to be solved for the kinds of links."""
         return bool(self.roles) and "_turning" in vars(self)
 
     @cached_property
     def _turning(self) -> dict[str, bool]:
-        """Links that rotate through 360 degrees over the driver's range."""
+        """For each link, True if it rotates through 360 degrees over the driver range."""
         linkage, driver_range = self.linkage, self.driver_range
         turned = {d.link: driver_range.full and d.kind == "turn" for d in linkage.cranks}
         groups = [k.group for k in self.kernels]
@@ -224,11 +233,11 @@ class Mechanism:
 def with_driver(linkage: Linkage, link: str) -> Linkage:
     """Return the linkage driven by another link on the frame, in the assembly of the sketch.
 
-    If the linkage cannot be assembled with its own driver, the coordinate of the new one stays that of the
-    sketch; the structure does not need it.
+    If the linkage cannot be assembled with its original driver, the sketch coordinate is left unchanged; the
+    structure does not depend on it.
 
     Raises:
-        NotOnFrameError: the link is not connected to the frame.
+        NotOnFrameError: the link is not paired with the frame.
     """
     pivots = [h.point for h in linkage.hinges if FRAME in h.links and link in h.links]
     runs = [s.name for s in linkage.slides if {s.carrier, s.runner} == {FRAME, link}]

@@ -1,4 +1,4 @@
-"""Quantities of a linkage by name, and functions that read them from solved states."""
+"""Quantities of a linkage by name, with functions that read their values from results."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ STAGES: tuple[QuantityStage, ...] = ("structure", "places", "velocities", "accel
 
 
 class SolvedState(Protocol):
-    """Source of quantities: one linkage at its positions, or many variants at once."""
+    """Results from which quantities are read: of one linkage at its positions, or of many variants at once."""
 
     @property
     def linkage(self) -> Any: ...
@@ -56,12 +56,21 @@ class SolvedState(Protocol):
 class NamedQuantity:
     """Quantity of a linkage by name.
 
-    read: returns its values in SI, (positions,) or (variants, positions), complex for a vector; (1,) or
-    (variants, 1) if it belongs to the whole mechanism (`whole`). against: reference of relative errors: its
-    largest magnitude in the cycle, its range there (coordinates), one radian (angles, modulo 360 degrees), or
-    none (exact, such as the class). thing: link, point or pair. on: link on which a reaction acts. otherwise:
-    the same reaction if the links of its compound hinge are attached to the other of its two links, as
-    students may do.
+    Attributes:
+        name: its name, e.g. "v of E".
+        stage: stage of the analysis that computes it.
+        dimension: its dimension.
+        read: function that returns the values from results, SI, (positions,) or (variants, positions); complex
+            for a vector; (1,) or (variants, 1) if `whole`.
+        vector: True for a vector.
+        whole: True if the quantity describes the whole mechanism rather than one position.
+        against: what relative errors refer to: the largest magnitude in the cycle ("largest"), the difference
+            between largest and least value ("range", for coordinates), one radian ("angle", modulo 360
+            degrees), or nothing because the value must be exact ("exact", such as the class).
+        thing: link, point or pair to which it belongs.
+        on: link on which a reaction acts.
+        otherwise: the same reaction, if the pairs of a compound hinge are counted from another link, as
+            students may do.
     """
 
     name: str
@@ -88,11 +97,11 @@ QuantityMaker = Callable[["Linkage", "Structure"], "dict[str, NamedQuantity]"]  
 
 
 def mechanism_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
-    """Quantities of the whole mechanism: W, class, numbers of links, pairs, redundant constraints and strokes;
-    H, psi, k.
+    """Return the quantities that describe the whole mechanism.
 
-    H is the stroke of the output, for a rocker the arc psi l of its first point; psi is the swing angle, k
-    the time ratio.
+    W, class, n (links), p1 and p2 (lower and higher pairs), passive (redundant constraints), strokes (their
+    number); H, psi, k. H is the stroke of the output, for a rocker the arc psi l of its first point; psi is the
+    swing angle, k the time ratio.
     """
     exact = {
         "W": structure.mobility + structure.redundant,
@@ -129,7 +138,7 @@ def _read_stroke(solution: SolvedState) -> Any:
 
 
 def _read_arc(output: str, solution: SolvedState) -> Any:
-    """Arc H = psi l of an oscillating output, m."""
+    """Return the arc H = psi l of a rocker, m."""
     arm = solution.linkage.output_arm(output)
     return _read_stroke(solution) * (np.nan if arm is None else arm[1])
 
@@ -151,8 +160,10 @@ def _read_stroke_count(solution: SolvedState) -> Any:
 
 
 def motion_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
-    """x, y, v, a of points and centres of mass; phi, omega, epsilon of links; v, a and Coriolis in prismatic
-    pairs.
+    """Return the quantities of motion.
+
+    x, y, v, a of points and centres of mass; phi, omega, epsilon of links; s of links on the frame; v, a and
+    Coriolis in prismatic pairs.
     """
     quantities: dict[str, NamedQuantity] = {}
 
@@ -253,7 +264,7 @@ def motion_quantities(linkage: Linkage, structure: Structure) -> dict[str, Named
 
 
 def relative_angles(linkage: Linkage) -> dict[str, NamedQuantity]:
-    """`phi of 5 on 4`: rotation of a link relative to another moving link that is hinged to it, rad."""
+    """Return `phi of 5 on 4`: the angle of a link relative to another moving link hinged to it, rad."""
     angles = {}
     for hinge in linkage.hinges:
         for link, base in permutations([name for name in hinge.links if name != FRAME], 2):
@@ -298,7 +309,11 @@ NEARLY_ZERO = 0.05  # of the largest reaction: below it the point of application
 
 
 def force_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
-    """Inertia U3 and M3; R_34, force of link 3 on link 4; R_A, pin of a compound hinge; M_b or F_b."""
+    """Return the quantities of forces.
+
+    U and M, inertia force and couple of a link; R_34, force of link 3 on link 4; arm of a guide reaction; R_A,
+    force of the pin of a compound hinge; M_b or F_b, balancing moment or force.
+    """
     quantities: dict[str, NamedQuantity] = {}
 
     def put(quantity: NamedQuantity) -> None:
@@ -356,7 +371,7 @@ def force_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQ
 
 
 def _common_links(linkage: Linkage, structure: Structure) -> dict[str, str]:
-    """For the point of each compound hinge, the link to which the others are attached."""
+    """For each compound hinge, return the link with which all its pairs are counted, by name of the point."""
     common = {}
     for hinge in linkage.hinges:
         ends = [{pair.i, pair.j} for pair in structure.pairs if pair.kind == "R" and pair.point == hinge.point]
@@ -370,7 +385,7 @@ def _reaction_name(by: str, on: str) -> str:
 
 
 def _read_pin_force(point: str, link: str, sense: int, solution: SolvedState) -> Any:
-    """Force of the pin of a compound hinge on one of its links, or its opposite."""
+    """Return the force of the pin of a compound hinge on one of its links (sense 1), or the opposite force (-1)."""
     return sense * solution.reactions.pin_force(point, link)
 
 
@@ -383,7 +398,7 @@ def _read_reaction(pair: str, on: str, solution: SolvedState) -> Any:
 
 
 def _read_arm(pair: str, solution: SolvedState) -> Any:
-    """Arm of a guide reaction from the sliding point; nan where the force is nearly zero."""
+    """Return the distance of a guide reaction from the sliding point, m; nan where the force is nearly zero."""
     reaction = solution.reactions.of(pair)
     magnitude = np.abs(reaction.force)
     assert reaction.arm is not None
@@ -409,7 +424,11 @@ WHEEL_READERS: tuple[tuple[str, Dimension, WheelReader], ...] = (
 
 
 def wheel_quantities(tasks: Iterable[WheelTask]) -> dict[str, NamedQuantity]:
-    """Rotation of wheels in a cycle and in each step, fraction of rest, cycles to whole turns, largest speeds."""
+    """Return the quantities of wheels with intermittent motion.
+
+    Rotation per cycle and with each setting, fraction of rest, cycles to a whole number of revolutions, largest
+    angular velocity and acceleration, shock.
+    """
     readers = []
     for number, task in enumerate(tasks):
         for name, dimension, reader in WHEEL_READERS:
@@ -436,5 +455,7 @@ QUANTITY_MAKERS: tuple[QuantityMaker, ...] = (mechanism_quantities, motion_quant
 
 
 def list_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
-    """Return all quantities of a linkage by name: those that students may be asked and a file can show."""
+    """Return all quantities of a linkage by name: those that a file can request, and that students' answers may
+    contain.
+    """
     return {name: quantity for kind in QUANTITY_MAKERS for name, quantity in kind(linkage, structure).items()}

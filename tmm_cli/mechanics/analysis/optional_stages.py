@@ -1,4 +1,4 @@
-"""Stages that few files need; their modules are imported when they run, scipy for single runs only."""
+"""Stages that few files need. Their modules are imported only when they run, scipy only for single runs."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 def driver_motion(linkage: Linkage, start: float) -> LawOfMotion:
     """Return the law of motion of the first driver.
 
-    Its speed is given at position 0, or with several drivers at the position of the sketch.
+    The speed in the file holds at position 0 or, with several drivers, at the position of the sketch.
     """
     driver = linkage.driver
     if driver.law is not None:
@@ -38,8 +38,10 @@ def driver_motion(linkage: Linkage, start: float) -> LawOfMotion:
 
 
 def law_of_motion(mechanism: Mechanism, task: SteadyTask | RunTask) -> SteadyRunning | SingleRun:
-    """Compute the law of motion from position 0. Raises the errors of `find_running_law` and
-    `compute_single_run`.
+    """Compute the law of motion of steady running, or of a single run, from position 0.
+
+    Raises:
+        LinkageError: see `find_running_law` and `compute_single_run`.
     """
     if task.cyclic:
         from tmm_cli.mechanics.dynamics import find_running_law
@@ -52,8 +54,10 @@ def law_of_motion(mechanism: Mechanism, task: SteadyTask | RunTask) -> SteadyRun
 
 
 def balancing_stage(mechanism: Mechanism, q: Real, task: BalancingTask) -> BalancingResults:
-    """Balance the mechanism over the cycle from position 0, and at driver coordinates q. Raises as
-    `balance_machine`.
+    """Balance the mechanism over the cycle from position 0, and at driver coordinates q.
+
+    Raises:
+        LinkageError: see `balance_machine`.
     """
     from tmm_cli.mechanics.dynamics import balance_machine
 
@@ -61,9 +65,12 @@ def balancing_stage(mechanism: Mechanism, q: Real, task: BalancingTask) -> Balan
 
 
 def intermittent_stage(mechanism: Mechanism, running: LawOfMotion | None) -> tuple[IntermittentMotion, ...]:
-    """Compute the wheels over a cycle from position 0. Raises as `compute_intermittent`.
+    """Compute the motion of the wheels from position 0.
 
-    running: law of motion of the machine, used for every setting; None: the law of the file.
+    running: law of motion of the machine, used for every setting; None for the law of motion in the file.
+
+    Raises:
+        LinkageError: see `compute_intermittent`.
     """
     from tmm_cli.mechanics.analysis.intermittent import compute_intermittent
 

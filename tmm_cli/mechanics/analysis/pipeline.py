@@ -1,9 +1,9 @@
-"""Stages of the analysis: structure -> assembly -> range and strokes -> motion -> forces -> lever.
+"""Stages of the analysis: structure, assembly, range and strokes, motion, forces, lever.
 
-Only requested stages are computed. Positions near a dead position are computed again in double-doubles:
-at a distance eps (rad) from it the nearest double to a length of the file changes velocities by 1e-16/eps
-relatively, whatever the method; with 31 digits this does not matter. The results are rounded to float64
-again.
+Only the requested stages are computed. Positions near a dead position are computed again in double-doubles:
+at a distance eps (rad) from it, rounding a length of the file to the nearest double changes velocities by
+1e-16/eps relatively, whatever the method; with 31 digits this does not matter. The results are then rounded
+to float64.
 """
 
 from __future__ import annotations
@@ -69,8 +69,8 @@ if TYPE_CHECKING:
 
 
 def is_near_dead(motion: Motion) -> Real:
-    """Mark positions where a group is so near to a dead position that float64 is not precise enough, but not in
-    it.
+    """Return True at positions where some group is too close to a dead position for float64, though not in it,
+    (positions,).
     """
     near = np.zeros(np.shape(motion.q), dtype=bool)
     for kernel, at in zip(motion.kernels, motion.placements, strict=True):
@@ -79,7 +79,7 @@ def is_near_dead(motion: Motion) -> Real:
 
 
 def refine_near_dead(motion: Motion, linkage: Linkage, q: Real, law: LawOfMotion, where: Real) -> Motion:
-    """Replace some positions of a motion by those computed with a linkage in double-doubles.
+    """Replace the positions of a motion that are close to dead positions by values computed in double-doubles.
 
     Args:
         motion: the motion in float64; its assemblies are kept.
@@ -98,10 +98,10 @@ def refine_near_dead(motion: Motion, linkage: Linkage, q: Real, law: LawOfMotion
 
 
 def refuse_missing_data(mechanism: Mechanism) -> None:
-    """Refuse inputs whose loads, positions or tables depend on strokes, rotations or speeds that do not exist.
+    """Raise an error if loads, positions or tables depend on strokes, rotations or speeds that do not exist.
 
     Raises:
-        MissingStrokesError, NoTurnError, TableBeyondCycleError, SpeedsEndError.
+        MissingStrokesError, NoTurnError, TableBeyondCycleError, SpeedTableError.
     """
     _refuse_missing_strokes(mechanism)
     _refuse_long_load_tables(mechanism)
@@ -109,7 +109,7 @@ def refuse_missing_data(mechanism: Mechanism) -> None:
 
 
 def _refuse_missing_strokes(mechanism: Mechanism) -> None:
-    """Refuse positions counted from strokes, and loads in strokes, if the output has none."""
+    """Raise an error for positions or loads that are counted from strokes, if the output link has none."""
     request, driver_range = mechanism.inputs.request, mechanism.driver_range
     loads = [x for x in mechanism.linkage.loads if x.working_stroke_only or (x.table and x.table.against == "stroke")]
     if request.start != "working stroke" and not loads:
@@ -130,7 +130,7 @@ def _refuse_missing_strokes(mechanism: Mechanism) -> None:
 
 
 def _refuse_long_load_tables(mechanism: Mechanism) -> None:
-    """Refuse a load table that extends beyond the cycle."""
+    """Raise an error for a load table that extends beyond the cycle."""
     turns = mechanism.linkage.turns
     if turns > 1 and not mechanism.driver_range.full:
         raise NoTurnError(turns)
@@ -146,7 +146,7 @@ def _refuse_long_load_tables(mechanism: Mechanism) -> None:
 
 
 def _refuse_short_speed_table(mechanism: Mechanism) -> None:
-    """Refuse a speed table of the driver that does not cover all positions."""
+    """Raise an error for a speed table of the driver that does not cover all positions."""
     law, requested = mechanism.linkage.driver.law, mechanism.asked
     if law is None:
         return
@@ -172,12 +172,26 @@ Stage = Literal["structure", "kinematics", "forces"]
 
 @dataclass(frozen=True, eq=False)
 class Results:
-    """Results of the stages; those of stages that were not requested are None.
+    """Results of the analysis. Those of stages that were not requested are None or empty.
 
-    numbers: numbers of the positions in the cycle. of: names of requested points, links, centres of mass;
-    empty for all. What does not depend on the positions is computed on request. centres: by index of the
-    position; centres, extremes and assemblies only if requested. wheels: those of the block intermittent.
-    problem: any object of the caller.
+    Properties that do not depend on the positions are computed on request.
+
+    Attributes:
+        inputs: input data.
+        structure: structure of the linkage.
+        mechanism: properties that do not depend on the positions.
+        numbers: numbers of the computed positions.
+        motion: motion at these positions.
+        loads, reactions, lever: loads on the links, reactions in the pairs, Zhukovsky lever.
+        friction, losses: reactions with friction, and friction losses over the cycle.
+        energy: kinetic energy and powers.
+        running: steady running or single run.
+        balancing: result of the balancing task.
+        wheels: motion of the wheels in the block `intermittent`.
+        assemblies, extremes: only if requested.
+        centres: instantaneous centres by index of the position, only if requested.
+        of: names of the requested points, links and centres of mass; empty for all.
+        problem: any object of the caller.
     """
 
     inputs: Inputs
@@ -210,7 +224,7 @@ class Results:
 
     @property
     def kernels(self) -> tuple[GroupSolver, ...]:
-        """Groups in solution order; none if the sketch cannot be assembled."""
+        """Group solvers in solution order; none if the linkage cannot be assembled as in the sketch."""
         return self.mechanism.kernels if self.mechanism.assembles else ()
 
     @property
@@ -231,7 +245,7 @@ class Results:
 
     @property
     def swinging(self) -> tuple[Strokes, ...]:
-        """Strokes of reciprocating outputs."""
+        """Strokes of all output links that reciprocate."""
         return tuple(strokes for strokes in (self.strokes, *self.further) if strokes is not None and strokes.strokes)
 
     @property
@@ -244,7 +258,7 @@ class Results:
 
     @cached_property
     def pressure(self) -> tuple[PressureAngle, ...]:
-        """Pressure angles of the driven links: the largest, and those at the positions."""
+        """Pressure angles of the driven links: the largest over the range, and those at the positions."""
         if self.of or self.motion is None:
             return ()
         return tuple(
@@ -254,31 +268,32 @@ class Results:
 
     @property
     def asked(self) -> Real:
-        """Driver coordinates of all requested positions, whether they were computed or not (rad or m)."""
+        """Driver coordinates of all requested positions (rad or m), even of those that were not computed."""
         return self.mechanism.asked
 
     @property
     def start(self) -> float:
-        """Driver coordinate of position 0."""
+        """Driver coordinate of position 0, rad or m."""
         return float(self.asked[0])
 
     @property
     def turns(self) -> int:
-        """Revolutions of the driver after which the motion repeats; 0 for a reciprocating driver."""
+        """Revolutions of the driver after which the motion repeats; 0 if the driver does not rotate fully."""
         reach = self.driver_range
         return reach.turns if reach is not None and reach.full and self.linkage.driver.kind == "turn" else 0
 
     @property
     def counts_strokes(self) -> bool:
-        """True if strokes are counted from position 0.
+        """True if strokes are counted from position 0, rather than as working and idle strokes.
 
-        In a longer load cycle, as of a four-stroke engine, working and idle strokes do not alternate.
+        If the loads repeat after several revolutions, as in a four-stroke engine, working and idle strokes do not
+        alternate.
         """
         return self.linkage.turns > 1 and not any(load.working_stroke_only for load in self.linkage.loads)
 
     def closely(self, count: int) -> Real:
-        """Return `count` closely spaced driver coordinates over the whole range: a cycle from position 0, or first
-        to last position.
+        """Return `count` evenly spaced driver coordinates over a cycle from position 0, or from the first to the last
+        position.
         """
         driver = self.linkage.driver
         if self.turns:
@@ -303,13 +318,13 @@ class Results:
 
     @property
     def locked(self) -> Real:
-        """Mask of positions where friction locks the mechanism."""
+        """True at positions where the mechanism is self-locking, (positions,)."""
         assert self.motion is not None
         return np.zeros(np.shape(self.motion.q), dtype=bool) if self.friction is None else self.friction.locked
 
     @property
     def lever_holds(self) -> bool:
-        """True if the lever agrees with the force plan within the limit at all computed positions."""
+        """True if the lever agrees with the force plan, within the limit, at all computed positions."""
         if self.lever is None or self.motion is None:
             return True
         difference = self.lever.difference[self.motion.moving & ~self.locked]
@@ -323,18 +338,18 @@ def solve(
     of: Sequence[str] = (),
     problem: Any = None,
 ) -> Results:
-    """Run the stages up to the requested one.
+    """Run the stages of the analysis up to the requested one.
 
     Args:
         inputs: linkage, positions and limits.
-        stage: last stage.
-        positions: numbers of positions; None: all.
-        of: points, links, centres of mass; only the groups that they depend on are solved.
-        problem: kept in the results, see `Results`.
+        stage: last stage to run.
+        positions: numbers of positions; None for all.
+        of: names of points, links and centres of mass; only the groups on which they depend are solved.
+        problem: object of the caller, kept in the results.
 
     Raises:
-        LinkageError: MobilityError, UnknownPositionError, UnknownNameError, MissingStrokesError, and errors
-            of assembly.
+        LinkageError: MobilityError, UnknownPositionError, UnknownNameError, MissingStrokesError, and errors of
+            assembly.
     """
     structure = analyse_mobile_structure(inputs.linkage)
     results = Results(inputs, structure, Mechanism(inputs, structure), of=tuple(of), problem=problem)
@@ -363,7 +378,7 @@ def solve(
 
 
 def _solve_motion(results: Results, kernels: tuple[GroupSolver, ...], numbers: tuple[int, ...]) -> Motion:
-    """Solve the motion; positions near dead ones in extended precision, if the inputs allow it."""
+    """Solve the motion; if the inputs allow it, positions near dead positions are solved in double-doubles."""
     law = results.law
     motion = compute_motion(results.linkage, kernels, results.asked[list(numbers)], law)
     where = is_near_dead(motion)
@@ -376,8 +391,9 @@ def _solve_motion(results: Results, kernels: tuple[GroupSolver, ...], numbers: t
 
 
 def with_forces(results: Results, *, cycle: bool = True) -> Results:
-    """Add loads, reactions, lever and energy to kinematics; with friction, and if `cycle`, its losses over the
-    cycle.
+    """Add loads, reactions, lever and energy to results of kinematics.
+
+    If there is friction and `cycle` is True, its losses over the cycle are added too.
     """
     motion = results.motion
     assert motion is not None
@@ -410,8 +426,9 @@ def with_forces(results: Results, *, cycle: bool = True) -> Results:
 
 
 def cycle_losses(results: Results, samples: int = CYCLE_SAMPLES, *, ranges: bool = True) -> FrictionLosses:
-    """Integrate friction losses over the cycle with `samples` steps; ranges: also find the ranges in which it
-    locks.
+    """Integrate the friction losses over the cycle with `samples` steps.
+
+    ranges: also find the ranges in which the mechanism is self-locking.
     """
     whole = motion_at_positions(results, results.closely(samples + 1))
     rubbed = _solve_friction_at(results, whole)
@@ -435,11 +452,14 @@ def _solve_friction_at(results: Results, motion: Motion) -> FrictionSolution:
 
 
 def motion_at_positions(results: Results, q: Real, order: int = 2) -> Motion:
-    """Return the motion of an analysed mechanism at other driver coordinates (rad or m), (positions,)."""
+    """Compute the motion of an analysed mechanism at other driver coordinates q (rad or m), (positions,).
+
+    order: highest order of the derivatives, 0 for positions only.
+    """
     return fill_in_limits(compute_motion(results.linkage, results.kernels, q, results.law, order))
 
 
 def results_at(results: Results, q: Real) -> Results:
-    """Return results at other driver coordinates; with forces if they have them."""
+    """Compute the results at other driver coordinates q, with forces if `results` has them."""
     moved = replace(results, motion=motion_at_positions(results, q), numbers=tuple(range(len(q))))
     return moved if results.reactions is None else with_forces(moved, cycle=False)

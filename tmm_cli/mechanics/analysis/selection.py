@@ -1,4 +1,4 @@
-"""Points, links and centres of mass (S3 of link 3) by name: their links, their motion, their values."""
+"""Selection of points, links and centres of mass (S3 of link 3) by name."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PointOnLink = tuple[str, complex]  # a link and a place in its axes, m
 
 
 def named_points(linkage: Linkage) -> dict[str, PointOnLink]:
-    """Return every named point of the moving links with its link and its place on it."""
+    """Return the link and the local coordinates of every named point of the moving links."""
     return {
         point: (link, local)
         for link in reversed(linkage.moving)
@@ -28,13 +28,13 @@ def named_points(linkage: Linkage) -> dict[str, PointOnLink]:
 
 
 def mass_centres(linkage: Linkage) -> dict[str, PointOnLink]:
-    """Return the centres of mass of links with mass, named S3 after the link."""
+    """Return the link and the local coordinates of every centre of mass; S3 is that of link 3."""
     links = linkage.links
     return {f"S{name}": (name, links[name].centre) for name in linkage.moving if np.any(links[name].mass != 0)}
 
 
 def refuse_unknown_names(linkage: Linkage, names: Sequence[str]) -> None:
-    """Raise UnknownNameError for a name that is no point, centre of mass or moving link."""
+    """Raise UnknownNameError for a name that is not a point, centre of mass or moving link."""
     allowed = {**named_points(linkage), **mass_centres(linkage), **dict.fromkeys(linkage.moving)}
     for name in names:
         if name not in allowed:
@@ -42,7 +42,10 @@ def refuse_unknown_names(linkage: Linkage, names: Sequence[str]) -> None:
 
 
 def point_places(linkage: Linkage, kernels: Sequence[GroupSolver], names: Sequence[str]) -> Mapping[str, PointOnLink]:
-    """Return the places of the named points and centres of mass, on the link that needs the fewest groups."""
+    """Return the link and the local coordinates of the named points and centres of mass.
+
+    For a point shared by several links, the link is the one that requires the fewest groups to be solved.
+    """
     points, centres = named_points(linkage), mass_centres(linkage)
     points_on_links: dict[str, PointOnLink] = {}
     for name in names:
@@ -58,13 +61,13 @@ def point_places(linkage: Linkage, kernels: Sequence[GroupSolver], names: Sequen
 
 
 def moving_points(linkage: Linkage, motion: Motion, names: Sequence[str] = ()) -> dict[str, PointMotion]:
-    """Return the motion of all named points, or of those among the names."""
+    """Return the motion of the named points, or of all points if `names` is empty."""
     points = named_points(linkage)
     return {name: motion.named(name) for name in (dict.fromkeys(names) if names else points) if name in points}
 
 
 def moving_centres(linkage: Linkage, motion: Motion, names: Sequence[str] = ()) -> dict[str, PointMotion]:
-    """Return the motion of all centres of mass, or of those among the names."""
+    """Return the motion of the named centres of mass, or of all centres if `names` is empty."""
     centres = mass_centres(linkage)
     points = named_points(linkage)
     chosen = [name for name in dict.fromkeys(names) if name not in points] if names else centres
@@ -72,8 +75,9 @@ def moving_centres(linkage: Linkage, motion: Motion, names: Sequence[str] = ()) 
 
 
 def select_links(linkage: Linkage, names: Sequence[str]) -> tuple[str, ...]:
-    """Return the links among the names in the order of the file, all if there are no names; points come before
-    links.
+    """Return the links among the names, in the order of the file, or all moving links if `names` is empty.
+
+    A name that is both a point and a link means the point.
     """
     points = {**named_points(linkage), **mass_centres(linkage)}
     if not names:
@@ -82,17 +86,18 @@ def select_links(linkage: Linkage, names: Sequence[str]) -> tuple[str, ...]:
 
 
 def carrying_links(linkage: Linkage, kernels: Sequence[GroupSolver], names: Sequence[str]) -> set[str]:
-    """Return all links that must be placed for the requested names."""
+    """Return the links whose motion must be solved for the requested names."""
     return {link for link, _ in point_places(linkage, kernels, names).values()} | set(select_links(linkage, names))
 
 
 def leading_values(
     motion: Motion, reactions: Reactions | None, *, first: bool = False
 ) -> Iterator[tuple[Quantity, str, Any]]:
-    """Yield the main quantities of points, centres of mass, links, pairs and drivers: quantity, name, values.
+    """Yield the main quantities of links, points, centres of mass, pairs and drivers, each with the name of its
+    object and its values.
 
-    first: take a shared point as a point of its first link, not of the one with the least loss of digits
-    (which depends on numbers that a trace does not have).
+    first: if True, a shared point is read on its first link, not on the one that loses the fewest digits; that
+    one depends on numbers, which are unknown while operations are traced.
     """
     linkage, listed = motion.linkage, set(motion.linkage.links[FRAME].points)
     for name in linkage.moving:
