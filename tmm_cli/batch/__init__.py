@@ -1,5 +1,5 @@
-"""Many linkages of one kind at once: a batch of linkages, or variants whose numbers are given later; and
-parallel work.
+"""Many linkages of one kind at once: batches of linkages, variants whose numbers are given later, and parallel
+jobs.
 """
 
 from tmm_cli.interfaces import lazy

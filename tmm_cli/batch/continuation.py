@@ -1,8 +1,8 @@
-"""Initial guesses of Newton's method for traced groups that are solved by iteration.
+"""Initial guesses for Newton's method in traced groups that are solved by iteration.
 
-For one linkage they come from a table, made once from the path that continuation found: cubic Hermite
-polynomials through the unknowns and their rates, with errors of some 1e-12. For many variants the
-unknowns are followed from the first linkage, then along the driver's range.
+For one linkage they come from a table that is made once, from the path found by continuation: cubic Hermite
+polynomials through the unknowns and their derivatives, with errors of about 1e-12. For many variants the
+unknowns are continued from the first linkage to each variant, and then along the driver range.
 """
 
 from __future__ import annotations
@@ -35,7 +35,11 @@ Placeholders = Sequence[Any]
 
 
 def unroll_groups(linkage: Linkage, kernels: Sequence[GroupSolver]) -> tuple[GroupSolver, ...]:
-    """Convert groups that are solved by iteration to a fixed number of Newton steps. Raises NotUnrolledError."""
+    """Replace each group solver that iterates by one with a fixed number of Newton steps, which can be traced.
+
+    Raises:
+        NotUnrolledError: a group does not allow this.
+    """
     states = link_states(linkage, kernels, np.array([linkage.sketch.at]), 0)
     geared = {link for mesh in linkage.meshes for link in (mesh.i, mesh.j, mesh.carrier)}
     return tuple(
@@ -47,16 +51,19 @@ def unroll_groups(linkage: Linkage, kernels: Sequence[GroupSolver]) -> tuple[Gro
 
 
 def count_initial_guesses(kernels: Sequence[GroupSolver]) -> int:
-    """Return the number of initial guesses that the groups need."""
+    """Return the number of initial guesses that the groups need together."""
     return sum(len(kernel.free) for kernel in kernels if isinstance(kernel, UnrolledNewton) and not kernel.linear)
 
 
 def with_initial_guesses(
     kernels: Sequence[GroupSolver], placeholders: Placeholders, steps: int | None = None
 ) -> tuple[GroupSolver, ...]:
-    """Return the groups with their initial guesses, taken one after another.
+    """Distribute initial guesses to the groups that need them, in order.
 
-    steps: number of Newton steps, if not the default.
+    Args:
+        kernels: the group solvers.
+        placeholders: initial guesses of all groups.
+        steps: number of Newton steps; None for the default.
     """
     prepared, at = [], 0
     for kernel in kernels:
@@ -69,7 +76,7 @@ def with_initial_guesses(
 
 
 def newton_converged(states: LinkStates) -> Any:
-    """Mask of positions where the Newton steps of all traced groups have converged."""
+    """Return True at positions where the Newton steps of all traced groups have converged."""
     converged: Any = np.ones(np.shape(states.q), dtype=bool)
     for kernel, at in zip(states.kernels, states.placements, strict=True):
         if isinstance(kernel, UnrolledNewton):
@@ -78,7 +85,9 @@ def newton_converged(states: LinkStates) -> Any:
 
 
 def accumulated_angles_agree(states: LinkStates) -> Any:
-    """Mask of positions where the accumulated angles of gears are those of the tables of groups in closed form."""
+    """Return True at positions where the accumulated angles of gears agree with those tabulated for groups in
+    closed form.
+    """
     agree: Any = np.ones(np.shape(states.q), dtype=bool)
     for kernel, at in zip(states.kernels, states.placements, strict=True):
         if isinstance(kernel, ClosedFormSolver) and kernel.winding is not None:
@@ -87,8 +96,11 @@ def accumulated_angles_agree(states: LinkStates) -> Any:
 
 
 def free_unknowns(states: LinkStates) -> Mapping[str, Any]:
-    """Free unknowns x0, x1, ... of all iterated groups, their rates v0, v1, ... by the driver, and whether they
-    converged.
+    """Return the unknowns of all groups that are solved by iteration.
+
+    Returns:
+        By name: the unknowns x0, x1, ..., their derivatives v0, v1, ... with respect to the driver coordinate,
+            and "sure", True where they have converged.
     """
     unknowns: dict[str, Any] = {"sure": newton_converged(states)}
     number = 0
@@ -109,10 +121,13 @@ def _components(vector: Any, angle: Any) -> tuple[Any, Any, Any]:
 
 @dataclass(frozen=True)
 class StartTable:
-    """Unknowns of a group as polynomials (4, unknowns, pieces), on pieces of equal width from the coordinate
-    `low`.
+    """Unknowns of a group as cubic polynomials of the driver coordinate, on intervals of equal width.
 
-    gain: increase of the unknowns in a cycle of all pieces, if the motion is cyclic; else None.
+    Attributes:
+        low: driver coordinate at the beginning of the first interval.
+        step: width of the intervals.
+        pieces: coefficients, (4, unknowns, intervals).
+        gain: increase of the unknowns over all intervals if the motion is cyclic, else None.
     """
 
     low: float
@@ -122,14 +137,17 @@ class StartTable:
 
     @classmethod
     def of(cls, q: Real, x: Real, v: Real, *, closed: bool) -> StartTable:
-        """Build the table from unknowns and rates (unknowns, places) at equal steps; nan where they are unknown."""
+        """Build the table from unknowns x and derivatives v, (unknowns, nodes), at evenly spaced driver coordinates.
+
+        The unknowns are nan where they are not known.
+        """
         h = float(q[1] - q[0])
         a, b, left, right = x[:, :-1], x[:, 1:], h * v[:, :-1], h * v[:, 1:]
         pieces = np.stack([a, left, 3 * (b - a) - 2 * left - right, 2 * (a - b) + left + right])
         return cls(float(q[0]), h, pieces, x[:, -1:] - x[:, :1] if closed else None)
 
     def __call__(self, q: Real) -> Real:
-        """Return the unknowns at driver coordinates, (unknowns, ...); nan beyond the ends."""
+        """Return the unknowns at driver coordinates, (unknowns, ...); nan outside the table."""
         many = self.pieces.shape[-1]
         share = (q - self.low) / self.step
         number = np.floor(share)
@@ -149,10 +167,10 @@ class StartTable:
 
 
 class InitialGuesses:
-    """Initial guesses of all groups of a linkage at any driver coordinates."""
+    """Initial guesses for all groups of one linkage, at any driver coordinates."""
 
     def __init__(self, linkage: Linkage, kernels: Sequence[GroupSolver]) -> None:
-        """Tabulate the unknowns of the unrolled groups `kernels`."""
+        """Tabulate the unknowns of the groups that are solved by a fixed number of Newton steps."""
         iterated = [kernel for kernel in kernels if isinstance(kernel, UnrolledNewton) and not kernel.linear]
         traces = [kernel.trace for kernel in iterated if kernel.trace is not None]
         self.tables: list[StartTable] = []
@@ -176,7 +194,7 @@ class InitialGuesses:
 
 
 def _closing_program(linkage: Linkage, kernels: Sequence[GroupSolver]) -> TraceProgram:
-    """Program that closes the groups at driver coordinates from initial guesses that may be far off."""
+    """Trace the solution of the groups from rough initial guesses at driver coordinates."""
 
     def stages(q: TracedArray, *stands: TracedArray) -> Mapping[str, Any]:
         guessed = with_initial_guesses(kernels, stands, TABLE_NEWTON_STEPS)
@@ -186,14 +204,14 @@ def _closing_program(linkage: Linkage, kernels: Sequence[GroupSolver]) -> TraceP
 
 
 def _table_coordinates(trace: BranchTrace, *, turns: bool) -> Real:
-    """Driver coordinates at equal steps along a path."""
+    """Return evenly spaced driver coordinates along a path found by continuation."""
     low, high = float(trace.q[0]), float(trace.q[-1])
     count = TABLE_PIECES * max(1, round((high - low) / (2 * np.pi))) if turns else TABLE_PIECES
     return low + (high - low) * np.arange(count + 1) / count
 
 
 def _unknowns_from_trace(kernel: UnrolledNewton, trace: BranchTrace, q: Real) -> list[Real]:
-    """Return the free unknowns of a group at driver coordinates along its traced path."""
+    """Return the free unknowns of a group at driver coordinates along the path found by continuation."""
     state, _ = trace.start(q)
     parts = [state.x.real, state.x.imag, state.unwrapped]
     return [parts[column % 3][:, column // 3] for column in kernel.free]
@@ -221,11 +239,15 @@ LinkageMaker = Callable[[Sequence[Any]], Linkage]  # a linkage for numbers, each
 
 @dataclass(frozen=True)
 class ContinuedPaths:
-    """Unknowns of variants along their paths from the coordinate `at`: x and rates v, (unknowns, variants, 2 n +
-    1).
+    """Unknowns of variants along their paths, with n steps down and n steps up from the driver coordinate `at`.
 
-    steps: step lengths down and up (variants, 1), 0 where nothing was computed. gain: increase of the
-    unknowns in a cycle, (unknowns, variants, 1), or None. nan where a variant was not continued.
+    Values are nan where a variant could not be continued.
+
+    Attributes:
+        at: driver coordinate of the sketch.
+        x, v: unknowns and their derivatives, (unknowns, variants, 2 n + 1).
+        steps: step lengths down and up, (variants, 1); 0 if no steps were made in that direction.
+        gain: increase of the unknowns over a cycle, (unknowns, variants, 1), or None.
     """
 
     at: float
@@ -235,19 +257,19 @@ class ContinuedPaths:
     gain: Real | None
 
     def take(self, rows: Real) -> ContinuedPaths:
-        """Return the paths of some variants."""
+        """Return the paths of the selected variants."""
         gain = None if self.gain is None else self.gain[:, rows]
         down, up = self.steps
         return replace(self, x=self.x[:, rows], v=self.v[:, rows], steps=(down[rows], up[rows]), gain=gain)
 
     def of(self, selected: slice) -> ContinuedPaths:
-        """Return the paths of some unknowns."""
+        """Return the paths of the selected unknowns."""
         return replace(
             self, x=self.x[selected], v=self.v[selected], gain=None if self.gain is None else self.gain[selected]
         )
 
     def __call__(self, q: Real) -> list[Real]:
-        """Return initial guesses at driver coordinates (variants, positions)."""
+        """Return initial guesses at driver coordinates (variants, positions), one array for each unknown."""
         unknowns, variants, many = self.x.shape
         n, (down, up) = many // 2, self.steps
         q = np.broadcast_to(q, (variants, q.shape[-1])) - self.at
@@ -272,14 +294,13 @@ class ContinuedPaths:
 
 
 class Continuation:
-    """Continuation of linkages of one kind.
+    """Continuation of the unknowns from a first linkage to variants, and along the driver range.
 
-    At the position of the sketch numbers change from those of the first linkage to those of each variant;
-    from there all variants move along their driver ranges, up and down together. A step is predicted from the
-    rates and corrected by Newton's method on a trace. A step with too large a correction, or to another side
-    of a dead position, is halved; a variant whose quarter steps fail has come to its end.
-
-    kernels: unrolled groups of the first linkage. first: its numbers.
+    At the position of the sketch the numbers change from those of the first linkage to those of each variant.
+    From there the driver moves up and down its range, for all variants at once. A step is predicted from the
+    derivatives and corrected by Newton's method, with traced operations. A step is halved if the correction is
+    too large or leads to the other side of a dead position; the path of a variant ends where quarter steps
+    fail.
     """
 
     def __init__(
@@ -312,13 +333,14 @@ class Continuation:
         _, self.signs = self._closed(self.first[None, :], np.array([self.at]), self.x[:, None], None)
 
     def _closed(self, numbers: Real, q: Real, x: Real, signs: Real | None) -> tuple[Real, Real]:
-        """Correct the unknowns x of variants.
+        """Correct the unknowns x of variants by Newton's method.
 
-        signs: signs of determinants of the first linkage (groups, 1); variants that do not converge, or have
-        other signs, become nan.
+        signs: signs of the determinants of the first linkage, (groups, 1). Variants that do not converge, or whose
+        determinants have other signs, become nan.
 
         Returns:
-            Unknowns and rates (2, unknowns, variants), and the signs (groups, variants).
+            Unknowns and derivatives, (2, unknowns, variants), and the signs of the determinants, (groups,
+            variants).
         """
         data = [*split_columns(numbers), q[:, None], *(unknown[:, None] for unknown in x)]
         outputs = self.program(*data)
@@ -332,15 +354,16 @@ class Continuation:
         return corrected, dets
 
     def _near(self, corrected: Real, start: Real) -> Real:
-        """Mask of the variants whose correction was small."""
+        """Return True for the variants whose correction was small, (variants,)."""
         with np.errstate(invalid="ignore"):
             near: Real = np.max(np.abs(corrected - start) / self.scale[:, None], axis=0) < LARGEST_CORRECTION
         return near
 
     def sketched(self, numbers: Real) -> Real:
-        """Unknowns and rates of variants (variants, n) at the position of the sketch, (2, unknowns, variants).
+        """Continue the unknowns to variants with these numbers (variants, n), at the position of the sketch.
 
-        nan where the continuation failed.
+        Returns:
+            Unknowns and derivatives, (2, unknowns, variants); nan where the continuation failed.
         """
         variants = len(numbers)
         current = np.repeat(np.stack([self.x, np.full_like(self.x, np.nan)])[:, :, None], variants, axis=2)
@@ -362,9 +385,13 @@ class Continuation:
         return np.where(gone == 1, current, np.nan)
 
     def __call__(self, numbers: Real, low: Real, high: Real, count: int, *, closed: bool) -> ContinuedPaths:
-        """Continue variants over driver ranges (variants, 1), in at most `count` steps.
+        """Continue variants over their driver ranges.
 
-        closed: the motion repeats after the range, which is then centred on the sketch.
+        Args:
+            numbers: numbers of the variants, (variants, n).
+            low, high: ends of the driver ranges, (variants, 1).
+            count: largest number of steps.
+            closed: True if the motion repeats after the range; the range is then centred on the sketch.
         """
         if closed:
             half = (high - low) / 2
@@ -383,9 +410,12 @@ class Continuation:
         return ContinuedPaths(self.at, x, v, (-ends[0][:, None] / n, ends[1][:, None] / n), gain)
 
     def _continue_in_steps(self, numbers: Real, sketched: Real, steps: Real, n: int) -> Real:
-        """Unknowns and rates (2, unknowns, variants, 2 n + 1), from those at the sketch.
+        """Continue the unknowns and derivatives from the position of the sketch.
 
         steps: step lengths down and up, (2, variants).
+
+        Returns:
+            Unknowns and derivatives, (2, unknowns, variants, 2 n + 1).
         """
         variants = len(numbers)
         sides = [side for side in (0, 1) if np.any(steps[side])]  # which ways lead anywhere
@@ -420,12 +450,12 @@ class Continuation:
 
 
 def _with_loose_tolerance(kernel: GroupSolver) -> GroupSolver:
-    """Group with the tolerance that initial guesses need."""
+    """Return the group solver with the tolerance that suffices for initial guesses."""
     return replace(kernel, enough=CONVERGED) if isinstance(kernel, UnrolledNewton) else kernel
 
 
 def _unknown_at_sketch(kernel: UnrolledNewton, column: int) -> float:
-    """Free unknown of a group at the position of the sketch."""
+    """Return a free unknown of a group at the position of the sketch."""
     assert kernel.start is not None
     x, angle = kernel.start.x[0, column // 3], kernel.start.unwrapped[0, column // 3]
     return float((x.real, x.imag, angle)[column % 3])

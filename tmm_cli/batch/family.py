@@ -1,9 +1,9 @@
 """Variants of a linkage as one linkage whose numbers are arrays (variants, 1), with positions and strokes of
-each.
+each variant.
 
-All stages then work on (variants, positions) at once. Variants that cannot be treated together
-(untraceable groups, several drivers, drivers with a stroke, outputs with more than two strokes) are
-families of one, solved like a file of their own.
+All stages then compute (variants, positions) at once. A variant that cannot be treated in this way (groups
+that cannot be traced, several drivers, driver with a stroke, outputs with more than two strokes) forms a
+family of its own and is solved like a separate file.
 """
 
 from __future__ import annotations
@@ -52,7 +52,12 @@ from tmm_cli.mechanics.structure import Structure, output_link
 
 @dataclass(frozen=True)
 class ContinuedGroup(NewtonSolver):
-    """Group solved by iteration for many variants. lines: its unrolled form; ways: paths of its free unknowns."""
+    """Group of many variants that is solved by iteration.
+
+    Attributes:
+        lines: the same group with a fixed number of Newton steps.
+        ways: paths of its unknowns, from which the iteration starts.
+    """
 
     lines: UnrolledNewton = field(kw_only=True)
     ways: ContinuedPaths = field(kw_only=True)
@@ -62,7 +67,7 @@ class ContinuedGroup(NewtonSolver):
         return replace(self, group=lines.group, size=lines.size, constraints=lines.constraints, lines=lines)
 
     def take(self, rows: Real) -> ContinuedGroup:
-        """Return the group of some variants."""
+        """Return the group for the selected variants."""
         return replace(self, ways=self.ways.take(rows))
 
     def begun(self, poses: Poses, q: Real, drives: DriverStates) -> tuple[GroupState, Real]:
@@ -72,8 +77,8 @@ class ContinuedGroup(NewtonSolver):
         return GroupState(x, turned), np.full(x.shape[:-1], -1.0)
 
     def kept(self, states: LinkStates) -> Real:
-        """Mask of the variants that follow their paths, far from dead positions, in the assembly that their sketch
-        shows.
+        """Return True for the variants whose group follows its path, far from dead positions, in the assembly of their
+        sketch.
 
         states: states of all variants, (variants, positions), beginning at the position of the sketch.
         """
@@ -98,9 +103,15 @@ class ContinuedGroup(NewtonSolver):
 def continue_groups(
     varied: LinkageMaker, columns: Real, linkage: Linkage, kernels: tuple[GroupSolver, ...]
 ) -> tuple[GroupSolver, ...]:
-    """Continue the groups of the first variant to all variants, whose numbers are the rows of columns.
+    """Continue the groups of the first variant to all variants.
 
-    The groups must still be rebound to the linkage of all variants.
+    The groups returned must still be rebound to the linkage of all variants.
+
+    Args:
+        varied: function that returns the linkage for numbers of the variants.
+        columns: numbers of the variants, (variants, n).
+        linkage: linkage of the first variant.
+        kernels: its group solvers.
 
     Raises:
         NoTapeError, DependsOnData: the groups cannot be traced.
@@ -138,11 +149,15 @@ SCAN = 72  # positions per revolution; ends of strokes closer together than this
 
 @dataclass(frozen=True, eq=False)
 class VariantFamily:
-    """Variants in the assembly of the first one; numbers are scalars or arrays (variants, 1).
+    """Variants in the assembly of the first one, as one linkage whose numbers are scalars or arrays (variants, 1).
 
-    q: driver coordinates (variants, positions), rad or m. strokes: with arrays (variants, 1) as numbers; None
-    if no output has any. sound: mask of feasible variants, which move through the whole cycle with the
-    strokes of the first.
+    Attributes:
+        linkage, structure, kernels: the linkage of all variants, its structure and its group solvers.
+        request: requested positions.
+        q: driver coordinates, (variants, positions), rad or m.
+        strokes: strokes, with numbers of shape (variants, 1); None if no output has any.
+        sound: True for feasible variants, which move through the whole cycle and have the same kind of strokes
+            as the first, (variants,).
     """
 
     linkage: Linkage
@@ -157,28 +172,35 @@ class VariantFamily:
         return len(self.q)
 
     def take(self, rows: Sequence[int] | Real) -> VariantFamily:
-        """Return some of the variants, perhaps repeated."""
+        """Return the family of the selected variants, which may be repeated."""
         rows = np.asarray(rows)
         kernels = tuple(kernel.take(rows) if isinstance(kernel, ContinuedGroup) else kernel for kernel in self.kernels)
         new = replace(self, kernels=kernels).changed(take_rows(self.linkage, rows), self.q[rows])
         return replace(new, strokes=take_rows(self.strokes, rows), sound=self.sound[rows])
 
     def changed(self, linkage: Linkage, q: Real | None = None) -> VariantFamily:
-        """Return the same assemblies and strokes with other numbers, at other driver coordinates."""
+        """Return the family with other numbers, and other driver coordinates if given; assemblies and strokes are
+        kept.
+        """
         kernels = tuple(kernel.rebind(linkage) for kernel in self.kernels)
         structure = self.structure.rebind(linkage)
         return replace(self, linkage=linkage, structure=structure, kernels=kernels, q=self.q if q is None else q)
 
 
 def take_rows(record: Any, rows: Real) -> Any:
-    """Return a record with some rows of its arrays (variants, 1)."""
+    """Select rows of all arrays (variants, 1) in a record."""
     return map_record(lambda _, value: value[rows] if np.ndim(value) == 2 else value, record, skip=("sketch",))
 
 
 def split_families(make: Make, columns: Real) -> Iterator[tuple[Real, VariantFamily | LinkageError]]:
-    """Split variants into families: yields the rows of columns (variants, n), and the family.
+    """Split variants into families that can be solved together.
 
-    A variant that cannot be solved comes with its error instead. Raises the errors of `make`.
+    Args:
+        make: function that builds a variant from its numbers; its errors are passed on.
+        columns: numbers of the variants, (variants, n).
+
+    Yields:
+        Indices of the variants, and their family or, for a variant that cannot be solved, its error.
     """
     rows = np.arange(len(columns))
     family = build_family(make, columns) if len(columns) > 1 else None
@@ -193,10 +215,9 @@ def split_families(make: Make, columns: Real) -> Iterator[tuple[Real, VariantFam
 
 
 def build_family(make: Make, columns: Real) -> VariantFamily | None:
-    """Build one family of all variants, feasible or not, in the assembly of the first; None if that is
-    impossible.
+    """Build one family of all variants, feasible or not, in the assembly of the first; None if this is impossible.
 
-    Raises the errors of `make`.
+    The errors of `make` are passed on.
     """
     first = columns[0].tolist()
     try:
@@ -230,7 +251,11 @@ def build_family(make: Make, columns: Real) -> VariantFamily | None:
 
 
 def _single_family(make: Make, row: Real) -> VariantFamily:
-    """Family of one variant, solved like a file of its own. Raises LinkageError."""
+    """Build the family of one variant, solved like a separate file.
+
+    Raises:
+        LinkageError: the variant cannot be solved.
+    """
     variant = make(row.tolist())
     structure = analyse_mobile_structure(variant.linkage)
     mechanism = Mechanism(Inputs(variant.linkage, variant.request), structure)
@@ -240,11 +265,11 @@ def _single_family(make: Make, row: Real) -> VariantFamily:
 
 
 def _all_strokes(linkage: Linkage, kernels: tuple[GroupSolver, ...], count: int) -> tuple[Strokes | None, Real]:
-    """Strokes of the main output of all variants, with those of further links on which loads depend.
+    """Find the strokes of the main output of all variants, and of further links on which loads depend.
 
     Returns:
-        The strokes, None if one of these outputs has none; and the mask of variants with one working and one
-        idle stroke of each and a fully rotating driver.
+        The strokes, or None if one of these links has none; and a mask of the variants whose driver rotates
+        fully and for which each of these links has one working and one idle stroke.
     """
     link = output_link(linkage, tuple(kernel.group for kernel in kernels))
     main, sound = _output_strokes(linkage, kernels, count, link)
@@ -261,7 +286,11 @@ def _all_strokes(linkage: Linkage, kernels: tuple[GroupSolver, ...], count: int)
 def _output_strokes(
     linkage: Linkage, kernels: tuple[GroupSolver, ...], count: int, link: str | None
 ) -> tuple[Strokes | None, Real]:
-    """Strokes of one output of all variants, and the mask of variants with one working and one idle stroke."""
+    """Find the strokes of one output link of all variants.
+
+    Returns:
+        The strokes or None, and a mask of the variants with one working and one idle stroke.
+    """
     q = linkage.sketch.at + np.linspace(0, 2 * np.pi, SCAN + 1) + np.zeros((count, 1))
     whole = link_states(linkage, kernels, q, 1)
     sound = np.all(whole.moving, axis=1)
@@ -286,13 +315,13 @@ def _output_strokes(
 
 
 def working_and_idle_strokes(linkage: Linkage, curve: StrokeCurve, ends: Real, resists: Any) -> Strokes:
-    """Return the two strokes between driver coordinates (variants, 2), the working one first.
+    """Return the two strokes between two driver coordinates of each variant, the working stroke first.
 
     Args:
         linkage: linkage of the variants.
-        curve: the output as a function of the driver.
-        ends: driver coordinates of the ends of strokes, (variants, 2).
-        resists: sense of the loads, which decides between strokes of equal length.
+        curve: the output coordinate as a function of the driver coordinate.
+        ends: driver coordinates of the ends of the strokes, (variants, 2).
+        resists: direction of the loads, which decides if both strokes have the same length.
     """
     sense, cycle = linkage.driver.sense, 2 * np.pi
     ends = np.mod(ends, cycle)
@@ -316,8 +345,8 @@ def working_and_idle_strokes(linkage: Linkage, curve: StrokeCurve, ends: Real, r
 
 
 def position_coordinates(request: Request, strokes: Strokes | None, sense: int, count: int) -> Real | None:
-    """Driver coordinates of the positions, (variants, positions); None if they depend on strokes that do not
-    exist.
+    """Return the driver coordinates of the positions, (variants, positions); None if they depend on strokes that
+    do not exist.
     """
     ones = np.ones((count, 1))
     if request.places:

@@ -1,9 +1,9 @@
-"""Batches: many positions of a linkage, or many linkages of one kind, solved by a trace of the stages.
+"""Batches: many positions of a linkage, or many linkages of one kind, solved by traced operations.
 
-The trace holds the operations of the stages for this linkage, without those that its numbers and the
-requested results make superfluous; recording it takes some milliseconds and pays off from thousands of
-positions. Groups solved by iteration take a fixed number of Newton steps from tabulated guesses;
-positions where these do not converge are solved by the ordinary stages.
+A trace records the operations of the stages for one linkage, without those that its numbers and the
+requested results make superfluous. Recording takes some milliseconds and pays off from thousands of
+positions. Groups solved by iteration take a fixed number of Newton steps from tabulated guesses; positions
+at which these do not converge are solved by the ordinary stages.
 """
 
 from __future__ import annotations
@@ -59,10 +59,12 @@ TIME_LAW = DriverMotion(0.0, 1.0, 0.0, 1)  # the parameter of the motion is time
 
 
 def read_all(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
-    """Read motion of all points, centres of mass and links, all reactions, and balancing moments or forces.
+    """Read the motion of all points, centres of mass and links, all reactions, and balancing moments or forces.
 
-    Keys: `A.x`, `A.v`, `A.a` (m, m/s, m/s2), `S2.x` ..., `2.omega`, `2.epsilon`, `R.A` (force on the pair's
-    second link, N), `M.x` (couple in a guide, N m), `T.1` (balancing moment or force).
+    Returns:
+        Values by name: `A.x`, `A.v`, `A.a` (m, m/s, m/s2), `S2.x`, ..., `2.omega`, `2.epsilon`, `R.A` (force on
+            the second link of the pair, N), `M.x` (couple in a guide, N m), `T.1` (balancing moment or force of
+            link 1).
     """
     outputs: dict[str, Any] = {}
     for quantity, name, value in leading_values(motion, reactions, first=True):
@@ -73,11 +75,20 @@ def read_all(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
 
 @dataclass(frozen=True)
 class Batch:
-    """Linkages of one kind in the assembly of the first one, ready to be solved at driver coordinates.
+    """Linkages of one kind in the assembly of the first one, ready to be solved at any driver coordinates.
 
-    program: None if they cannot be traced. checks: computes where they can be assembled. columns: numbers
-    that vary, (variants, 1). starts: initial guesses at driver coordinates, (positions,) or (variants,
-    positions). others: groups of linkages that were solved by the ordinary stages.
+    Attributes:
+        linkages: the linkages.
+        structure, kernels: structure and group solvers of the first linkage.
+        wanted: function that reads the requested results.
+        forces: True if reactions are solved.
+        strokes: strokes of a single linkage, or None.
+        program: traced operations for the requested results; None if the linkages cannot be traced.
+        checks: traced operations for the results of `sound`.
+        columns: numbers that vary, each (variants, 1).
+        starts: function that returns initial guesses at driver coordinates, (positions,) or (variants,
+            positions).
+        others: group solvers of linkages that had to be solved by the ordinary stages, by index.
     """
 
     linkages: tuple[Linkage, ...]
@@ -95,25 +106,28 @@ class Batch:
     )  # groups of linkages that were looked at alone
 
     def __call__(self, q: Real) -> TraceOutputs | Mapping[str, Real]:
-        """Return the requested results by name at q (rad or m): (positions,), or (variants, positions) with
-        coordinates of each.
+        """Solve the linkages at driver coordinates q (rad or m).
 
-        Results are (variants, positions), or (positions,) for one linkage. They are meaningless where `sound` is
-        False.
+        q: shape (positions,), or (variants, positions) if each linkage has its own coordinates.
+
+        Returns:
+            Requested results by name, (variants, positions), or (positions,) for a single linkage. They are
+            meaningless where the linkage cannot be assembled, see `sound`.
         """
         return self._one_by_one(q) if self.program is None else self._replay(self.program, q)
 
     def sound(self, q: Real) -> TraceOutputs | Mapping[str, Real]:
-        """Return where the linkages can be assembled (`placed`), where they are also not in a dead position
-        (`moving`), and `margin`.
+        """Check whether the linkages can be solved at driver coordinates q.
 
-        `margin` is the least distance of a group from a dead position, at best 1: a result has lost about as many
-        of its 16 digits as the margin has zeros. Error bounds are given by `solve`, not here.
+        Returns:
+            `placed`: True where the linkage can be assembled. `moving`: True where it is also not in a dead
+            position. `margin`: least distance of a group from a dead position, at most 1; results lose about as
+            many of their 16 digits as the margin has leading zeros. `solve` gives bounds of the errors.
         """
         return self._one_by_one(q) if self.checks is None else self._replay(self.checks, q)
 
     def closed(self, q: Real) -> Real:
-        """Mask of positions q where the trace alone closes all groups."""
+        """Return True at driver coordinates q where the traced operations alone solve all groups."""
         if self.checks is None:
             return np.zeros(np.shape(q), dtype=bool)
         q = np.asarray(q, dtype=float)
@@ -123,7 +137,7 @@ class Batch:
         return outputs[CONVERGED] if CONVERGED in outputs else np.ones(outputs.several_shape, dtype=bool)
 
     def _replay(self, program: TraceProgram, q: Real) -> TraceOutputs:
-        """Replay a program; positions that it does not close are solved by the ordinary stages."""
+        """Run traced operations; positions at which they do not converge are solved by the ordinary stages."""
         q = np.asarray(q, dtype=float)
         outputs = program(*self.columns, q, *(self.starts(q) if self.starts else ()))
         if CONVERGED not in outputs:
@@ -134,7 +148,7 @@ class Batch:
         return outputs
 
     def _solved(self, k: int, q: Real) -> Mapping[str, Real]:
-        """Solve one of the linkages by the ordinary stages."""
+        """Solve linkage number k by the ordinary stages."""
         linkage = self.linkages[k]
         if k not in self.others:
             self.others[k] = self.kernels if k == 0 else assemble(linkage, self.structure.rebind(linkage))
@@ -160,20 +174,20 @@ def prepare_batch(
     own_places: bool = False,
     strokes: Strokes | None = None,
 ) -> Batch:
-    """Prepare linkages that differ in their numbers only.
+    """Prepare linkages that differ only in their numbers.
 
     Args:
         linkages: one linkage or several.
-        read: reads the requested results.
-        forces: the results need reactions.
-        own_places: each variant will be solved at its own driver coordinates.
-        strokes: strokes of a single linkage, if its loads act in them; without strokes such loads act at all
+        read: function that reads the requested results.
+        forces: True if the results need reactions.
+        own_places: True if each linkage will be solved at its own driver coordinates.
+        strokes: strokes of a single linkage whose loads act only in strokes; without them such loads act at all
             positions.
 
     Raises:
-        NotAlikeError: the linkages differ in more than numbers.
-        ValueError: loads depend on strokes of several linkages.
-        LinkageError: errors of assembly.
+        NotAlikeError: the linkages differ in more than their numbers.
+        ValueError: there are several linkages, with loads that depend on strokes.
+        LinkageError: a linkage cannot be assembled.
     """
     linkages = (linkages,) if isinstance(linkages, Linkage) else tuple(linkages)
     first = linkages[0]
@@ -220,7 +234,14 @@ def prepare_batch(
 def continue_linkages(
     varied: Callable[[Sequence[Any]], Linkage], columns: Sequence[Real], first: Linkage, lines: Sequence[GroupSolver]
 ) -> ContinuedPaths:
-    """Continue all linkages over the range of the first one."""
+    """Continue the unknowns of all linkages over the driver range of the first one.
+
+    Args:
+        varied: function that returns the linkage for columns of numbers.
+        columns: numbers that vary, each (variants, 1).
+        first: the first linkage.
+        lines: its group solvers in a form that can be traced.
+    """
     numbers = np.hstack(list(columns))
     traces = [kernel.followed for kernel in lines if kernel.followed is not None]
     low, high = max(trace.q[0] for trace in traces), min(trace.q[-1] for trace in traces)
@@ -232,7 +253,7 @@ def continue_linkages(
 
 
 def traceable_groups(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> tuple[GroupSolver, ...] | None:
-    """Return the groups in a form that can be traced; None if there is none."""
+    """Return the group solvers in a form that can be traced; None if there is no such form."""
     if any(kernel.way is not None for kernel in kernels if isinstance(kernel, ClosedFormSolver)):
         return None
     try:
@@ -253,21 +274,22 @@ def solve_stages(
     blank: bool = True,
     start: Any = None,
 ) -> Mapping[str, Any]:
-    """Run the stages with time as the parameter of the motion, so that transfer functions need no scaling.
+    """Run the stages of the analysis with time as the parameter, so that derivatives need no scaling by the driver
+    speed.
 
     Args:
         linkage: the linkage.
         structure: its structure.
-        kernels: its groups in their assemblies.
+        kernels: its group solvers.
         q: driver coordinates.
-        read: reads the requested results.
-        forces: also solve reactions.
+        read: function that reads the requested results.
+        forces: True to solve reactions too.
         strokes: strokes, if loads depend on them.
-        blank: replace results at positions that cannot be reached by nan.
-        start: driver coordinate at which its law begins (rad or m); None: that of the sketch.
+        blank: True to set results to nan at positions that cannot be reached.
+        start: driver coordinate at which the law of motion begins (rad or m); None for that of the sketch.
 
     Returns:
-        The requested results, and the masks of CHECK_OUTPUTS.
+        The requested results, and the masks named in CHECK_OUTPUTS.
     """
     lead = linkage.driver
     law = DriverMotion(linkage.sketch.at if start is None else start, lead.rate, lead.acceleration, lead.sense)
@@ -287,7 +309,7 @@ def solve_stages(
 
 
 def solve_forces(motion: Motion, structure: Structure, strokes: Strokes | None) -> Reactions:
-    """Solve the reactions under all loads, with friction if there is any."""
+    """Solve the reactions under all loads, including friction if there is any."""
     acting = collect_loads(motion, strokes)
     free = solve_reactions(motion, structure, acting)
     if not motion.linkage.friction:

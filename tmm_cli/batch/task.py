@@ -1,5 +1,7 @@
-"""Tasks for a group of students: a problem file with its blocks `variants` (free parameters) and `grading` (requested
-answers, points, tolerances as shares of the largest value).
+"""Tasks for a group of students: a problem file with the blocks `variants` and `grading`.
+
+`variants` contains the parameters that differ from student to student, `grading` the questions, marks and
+tolerances.
 """
 
 from __future__ import annotations
@@ -91,7 +93,7 @@ Range = Annotated[Two | Chosen, BeforeValidator(_bounds_or_choices)]
 
 
 def bounds_text(low: Any, high: Any) -> str:
-    """Two bounds as text of a refusal."""
+    """Write two bounds as text for an error message."""
     return _("{low} and {high}").format(low=low, high=high)
 
 
@@ -103,7 +105,7 @@ def _as_list(raw: object) -> object:
 
 
 class AnswerRule(Strict):
-    """Quantity that students are asked for, at one position or several."""
+    """Quantity that students must determine, at one or more positions."""
 
     of: str = Field(
         max_length=40, description="name of the quantity, e.g. v of E, a of S3, omega of 3, R_34, M_b, W, class, H, k"
@@ -123,7 +125,7 @@ class AnswerRule(Strict):
 
 
 class Grading(Strict):
-    """Questions to the students, and rules for marking."""
+    """Questions to the students, and rules for marking their answers."""
 
     answers: list[AnswerRule] = Field(min_length=1, max_length=MOST_ANSWERS)
     count: int = Field(default=0, ge=0, le=1, description="number of the first position on the students' sheets")
@@ -156,10 +158,15 @@ DRAWN_KINEMATICS_TOLERANCE, DRAWN_FORCES_TOLERANCE, COMPUTED_TOLERANCE = (
 
 @dataclass(frozen=True)
 class Question:
-    """One requested answer: a quantity at a position (from 0; None: of the whole mechanism).
+    """One answer that a student must give: a quantity at a position.
 
-    number: position as the students count it. tolerance: fraction of the largest value in the cycle. drawn:
-    the answer is measured on a drawing.
+    Attributes:
+        quantity: the quantity.
+        position: index of the position, from 0; None if the quantity describes the whole mechanism.
+        number: number of the position as the students count it.
+        points: marks for the answer.
+        tolerance: allowed error, as a fraction of the largest value in the cycle.
+        drawn: True if the answer is measured on a drawing.
     """
 
     quantity: NamedQuantity
@@ -175,7 +182,7 @@ class Question:
 
     @property
     def name(self) -> str:
-        """Name in tables: `v of E at 7`."""
+        """Name in tables, e.g. `v of E at 7`."""
         name = self.quantity.name
         return (
             name if self.number is None else _("{quantity} at {position}").format(quantity=name, position=self.number)
@@ -184,19 +191,19 @@ class Question:
 
 @dataclass(frozen=True)
 class Task:
-    """Problem file of a task. All methods raise ProblemError."""
+    """Problem file of a task. All methods may raise ProblemError."""
 
     tree: Tree
 
     @cached_property
     def blocks(self) -> Blocks:
-        """Blocks `variants` and `grading` of the file."""
+        """The blocks `variants` and `grading` of the file."""
         blocks: dict[str, Any] = {key: self.tree.data[key] for key in ("variants", "grading") if key in self.tree.data}
         return validate_shape(Blocks, replace(self.tree, data=blocks))
 
     @property
     def rules(self) -> Grading:
-        """Block `grading` of the file."""
+        """The block `grading` of the file."""
         if self.blocks.grading is None:
             raise ProblemError(
                 _("the file has no block `grading`, so there is nothing to grade"),
@@ -206,17 +213,17 @@ class Task:
         return self.blocks.grading
 
     def __reduce__(self) -> tuple[type[Task], tuple[Tree]]:
-        """Pickle the file only; the rest is computed again in the other process."""
+        """Pickle only the file; everything else is computed again in the other process."""
         return Task, (self.tree,)
 
     def revealing(self) -> Task:
-        """Return the task with the right values shown to the students."""
+        """Return the task with the option `reveal` on: the feedback shows the right values."""
         rules = {**self.tree.data["grading"], "reveal": True}
         return Task(replace(self.tree, data={**self.tree.data, "grading": rules}))
 
     @cached_property
     def problem(self) -> Problem | TaskProblem:
-        """Problem of the file's own variant."""
+        """Problem with the parameters written in the file."""
         return build_any_problem(self.tree)
 
     @cached_property
@@ -225,14 +232,14 @@ class Task:
 
     @cached_property
     def quantities(self) -> dict[str, NamedQuantity]:
-        """All quantities that could be asked, by name."""
+        """All quantities that a question can ask for, by name."""
         whole = self.problem.whole
         with translate_errors(whole):
             return list_quantities(whole.linkage, analyse_mobile_structure(whole.linkage))
 
     @property
     def positions(self) -> int:
-        """Number of positions in a cycle."""
+        """Number of positions in the cycle."""
         request = self.problem.whole.request
         return len(request.places) or request.count
 
@@ -288,7 +295,7 @@ class Task:
     def _parameters(
         self, replaced: Mapping[str, PhysicalValue], units: UnitSystem | None = None
     ) -> dict[str, PhysicalValue]:
-        """All parameters; with a synthesis, only those that do not depend on its results."""
+        """Return all parameters; if the file has a synthesis, only those that do not depend on its results."""
         if "synthesis" in self.tree.data:
             return {**early_parameters(self.tree), **replaced}
         raw = self._shape.parameters
@@ -300,7 +307,7 @@ class Task:
         return validate_planar(self.tree)
 
     def own(self, names: Sequence[str]) -> tuple[PhysicalValue, ...]:
-        """Return the file's own values of parameters."""
+        """Return the values that parameters have in the file."""
         parameters = self._parameters({})
         for name in names:
             if name not in parameters:
@@ -309,19 +316,19 @@ class Task:
         return tuple(parameters[name] for name in names)
 
     def dimensions(self, names: Sequence[str]) -> tuple[Dimension | None, ...]:
-        """Return the dimensions of parameters; None for plain numbers."""
+        """Return the dimension of each parameter; None for a plain number."""
         return tuple(value.dimension for value in self.own(names))
 
     def number(self, value: PhysicalValue, dimension: Dimension | None) -> float:
-        """Return a value in SI, or as a plain number if there is no dimension."""
+        """Return a value in SI, or unchanged if there is no dimension."""
         return self.units.si(value.value, dimension) if dimension and not value.dimension else value.value
 
     def value(self, text: str) -> PhysicalValue:
-        """Read a value of a table of variants."""
+        """Read a value from a cell of a table of variants."""
         return evaluate_quantity(text, {}, self.units)
 
     def make(self, names: Sequence[str], dimensions: Sequence[Dimension | None], numbers: Sequence[Any]) -> Variant:
-        """Build the linkage for numbers of parameters (SI, or plain), which may be TracedNumbers."""
+        """Build the linkage for numbers of parameters, in SI or plain; the numbers may be TracedNumbers."""
         traced = any(isinstance(x, TracedNumber) for x in numbers)
         if "synthesis" in self.tree.data:
             if traced:
@@ -336,19 +343,26 @@ class Task:
         return Variant(built.linkage, built.request)
 
     def variant(self, values: Mapping[str, str]) -> Problem | TaskProblem:
-        """Return one variant as a problem of its own; values as texts."""
+        """Build the problem of one variant.
+
+        values: values of the parameters as text, by name.
+        """
         return build_any_problem(apply_settings(self.tree, [f"{name}={value}" for name, value in values.items()]))
 
 
 def read_task(tree: Tree) -> Task:
-    """Read the task of a file and check its blocks. Raises ProblemError."""
+    """Read the task of a file and check its blocks.
+
+    Raises:
+        ProblemError: a block contains an error.
+    """
     task = Task(tree)
     task.blocks  # noqa: B018  refuses what is wrong in them
     return task
 
 
 def _quantity_kind(name: str) -> tuple[str, bool]:
-    """Common part of the names of one quantity of different objects."""
+    """Return what quantities of one kind have in common, whatever point, link or pair they belong to."""
     kind, _of, thing = name.partition(" of ")
     return ("R" if kind.startswith("R_") else kind), " on " in thing
 
@@ -360,7 +374,7 @@ NUMBER_WITH_UNIT = re.compile(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
 
 @dataclass(frozen=True)
 class FreeParameter:
-    """Parameter with its possible values as texts; dimension: None for plain numbers."""
+    """Parameter with its possible values as text; dimension: None for plain numbers."""
 
     name: str
     texts: tuple[str, ...]
@@ -368,7 +382,11 @@ class FreeParameter:
 
 
 def with_vary(tree: Tree, vary: Sequence[str]) -> Tree:
-    """Return the file with ranges `OA=80..140:5` in place of its own. Raises ProblemError."""
+    """Return the file with ranges from the option --vary, such as `OA=80..140:5`, in place of its own.
+
+    Raises:
+        ProblemError: a range cannot be read.
+    """
     block = tree.data.get("variants")
     ranges: dict[str, Any] = dict(block) if isinstance(block, Mapping) else {}
     origins: dict[Path, str] = {}
@@ -388,7 +406,11 @@ def with_vary(tree: Tree, vary: Sequence[str]) -> Tree:
 
 
 def read_free_parameters(task: Task) -> tuple[FreeParameter, ...]:
-    """Read the free parameters of the block `variants`. Raises ProblemError."""
+    """Read the parameters in the block `variants` and their possible values.
+
+    Raises:
+        ProblemError: there are none, or a range is wrong.
+    """
     try:
         return _free_parameters(task, task.blocks)
     except ProblemError as error:
@@ -418,7 +440,7 @@ def _free_parameters(task: Task, blocks: Blocks) -> tuple[FreeParameter, ...]:
 
 
 def _with_common_unit(texts: Sequence[str]) -> list[str]:
-    """Give numbers without a unit the unit of the first number that has one."""
+    """Add the unit of the first number that has one to the numbers without a unit."""
     parts = [NUMBER_WITH_UNIT.fullmatch(text) for text in texts]
     unit = next((number[2] for number in parts if number and number[2]), "")
     return [
@@ -430,7 +452,7 @@ def _with_common_unit(texts: Sequence[str]) -> list[str]:
 def _step_texts(
     task: Task, values: Sequence[Any], sizes: Sequence[float], dimension: Dimension | None, first: str
 ) -> list[str]:
-    """Values from low to high, in the unit of the first one."""
+    """Return the values from the lower to the upper bound as text, in the unit of the first bound."""
     low, high = sizes[:2]
     if not low < high:
         raise ProblemError(
@@ -454,5 +476,5 @@ def _step_texts(
 
 
 def parameter_values(task: Task, choice: FreeParameter) -> Real:
-    """Return the values of a free parameter in SI, or as plain numbers if it has no dimension."""
+    """Return the possible values of a parameter in SI, or as plain numbers if it has no dimension."""
     return np.array([task.number(task.value(text), choice.dimension) for text in choice.texts])

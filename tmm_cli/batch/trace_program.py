@@ -1,4 +1,4 @@
-"""Programs of traced operations, and their outputs as planes of real numbers."""
+"""Traced operations as a program, and its outputs."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ Array = np.ndarray[Any, Any]
 
 
 class TraceOutputs(Mapping[str, Array]):
-    """Results by name, (variants, positions), or (positions,) if no data depend on variants.
+    """Results by name, (variants, positions), or (positions,) if no input depends on the variant.
 
-    Real and imaginary parts are stored in separate planes, `part` returns one of them; complex arrays are
-    combined on request.
+    Real and imaginary parts are stored separately, and `part` returns one of them. A complex array is combined
+    when it is read.
     """
 
     def __init__(
@@ -46,7 +46,7 @@ class TraceOutputs(Mapping[str, Array]):
         return (plane.T if self.turned else plane) if self.several else plane.reshape(-1)
 
     def without(self, name: str) -> TraceOutputs:
-        """Return all results but one."""
+        """Return all results except one."""
         names = {output: parts for output, parts in self.names.items() if output != name}
         return TraceOutputs(names, self.planes, self.turned, self.several, self.shape)
 
@@ -56,7 +56,7 @@ class TraceOutputs(Mapping[str, Array]):
         return self.shape[::-1] if self.turned else self.shape
 
     def put(self, variant: int, where: Array, values: Mapping[str, Array]) -> TraceOutputs:
-        """Return outputs with other values of a variant at the positions of a mask, in their order."""
+        """Return the results with values of one variant replaced at the positions where the mask `where` is True."""
         planes = dict(self.planes)
         for name, parts in self.names.items():
             for imaginary, term in enumerate(parts):
@@ -88,14 +88,16 @@ CHUNK = 9000  # numbers in a register: fewer cost more calls, more cost cache mi
 
 @dataclass(frozen=True)
 class TraceProgram:
-    """Program of traced operations: a sequence of NumPy calls on registers.
+    """Program of traced operations: a sequence of NumPy calls on registers (work arrays).
 
     Memory is allocated once, each call writes its result in place, and long data are processed in chunks that
     fit into the processor cache. If there are more variants than positions, variants are on the last axis,
-    where NumPy is fast.
+    where NumPy is faster.
 
-    inputs: axes of each input (bit 1: variants, bit 2: positions). outputs: by name, real and imaginary
-    terms.
+    Attributes:
+        terms: the operations in order.
+        inputs: axes of each input (bit 1: variants, bit 2: positions).
+        outputs: terms of the real and the imaginary part of each output, by name.
     """
 
     terms: tuple[Term, ...]
@@ -103,7 +105,7 @@ class TraceProgram:
     outputs: Mapping[str, tuple[Any, Any]]
 
     def only(self, *names: str) -> TraceProgram:
-        """Return the program for some of its outputs."""
+        """Return the program restricted to some of its outputs."""
         return replace(self, outputs={name: self.outputs[name] for name in names})
 
     @property
@@ -116,8 +118,8 @@ class TraceProgram:
         return _CompiledProgram(self)
 
     def __call__(self, *data: Any) -> TraceOutputs:
-        """Return outputs for data of shapes (variants, 1), (positions,) or (variants, positions), by the axes of the
-        inputs.
+        """Run the program on data of shape (variants, 1), (positions,) or (variants, positions), according to
+        `inputs`.
         """
         columns = [np.asarray(d, dtype=float) for d in data]
         variants = positions = 1
@@ -134,7 +136,7 @@ class TraceProgram:
 
 
 def _laid_out(value: Array, axes: int, turned: bool) -> Array:
-    """Data with variants and positions on the axes of the registers."""
+    """Arrange data so that their axes match those of the registers."""
     if axes == 3:
         return np.ascontiguousarray(value.T if turned else value)
     last = (axes == 1) == turned  # whether its own axis is the last one
@@ -142,8 +144,7 @@ def _laid_out(value: Array, axes: int, turned: bool) -> Array:
 
 
 class _CompiledProgram:
-    """Two parts of a program: what does not depend on both axes, computed once, and the rest, computed in
-    chunks.
+    """Program in two parts: operations that do not depend on both axes run once, all others run for each chunk.
 
     The second part is a generated function with one NumPy call per line, on inputs i, outputs o and registers
     r.
@@ -172,7 +173,7 @@ class _CompiledProgram:
         self.space: dict[tuple[int, int], list[Array]] = {}
 
     def registers(self, shape: tuple[int, int]) -> list[Array]:
-        """Return the working memory for a chunk of a shape; it is kept for the next one."""
+        """Return the work arrays for a chunk of this shape; they are kept for later chunks."""
         if shape not in self.space:
             if len(self.space) > 4:
                 self.space.clear()
@@ -183,7 +184,7 @@ class _CompiledProgram:
         return self.space[shape]
 
     def run(self, data: Sequence[Array], shape: tuple[int, int]) -> dict[Any, Array]:
-        """Return all terms that are outputs, by number."""
+        """Return the arrays of all terms that are outputs, by number of the term."""
         with np.errstate(all="ignore"):
             evaluated = {number: data[k] for number, k in self.inputs.items()}
             for term in self.before:
@@ -208,7 +209,7 @@ class _CompiledProgram:
 
 
 def _chunk_of(data: Array, chunk: tuple[slice, slice]) -> Array:
-    """Chunk of data along the axes that it has."""
+    """Return a chunk of data; an axis of length 1 is kept whole."""
     return data[chunk[0] if data.shape[0] > 1 else slice(None), chunk[1] if data.shape[1] > 1 else slice(None)]
 
 
@@ -233,7 +234,7 @@ def _interpolate(x: Array, table: tuple[Any, Any], out: Array) -> None:
 
 
 def _needed_terms(program: TraceProgram) -> tuple[Term, ...]:
-    """Terms on which some output depends, in order."""
+    """Return the terms on which some output depends, in order."""
     needed: set[int] = set()
     left = [v for parts in program.outputs.values() for v in parts if isinstance(v, Term)]
     while left:
@@ -245,9 +246,9 @@ def _needed_terms(program: TraceProgram) -> tuple[Term, ...]:
 
 
 class _ProgramWriter:
-    """Writes the source code of terms one after another; a register is reused after its last use.
+    """Writes source code for terms one by one; a register is used again after its last use.
 
-    slots: terms that are outputs, and their places. Outputs are written in place.
+    slots: index of the output for each term that is an output; it is computed in place.
     """
 
     def __init__(self, terms: Sequence[Term], slots: Mapping[int, int]) -> None:

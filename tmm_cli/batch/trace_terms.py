@@ -1,9 +1,9 @@
 """Traced operations on real numbers whose values are given later.
 
-A term knows its operation and its operands, which are terms or plain numbers. The same operation on the
-same operands is recorded once. Operations on plain numbers are evaluated at once, so what does not depend
-on the data (a frame at rest, a zero coordinate) disappears. Signs are moved outwards, where most of them
-cancel in the next sum.
+A term contains an operation and its operands, which are terms or plain numbers. The same operation on the
+same operands is recorded once. Operations on plain numbers are evaluated immediately, so everything that
+does not depend on the data (a link at rest, a zero coordinate) disappears. Negations are moved to the
+result of products, where most of them cancel in the next sum.
 """
 
 from __future__ import annotations
@@ -77,10 +77,15 @@ BOOLEAN_OPERATIONS = {
 
 @dataclass(eq=False)
 class Term:
-    """Traced number for every variant and position. axes: bits of the axes on which it depends.
+    """Traced number, with one value for each variant and position.
 
-    op: `input` (args: index of the data), `where`, `table` (args: argument, then the table), `call` (args: a
-    function of whole arrays in a tuple, then its operands), or the name of a NumPy function.
+    Attributes:
+        number: index of the term in the trace.
+        op: `input` (args: index of the input), `where`, `table` (args: argument, then the table), `call` (args:
+            a function of whole arrays in a tuple, then its operands), or the name of a NumPy function.
+        args: operands.
+        axes: axes on which it depends (bit 1: variants, bit 2: positions).
+        truth: True for a boolean.
     """
 
     number: int
@@ -95,9 +100,14 @@ class Term:
 
 @dataclass(repr=False)
 class Trace:
-    """All terms in the order of recording.
+    """All terms in the order in which they were recorded.
 
-    data: known inputs; a condition that is the same for all of them is decided at once.
+    Attributes:
+        data: values of inputs that are already known; a condition that has the same truth for all of them is
+            evaluated while recording.
+        terms: the terms.
+        written: terms by operation and operands.
+        known: values of terms that depend on known inputs only; None for all others.
     """
 
     data: dict[int, Any] = field(default_factory=dict)
@@ -106,7 +116,7 @@ class Trace:
     known: dict[int, Any] = field(default_factory=dict)
 
     def term(self, op: str, *args: Any, axes: int = 0, truth: bool = False) -> Term:
-        """Return the term of an operation; record it if it is new."""
+        """Return the term of an operation, and record it if it is new."""
         key = (op, *(("term", a.number) if isinstance(a, Term) else (type(a).__name__, a) for a in args))
         term = self.written.get(key)
         if term is None:
@@ -118,7 +128,11 @@ class Trace:
         return term
 
     def apply(self, op: str, *args: Any) -> Any:
-        """Apply an operation to terms and numbers; returns a number if it can be evaluated, else a term."""
+        """Apply an operation to terms and numbers.
+
+        Returns:
+            A number if the operation can be evaluated, else a term.
+        """
         if not any(isinstance(a, Term) for a in args):
             return UFUNCS[op](*args)[()]
         simple: Any = SIMPLIFICATIONS.get(op)
@@ -131,7 +145,7 @@ class Trace:
         return self.term(op, *args)
 
     def value(self, term: Term) -> Any:
-        """Return the value of a term for known data; None if it depends on unknown data."""
+        """Return the value of a term; None if it depends on an unknown input."""
         if term.number not in self.known:
             args = [self.value(a) if isinstance(a, Term) else a for a in term.args]
             if term.op == "input":
@@ -145,12 +159,12 @@ class Trace:
         return self.known[term.number]
 
     def settled(self, truth: Any) -> Any:
-        """Return a condition as a bool if it is the same for all known data."""
+        """Return a condition as a bool if it has the same truth for all known data, else unchanged."""
         known_value = self.value(truth) if isinstance(truth, Term) else None
         return truth if known_value is None or np.any(known_value != known_value.flat[0]) else bool(known_value.flat[0])
 
     def where(self, truth: Any, chosen: Any, other: Any) -> Any:
-        """Select one of two numbers."""
+        """Select one of two numbers by a condition, as np.where does."""
         truth = self.settled(truth)
         if not isinstance(truth, Term):
             return chosen if truth else other
@@ -166,12 +180,12 @@ def axes_of(value: Any) -> int:
 
 
 def is_number(value: Any, number: float) -> bool:
-    """Return True if an operand is this plain number."""
+    """Return True if an operand is a plain number equal to `number`."""
     return not isinstance(value, Term) and bool(value == number)
 
 
 def negated_operand(value: Any) -> Any:
-    """Return the operand of a negation; None for other terms."""
+    """Return the operand of a negation; None for any other operation."""
     return value.args[0] if isinstance(value, Term) and value.op == "negative" else None
 
 
@@ -217,7 +231,7 @@ def _multiply(tape: Trace, a: Any, b: Any) -> Any:
 
 
 def _group_factors(tape: Trace, a: Any, b: Any) -> Any:
-    """Multiply factors that depend on fewer axes among themselves first."""
+    """Reorder a product so that factors that depend on fewer axes are multiplied first."""
     for product, other in ((a, b), (b, a)):
         if (
             isinstance(product, Term)
@@ -268,7 +282,10 @@ def _negative(tape: Trace, a: Any) -> Any:
 
 
 def _simplify_logic(settles: bool) -> Callable[[Trace, Any, Any], Any]:
-    """Simplify a logical operation in which a known operand decides: False for `and`, True for `or`."""
+    """Return a function that simplifies a logical operation with a known operand.
+
+    settles: value of an operand that decides the result: False for `and`, True for `or`.
+    """
 
     def joined(tape: Trace, a: Any, b: Any) -> Any:
         for operand, other in ((a, b), (b, a)):

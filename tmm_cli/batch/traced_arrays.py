@@ -1,8 +1,7 @@
-"""Placeholders for arrays and numbers: operations on them are recorded in a trace.
+"""Placeholders for arrays and numbers. Operations on them are recorded in a trace.
 
-The ordinary code of the groups runs once on placeholders, and the trace holds the sequence of real
-operations of this linkage. A complex number is two real ones; components that are known to be zero are
-not computed.
+The ordinary code of the stages runs once on placeholders, which yields the sequence of real operations for
+this linkage. A complex number is recorded as two real ones; components known to be zero are not computed.
 """
 
 from __future__ import annotations
@@ -19,12 +18,18 @@ from tmm_cli.batch.trace_terms import UFUNCS, Term, Trace
 
 
 class DependsOnData(TypeError):  # noqa: N818 - what it says, not an error of somebody's
-    """The code needs a value (a condition, a length) that depends on data not yet given."""
+    """Raised if the code needs a value (a condition, a length) that depends on data not given yet."""
 
 
 @dataclass(eq=False)
 class TracedArray(NDArrayOperatorsMixin):
-    """Array of traced numbers. re and im: terms or numbers; im is None for real numbers and conditions."""
+    """Placeholder for an array: a traced number with one value for each variant and position.
+
+    Attributes:
+        tape: the trace.
+        re: real part, a term or a number.
+        im: imaginary part; None for real numbers and conditions.
+    """
 
     tape: Trace
     re: Any
@@ -53,7 +58,7 @@ class TracedArray(NDArrayOperatorsMixin):
         return TracedArray(self.tape, 0.0 if self.im is None else self.im)
 
     def astype(self, _: Any) -> TracedArray:
-        """Return itself: a trace has one number type."""
+        """Return self, since a trace has only one number type."""
         return self
 
     def conjugate(self) -> TracedArray:
@@ -95,7 +100,7 @@ class TracedArray(NDArrayOperatorsMixin):
         return traced(self, *args)
 
     def _of(self, value: Any) -> tuple[Any, Any]:
-        """Real and imaginary part of an operand; an array of equal numbers counts as that number."""
+        """Return the real and imaginary part of an operand; an array of equal numbers is taken as that number."""
         if isinstance(value, TracedArray):
             return value.re, value.im
         array = np.asarray(value)
@@ -114,11 +119,11 @@ class TracedArray(NDArrayOperatorsMixin):
         return TracedArray(self.tape, re, self.tape.where(truth[0], _im(chosen), _im(other)))
 
     def called(self, function: Any, *operands: Any) -> TracedArray:
-        """Record a function of whole real arrays as one operation."""
+        """Record a function of whole real arrays as a single operation."""
         return TracedArray(self.tape, self.tape.term("call", (function,), *(self._of(x)[0] for x in operands)))
 
     def interp(self, x: Any, at: Any, values: Any) -> TracedArray:
-        """Record a piecewise linear table (np.interp)."""
+        """Record linear interpolation in a table, as np.interp does."""
         table = (tuple(float(v) for v in at), tuple(float(v) for v in values))
         return TracedArray(self.tape, self.tape.term("table", self._of(x)[0], table))
 
@@ -200,12 +205,12 @@ FUNCTIONS: dict[Any, Callable[..., Any]] = {
 def trace_function(
     function: Callable[..., Mapping[str, Any]], *axes: int, data: Mapping[int, Any] | None = None
 ) -> TraceProgram:
-    """Run a function on placeholders for real arrays and return the program of its outputs.
+    """Run a function on placeholders for real arrays and return its operations as a program.
 
     Args:
-        function: returns outputs by name.
+        function: function that returns outputs by name.
         axes: for each argument, 1 if it depends on the variant, 2 on the position, 3 on both.
-        data: values of some arguments, by index, if the program is made for these only.
+        data: values of some arguments by index, if the program is needed for these values only.
 
     Raises:
         DependsOnData: the code branches on numbers that differ.
@@ -229,11 +234,15 @@ def trace_function(
 
 
 class TracedNumber(NDArrayOperatorsMixin):
-    """Real or complex number that varies between linkages: `value` for one linkage, `stand`, a placeholder, for
-    all.
+    """Real or complex number that differs between linkages.
 
-    Code that builds a linkage branches by the value. otherwise: if given, collects for every branch the mask
-    of the variants that would have branched differently.
+    Code that builds a linkage branches by the number of one linkage, while all its operations are recorded.
+
+    Attributes:
+        value: number of one linkage.
+        stand: placeholder for the numbers of all linkages.
+        otherwise: list to which each branch appends a mask of the variants that would have branched
+            differently; None if this is not needed.
     """
 
     __hash__ = object.__hash__
@@ -294,7 +303,7 @@ def _placeholder(x: Any) -> Any:
 
 
 def _power(base: Any, exponent: Any) -> Any:
-    """Write integer powers as products, half powers with roots."""
+    """Compute a power by products and, for half powers, a square root."""
     if isinstance(exponent, TracedArray) or 2 * exponent != int(2 * exponent):
         raise DependsOnData("such a power cannot be written on a tape")
     product, whole = 1.0, int(abs(exponent))

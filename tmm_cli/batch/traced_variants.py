@@ -1,7 +1,7 @@
-"""Variants solved by a trace whose numbers are given anew at every call; or one after another.
+"""Variants whose numbers are given at each call, solved by traced operations or one after another.
 
-All variants have the assembly of the first linkage. Loads must not depend on strokes for a trace. Solved
-one after another, each variant takes a hundred to a thousand times as long as by a trace.
+All variants have the assembly of the first linkage. Loads must not depend on strokes if operations are
+traced. One after another, each variant takes a hundred to a thousand times as long.
 """
 
 from __future__ import annotations
@@ -46,15 +46,24 @@ from tmm_cli.mechanics.numerics import Real
 
 
 class TracedVariants:
-    """Variants by a trace: called with numbers (variants, n) and samples of the driver; outputs are (variants,
-    samples).
+    """Variants solved by traced operations.
 
-    Raises NoTapeError or DependsOnData if there is no trace, and the errors of assembly.
+    Called with numbers (variants, n) and samples of the driver range, it returns the requested results by name,
+    (variants, samples).
     """
 
     def __init__(self, make: Make, first: Sequence[float], read: OutputReader, *, forces: bool = False) -> None:
-        """Trace the variants. make: builds a variant from numbers; first: numbers of the linkage whose assembly all
-        have.
+        """Trace the operations for the variants.
+
+        Args:
+            make: function that builds a variant from its numbers.
+            first: numbers of the first linkage, whose assembly all variants have.
+            read: function that reads the requested results.
+            forces: True if the results need reactions.
+
+        Raises:
+            NoTapeError, DependsOnData: the operations cannot be traced.
+            LinkageError: the first linkage cannot be assembled.
         """
         self.make, self.first, self.variant = make, first, make(first)
         self.linkage = self.variant.linkage
@@ -82,7 +91,7 @@ class TracedVariants:
         return placeholder_linkage(self.make, self.first, data, self.linkage.sketch)
 
     def _program(self, read: OutputReader, forces: bool, by_variant: bool) -> TraceProgram:
-        """Trace the stages. by_variant: each variant has its own driver coordinates."""
+        """Trace the stages; by_variant: each variant has its own driver coordinates."""
 
         many = len(self.first)
 
@@ -97,7 +106,9 @@ class TracedVariants:
         return whole.only(*(name for name in whole.outputs if name not in CHECK_OUTPUTS), ANGLES_AGREE)
 
     def _ends(self, *columns: TracedArray) -> Mapping[str, Any]:
-        """Ends of the driver's range, queried coordinates and values requested there, for each variant."""
+        """Compute, for each variant, the ends of the driver range, the queried driver coordinates and the numbers
+        required there.
+        """
         varied = self.make([TracedNumber(x, c) for x, c in zip(self.first, columns, strict=True)])
         return {
             str(k): place.stand if isinstance(place, TracedNumber) else place
@@ -105,7 +116,9 @@ class TracedVariants:
         }
 
     def driver_range(self, columns: Real) -> DriverRanges:
-        """Return the driver ranges of variants: a revolution of the crank, or the range of the driver."""
+        """Return the driver ranges of variants: one cycle of a rotating driver, or the range in which the driver
+        moves.
+        """
         if self.ends is None:
             return DriverRanges.of(self.variant, len(columns), self.turns, self.start)
         computed = self.ends(*split_columns(columns))
@@ -117,13 +130,13 @@ class TracedVariants:
         return DriverRanges.of(variant, len(columns), self.turns, self.start)
 
     def without(self, fragment: str) -> TracedVariants:
-        """Return the variants without results whose names contain `fragment`."""
+        """Return the variants without the results whose names contain `fragment`."""
         new = copy(self)
         new.program = self.program.only(*(name for name in self.program.outputs if fragment not in name))
         return new
 
     def sketch(self, numbers: Real) -> Sketch:
-        """Return the sketch of one variant at the sketched position."""
+        """Compute the points and angles of one variant at the position of the sketch."""
         linkage = self.make([float(number) for number in numbers]).linkage
         kernels: Sequence[GroupSolver] = [kernel.rebind(linkage) for kernel in self.lines]
         if self.continuation is not None:
@@ -144,7 +157,7 @@ class TracedVariants:
         return {**outputs, WANTED: ranges.wanted_at(samples)} if self.variant.wanted else outputs
 
     def _ways(self, columns: Real, ranges: DriverRanges) -> ContinuedPaths:
-        """Paths of variants over their ranges; those of the last call are kept."""
+        """Continue the variants over their driver ranges; the paths of the last call are cached."""
         assert self.continuation is not None
         key = columns.tobytes()
         if self._last is None or self._last[0] != key:
@@ -156,7 +169,11 @@ class TracedVariants:
 
 
 def _traceable_groups(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> tuple[GroupSolver, ...]:
-    """Groups in a form that a trace of variants can hold. Raises NoTapeError."""
+    """Return the group solvers in a form that can be traced for many variants.
+
+    Raises:
+        NoTapeError: there is no such form.
+    """
     lines = traceable_groups(linkage, kernels)
     if lines is None:
         raise NoTapeError
@@ -168,7 +185,7 @@ def _traceable_groups(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> tup
 
 
 def _extra_numbers(variant: Variant) -> tuple[Any, ...]:
-    """Numbers of a variant besides its linkage."""
+    """Return the numbers of a variant that are not part of its linkage."""
     return (*(variant.ends or ()), *variant.asked, *variant.wanted)
 
 
@@ -182,11 +199,14 @@ MOST_KEPT = 30  # variants kept as initial guesses
 
 
 class SequentialVariants:
-    """Variants solved one after another: called with numbers (variants, n) and samples of the driver.
+    """Variants solved one after another, with the same interface as TracedVariants.
 
-    The motion of all repeats after as many revolutions as that of the first one. Groups solved by iteration
-    start from the nearest known variant. A variant that cannot be assembled as sketched, or cannot move, has
-    nan outputs. Raises the errors of assembly of the first linkage.
+    The motion of all variants is assumed to repeat after the same number of revolutions as that of the first.
+    Groups solved by iteration start from the most similar variant solved before. Results are nan for a variant
+    that cannot be assembled as in the sketch, or cannot move.
+
+    Raises:
+        LinkageError: the first linkage cannot be assembled.
     """
 
     def __init__(self, make: Make, first: Sequence[float], read: OutputReader, *, forces: bool = False) -> None:
@@ -201,15 +221,19 @@ class SequentialVariants:
         self.names = tuple(self._one(tuple(first), DriverSamples(np.zeros(1), np.zeros(0))))
 
     def driver_range(self, columns: Real) -> DriverRanges:
-        """Return the driver range of the first linkage for each variant."""
+        """Return the driver range of the first linkage, once for each variant."""
         return DriverRanges.of(self.variant, len(columns), self.turns)
 
     def without(self, fragment: str) -> SequentialVariants:
-        """Return self, because results that are not used cost little here."""
+        """Return self, since results that are not used cost little here."""
         return self
 
     def sketch(self, numbers: Real) -> Sketch:
-        """Return the sketch of one variant at the sketched position. Raises the errors of assembly."""
+        """Compute the points and angles of one variant at the position of the sketch.
+
+        Raises:
+            LinkageError: the variant cannot be assembled.
+        """
         linkage = self.make([float(number) for number in numbers]).linkage
         return compute_sketch(linkage, assemble(linkage, self.structure.rebind(linkage)))
 
@@ -224,7 +248,7 @@ class SequentialVariants:
         return {name: np.stack([row.get(name, lost) for row in rows]) for name in self.names}
 
     def _moved(self, numbers: tuple[float, ...]) -> tuple[Variant, Mechanism]:
-        """Build a variant, or return it from the cache."""
+        """Build a variant, or take it from the cache."""
         if numbers not in self.known:
             if len(self.known) > MOST_KEPT:
                 self.known.clear()
@@ -236,7 +260,7 @@ class SequentialVariants:
         return self.known[numbers]
 
     def _nearest(self, numbers: tuple[float, ...]) -> tuple[GroupSolver, ...]:
-        """Groups of the known variant whose numbers have the least relative differences."""
+        """Return the group solvers of the cached variant with the smallest relative differences in its numbers."""
         if not self.known:
             return self.kernels
         point, solved = np.array(numbers), np.array(list(self.known))
@@ -273,16 +297,17 @@ class SequentialVariants:
 def make_variants(
     make: Make, first: Sequence[float], read: OutputReader, *, forces: bool, one_sense: bool
 ) -> TracedVariants | SequentialVariants:
-    """Return variants solved by a trace if possible, else one after another.
+    """Return variants that are solved by traced operations if possible, else one after another.
 
     Args:
-        make: builds a variant from numbers.
+        make: function that builds a variant from its numbers.
         first: numbers of the first variant.
-        read: reads the requested results.
-        forces: the results need reactions.
-        one_sense: all drivers rotate in the same sense, without which there is no trace.
+        read: function that reads the requested results.
+        forces: True if the results need reactions.
+        one_sense: True if all drivers rotate in the same sense; otherwise operations cannot be traced.
 
-    Raises the errors of assembly of the first linkage.
+    Raises:
+        LinkageError: the first linkage cannot be assembled.
     """
     if one_sense:
         try:

@@ -18,7 +18,7 @@ NOT_COMPARED = ("sketch",)  # describes the assembly of a linkage, not the linka
 
 
 class NotAlikeError(ValueError):
-    """Two linkages differ in more than their numbers. path: place of the difference."""
+    """Two linkages differ in more than their numbers; path: where they differ."""
 
     def __init__(self, path: str) -> None:
         super().__init__(f"the linkages differ in {path}, which is no number")
@@ -26,8 +26,8 @@ class NotAlikeError(ValueError):
 
 
 def numeric_leaves(record: Any) -> Iterator[tuple[str, Any]]:
-    """Yield all numbers of a record with their paths, and everything else that must be equal in linkages of one
-    kind.
+    """Yield all numbers of a record, and all other fields that must be equal in linkages of one kind, with their
+    paths.
     """
     return record_leaves(record, NOT_COMPARED)
 
@@ -38,17 +38,21 @@ def with_numbers(record: Any, new: Mapping[str, Any]) -> Any:
 
 
 def resolve_traced(record: Any) -> Any:
-    """Replace traced numbers in a record by the arrays that they stand for."""
+    """Replace the traced numbers in a record by the arrays or placeholders that they represent."""
     return with_numbers(record, {path: x.stand for path, x in numeric_leaves(record) if isinstance(x, TracedNumber)})
 
 
 def split_columns(columns: Real) -> list[Real]:
-    """Split columns (variants, n) into arrays (variants, 1)."""
+    """Split an array (variants, n) into n arrays (variants, 1)."""
     return [columns[:, k : k + 1] for k in range(columns.shape[1])]
 
 
 def varying_numbers(linkages: Sequence[Linkage]) -> dict[str, Real]:
-    """Return the numbers that differ between linkages, (variants, 1), by path. Raises NotAlikeError."""
+    """Return the numbers that differ between linkages, (variants, 1), by path.
+
+    Raises:
+        NotAlikeError: the linkages differ in more than their numbers.
+    """
     first = dict(numeric_leaves(linkages[0]))
     rows = [list(first.values())]
     for linkage in linkages[1:]:
@@ -66,10 +70,11 @@ def varying_numbers(linkages: Sequence[Linkage]) -> dict[str, Real]:
 
 
 def split_real_columns(varying: Mapping[str, Real]) -> tuple[list[Real], Callable[..., dict[str, Any]]]:
-    """Split varying numbers into real columns.
+    """Split varying numbers, real or complex, into real columns.
 
     Returns:
-        The columns, and a function that combines such columns, or placeholders for them, to numbers by path.
+        The columns, each (variants, 1), and a function that combines columns or placeholders for them into
+        numbers by path.
     """
     columns: list[Real] = []
     pieces_by_path: dict[str, tuple[int | complex, ...]] = {}
@@ -101,15 +106,21 @@ WANTED = "wanted"  # output name of required numbers at requested positions
 
 
 class NoTapeError(ValueError):
-    """No trace is possible: friction, loads by strokes, redundant constraints, or passed dead positions."""
+    """The operations cannot be traced: friction, loads that depend on strokes, redundant constraints, or dead
+    positions on the path.
+    """
 
 
 @dataclass(frozen=True)
 class Variant:
-    """A linkage, the requested positions of its file, and the range of its driver.
+    """A linkage with the requested positions of its file and the range of its driver.
 
-    ends: range of the driver (rad or m); None: it rotates on and the motion repeats. asked: queried driver
-    coordinates of a task. wanted: for each of them, a required number that varies with the variant.
+    Attributes:
+        linkage: the linkage.
+        request: requested positions.
+        ends: range of the driver, rad or m; None if it rotates fully and the motion repeats.
+        asked: driver coordinates for which a synthesis task requires something.
+        wanted: for each of them, a required number that differs between variants.
     """
 
     linkage: Linkage
@@ -120,14 +131,15 @@ class Variant:
 
     @property
     def accelerated(self) -> bool:
-        """True if the driver speed depends on where it started."""
+        """True if the speed of the driver depends on the position at which it started."""
         return bool(self.linkage.driver.acceleration) and not self.linkage.others
 
     @property
     def start(self) -> Any:
         """Driver coordinate (rad or m) of position 0; None if it does not matter.
 
-        Raises NoTapeError if the variant must be moved first, through its strokes or its whole range.
+        Raises:
+            NoTapeError: it can be found only by solving the motion, through strokes or the range of the driver.
         """
         if not self.accelerated:
             return None
@@ -145,9 +157,12 @@ Make = Callable[[Sequence[Any]], Variant]  # a variant for numbers, which may be
 
 
 def placeholder_linkage(make: Make, first: Sequence[float], data: Sequence[Any], sketch: Sketch) -> Linkage:
-    """Return the linkage with placeholders (of a trace, or columns) for its numbers.
+    """Build the linkage with placeholders, or columns of numbers, in place of its numbers.
 
-    first, sketch: numbers and sketch of the first variant.
+    Args:
+        make: function that builds a variant from its numbers.
+        first, sketch: numbers and sketch of the first variant.
+        data: placeholders or columns.
     """
     varied = make([TracedNumber(x, stand) for x, stand in zip(first, data, strict=True)])
     linkage: Linkage = replace(resolve_traced(varied.linkage), sketch=sketch)
@@ -156,8 +171,12 @@ def placeholder_linkage(make: Make, first: Sequence[float], data: Sequence[Any],
 
 @dataclass(frozen=True)
 class DriverSamples:
-    """Samples of the driver range: at fractions of it, then at queried coordinates if `asked`, then at fixed
-    ones (rad or m).
+    """Driver coordinates at which variants are sampled.
+
+    Attributes:
+        shares: fractions of the driver range.
+        driver: fixed driver coordinates, rad or m.
+        asked: True to add the driver coordinates `asked` of the variants.
     """
 
     shares: Real
@@ -167,10 +186,13 @@ class DriverSamples:
 
 @dataclass(frozen=True)
 class DriverRanges:
-    """Driver ranges of variants from `low` by `span`, (variants, 1).
+    """Driver ranges of variants.
 
-    closed: the driver rotates on and the motion repeats. asked, wanted: queried coordinates and required
-    numbers, (variants, n).
+    Attributes:
+        low, span: beginning and length of each range, (variants, 1).
+        closed: True if the driver rotates fully and the motion repeats.
+        asked, wanted: driver coordinates for which a task requires something, and the required numbers,
+            (variants, n).
     """
 
     low: Real
@@ -181,8 +203,13 @@ class DriverRanges:
 
     @classmethod
     def of(cls, variant: Variant, variants: int, turns: int, start: Any = None) -> DriverRanges:
-        """Build the ranges. turns: revolutions of a cycle; start: driver coordinate at which its law begins, if it
-        matters.
+        """Build the driver ranges of variants.
+
+        Args:
+            variant: a variant whose numbers are scalars or columns (variants, 1).
+            variants: number of variants.
+            turns: revolutions of the driver in a cycle.
+            start: driver coordinate at which the law of motion begins; None if it does not matter.
         """
         ones = np.ones((variants, 1))
         none = np.zeros((variants, 0))
@@ -198,18 +225,20 @@ class DriverRanges:
         return cls(low, high - low, False, positions, required)
 
     def at(self, samples: DriverSamples) -> Real:
-        """Return driver coordinates of samples, (variants, samples)."""
+        """Return the driver coordinates of samples, (variants, samples)."""
         fixed = np.broadcast_to(samples.driver, (len(self.low), len(samples.driver)))
         requested = self.asked if samples.asked else self.asked[:, :0]
         return np.concatenate([self.low + samples.shares * self.span, requested, fixed], axis=1)
 
     def wanted_at(self, samples: DriverSamples) -> Real:
-        """Return required numbers in the columns of queried coordinates of `at`; other columns are meaningless."""
+        """Return the required numbers in those columns of `at` that belong to `asked`; all other columns are
+        meaningless.
+        """
         return replace(self, low=self.low * np.nan, asked=self.wanted).at(samples)
 
 
 def compute_sketch(linkage: Linkage, kernels: Iterable[GroupSolver]) -> Sketch:
-    """Compute all points and angles of the moving links at the sketched position, for groups of known assembly."""
+    """Compute all points and angles of the moving links at the position of the sketch, from solvers of the groups."""
     at = linkage.sketch.at
     poses = compute_motion(linkage, kernels, np.array([at]), DriverMotion(at, 1.0, 0.0, 1), 0).poses
     points = {

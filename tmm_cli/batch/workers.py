@@ -45,7 +45,7 @@ def run_here(jobs: Sequence[Job], stopped: Stopped) -> Iterator[tuple[int, Any]]
 
 
 def in_processes(count: int) -> JobRunner:
-    """Return a runner that uses this many processes; when stopped, running jobs are completed."""
+    """Return a function that runs jobs in this many processes. When it is stopped, running jobs are completed."""
     return partial(_processes, count)
 
 
@@ -69,13 +69,13 @@ def _processes(count: int, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
 
 
 def initialize_worker() -> None:
-    """Ignore Ctrl-C, which the main process handles, and warnings about undefined numbers."""
+    """Ignore Ctrl-C, which the main process handles, and numerical runtime warnings."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     warnings.simplefilter("ignore", RuntimeWarning)
 
 
 def on_cluster(address: str) -> JobRunner:
-    """Return a runner that uses the workers of a Dask scheduler, which reassigns jobs of lost workers."""
+    """Return a function that runs jobs on the workers of a Dask scheduler. Jobs of lost workers are run again."""
     return partial(_cluster, address)
 
 
@@ -112,7 +112,11 @@ def _cluster(address: str, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
 
 
 def _fetch_result(client: Any, future: Any, address: str) -> Any:
-    """Fetch the result of a finished job; its worker may be lost meanwhile. Raises ProblemError if none is left."""
+    """Fetch the result of a finished job, even if its worker was lost meanwhile.
+
+    Raises:
+        ProblemError: no worker is left.
+    """
     while True:
         try:
             return future.result(timeout=ANSWER_TIMEOUT)
@@ -122,7 +126,11 @@ def _fetch_result(client: Any, future: Any, address: str) -> Any:
 
 
 def _wait_for_greeting(address: str) -> None:
-    """Wait until a scheduler introduces itself; a client would wait forever without one. Raises OSError."""
+    """Wait until a scheduler answers; a Dask client would wait forever without one.
+
+    Raises:
+        OSError: no scheduler answers.
+    """
     host, __, port = address.removeprefix("tcp://").rpartition(":")
     with socket.create_connection((host.strip("[]"), int(port)), timeout=ANSWER_TIMEOUT) as connection:
         if not connection.recv(1):
@@ -130,7 +138,11 @@ def _wait_for_greeting(address: str) -> None:
 
 
 def _iterate_finished(client: Any, completed: Any, count: int, address: str) -> Iterator[Any]:
-    """Yield futures as they finish. Raises ProblemError if there has been no worker for too long."""
+    """Yield futures as they finish.
+
+    Raises:
+        ProblemError: there has been no worker for too long.
+    """
     worked = queried = time.monotonic()
     while count:
         batch = completed.next_batch(block=False)
@@ -149,7 +161,11 @@ def _iterate_finished(client: Any, completed: Any, count: int, address: str) -> 
 
 
 def _refuse_other_programs(client: Any, address: str) -> None:
-    """Refuse workers with another version of the program, which might mark differently. Raises ProblemError."""
+    """Check that all workers have the same version of the program, since another version might mark differently.
+
+    Raises:
+        ProblemError: a worker has another version.
+    """
 
     def version_there() -> tuple[str, str]:  # pickled by value: the worker may have no such function
         try:
@@ -180,7 +196,11 @@ def _no_workers_error(address: str) -> ProblemError:
 
 
 def _run_with_same_program(program: str, spoken: CourseNotation, job: Job) -> Any:
-    """Run a job on a worker that has the same program; workers may join later. Raises ProblemError."""
+    """Run a job on a worker after checking its version again, since workers may join later.
+
+    Raises:
+        ProblemError: the worker has another version.
+    """
     if program_digest() != program:
         raise ProblemError(_("a worker of the cluster has a different version of tmm"))
     return speaking(spoken, job)
@@ -188,7 +208,7 @@ def _run_with_same_program(program: str, spoken: CourseNotation, job: Job) -> An
 
 @cache
 def program_digest() -> str:
-    """Return a digest of the program and its translations; another one may give other marks."""
+    """Return a hash of the program and its translations, to detect a version that might mark differently."""
     folder = Path(tmm_cli.__file__).parent
     files = sorted(folder.rglob("*.[pm][yo]"), key=lambda file: file.relative_to(folder).as_posix())
     digest = blake2b(digest_size=16)
