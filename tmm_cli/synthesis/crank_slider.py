@@ -1,4 +1,4 @@
-"""Crank-slider from its stroke, or its mean speed, and two more quantities."""
+"""Synthesis of a crank-slider from its stroke (or mean speed) and two more quantities."""
 
 from __future__ import annotations
 
@@ -38,11 +38,12 @@ SMALLEST_DRAWN_THETA: Final = 0.01  # rad: smallest theta visible in a drawing
 
 
 def draw_construction(solution: CrankSliderSolution) -> GeometricConstruction:
-    """Draw the extreme positions, and the circle from which B1B2 is seen at the angle theta, with O on it at the offset
-    e.
+    """Draw the geometric construction of a crank-slider.
 
-    B1 is the far extreme position (rod in line with the crank), B2 the near one; the crank pivot O is the origin. O may
-    lie on the circle between B2 and the point above B2, where e = H cot(theta).
+    It shows the mechanism in both extreme positions of the slider, and the circle from whose points the segment B1B2 is
+    seen at the angle theta. B1 is the extreme position with the rod in line with the crank, B2 the one with the rod
+    folded over the crank. The crank pivot O, at the origin, lies on the circle at the offset e from the line B1B2; it
+    may lie between B2 and the point of the circle above B2, where e = H cot(theta).
     """
     r, l, e, height, theta = (float(getattr(solution, n)) for n in ("r", "l", "e", "stroke", "theta"))  # noqa: E741
     near, far = (float(np.sqrt((x - e) * (x + e))) for x in (l - r, l + r))
@@ -127,10 +128,19 @@ FOUND_QUANTITIES: Final = {
 
 @dataclass(frozen=True)
 class CrankSliderTask:
-    """Given quantities of a crank-slider; floats or arrays, None: not given.
+    """Given quantities of a crank-slider; floats or arrays, None if not given.
 
-    The stroke (m), or the mean speed of the slider (m/s) with that of the crank (rad/s); and two more: ratio L and nu,
-    L and e (m), L and k, largest pressure angle (rad) and nu, pressure angle and k, e and k.
+    The stroke is given, or both mean speeds; and one of these pairs: ratio and nu, ratio and e, ratio and k, pressure
+    and nu, pressure and k, e and k.
+
+    Attributes:
+        stroke: stroke H of the slider (m).
+        speed, crank_speed: mean speed of the slider (m/s) and speed of the crank (rad/s).
+        ratio: rod-to-crank ratio L = l/r.
+        nu: relative offset e/r.
+        k: time ratio.
+        pressure: largest pressure angle (rad).
+        e: offset of the guide (m).
     """
 
     stroke: Any = None
@@ -145,9 +155,17 @@ class CrankSliderTask:
 
 @dataclass(frozen=True)
 class CrankSliderSolution:
-    """Lengths r, l, e and stroke (m), theta and largest pressure angle (rad), ratios L, nu, h, k.
+    """Dimensions and properties of a crank-slider; floats or arrays.
 
-    printed: nu by the approximation sqrt((h - 2)(L^2 - 1)) for small theta; error: its relative error.
+    Attributes:
+        r, l, e: crank, connecting rod, offset of the guide (m).
+        stroke: stroke H of the slider (m).
+        ratio, nu, h: ratios L = l/r, e/r and H/r.
+        theta: angle between the crank's extreme positions (rad).
+        k: time ratio.
+        pressure: largest pressure angle (rad).
+        printed: nu by the approximation sqrt((h - 2)(L^2 - 1)) for small theta, as textbooks print it.
+        error: relative error of this approximation.
     """
 
     r: Any
@@ -165,33 +183,38 @@ class CrankSliderSolution:
 
 
 def nu_of(length: Any, theta: Any) -> Any:
-    """Return the relative offset nu = e/r for a ratio L (`length`) and theta."""
+    """Return the relative offset nu = e/r for a ratio L = l/r (`length`) and an angle theta (rad)."""
     sine, cosine = np.sin(theta / 2), np.cos(theta / 2)
     more = (length - 1) * (length + 1)
     return more * sine * cosine / np.sqrt(1 + more * sine * sine)
 
 
 def theta_between(length: Any, nu: Any) -> Any:
-    """Return theta for a ratio L and an offset nu, from the sides and the height of the triangle."""
+    """Return the angle theta (rad) between the extreme crank positions, for a ratio L = l/r (`length`) and nu = e/r."""
     near, far = np.sqrt((length - 1 - nu) * (length - 1 + nu)), np.sqrt((length + 1 - nu) * (length + 1 + nu))
     return np.arctan2(4 * length * nu / (near + far), near * far + nu * nu)
 
 
 def stroke_ratio(length: Any, nu: Any) -> Any:
-    """Return h = H/r for a ratio L and an offset nu."""
+    """Return the ratio h = H/r of stroke to crank, for a ratio L = l/r (`length`) and nu = e/r."""
     near, far = (length - 1 - nu) * (length - 1 + nu), (length + 1 - nu) * (length + 1 + nu)
     return 4 * length / (np.sqrt(near) + np.sqrt(far))
 
 
 def largest_theta(length: Any) -> Any:
-    """Return the limit of theta for a ratio L, tan(theta/2) = 1/sqrt(L); beyond it the crank does not rotate fully."""
+    """Return the upper limit of theta (rad) for a ratio L = l/r (`length`).
+
+    The limit is tan(theta/2) = 1/sqrt(L). With a larger theta the crank does not rotate fully.
+    """
     return 2 * np.arctan(1 / np.sqrt(length))
 
 
 def smallest_pressure(theta: Any) -> Any:
-    """Return the smallest possible value of the largest pressure angle (rad) for theta, over all L; see `shortest_rod`.
+    """Return the smallest value (rad) that the largest pressure angle can have for an angle theta (rad), over all
+    ratios L.
 
-    The derivative of sin(lambda) with respect to sigma vanishes where sin(sigma)^2 = s cos(sigma).
+    In the notation of `shortest_rod`, the derivative of sin(lambda) with respect to sigma vanishes where sin(sigma)^2 =
+    s cos(sigma).
     """
     s = np.sin(theta / 2)
     cosine = 2 / (s + np.sqrt(s * s + 4))
@@ -199,12 +222,14 @@ def smallest_pressure(theta: Any) -> Any:
 
 
 def shortest_rod(theta: Any, pressure: Any) -> Any:
-    """Return the smallest ratio L with this theta and this largest pressure angle (rad); nan if there is none.
+    """Return the smallest ratio L = l/r with this angle theta and this largest pressure angle (rad); nan if there is
+    none.
 
-    With sigma half the sum of the angles between the guide and the rod in both extreme positions, s = sin(theta/2) and
-    c = cos(theta/2): L = tan(sigma) c/s, nu = (sin(sigma)^2 - s^2)/(s cos(sigma)). With w = sin(sigma)/s the condition
-    1 + nu = L sin(lambda) becomes s (w^2 - 1) + sqrt(1 - s^2 w^2) = w c sin(lambda), which stays regular at theta = 0.
-    The difference of its sides falls from w = 1 to the w of the smallest lambda.
+    Let sigma be half the sum of the angles between the guide and the rod in both extreme positions, s = sin(theta/2)
+    and c = cos(theta/2). Then L = tan(sigma) c/s and nu = (sin(sigma)^2 - s^2)/(s cos(sigma)). With w = sin(sigma)/s
+    the condition 1 + nu = L sin(lambda) becomes s (w^2 - 1) + sqrt(1 - s^2 w^2) = w c sin(lambda), which remains
+    regular at theta = 0. The difference of its two sides decreases from w = 1 to the value of w at which lambda is
+    smallest.
     """
     theta, pressure = np.broadcast_arrays(theta, pressure)
     s, c, sine = np.sin(theta / 2), np.cos(theta / 2), np.sin(pressure)
@@ -220,20 +245,22 @@ def shortest_rod(theta: Any, pressure: Any) -> Any:
 
 
 def ratio_of_offset(height: Any, e: Any, theta: Any) -> Any:
-    """Return L for a stroke H and an offset e: (2 r)^2 = H (H - 2 e tan(theta/2)), (2 l)^2 = H (H + 2 e cot(theta/2)).
+    """Return the ratio L = l/r for a stroke H and an offset e (m), and an angle theta (rad).
 
-    (l + r)(l - r) sin(theta) = H e is twice the area of the triangle; the law of cosines gives the sum of the squares.
+    The formulas are (2 r)^2 = H (H - 2 e tan(theta/2)) and (2 l)^2 = H (H + 2 e cot(theta/2)). They follow from twice
+    the area of the triangle of the extreme positions, (l + r)(l - r) sin(theta) = H e, and from the law of cosines.
     """
     tangent = np.tan(theta / 2)
     return np.sqrt((height + 2 * e / tangent) / (height - 2 * e * tangent))
 
 
 def crank_of_offset(height: Any, e: Any, length: Any) -> Any:
-    """Return the crank r (m) for a stroke H (m), an offset e (m) and a ratio L; nan if there is none.
+    """Return the crank length r (m) for a stroke H (m), an offset e (m) and a ratio L = l/r (`length`); nan if there is
+    none.
 
-    The sides r (L + 1), r (L - 1) of the triangle of the extreme positions and its doubled area H e give
-    r^2 = ((L^2 + 1) H^2 + sqrt((L^2 + 1)^2 H^4 - 4 L^2 H^2 (H^2 + 4 e^2)))/(8 L^2); the radicand is
-    H^2 ((L^2 - 1)^2 H^2 - 16 L^2 e^2). With the other sign of the root the crank does not rotate fully.
+    The triangle of the extreme positions has the sides r (L + 1) and r (L - 1) and twice the area H e. Hence r^2 =
+    ((L^2 + 1) H^2 + sqrt((L^2 + 1)^2 H^4 - 4 L^2 H^2 (H^2 + 4 e^2)))/(8 L^2), with the radicand H^2 ((L^2 - 1)^2 H^2 -
+    16 L^2 e^2). With a minus sign before the root the crank would not rotate fully.
     """
     more = (length - 1) * (length + 1) * height
     under = (more - 4 * length * e) * (more + 4 * length * e)
@@ -242,9 +269,10 @@ def crank_of_offset(height: Any, e: Any, length: Any) -> Any:
 
 
 def find_crank_slider(task: CrankSliderTask) -> CrankSliderSolution:
-    """Solve the task. If no such mechanism exists (`refuse` gives the reason), the values are meaningless.
+    """Find the dimensions of a crank-slider from the triangle of its extreme positions and theta = pi (k - 1)/(k +
+    1).
 
-    Formulas: see the triangle of the extreme positions above; theta = pi (k - 1)/(k + 1).
+    The numbers returned are meaningless if no such mechanism exists; `refuse` checks this.
     """
     height = _find_stroke(task)
     theta = None if task.k is None else theta_of(task.k)
@@ -290,14 +318,14 @@ def find_crank_slider(task: CrankSliderTask) -> CrankSliderSolution:
 
 
 def _find_stroke(task: CrankSliderTask) -> Any:
-    """Return the stroke H; if the mean speed v is given instead, H = pi v/omega (H = 30 v/n)."""
+    """Return the stroke H (m). If the mean speed v is given instead, H = pi v/omega."""
     if task.stroke is not None:
         return np.asarray(task.stroke)
     return np.pi * task.speed / task.crank_speed
 
 
 def refuse(task: CrankSliderTask) -> None:
-    """Raise Infeasible, with the reason, if no such crank-slider exists."""
+    """Raise Infeasible, with the reason, if no crank-slider satisfies the task."""
     ratio, nu, pressure, e = task.ratio, task.nu, task.pressure, task.e
     if nu is not None and not nu >= 0:
         raise Infeasible(
@@ -323,7 +351,7 @@ def refuse(task: CrankSliderTask) -> None:
 
 
 def _refuse_k(task: CrankSliderTask) -> float:
-    """Return theta (rad). Raises Infeasible if it exceeds the limit set by the other quantities."""
+    """Return the angle theta (rad). Raises Infeasible if k exceeds the limit that the other quantities set."""
     theta, limit = float(theta_of(task.k)), np.pi / 2
     if not task.k >= 1:
         raise Infeasible(
@@ -349,7 +377,7 @@ def _refuse_k(task: CrankSliderTask) -> float:
 
 
 def solve(task: CrankSliderTask) -> SynthesisOutcome:
-    """Solve the task of one file: given values, solution, values to be measured, drawing. Raises Infeasible."""
+    """Find the crank-slider and draw its construction. Raises Infeasible."""
     refuse(task)
     solution = find_crank_slider(task)
     lengths = tuple(NamedValue(name, getattr(solution, name), *FOUND_QUANTITIES[name]) for name in PARAMETERS)
@@ -387,7 +415,7 @@ KEY_PAIRS = (("ratio", "nu"), ("ratio", "e"), ("ratio", "k"), ("pressure", "nu")
 
 
 class CrankSliderBlock(TaskBlock):
-    """A crank-slider by its stroke (or mean speed) and two of L, nu, e, k, pressure angle."""
+    """Keys of the task `crank-slider`: the stroke or mean speed, and two of L, nu, e, k and the pressure angle."""
 
     task: Literal["crank-slider"]
     stroke: FileValue | None = Field(default=None, description="stroke H of the slider")
@@ -411,7 +439,7 @@ BLOCK = CrankSliderBlock
 
 
 def read(block: CrankSliderBlock, values: ValueReader) -> CrankSliderTask:
-    """Read the task into SI; its keys must be one of the sets that determine a crank-slider. Raises ProblemError."""
+    """Read the task into SI. Raises ProblemError if the keys do not determine a crank-slider."""
     for sets in (STROKE_KEYS, KEY_PAIRS):
         choose_key_set(block, sets)
     return CrankSliderTask(**read_numbers(block, values, QUANTITIES))

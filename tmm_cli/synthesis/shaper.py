@@ -1,4 +1,4 @@
-"""Crank shaper by its stroke and k."""
+"""Synthesis of a crank shaper from its stroke and k."""
 
 from __future__ import annotations
 
@@ -25,8 +25,9 @@ from tmm_cli.synthesis.slotted_lever import HALF_A_TURN, QUICK_RETURN, SlottedLe
 
 
 def draw_construction(f: ShaperSolution) -> GeometricConstruction:
-    """Draw the lever in its extreme positions, the guide at half the height of D's arc, and the ram at both ends; O at
-    0.
+    """Draw the geometric construction of a shaper, with the crank pivot O at the origin.
+
+    It shows the lever and the ram in both extreme positions. The guide of the ram bisects the height of D's arc.
     """
     middle, half = np.pi / 2, float(f.theta) / 2
     lever = Lever(
@@ -87,8 +88,14 @@ ROD_KEYS: Final = ("DE", "rod_ratio", "pressure")
 
 @dataclass(frozen=True)
 class ShaperTask:
-    """Stroke (m) and k; frame OC, its ratio to CD or the crank OA; rod DE, its ratio to CD or the pressure angle (m,
-    rad).
+    """Given quantities of a crank shaper; None if not given.
+
+    Attributes:
+        stroke: stroke of the ram (m).
+        k: time ratio.
+        OC, frame_ratio, OA: frame OC (m), or the ratio OC/CD, or the crank OA (m).
+        DE, rod_ratio, pressure: connecting rod DE (m), or the ratio DE/CD, or the largest pressure angle on the ram
+            (rad).
     """
 
     stroke: Any
@@ -103,7 +110,14 @@ class ShaperTask:
 
 @dataclass(frozen=True)
 class ShaperSolution:
-    """Lengths (m), height `level` of the guide above O (m), theta and largest pressure angle of the ram (rad)."""
+    """Dimensions of a crank shaper.
+
+    Attributes:
+        crank, frame, lever, rod: lengths of OA, OC, CD and DE (m).
+        level: height of the ram's guide above O (m).
+        theta: swing angle of the lever (rad).
+        pressure: largest pressure angle on the ram (rad).
+    """
 
     crank: Any
     frame: Any
@@ -115,8 +129,9 @@ class ShaperSolution:
 
 
 def find_shaper(task: ShaperTask) -> ShaperSolution:
-    """Find the dimensions of a shaper. If no such mechanism exists (`refuse` gives the reason), the values are
-    meaningless.
+    """Find the dimensions of a crank shaper.
+
+    The numbers returned are meaningless if no such mechanism exists; `refuse` checks this.
     """
     theta = theta_of(task.k)
     sine, half_height = np.sin(theta / 2), np.sin(theta / 4) ** 2
@@ -135,7 +150,7 @@ def find_shaper(task: ShaperTask) -> ShaperSolution:
 
 
 def refuse(task: ShaperTask) -> None:
-    """Raise Infeasible, with the reason, if no such shaper exists."""
+    """Raise Infeasible, with the reason, if no crank shaper satisfies the task."""
     if not task.k > 1:
         raise Infeasible("k", QUICK_RETURN)
     half = float(theta_of(task.k)) / 2
@@ -157,7 +172,7 @@ def _find_given_key(task: ShaperTask, keys: tuple[str, ...]) -> str:
 
 
 def solve(task: ShaperTask) -> SynthesisOutcome:
-    """Solve the task of one file. Raises Infeasible."""
+    """Find the crank shaper and draw its construction. Raises Infeasible."""
     refuse(task)
     f = find_shaper(task)
     kind, text = QUANTITIES["pressure"]
@@ -190,7 +205,9 @@ def solve(task: ShaperTask) -> SynthesisOutcome:
 
 
 class ShaperBlock(TaskBlock):
-    """A crank shaper by stroke, k, frame OC (its ratio, or the crank) and rod DE (its ratio, or a pressure angle)."""
+    """Keys of the task `shaper`: stroke, k, the frame OC (or its ratio, or the crank), the rod DE (or its ratio, or a
+    limit of the pressure angle).
+    """
 
     task: Literal["shaper"]
     stroke: FileValue = Field(description="stroke H of the ram")

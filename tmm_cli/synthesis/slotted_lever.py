@@ -1,4 +1,4 @@
-"""Slotted-lever mechanism by k (or the swing angle) and the extreme positions of the lever's end."""
+"""Synthesis of a slotted-lever mechanism from k (or the swing angle) and the extreme positions of the lever's end."""
 
 from __future__ import annotations
 
@@ -41,9 +41,14 @@ FAMILY_SIZE: Final = 61  # tabulated lengths OC
 def lever_elements(
     f: SlottedLeverSolution, end: str
 ) -> tuple[list[Segment], list[Arc], list[LetteredPoint], list[Angle]]:
-    """Return the drawing elements of the lever in its extreme positions: segments, arcs, points, angles.
+    """Return the drawing elements of the slotted lever and its crank in both extreme positions.
 
-    The crank circle touches both positions; end: letter of the end of the lever.
+    Args:
+        f: dimensions of the mechanism.
+        end: letter of the lever's end.
+
+    Returns:
+        Lines, arcs, points and angles. The crank circle touches the lever in both positions.
     """
     c, o = complex(f.c), complex(f.o)
     lever, crank, frame = float(f.lever), float(f.crank), float(f.frame)
@@ -75,7 +80,10 @@ def lever_elements(
 
 
 def draw_construction(f: SlottedLeverSolution) -> GeometricConstruction:
-    """Draw both extreme positions, with C from the isosceles triangle on B1B2 and O on the bisector."""
+    """Draw the geometric construction of a slotted lever in both extreme positions.
+
+    The pivot C is the apex of the isosceles triangle on B1B2, and the crank pivot O lies on its bisector.
+    """
     segments, arcs, spots, angles = lever_elements(f, "B")
     b1, b2 = spots[-2].at, spots[-1].at
     segments.append(Segment(b1, b2, "dashed"))
@@ -98,7 +106,11 @@ def draw_construction(f: SlottedLeverSolution) -> GeometricConstruction:
 
 
 def tabulate_family(task: SlottedLeverTask, f: SlottedLeverSolution) -> tuple[Diagram, Listing]:
-    """Draw and tabulate OA and the extreme distances of the sliding block from C over OC within its bounds."""
+    """Draw and tabulate the mechanisms with OC between its given limits.
+
+    For each length OC the table gives the crank OA, and the smallest and the largest distance of the sliding block from
+    C.
+    """
     assert task.within is not None
     low, high = (float(x) for x in task.within)
     frame = np.linspace(low, high, FAMILY_SIZE)
@@ -148,16 +160,17 @@ HALF_A_TURN: Final = N_("with a fully rotating crank the swing angle of the leve
 
 @dataclass(frozen=True)
 class SlottedLeverTask:
-    """Extreme positions of the lever and the free distance OC.
+    """Given quantities of a slotted-lever mechanism; None if not given.
 
     Attributes:
-        b1, b2: extreme positions of the lever's end (m, complex); or CB, c, axis: its length (m), the hinge C and the
-            direction (rad) from C to O.
-        side: side of the line from b1 to b2 on which C lies, 1 left, -1 right; with CB, 1 means that the lever rotates
-            clockwise from B1 to B2.
-        k, swing: time ratio, or swing angle (rad).
-        OC, OA, within: OC (m), or the crank OA (m), or bounds of OC (m).
-        choose: OC within its bounds: force (the longest with the sliding block on CB) or shortest.
+        b1, b2: extreme positions of the lever's end B (complex, m).
+        CB: length of the lever (m), instead of b1 and b2.
+        c, axis: with CB, the lever's pivot C (complex, m) and the direction from C to O (rad).
+        side: side of the line from b1 to b2 on which C lies, 1 left, -1 right. With CB, 1 means that the lever rotates
+            counterclockwise from B1 to B2.
+        k, swing: time ratio, or the swing angle (rad).
+        OC, OA, within: distance OC (m), or the crank OA (m), or limits of OC (m).
+        choose: choice of OC between its limits: `force` (the longest with the sliding block on CB) or `shortest`.
     """
 
     b1: Any = None
@@ -180,8 +193,15 @@ class SlottedLeverTask:
 
 @dataclass(frozen=True)
 class SlottedLeverSolution:
-    """Lengths (m), O and C (m, complex), angles of CB1 and CB2 (rad); longest: OC that keeps the sliding block on
-    CB."""
+    """Dimensions of a slotted-lever mechanism.
+
+    Attributes:
+        crank, frame, lever: lengths of OA, OC and CB (m).
+        o, c: pivots of the crank and of the lever (complex, m).
+        psi1, psi2: angles of CB1 and CB2 (rad).
+        theta: swing angle of the lever (rad).
+        longest: longest OC for which the sliding block stays on CB (m).
+    """
 
     crank: Any
     frame: Any
@@ -195,7 +215,10 @@ class SlottedLeverSolution:
 
 
 def find_slotted_lever(task: SlottedLeverTask) -> SlottedLeverSolution:
-    """Solve the task. If no such mechanism exists (`refuse` gives the reason), the values are meaningless."""
+    """Find the dimensions of a slotted-lever mechanism.
+
+    The numbers returned are meaningless if no such mechanism exists; `refuse` checks this.
+    """
     theta = task.theta
     sine = np.sin(theta / 2)
     if task.CB is None:
@@ -225,7 +248,7 @@ def find_slotted_lever(task: SlottedLeverTask) -> SlottedLeverSolution:
 
 
 def refuse(task: SlottedLeverTask) -> None:
-    """Raise Infeasible, with the reason, if no such mechanism exists."""
+    """Raise Infeasible, with the reason, if no slotted-lever mechanism satisfies the task."""
     if task.k is not None and not task.k > 1:
         raise Infeasible("k", QUICK_RETURN)
     if task.swing is not None and not task.swing > 0:
@@ -241,7 +264,7 @@ def refuse(task: SlottedLeverTask) -> None:
 
 
 def solve(task: SlottedLeverTask) -> SynthesisOutcome:
-    """Solve the task of one file. Raises Infeasible."""
+    """Find the slotted-lever mechanism and draw its construction. Raises Infeasible."""
     refuse(task)
     f = find_slotted_lever(task)
     demands = (
@@ -334,7 +357,9 @@ FRAME_KEYS = (("OC",), ("OA",), ("within",))
 
 
 class SlottedLeverBlock(TaskBlock):
-    """A slotted lever by the extreme positions of its end B (or its length) and k (or its swing angle)."""
+    """Keys of the task `slotted-lever`: the extreme positions of the lever's end B (or its length), and k or the swing
+    angle.
+    """
 
     task: Literal["slotted-lever"]
     B1: Vector | None = Field(default=None, description="one extreme position of the lever's end B")

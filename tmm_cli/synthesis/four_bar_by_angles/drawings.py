@@ -29,15 +29,20 @@ NEAR: Final = 0.9  # relative height of peaks that are refined
 
 
 def _scan_angles(function: GeneratedFunction) -> Any:
-    """Return the input angles (rad) of the scan: evenly spaced ones and those of the table rows."""
+    """Return evenly spaced input angles (rad) over the range, together with those of the table rows."""
     even = np.linspace(min(function.phi), max(function.phi), ERRORS)
     return np.unique(np.concatenate((even, function.table_angles())))
 
 
 def error_extremes(error: Callable[[Any], Any], function: GeneratedFunction) -> tuple[Any, float]:
-    """Return the input angles (rad) of the largest peaks of an error, and the largest |error|, to full precision.
+    """Return the input angles (rad) of the largest peaks of an error, and its largest magnitude (rad), to full
+    precision.
 
-    A peak may lie at a corner of a table; between two angles of the scan the error has at most one extreme.
+    A peak may lie at a corner of a table. Between two neighbouring sample angles the error has at most one extreme.
+
+    Args:
+        error: function that returns the error (rad) at input angles.
+        function: function to be generated.
     """
     phi = _scan_angles(function)
     magnitudes = np.abs(error(phi))
@@ -54,19 +59,19 @@ def error_extremes(error: Callable[[Any], Any], function: GeneratedFunction) -> 
 
 
 def assembly_of(four_bar: FourBarRatios, task: AnglePairsTask) -> float:
-    """Return the sign of (BC x DC) of the assembly that passes through the pairs."""
+    """Return the assembly that passes through the pairs, as the sign of the cross product BC x DC."""
     phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
     return min((1.0, -1.0), key=lambda side: float(np.sum((output_angles(four_bar, phi, psi, side) - psi) ** 2)))
 
 
 def output_errors(four_bar: FourBarRatios, task: AnglePairsTask) -> Any:
-    """Return the errors of the output angle (rad) at the pairs."""
+    """Return the errors of the output angle at the pairs (rad), shape (pairs,)."""
     phi, psi = np.asarray(task.phi, dtype=float), np.asarray(task.psi, dtype=float)
     return output_angles(four_bar, phi, psi, assembly_of(four_bar, task)) - psi
 
 
 def draw_reached(four_bar: FourBarRatios, task: AnglePairsTask) -> Diagram:
-    """Draw the output angle over the input angle, with the required pairs."""
+    """Plot the output angle against the input angle, with the required pairs as points."""
     side, (start, end) = assembly_of(four_bar, task), task.span
     phi, at_pairs = np.linspace(float(start), float(end), ERRORS), np.asarray(task.phi, dtype=float)
     psi = np.asarray(task.psi, dtype=float)
@@ -87,7 +92,11 @@ def draw_reached(four_bar: FourBarRatios, task: AnglePairsTask) -> Diagram:
 
 
 def draw_structural_error(four_bar: FourBarRatios, task: AnglePairsTask) -> tuple[Diagram, float]:
-    """Draw the structural error over the input angle, with the points of the task; return the largest |error| (rad)."""
+    """Plot the structural error against the input angle, with the precision points.
+
+    Returns:
+        The diagram, and the largest magnitude of the error (rad).
+    """
     assert task.function
     function = task.function
     side = assembly_of(four_bar, task)
@@ -115,7 +124,15 @@ def draw_structural_error(four_bar: FourBarRatios, task: AnglePairsTask) -> tupl
 def draw_construction(
     solution: FourBarRatios, given_phi: Any, given_psi: Any, frame_length: float
 ) -> GeometricConstruction:
-    """Draw all positions rotated back about A to the first input: C1, C2', C3' ... lie on a circle about B1."""
+    """Draw all positions rotated back about A to the first input angle.
+
+    The points C1, C2', C3', ... then lie on a circle about B1.
+
+    Args:
+        solution: four-bar.
+        given_phi, given_psi: pairs of angles (rad), measured from the zero angles.
+        frame_length: length l4 (m).
+    """
     phi, psi = np.asarray(given_phi, float), np.asarray(given_psi, float)
     b, c = (np.asarray(x, dtype=complex) * frame_length for x in solution.pins(phi, psi))
     back = c * np.exp(-1j * (phi - phi[0]))

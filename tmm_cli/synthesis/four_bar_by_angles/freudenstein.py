@@ -1,11 +1,15 @@
-"""Freudenstein's equation for pairs of angles phi (input AB) and psi (output DC), both from the frame AD.
+"""Freudenstein's equation for pairs of the input angle phi (of AB) and the output angle psi (of DC), measured from
+AD.
 
     p cos(psi) - q cos(phi) + s = cos(phi - psi),   p = l4/l1, q = l4/l3, s = (l1^2 + l3^2 + l4^2 - l2^2)/(2 l1 l3)
-(F. Freudenstein, An analytical approach to the design of four-link mechanisms, Trans. ASME 76 (1954)). A negative p or
-q means a link drawn in the opposite direction: its zero angle is then greater by half a turn. With phi = phi0 + given
-angle and psi = psi0 + given angle, 4 pairs determine one zero angle: the determinant of the four equations is a
-quadratic form in its cosine and sine. 5 pairs determine both: with delta = phi0 - psi0 a cubic form in cos(delta) and
-sin(delta). Arrays: tasks on the first axis, pairs on the last.
+
+Source: F. Freudenstein, An analytical approach to the design of four-link mechanisms, Trans. ASME 76 (1954).
+
+A negative p or q means that the link points in the opposite direction: its zero angle is then greater by 180 degrees.
+The given angles may be measured from unknown zero angles phi0 and psi0. Four pairs determine one zero angle: the
+determinant of the four equations is a quadratic form in its cosine and sine. Five pairs determine both: with delta =
+phi0 - psi0 the condition is a cubic form in cos(delta) and sin(delta). In arrays the first axis counts the tasks and
+the last axis the pairs of angles.
 """
 
 from __future__ import annotations
@@ -26,7 +30,12 @@ REAL: Final = 5e-7  # rad: a root this close to a real angle is real
 
 
 class FourBarRatios(NamedTuple):
-    """Lengths over l4 (positive) and zero angles (rad) of four-bars, arrays of one shape."""
+    """Four-bars with lengths relative to the frame l4; arrays of one shape.
+
+    Attributes:
+        l1, l2, l3: lengths divided by l4, positive.
+        phi0, psi0: zero angles of the input and the output link, measured from AD (rad).
+    """
 
     l1: Any
     l2: Any
@@ -44,16 +53,24 @@ class FourBarRatios(NamedTuple):
         return int(np.size(self.l1))
 
     def pins(self, phi: Any, psi: Any) -> tuple[Any, Any]:
-        """Return pins B and C over l4 for given angles (without the zero angles); A is 0, D is 1."""
+        """Return the hinges B and C (complex, divided by l4) for angles measured from the zero angles; A is 0 and D is
+        1.
+        """
         return self.l1 * unit(self.phi0 + phi), 1 + self.l3 * unit(self.psi0 + psi)
 
 
 def pseudo_inverse(rows: Any) -> Any:
-    """Return the pseudo-inverses (..., m, n) of matrices (..., n, m) in double precision, for corrections.
+    """Return the pseudo-inverses of matrices in double precision, to be used in iterative refinement.
 
-    Least squares if there are more rows than columns, least norm if there are fewer; nan for singular matrices. Pairs
-    that are close together give nearly equal rows and a small determinant; they are usable as long as the ratio of the
-    smallest to the largest singular value is above rounding.
+    With more rows than columns they give the least-squares solution, with fewer the solution of least norm. Pairs of
+    angles that are close together give nearly equal rows. They are usable as long as the ratio of the smallest to the
+    largest singular value exceeds rounding.
+
+    Args:
+        rows: matrices, shape (..., n, m).
+
+    Returns:
+        Pseudo-inverses, shape (..., m, n); nan for singular matrices.
     """
     near = np.asarray(rows, dtype=float)
     finite = np.isfinite(near).all((-1, -2), keepdims=True)
@@ -64,7 +81,15 @@ def pseudo_inverse(rows: Any) -> Any:
 
 
 def solve_linear(rows: Any, right: Any) -> Any:
-    """Solve linear systems (..., n, m), (..., n) with refinement in extended precision; nan if singular."""
+    """Solve linear systems with iterative refinement in extended precision.
+
+    Args:
+        rows: matrices, shape (..., n, m).
+        right: right-hand sides, shape (..., n).
+
+    Returns:
+        Solutions, shape (..., m); nan if the matrix is singular.
+    """
     back = pseudo_inverse(rows)
     unknowns = np.zeros((*np.shape(rows)[:-2], np.shape(rows)[-1]), dtype=EXACT)
     for _ in range(REFINEMENTS):
@@ -74,7 +99,14 @@ def solve_linear(rows: Any, right: Any) -> Any:
 
 
 def solve_homogeneous(rows: Any) -> Any:
-    """Return two vectors (..., m, 2) that span the null space of matrices (..., m - 2, m), in extended precision."""
+    """Return two vectors that span the null space of each matrix, refined in extended precision.
+
+    Args:
+        rows: matrices, shape (..., m - 2, m).
+
+    Returns:
+        Vectors as columns, shape (..., m, 2).
+    """
     near, back = np.asarray(rows, dtype=float), pseudo_inverse(rows)
     near = np.where(np.isfinite(near), near, 0.0)
     vectors = np.swapaxes(np.linalg.svd(near)[2][..., -2:, :], -1, -2).astype(EXACT)
@@ -85,22 +117,36 @@ def solve_homogeneous(rows: Any) -> Any:
 
 
 def solve_pqs(phi: Any, psi: Any) -> Any:
-    """Return p, q, s (tasks, 3) from three or more pairs whose angles include the zero angles."""
+    """Return p, q, s of Freudenstein's equation, shape (tasks, 3).
+
+    Args:
+        phi, psi: three or more pairs of angles (rad), measured from AD, shape (tasks, pairs).
+    """
     return solve_linear(_equation_rows(phi, psi), np.cos(phi - psi))
 
 
 def solve_two_pairs(phi: Any, psi: Any, coefficients: Any, value: Any) -> Any:
-    """Return p, q, s (tasks, 3) from two pairs and a linear condition known . (p, q, s) = value."""
+    """Return p, q, s of Freudenstein's equation, shape (tasks, 3), from two pairs of angles and a linear condition.
+
+    Args:
+        phi, psi: angles (rad), measured from AD, shape (tasks, 2).
+        coefficients, value: condition coefficients . (p, q, s) = value, shapes (tasks, 3) and (tasks,).
+    """
     rows = np.concatenate([_equation_rows(phi, psi), np.asarray(coefficients, dtype=EXACT)[..., None, :]], axis=-2)
     right = np.concatenate([np.cos(phi - psi), np.asarray(value, dtype=EXACT)[..., None]], axis=-1)
     return solve_linear(rows, right)
 
 
 def zero_angles_of_four(phi: Any, psi: Any, free: str) -> tuple[Any, Any]:
-    """Return both zero angles (tasks, 2) from four pairs; nan if not real.
+    """Return the zero angles phi0 and psi0 that four pairs of angles allow (rad), two solutions per task, shape (tasks,
+    2).
 
-    free: the zero angle to be found, which its angles do not include yet. Solutions half a turn apart are the same
-    four-bar.
+    Solutions that differ by 180 degrees are the same four-bar. Complex solutions are nan.
+
+    Args:
+        phi, psi: angles (rad), shape (tasks, 4).
+        free: the unknown zero angle, "phi0" or "psi0"; the other one is already contained in the angles and returned as
+            0.
     """
 
     turn = phi - psi
@@ -126,11 +172,15 @@ def zero_angles_of_four(phi: Any, psi: Any, free: str) -> tuple[Any, Any]:
 
 
 def zero_angles_of_five(phi: Any, psi: Any) -> tuple[Any, Any]:
-    """Return both zero angles (tasks, 3) from five pairs; nan if not real.
+    """Return the zero angles phi0 and psi0 that five pairs of angles allow (rad), three solutions per task, shape
+    (tasks, 3).
 
-    The equations are homogeneous in p e^(-i psi0), -q e^(-i phi0), s and e^(i delta), up to a common factor: two
+    The equations are homogeneous in p e^(-i psi0), -q e^(-i phi0), s and e^(i delta), up to a common factor, and two
     vectors span their solutions. The arguments of the three complex numbers must be consistent, which gives a cubic
-    form.
+    form. Complex solutions are nan.
+
+    Args:
+        phi, psi: angles (rad), shape (tasks, 5).
     """
     columns = (np.cos(psi), np.sin(psi), np.cos(phi), np.sin(phi), np.ones_like(phi), -np.cos(phi - psi))
     span = solve_homogeneous(np.stack([*columns, np.sin(phi - psi)], axis=-1))
@@ -147,11 +197,16 @@ def zero_angles_of_five(phi: Any, psi: Any) -> tuple[Any, Any]:
 
 
 def roots_of_cubic_forms(forms: Any) -> Any:
-    """Return the angles (tasks, 3) in a half turn at which f0 s^3 + f1 s^2 c + f2 s c^2 + f3 c^3 = 0, s and c being
-    sine and cosine; forms: (tasks, 4); nan for roots that are not real.
+    """Return the angles (rad) at which f0 s^3 + f1 s^2 c + f2 s c^2 + f3 c^3 = 0, where s and c are sine and cosine.
 
-    The form is a cubic in the tangent. Close real roots are found to half the digits; `refine_by_newton` makes them
-    exact.
+    The form is a cubic polynomial in the tangent. Roots that are close together have half of the digits;
+    `refine_by_newton` makes them accurate.
+
+    Args:
+        forms: coefficients f0 to f3, shape (tasks, 4).
+
+    Returns:
+        Three angles in a range of 180 degrees, shape (tasks, 3); nan for complex roots.
     """
     roots = np.full((len(forms), 3), EXACT(np.nan))
     largest = np.max(np.abs(forms), axis=-1)
@@ -164,9 +219,14 @@ def roots_of_cubic_forms(forms: Any) -> Any:
 
 
 def refine_by_newton(values: Any, phi: Any, psi: Any, free: tuple[str, ...]) -> Any:
-    """Refine p, q, s, phi0, psi0 (tasks, 5) by Newton's method.
+    """Refine the unknowns p, q, s, phi0, psi0 by Newton's method.
 
-    The residuals carry 31 digits, as close pairs cancel about ten of them.
+    The residuals are computed with 31 digits, as for pairs that are close together about ten digits cancel.
+
+    Args:
+        values: initial values, shape (tasks, 5).
+        phi, psi: angles (rad), shape (tasks, pairs).
+        free: zero angles that are unknown.
     """
     columns = [0, 1, 2, *(["phi0", "psi0"].index(name) + 3 for name in free)]
     values, phi, psi = (_to_double_double(numbers) for numbers in (values, phi, psi))
@@ -190,17 +250,25 @@ def _to_double_double(numbers: Any) -> DoubleDouble:
 
 
 def equation_slopes(p: Any, q: Any, phi: Any, psi: Any) -> Any:
-    """Return the derivatives of the equation by p, q, s, phi0, psi0 (last axis); the angles include their zeros."""
+    """Return the derivatives of Freudenstein's equation with respect to p, q, s, phi0 and psi0 (last axis).
+
+    The angles are measured from AD.
+    """
     turn = np.sin(phi - psi)
     columns = np.cos(psi), -np.cos(phi), np.ones_like(phi), q * np.sin(phi) + turn, -p * np.sin(psi) - turn
     return np.stack(columns, -1)
 
 
 def output_angles(four_bar: FourBarRatios, phi: Any, near: Any, side: float, open_: float | None = None) -> Any:
-    """Return the output angles (rad, without psi0) of a four-bar at input angles phi.
+    """Return the output angles (rad), measured from psi0, of a four-bar at given input angles.
 
-    side: sign of (BC x DC); near: angles to which the results are made nearest by whole turns. open_: the value where
-    the four-bar does not close; None: the angle at which it comes nearest to closing.
+    Args:
+        four_bar: lengths and zero angles.
+        phi: input angles (rad), measured from phi0.
+        near: expected output angles (rad). Full turns are added to bring each result closest to them.
+        side: assembly, as the sign of the cross product BC x DC.
+        open_: value returned where the four-bar cannot be assembled; None for the angle at which it comes closest to
+            assembly.
     """
     l1, l2, l3 = (np.asarray(x, dtype=float) for x in (four_bar.l1, four_bar.l2, four_bar.l3))
     diagonal = l1 * np.exp(1j * (float(four_bar.phi0) + phi)) - 1
@@ -212,7 +280,12 @@ def output_angles(four_bar: FourBarRatios, phi: Any, near: Any, side: float, ope
 
 
 def lengths_from_pqs(values: Any, phi: Any, psi: Any) -> FourBarRatios:
-    """Return positive lengths from p, q, s, phi0, psi0 (tasks, 5); the first pair gives the coupler."""
+    """Return the four-bars for solutions p, q, s, phi0, psi0 of Freudenstein's equation, with positive lengths.
+
+    Args:
+        values: solutions, shape (tasks, 5).
+        phi, psi: pairs of angles (rad). The coupler length is measured in the first pair.
+    """
     p, q, _, phi0, psi0 = (values[..., k] for k in range(5))
     half = EXACT(PI)
     with np.errstate(all="ignore"):
@@ -223,15 +296,15 @@ def lengths_from_pqs(values: Any, phi: Any, psi: Any) -> FourBarRatios:
 
 
 def solve_exact_pairs(phi: Any, psi: Any, phi0: Any = 0.0, psi0: Any = 0.0) -> FourBarRatios:
-    """Find all real four-bars through 3, 4 or 5 pairs of angles (F. Freudenstein 1954).
+    """Find all real four-bars that pass through 3, 4 or 5 pairs of angles (F. Freudenstein 1954).
 
     Args:
-        phi, psi: angles (rad), (tasks, pairs).
-        phi0, psi0: zero angles (rad), one value or one for each task; None: to be found (none for 3 pairs, one for 4,
-            both for 5).
+        phi, psi: input and output angles (rad), shape (tasks, pairs).
+        phi0, psi0: zero angles (rad), one value or one per task; None if unknown. With 3 pairs both are given, with 4
+            pairs one is unknown, with 5 pairs both are unknown.
 
     Returns:
-        Four-bars (tasks, roots); nan where a root is not real.
+        Four-bars, shape (tasks, roots); nan where a root is complex.
     """
     phi, psi = np.atleast_2d(np.asarray(phi, EXACT)), np.atleast_2d(np.asarray(psi, EXACT))
     free = tuple(name for name, value in (("phi0", phi0), ("psi0", psi0)) if value is None)
@@ -255,7 +328,7 @@ def _equation_rows(phi: Any, psi: Any) -> Any:
 
 
 def _wrap_angle(angle: Any) -> Any:
-    """Return the angle in -pi..pi, without loss of precision."""
+    """Return the angle wrapped to -pi..pi, in extended precision."""
     full = 2 * EXACT(PI)
     return angle - full * np.round(np.asarray(angle / full, dtype=float))
 
@@ -272,16 +345,16 @@ SHARE: Final = 0.5  # l1/l4 of the parallelogram
 
 
 def find_parallelogram(phi: Any, psi: Any, phi0: Any, psi0: Any) -> FourBarRatios | None:
-    """Return the parallelogram for three to five pairs of equal angles.
+    """Return the parallelogram linkage for three to five pairs of equal angles.
+
+    Angles that differ by 180 degrees in all pairs count as equal: one link then points in the opposite direction.
 
     Args:
-        phi, psi: angles (rad), (pairs,).
-        phi0, psi0: zero angles (rad); None: to be found.
+        phi, psi: input and output angles (rad), shape (pairs,).
+        phi0, psi0: zero angles (rad); None if unknown.
 
     Returns:
-        The parallelogram; None if the angles do not stay equal. Angles that stay half a turn apart are equal ones of a
-            link
-        drawn in the opposite direction.
+        The parallelogram; None if the angles do not stay equal.
     """
     phi, psi = np.asarray(phi, dtype=float), np.asarray(psi, dtype=float)
     if len(phi) < 3 or np.max(np.abs(np.sin((psi - phi - psi[0] + phi[0]) / 2))) > SAME:
@@ -317,14 +390,14 @@ GAIN: Final = 1e-15  # relative decrease of the sum of squares that a step must 
 
 
 def fit_least_squares(phi: Any, psi: Any, phi0: Any, psi0: Any) -> tuple[FourBarRatios, Any]:
-    """Find four-bars with least squares of the error of the output angle.
+    """Find the four-bars whose output angles have the least sum of squared errors.
 
     Args:
-        phi, psi: angles (rad), (pairs,).
-        phi0, psi0: zero angles (rad); None: to be found.
+        phi, psi: input and required output angles (rad), shape (pairs,).
+        phi0, psi0: zero angles (rad); None if unknown.
 
     Returns:
-        Four-bars (n,), best first, and their root mean square errors (rad).
+        Local minima, shape (n,), best first, and their root mean square errors (rad).
     """
     phi, psi = np.asarray(phi, dtype=float), np.asarray(psi, dtype=float)
     count = round(GRID ** (0.5 if phi0 is None and psi0 is None else 1))
@@ -346,8 +419,9 @@ def fit_least_squares(phi: Any, psi: Any, phi0: Any, psi0: Any) -> tuple[FourBar
 
 
 def fitted_lengths(values: Any) -> FourBarRatios:
-    """Return positive lengths from p, q, s, phi0, psi0 (..., 5); the coupler follows from s, as the pairs are not
-    exact.
+    """Return the four-bars for approximate solutions p, q, s, phi0, psi0, shape (..., 5), with positive lengths.
+
+    The coupler length follows from s, because a fitted four-bar does not pass through any pair exactly.
     """
     ratios, (p, q, s) = lengths_from_pqs(values, np.zeros(1), np.zeros(1)), (values[..., k] for k in range(3))
     with np.errstate(all="ignore"):
@@ -355,7 +429,9 @@ def fitted_lengths(values: Any) -> FourBarRatios:
 
 
 def _compute_errors(x: Any, phi: Any, psi: Any, side: float) -> tuple[Any, float]:
-    """Return the errors of the output angle (rad) and their sum of squares, inf if the four-bar does not close."""
+    """Return the errors of the output angle (rad) and the sum of their squares; inf if the four-bar cannot be
+    assembled.
+    """
     p, q, s, phi0, psi0 = x
     with np.errstate(all="ignore"):  # a link in the opposite direction has a negative length here
         l2 = np.sqrt(1 + 1 / p**2 + 1 / q**2 - 2 * s / (p * q))
@@ -365,7 +441,12 @@ def _compute_errors(x: Any, phi: Any, psi: Any, side: float) -> tuple[Any, float
 
 
 def _minimise_errors(x: Any, phi: Any, psi: Any, free: list[int]) -> tuple[Any, float] | None:
-    """Minimise the sum of squares by damped steps on the better assembly: end point and sum, or None."""
+    """Minimise the sum of squared errors by damped Gauss-Newton steps, on the assembly with the smaller initial
+    error.
+
+    Returns:
+        End point and sum of squares; None if the steps do not converge or reach a dead position.
+    """
     side = min((1.0, -1.0), key=lambda side: _compute_errors(x, phi, psi, side)[1])
     (off, least), damping = _compute_errors(x, phi, psi, side), FIRST
     for _ in range(STEPS):

@@ -1,4 +1,4 @@
-"""Four-bar by pairs of angles: solution, its measures, notes and tables."""
+"""Synthesis of a four-bar from pairs of angles: solution, values to be measured, notes and tables."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ FAMILY: Final = 121  # tabulated four-bars through two pairs, for each direction
 
 
 def solve(task: AnglePairsTask) -> SynthesisOutcome:
-    """Solve the task of one file. Raises Infeasible."""
+    """Find the four-bar, draw it and tabulate the other solutions. Raises Infeasible."""
     solutions, at = choose_solution(task)
     solution, rating = solutions.at(at), rate_four_bars(solutions.at(at), task)
     is_parallelogram = find_parallelogram(task.phi, task.psi, task.phi0, task.psi0) is not None
@@ -123,7 +123,7 @@ def solve(task: AnglePairsTask) -> SynthesisOutcome:
 
 
 def choose_solution(task: AnglePairsTask) -> tuple[FourBarRatios, int]:
-    """Return all four-bars of the task and the index of the one taken. Raises Infeasible."""
+    """Return all four-bars that satisfy the task, and the index of the chosen one. Raises Infeasible."""
     _refuse_inputs(task)
     four_bars = four_bars_through(task)
     defects = rate_four_bars(four_bars, task).defect
@@ -140,12 +140,12 @@ def choose_solution(task: AnglePairsTask) -> tuple[FourBarRatios, int]:
 
 
 def refuse(task: AnglePairsTask) -> None:
-    """Raise Infeasible, with the reason, if no such four-bar exists."""
+    """Raise Infeasible, with the reason, if no four-bar satisfies the task."""
     choose_solution(task)
 
 
 def _refuse_inputs(task: AnglePairsTask) -> None:
-    """Raise Infeasible unless the input angles only increase, or only decrease, by less than one turn."""
+    """Raise Infeasible unless the input angles increase or decrease monotonically by less than one revolution."""
     steps = np.diff(np.asarray(task.phi, dtype=float))
     back = np.flatnonzero(steps * (np.sign(steps[0]) or 1.0) <= 0) + 1
     if back.size and not task.function:
@@ -157,7 +157,7 @@ def _refuse_inputs(task: AnglePairsTask) -> None:
 
 
 def _compute_frame_length(task: AnglePairsTask, solution: FourBarRatios) -> Any:
-    """Return l4 (m) of a four-bar from the given length."""
+    """Return the frame length l4 (m) of a four-bar, which follows from the given length."""
     name = next(iter(task.lengths))
     return task.lengths[name] / (1.0 if name == "l4" else getattr(solution, name))
 
@@ -207,7 +207,10 @@ def _compute_mean_error(four_bar: FourBarRatios, task: AnglePairsTask) -> float:
 
 
 def _measure_outputs(solution: FourBarRatios, results: Any, phi: Any, near: Any) -> Any:
-    """Return the output angles of the mechanism from their zero at input angles, nearest to `near` by whole turns."""
+    """Return the output angles (rad) of the analysed mechanism at given input angles.
+
+    All angles are measured from the zero angles. Full turns are added to bring each result closest to `near`.
+    """
     return four_bar.output_angles(results, phi + float(solution.phi0), near + float(solution.psi0)) - float(
         solution.psi0
     )
@@ -229,7 +232,7 @@ def _measure_output(solution: FourBarRatios, phi: float, psi: float, results: An
 
 
 def _measure_largest_error(solution: FourBarRatios, task: AnglePairsTask, results: Any) -> float:
-    """Return the largest structural error measured on the mechanism."""
+    """Return the largest structural error (rad) of the analysed mechanism."""
     assert task.function
     function = task.function
 
@@ -273,7 +276,7 @@ def _write_notes(
 
 
 def _tabulate_solutions(task: AnglePairsTask, four_bars: FourBarRatios, at: int) -> Listing:
-    """Tabulate all solutions with the numbers by which they can be chosen."""
+    """Tabulate all solutions, with the numbers by which the file can choose them."""
     columns = (
         ("number_of", N_("choose"), "name"),
         ("taken", N_("taken"), "word"),
@@ -300,7 +303,7 @@ def _tabulate_solutions(task: AnglePairsTask, four_bars: FourBarRatios, at: int)
 
 
 def _tabulate_pairs(task: AnglePairsTask, four_bar: FourBarRatios) -> Listing:
-    """Tabulate the pairs and the errors of the output angle."""
+    """Tabulate the pairs of angles and the errors of the output angle."""
     columns = (
         ("phi", N_("input angle"), "angle"),
         ("psi", N_("required output angle"), "angle"),
@@ -315,7 +318,7 @@ def _tabulate_pairs(task: AnglePairsTask, four_bar: FourBarRatios) -> Listing:
 
 
 def _tabulate_family(task: AnglePairsTask) -> Listing:
-    """Tabulate the four-bars through two pairs over the free ratio l4/l1."""
+    """Tabulate the four-bars that pass through two pairs, over the free ratio l4/l1."""
     columns = (
         ("free", N_("l4/l1, free with two pairs of angles"), "number"),
         *COLUMNS,
@@ -338,7 +341,7 @@ def _tabulate_family(task: AnglePairsTask) -> Listing:
 
 
 def _make_solution_row(task: AnglePairsTask, solution: FourBarRatios, rating: FourBarQuality) -> tuple[float, ...]:
-    """Return the link lengths (m), the zero angles and the smallest transmission angle of a four-bar."""
+    """Return the link lengths (m), the zero angles (rad) and the smallest transmission angle (rad) of a four-bar."""
     frame_length = _compute_frame_length(task, solution)
     return (
         *(float(x * frame_length) for x in solution[:3]),

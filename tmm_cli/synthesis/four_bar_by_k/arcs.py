@@ -1,15 +1,17 @@
-"""Arcs of the crank pivot A of four-bars with given k and extreme positions C1, C2 of the rocker.
+"""Arcs of the crank pivot A for four-bars with a given k and given extreme positions DC1, DC2 of the rocker.
 
-C1C2 = 2 h is seen from A at the angle theta = pi (k - 1)/(k + 1): A lies on one of two arcs of equal circles, on D's
-side of C1C2 or beyond it. With beta the angle A C2 C1, w = l2/h is a coordinate along the arc that stays regular at
-theta = 0:
+From A the segment C1C2 = 2 h is seen at the angle theta = pi (k - 1)/(k + 1), so A lies on one of two arcs of equal
+circles: on the same side of C1C2 as D, or on the other side. Let beta be the angle AC2C1. The ratio w = l2/h serves as
+a coordinate along the arc, because it remains regular at theta = 0:
     sin(beta + theta/2) = w sin(theta/2),
     l1 = (AC2 - AC1)/2 = h cos(beta + theta/2)/cos(theta/2),  l2 = AC2 - l1 = w h.
-The triangles A C1 D and A C2 D ensure that the crank rotates fully. Both positions belong to one motion if C1 and C2
-lie on one side of AD, so that the rocker does not pass its dead position; AC2 > AC1 gives the order of the positions:
-    0 < beta < pi/2 - psi/2 - theta beyond C1C2,  0 < beta < pi/2 - |psi/2 - theta/2| - theta/2 on D's side.
+The triangles AC1D and AC2D ensure that the crank rotates fully. Both positions belong to one motion if C1 and C2 lie on
+the same side of AD, so that the rocker does not pass its dead position. AC2 > AC1 determines the order of the
+positions:
+    0 < beta < pi/2 - psi/2 - theta on the other side of C1C2,
+    0 < beta < pi/2 - |psi/2 - theta/2| - theta/2 on the side of D.
 Along each arc l4 = AD is monotonic, as the nearest and the farthest point of a circle lie on the line through its
-centre; l2 increases from h, l1 decreases from h (with k = 1 it is h everywhere).
+centre. The length l2 increases from h, and l1 decreases from h (with k = 1 it equals h everywhere).
 """
 
 from __future__ import annotations
@@ -36,13 +38,19 @@ FARTHEST: Final = 1e6  # l2 over half C1C2: limit for a straight arc
 
 @dataclass(frozen=True)
 class FourBarByKTask:
-    """Four-bar by the time ratio k: rocker l3 (m), its extreme angles (rad), k, its pivot D (`support`), choice of A.
+    """Given quantities of a four-bar with a given time ratio k.
 
     Attributes:
-        psi1, psi2: rocker angle where crank and coupler overlap, and where they are in line.
-        choose: best, level (A as high as D), near (nearest to a point), l1, l2, l4, xA or yA (m), or pressure (largest
-            pressure angle, rad); the value stands in the field of that name.
-        sense: sense of rotation of the crank (1: counterclockwise) with the slow stroke from psi1 to psi2; 0: any.
+        l3: length of the rocker DC (m).
+        psi1: rocker angle at which the coupler overlaps the crank (rad).
+        psi2: rocker angle at which crank and coupler are in line (rad).
+        k: time ratio.
+        support: pivot D of the rocker (complex, m).
+        choose: condition for the crank pivot A: `best` (smallest value of the largest pressure angle), `level` (A as
+            high as D), `near` (nearest to a point), or the name of the quantity given: l1, l2, l4, xA, yA or pressure.
+        l1, l2, l4, pressure, near, xA, yA: value for this condition (m, rad; `near` is complex).
+        sense: sense of rotation of the crank in the slow stroke from psi1 to psi2: 1 counterclockwise, -1 clockwise, 0
+            any.
     """
 
     l3: Any
@@ -71,9 +79,17 @@ class FourBarByKTask:
 
 @dataclass(frozen=True)
 class FourBarByKSolution:
-    """Lengths (m), pivot `a` (complex, m), derivative of `a` with respect to w, largest pressure angle and beta (rad).
+    """A four-bar with its crank pivot A on one of the arcs; floats or arrays.
 
-    side: -1 on D's side of C1C2, 1 beyond it; sense: of the crank whose slow stroke leads from psi1 to psi2.
+    Attributes:
+        w: coordinate along the arc, l2 divided by half of C1C2.
+        side: -1 if A lies on the same side of C1C2 as D, 1 if on the other side.
+        l1, l2, l4: lengths of crank, coupler and frame (m).
+        a: pivot A (complex, m).
+        slope: derivative of `a` with respect to w (complex, m).
+        pressure: largest pressure angle (rad).
+        beta: angle AC2C1 (rad).
+        sense: sense of rotation of the crank in the slow stroke from psi1 to psi2: 1 counterclockwise, -1 clockwise.
     """
 
     w: Any
@@ -89,20 +105,26 @@ class FourBarByKSolution:
 
 
 def largest_beta(task: FourBarByKTask, side: Any) -> Any:
-    """Return the upper limit of beta (rad) on an arc; negative if the arc has no pivot."""
+    """Return the upper limit of the angle beta (rad) on an arc; negative if no pivot on this arc is admissible."""
     half, theta = task.swing / 2, task.theta
     return np.where(np.asarray(side) > 0, np.pi / 2 - half - theta, np.pi / 2 - np.abs(half - theta / 2) - theta / 2)
 
 
 def largest_w(task: FourBarByKTask, side: Any) -> Any:
-    """Return the upper limit of w on an arc that has pivots."""
+    """Return the upper limit of the coordinate w on an arc with admissible pivots."""
     sine = np.sin(task.theta / 2)
     most = np.sin(largest_beta(task, side) + task.theta / 2) / np.where(sine > 0, sine, 1.0)
     return np.where(sine > 0, np.minimum(most, FARTHEST), FARTHEST)
 
 
 def four_bar_at(task: FourBarByKTask, w: Any, side: Any) -> FourBarByKSolution:
-    """Compute the four-bar whose pivot A lies at the coordinate w of an arc."""
+    """Compute the four-bar whose crank pivot A has the coordinate w on an arc.
+
+    Args:
+        task: given quantities.
+        w: coordinate along the arc, at least 1; number or array.
+        side: arc, -1 on the same side of C1C2 as D, 1 on the other side.
+    """
     half, theta, l3 = task.swing / 2, task.theta, task.l3
     h, s, c = l3 * np.sin(half), np.sin(theta / 2), np.cos(theta / 2)
     sine = w * s
@@ -133,7 +155,9 @@ def four_bar_at(task: FourBarByKTask, w: Any, side: Any) -> FourBarByKSolution:
 
 
 def admissible_arcs(task: FourBarByKTask) -> list[int]:
-    """Return the sides whose arcs have pivots; with k = 1 both are the same straight line."""
+    """Return the sides (-1, 1) of the arcs that have admissible pivots. With k = 1 both arcs are the same straight
+    line: [-1].
+    """
     if task.k == 1:
         return [-1]
     sense = 1 if task.psi2 > task.psi1 else -1
@@ -143,7 +167,7 @@ def admissible_arcs(task: FourBarByKTask) -> list[int]:
 
 
 def sample_arc(task: FourBarByKTask, side: int, count: int = 400) -> Any:
-    """Return coordinates w along an arc from end to end, denser where the mechanism changes fast."""
+    """Return coordinates w along an arc without its ends, more closely spaced where the mechanism changes fast."""
     theta, most = float(task.theta), float(largest_w(task, side))
     first = END_MARGIN * min(1.0, most - 1)
     samples = 1 + np.geomspace(first, most - 1, count)
@@ -155,10 +179,11 @@ def sample_arc(task: FourBarByKTask, side: int, count: int = 400) -> Any:
 
 
 def sample_whole_arc(task: FourBarByKTask, side: int, count: int = 121) -> Any:
-    """Return coordinates w of an arc including both ends, denser near them, where the pressure angle changes fast.
+    """Return coordinates w along an arc with its ends, more closely spaced near them, where the pressure angle changes
+    fast.
 
-    Evenly spaced both in the angle at C2 and in the logarithm of w: on nearly straight arcs the angle alone resolves
-    little.
+    The coordinates are evenly spaced both in the angle at C2 and in the logarithm of w, because on a nearly straight
+    arc the angle hardly changes.
     """
     share = (1 - np.cos(np.linspace(0, np.pi, count))) / 2
     theta, most = float(task.theta), float(largest_w(task, side))
@@ -169,12 +194,12 @@ def sample_whole_arc(task: FourBarByKTask, side: int, count: int = 121) -> Any:
 
 
 def pivots_on_line(task: FourBarByKTask) -> list[Any]:
-    """Return the coordinates w of the pivots A = t + i height, t real, from which C1C2 is seen at theta; D is the
-    origin.
+    """Return the coordinates w of the pivots A on a required horizontal or vertical line, admissible or not.
 
-    z = conj(C1 - A)(C2 - A): sin(theta) Re z = +- cos(theta) Im z, a quadratic equation in t: the line cuts each of the
-    two circles twice. A vertical line, through xA, is such a line of the task rotated to the left. The pivots need not
-    be admissible.
+    With D as origin, A = t + i height with a real unknown t. The segment C1C2 is seen from A at the angle theta if z =
+    conj(C1 - A)(C2 - A) satisfies sin(theta) Re z = +- cos(theta) Im z. This is a quadratic equation in t for each
+    sign, as the line intersects each of the two circles twice. For a vertical line (given xA) the task is rotated by 90
+    degrees.
     """
     l3, middle, half = task.l3, (task.psi1 + task.psi2) / 2, (task.psi2 - task.psi1) / 2
     sine, cosine = np.sin(task.theta), np.cos(task.theta)
@@ -195,5 +220,5 @@ def pivots_on_line(task: FourBarByKTask) -> list[Any]:
 
 
 def line_offset(task: FourBarByKTask) -> Any:
-    """Return the required height of A, or its required x, relative to D."""
+    """Return the required height of A above D, or the required horizontal distance from D if xA is given (m)."""
     return task.xA if task.choose == "xA" else task.yA if task.choose == "yA" else 0.0

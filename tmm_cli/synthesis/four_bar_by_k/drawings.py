@@ -1,4 +1,4 @@
-"""Drawings and table of the four-bars by k: extreme positions, admissible arcs, and the family along them."""
+"""Drawings and table of a four-bar by k: extreme positions, admissible arcs, and the four-bars along the arcs."""
 
 from __future__ import annotations
 
@@ -34,7 +34,9 @@ CUT: Final = 4.0  # times the longer of rod and rocker: longest rod shown otherw
 def draw_construction(
     task: FourBarByKTask, solution: FourBarByKSolution, family: Sequence[FourBarByKSolution]
 ) -> GeometricConstruction:
-    """Draw both extreme positions, the circles from which C1C2 is seen at theta, and the admissible arcs of A."""
+    """Draw both extreme positions, the circles from which C1C2 is seen at the angle theta, and the admissible arcs of
+    A.
+    """
     d, a = complex(task.support), complex(solution.a)
     c1, c2 = (complex(d + task.l3 * np.exp(1j * psi)) for psi in (task.psi1, task.psi2))
     way1, way2 = (c1 - a) / abs(c1 - a), (c2 - a) / abs(c2 - a)
@@ -97,7 +99,9 @@ def draw_construction(
 def draw_diagrams(
     task: FourBarByKTask, solution: FourBarByKSolution, family: Sequence[FourBarByKSolution]
 ) -> tuple[Diagram, Diagram]:
-    """Draw the largest pressure angle, and the lengths of crank and frame, over the coupler length along the arcs."""
+    """Plot the largest pressure angle, and the lengths of crank and frame, against the coupler length along the
+    arcs.
+    """
     size, most = max(float(solution.l2), float(task.l3)), max(float(np.max(f.l2)) for f in family)
     if most > LONGEST * size:
         most = CUT * size
@@ -150,5 +154,5 @@ def tabulate_family(family: Sequence[FourBarByKSolution]) -> Listing:
 
 
 def side_name(solution: FourBarByKSolution) -> str:
-    """Return the name of the arc on which the pivot lies."""
+    """Return the name of the arc on which the crank pivot lies."""
     return N_("on the other side of C1C2 than D") if int(solution.side) > 0 else N_("on the same side of C1C2 as D")

@@ -1,4 +1,6 @@
-"""Four-bar by k and both extreme positions of its rocker: choice of the crank pivot A, solution, keys of the task."""
+"""Synthesis of a four-bar from k and both extreme positions of its rocker: choice of the crank pivot A, keys of the
+task.
+"""
 
 from __future__ import annotations
 
@@ -68,7 +70,7 @@ def _compute_distance(four_bar: FourBarByKSolution, task: FourBarByKTask) -> Any
 
 
 def _compute_pressure_slope(f: FourBarByKSolution, task: FourBarByKTask) -> Any:
-    """Return a multiple of the derivative of sin(largest pressure angle) with respect to w."""
+    """Return a positive multiple of the derivative of sin(largest pressure angle) with respect to w."""
     half, theta, l3 = task.swing / 2, task.theta, task.l3
     h, s, c = l3 * np.sin(half), np.sin(theta / 2), np.cos(theta / 2)
     l1_rise = -f.w * (h * s / c) ** 2 / f.l1
@@ -114,7 +116,7 @@ def _find_crossings(task: FourBarByKTask, side: int, function: Any) -> list[Any]
 
 
 def _find_minimum(task: FourBarByKTask, side: int, choice: str) -> Any:
-    """Return the coordinate w of the smallest value of an objective: a zero of its slope, or an end of the arc."""
+    """Return the coordinate w at which an objective is smallest: a zero of its derivative, or an end of the arc."""
     w = sample_arc(task, side)
     best = int(np.argmin(OBJECTIVES[choice](four_bar_at(task, w, side), task)))
     if best in (0, len(w) - 1):
@@ -124,9 +126,14 @@ def _find_minimum(task: FourBarByKTask, side: int, choice: str) -> Any:
 
 
 def choose_pivot(task: FourBarByKTask) -> FourBarByKSolution:
-    """Find the pivot that meets the task; of several the one with the best transmission angle. Raises Infeasible.
+    """Find the crank pivot A that satisfies the task.
 
-    The search has D in the origin: a distant support costs no digits.
+    Of several pivots the one with the best transmission angle is taken; if the pressure angle is given, the pivot of
+    the smallest mechanism; if a point is given, the pivot nearest to it. The search uses D as origin, so that a distant
+    pivot D causes no loss of digits.
+
+    Raises:
+        Infeasible: no pivot satisfies the task.
     """
     _check_numbers(task)
     beside = {
@@ -159,7 +166,7 @@ def choose_pivot(task: FourBarByKTask) -> FourBarByKSolution:
 
 
 def _make_pressure_refusal(task: FourBarByKTask) -> Infeasible:
-    """Return the refusal of a largest pressure angle that no pivot of the admissible arcs has."""
+    """Return the error for a largest pressure angle that no admissible pivot gives."""
     least = min(
         float(four_bar_at(task, _find_minimum(task, side, "best"), side).pressure) for side in admissible_arcs(task)
     )
@@ -168,7 +175,7 @@ def _make_pressure_refusal(task: FourBarByKTask) -> Infeasible:
 
 
 def refuse(task: FourBarByKTask) -> None:
-    """Raise Infeasible, with the reason, if no such pivot exists."""
+    """Raise Infeasible, with the reason, if no crank pivot satisfies the task."""
     choose_pivot(task)
 
 
@@ -214,7 +221,7 @@ def _check_numbers(task: FourBarByKTask) -> None:
 
 
 def solve(task: FourBarByKTask) -> SynthesisOutcome:
-    """Solve the task of one file. Raises Infeasible."""
+    """Find the four-bar, draw its construction and tabulate the four-bars along the arcs. Raises Infeasible."""
     f = choose_pivot(task)
     demands = [
         Demand(N_("crank rotates fully (1: yes)"), 1.0, "number", driver_completes_range, asked=False),
@@ -269,7 +276,7 @@ def _list_given_values(task: FourBarByKTask) -> tuple[NamedValue, ...]:
 
 
 def _list_solution_values(task: FourBarByKTask, f: FourBarByKSolution) -> tuple[NamedValue, ...]:
-    """Return the values of the solution: four-bar, pivot, its arc, sense of the crank, ends of the admissible arcs."""
+    """List the four-bar, its crank pivot and sense of rotation, and the ends of the admissible arcs."""
     at_c2 = task.support + task.l3 * unit(task.psi2) - f.a
     rows = [
         NamedValue("l1", f.l1, *QUANTITIES["l1"]),
@@ -311,7 +318,9 @@ CHOICE_KEYS = ("choose", "pressure", "l1", "l2", "l4", "near", "xA", "yA")
 
 
 class FourBarByKBlock(TaskBlock):
-    """A four-bar by k, its rocker and both extreme angles of that; one way to choose the crank's pivot A."""
+    """Keys of the task `four-bar-by-k`: k, the rocker and its two extreme angles, and one condition for the crank pivot
+    A.
+    """
 
     task: Literal["four-bar-by-k"]
     l3: Value = Field(description="rocker DC")
