@@ -48,7 +48,7 @@ def test_the_best_known_keeps_its_constraints_and_is_what_its_numbers_give():
     x = (np.array(list(best["numbers"].values())) - search.low) / (search.high - search.low)
     values = evaluate_exactly(search, x)
     assert values[0] == pytest.approx(best["objective"], rel=1e-10)
-    assert all(limit.missed(v) < 1e-7 for limit, v in zip(search.constraints, values[1:], strict=True))
+    assert all(limit.compute_violation(v) < 1e-7 for limit, v in zip(search.constraints, values[1:], strict=True))
     assert best["objective"] == min(run["objective"] for run in best["runs"]) and len(best["runs"]) == 10
 
 

@@ -199,7 +199,7 @@ def solve_alone(tree: Tree) -> tuple[str, str, Synthesised, UnitSystem]:
     """
     file, name = TaskFile(tree), tree.name
     with locate_errors_in(tree):
-        return name, file.shape.title or name, file.solved(), file.units
+        return name, file.shape.title or name, file.solve(), file.units
 
 
 def read_task(tree: Tree) -> Any:
@@ -358,7 +358,7 @@ class TaskFile:
         everything = known_values | build_parameters(self.dependent, units, known_values)
         return build_from_shape(self.shape, self.tree, ValueReader(everything, units))
 
-    def solved(self) -> Synthesised:
+    def solve(self) -> Synthesised:
         """Solve the task. Raises ProblemError."""
         task = self.task
         try:
@@ -409,7 +409,7 @@ class TaskFile:
 
 def _build_solved_problem(file: TaskFile) -> Problem:
     with locate_errors_in(file.tree):
-        return _insert_solution(file, file.solved())
+        return _insert_solution(file, file.solve())
 
 
 def _insert_solution(file: TaskFile, synthesised: Synthesised) -> Problem:

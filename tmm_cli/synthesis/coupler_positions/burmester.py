@@ -1,13 +1,13 @@
-"""Pivots that guide a plane through 2, 3 or 4 positions: centres of circles through the positions of one of its points.
+"""Pivots and pins that guide a coupler plane through 2, 3 or 4 positions.
 
-A position is a point P (complex, m), the origin of the plane, and an angle theta (rad) of its axis. A dyad AB has its
-pivot A on the frame and its pin B in the plane (b, in the plane's axes). For 4 positions B lies on the circle-point
-curve and A on the centre-point curve (L. Burmester, Lehrbuch der Kinematik, 1888); with the rotation beta2 of AB from
-position 1 to 2,
+A position is given by the origin P of the plane (complex, m) and the angle theta of its axis (rad). A dyad AB has its
+pivot A on the frame and its pin B in the plane (b, in the plane's axes). Its pivot is the centre of a circle through
+all positions of its pin. For 4 positions the pin lies on the circle-point curve and the pivot on the centre-point curve
+(L. Burmester, Lehrbuch der Kinematik, 1888). With the rotation beta2 of AB from position 1 to 2,
     W (e^(i beta_j) - 1) + Z (e^(i alpha_j) - 1) = P_j - P_1,
-where W = AB and Z = BP in position 1, alpha_j = theta_j - theta_1. The determinant of these equations is a closed four-
-bar of the unknown rotations (G. N. Sandor, A. G. Erdman, Advanced Mechanism Design 2, 1984). Extended precision
-throughout; leading axes of arrays are dyads or tasks.
+where W = AB and Z = BP in position 1, and alpha_j = theta_j - theta_1. The vanishing determinant of these equations is
+the closure condition of an auxiliary four-bar in the unknown rotations (G. N. Sandor, A. G. Erdman, Advanced Mechanism
+Design 2, 1984). All calculations use extended precision. Leading axes of arrays count dyads or tasks.
 """
 
 from __future__ import annotations
@@ -28,24 +28,44 @@ COMPLEX: Final = np.clongdouble
 
 @dataclass(frozen=True)
 class CouplerPoses:
-    """Positions of the coupler: points (m, complex) and angles (rad), positions on the last axis."""
+    """Required positions of the coupler plane; the last axis counts positions.
+
+    Attributes:
+        places: origins of the plane's axes (complex, m).
+        angles: angles of the plane's x axis (rad).
+    """
 
     places: Any
     angles: Any
 
     def on_frame(self, local: Any) -> Any:
-        """Transform points of the plane to the frame, in every position; positions on an added last axis."""
+        """Convert points of the plane to frame coordinates in every position.
+
+        Args:
+            local: points in the plane's axes (complex, m), shape (...).
+
+        Returns:
+            Points on the frame, shape (..., positions).
+        """
         return self.places + np.asarray(local, COMPLEX)[..., None] * unit_vector(self.angles)
 
     def in_plane(self, fixed: Any) -> Any:
-        """Transform points of the frame to the plane's axes, in every position."""
+        """Convert fixed points to the plane's axes in every position.
+
+        Args:
+            fixed: points on the frame (complex, m), shape (...).
+
+        Returns:
+            Points in the plane's axes, shape (..., positions).
+        """
         return (np.asarray(fixed, COMPLEX)[..., None] - self.places) * unit_vector(-np.asarray(self.angles))
 
     @cached_property
     def loop(self) -> tuple[Any, ...]:
-        """Coefficients of the closed four-bar of four positions.
+        """Coefficients of the auxiliary four-bar d2 e^(i b2) + d3 e^(i b3) + d4 e^(i b4) = d2 + d3 + d4 for four
+        positions.
 
-        P_j - P_1, e^(i alpha_j) - 1, d2, d3, |d3|, |d4|, d2 + d3 + d4.
+        They are, in this order: P_j - P_1, e^(i alpha_j) - 1, d2, d3, |d3|, |d4|, d2 + d3 + d4.
         """
         origins, angles = np.asarray(self.places, COMPLEX), np.asarray(self.angles, EXACT)
         d, a = origins[..., 1:] - origins[..., :1], unit_vector(angles[..., 1:] - angles[..., :1]) - 1
@@ -59,7 +79,12 @@ class CouplerPoses:
 
 @dataclass(frozen=True)
 class Dyads:
-    """Pivots on the frame and pins in the plane (m, complex)."""
+    """Dyads, each with a pivot on the frame and a pin in the coupler plane.
+
+    Attributes:
+        pivot: pivots on the frame (complex, m).
+        pin: pins in the plane's axes (complex, m).
+    """
 
     pivot: Any
     pin: Any
@@ -69,18 +94,25 @@ class Dyads:
 
 
 def unit_vector(angle: Any) -> Any:
-    """Return e^(i angle) in extended precision."""
+    """Return e^(i angle) in extended precision, for an angle in rad."""
     angle = np.asarray(angle, EXACT)
     return np.cos(angle) + 1j * np.sin(angle)
 
 
 def equal_angles(angles: Any) -> bool:
-    """Return True if the plane does not rotate between positions with these angles (rad)."""
+    """Return True if all angles (rad) are equal, so that the plane does not rotate between the positions."""
     return bool(np.all(np.abs(unit_vector(np.asarray(angles) - angles[0]) - 1) < NO_TURN))
 
 
 def circle_centre(points: Any) -> Any:
-    """Return the centre of the circle through three points (last axis); infinite or nan if they lie on a line."""
+    """Return the centre of the circle through three points.
+
+    Args:
+        points: three points (complex, m) on the last axis.
+
+    Returns:
+        The centre (complex, m); infinite or nan if the points lie on a straight line.
+    """
     first, second = points[..., 1] - points[..., 0], points[..., 2] - points[..., 0]
     with np.errstate(all="ignore"):
         area = (np.conj(first) * second).imag
@@ -89,15 +121,15 @@ def circle_centre(points: Any) -> Any:
 
 
 def point_at_distance(points: Any, radius: Any, side: float) -> Any:
-    """Return the point at equal distance from two points, as for a link of given length with two positions.
+    """Return the point at equal distances from two points: the pivot of a link of given length with two positions.
 
     Args:
-        points: two points (m, complex) on the last axis.
-        radius: distance from both (m).
-        side: 1: left of the line from the first to the second point, -1: right of it.
+        points: two points (complex, m) on the last axis.
+        radius: distance from both points (m).
+        side: side of the line from the first to the second point, 1 left, -1 right.
 
     Returns:
-        The point (m, complex); nan if the radius is too small.
+        The point (complex, m); nan if the distance is too small.
     """
     segment = points[..., 1] - points[..., 0]
     half = np.abs(segment) / 2
@@ -107,12 +139,16 @@ def point_at_distance(points: Any, radius: Any, side: float) -> Any:
 
 
 def dyads_by_rotation(poses: CouplerPoses, turn: Any, branch: Any, ends: bool = False) -> Dyads:
-    """Return the dyads through four positions whose link AB rotates by `turn` (rad) from position 1 to 2; nan if there
-    is none.
+    """Return the dyads for four positions whose link AB rotates by a given angle from position 1 to 2.
 
     Args:
-        branch: 0 or 1, which of the two solutions.
-        ends: True if the rotations are known to have dyads, and exceed the limits only by rounding.
+        poses: the four positions.
+        turn: rotation of AB (rad), number or array.
+        branch: which of the two solutions, 0 or 1.
+        ends: True if a solution is known to exist. At the limits of the rotation, rounding errors are then ignored.
+
+    Returns:
+        The dyads; nan where no solution exists.
     """
     origins, (d, a, d2, d3, size3, size4, total) = np.asarray(poses.places, COMPLEX), poses.loop
     second = unit_vector(turn)
@@ -132,13 +168,14 @@ def dyads_by_rotation(poses: CouplerPoses, turn: Any, branch: Any, ends: bool = 
 
 @dataclass(frozen=True)
 class GuidanceQuality:
-    """Quality of four-bars ABCD driven by AB from the first to the last position.
+    """Quality of four-bars ABCD whose link AB drives them from the first to the last position.
 
     Attributes:
-        defect: 0 none, 1 positions on two assemblies, 2 positions not in order, 3 AB locks.
+        defect: 0 for none, 1 if the positions belong to both assemblies, 2 if they are not reached in order, 3 if AB
+            locks between them.
         least: smallest transmission angle (rad).
-        turn: rotation of AB (rad, signed).
-        worst: angle of AB from AD where the transmission angle is smallest.
+        turn: rotation of AB from the first to the last position (rad), positive counterclockwise.
+        worst: angle of AB, measured from AD, at which the transmission angle is smallest (rad).
     """
 
     defect: Any
@@ -148,7 +185,12 @@ class GuidanceQuality:
 
 
 def rate_guidance(poses: CouplerPoses, first: Dyads, second: Dyads) -> GuidanceQuality:
-    """Rate the four-bars formed by dyads AB and DC (broadcast together)."""
+    """Return the quality of the four-bars formed by the dyads AB and DC.
+
+    Args:
+        poses: required positions of the coupler.
+        first, second: dyads AB and DC, arrays that can be broadcast together.
+    """
     b, c = poses.on_frame(first.pin), poses.on_frame(second.pin)
     a, d = np.asarray(first.pivot)[..., None], np.asarray(second.pivot)[..., None]
     b, c, a, d = (np.asarray(x, complex) for x in (b, c, a, d))
@@ -183,10 +225,19 @@ SIDES: Final = {"left": 1.0, "right": -1.0}
 
 @dataclass(frozen=True)
 class DyadData:
-    """Given data of a dyad: its pin (m, coupler's axes) or its pivot (m).
+    """Given quantities of one dyad; None if not given.
 
-    With two positions also its length (m) and side; with four positions instead the rotation `turn` from position 1 to
-    2 (rad) and the branch (0 or 1), or a point `near` (m) to which its pivot shall be nearest.
+    With two or three positions the pin or the pivot is given; with two positions also the length and the side. With
+    four positions the rotation and the branch, or a point near the pivot, may be given.
+
+    Attributes:
+        pin: pin in the coupler axes (complex, m).
+        pivot: pivot on the frame (complex, m).
+        length: length of the link (m).
+        side: side of the line from position 1 to 2 on which the other end of the link lies, `left` or `right`.
+        turn: rotation of the link from position 1 to 2 (rad).
+        branch: which of the two solutions with this rotation, 0 or 1.
+        near: point (complex, m) to which the pivot shall be as near as possible.
     """
 
     pin: Any = None
@@ -200,10 +251,15 @@ class DyadData:
 
 @dataclass(frozen=True)
 class CouplerPositionsTask:
-    """Positions (m, rad) of the coupler and the given data of the dyads AB and DC.
+    """Required positions of a coupler, and the given quantities of the dyads AB and DC.
 
-    keep: True if solutions with defects are accepted. within: opposite corners (m) of a box that contains the free
-    pivots of four positions.
+    Attributes:
+        places: origins of the coupler axes (complex, m).
+        angles: angles of the coupler's x axis (rad).
+        sides: given quantities of the dyads, by name (AB, DC).
+        keep: True if solutions with branch, order or circuit defects are accepted.
+        within: opposite corners of a rectangle (complex, m) that must contain the pivots not given, with four
+            positions; None for no rectangle.
     """
 
     places: tuple[Any, ...]
@@ -218,15 +274,15 @@ class CouplerPositionsTask:
 
     @property
     def still(self) -> bool:
-        """True if the coupler does not rotate between four positions."""
+        """True if there are four positions between which the coupler does not rotate."""
         return len(self.angles) == 4 and equal_angles(self.poses.angles)
 
     @property
     def size(self) -> float:
-        """Characteristic length of the task, m.
+        """Characteristic length of the task (m).
 
-        The largest distance between positions, or of a given pin from the coupler's origin; if these are zero, the
-        largest distance of a given pivot, or a given length.
+        It is the largest distance between positions, or of a given pin from the coupler's origin. If these are zero, it
+        is the largest distance of a given pivot from position 1, or the largest given length.
         """
         origins = np.asarray(self.places, complex)
         pin_distances = [abs(complex(s.pin)) for s in self.sides.values() if s.pin is not None]
@@ -237,7 +293,7 @@ class CouplerPositionsTask:
         return length
 
     def outside(self, points: Any) -> Any:
-        """Return the distance (m) of points from the box, 0 inside it."""
+        """Return the distance (m) of points from the rectangle `within`; 0 inside it, or if there is none."""
         if self.within is None:
             return np.zeros(np.shape(points))
         (x, y), (u, v) = ((corner.real, corner.imag) for corner in self.within)

@@ -1,10 +1,9 @@
-"""Burmester's curves of four positions with a parameter along which they are smooth, and their parts with sensible
-links.
+"""Burmester's curves of four positions, with a parameter along which they are smooth, and their sampling.
 
-The closed four-bar d2 e^(i b2) + d3 e^(i b3) + d4 e^(i b4) = d2 + d3 + d4 of the rotations (see `dyads_by_rotation`)
-has one loop of solutions for each branch if b2 rotates fully; if b2 rocks, it has one or two loops: b2 = middle + half
-cos(t), where the branch is the sign of sin(t), so that t passes smoothly from one branch to the other. Three positions
-with equal angles leave a circle of pins.
+The closure condition d2 e^(i b2) + d3 e^(i b3) + d4 e^(i b4) = d2 + d3 + d4 of the rotations (see `dyads_by_rotation`)
+is that of a four-bar. If its link b2 rotates fully, the solutions form one loop for each branch, with the parameter b2.
+If b2 rocks, they form one or two loops with b2 = middle + half cos(t); the branch is the sign of sin(t), so that t
+passes smoothly from one branch to the other. If three positions have equal angles, the pins lie on a circle.
 """
 
 from __future__ import annotations
@@ -35,8 +34,12 @@ FULL: Final = 4 * HALF
 
 @dataclass(frozen=True)
 class RotationLoops:
-    """Loops of the rotation b2 (rad): middle, half range (nan: b2 rotates fully), and branch of those that rotate
-    fully.
+    """Burmester's curves as loops of the rotation b2 of a link from position 1 to 2.
+
+    Attributes:
+        poses: the four positions.
+        middle, half: middle and half range of b2 in each loop (rad), shape (loops,); half is nan if b2 rotates fully.
+        branch: branch (0 or 1) of each loop in which b2 rotates fully, shape (loops,).
     """
 
     poses: CouplerPoses
@@ -45,7 +48,9 @@ class RotationLoops:
     branch: Any
 
     def at(self, loop: Any, t: Any) -> Dyads:
-        """Return dyads at parameters t (0 to 2 pi) of the loops with these indices (broadcast together)."""
+        """Return the dyads at parameters t (0 to 2 pi) of the loops with these indices (arrays that broadcast
+        together).
+        """
         t = np.asarray(t, EXACT)
         middle, half, branch = (np.asarray(x)[loop] for x in (self.middle, self.half, self.branch))
         turns = np.isnan(half)
@@ -58,7 +63,15 @@ class RotationLoops:
 
 @dataclass(frozen=True)
 class PinCircle:
-    """Pins on a circle, if three positions have equal angles: all have one arm (complex, m) in the position `of`."""
+    """Circle of pins for positions of which three have equal angles. All links are then parallel and of equal
+    length.
+
+    Attributes:
+        poses: the four positions.
+        of: index of one of the positions with equal angles.
+        arm: vector from the pivot to the pin in this position (complex, m).
+        middle, radius: centre (complex, m) and radius (m) of the circle in the plane's axes.
+    """
 
     poses: CouplerPoses
     of: int
@@ -76,7 +89,7 @@ class PinCircle:
 
 @dataclass(frozen=True)
 class GivenDyad:
-    """A given dyad, in place of a curve."""
+    """A given dyad, used in place of a curve."""
 
     dyad: Dyads
 
@@ -92,9 +105,12 @@ DyadCurve = RotationLoops | PinCircle | GivenDyad
 
 @dataclass(frozen=True)
 class CurveSamples:
-    """Samples along the parts of a curve, joined end to end and about evenly spaced.
+    """Samples of a curve at about equal distances; the parts of the curve are joined end to end.
 
-    t, loop: parameter and loop of each sample; low, high: indices of the first and last sample of its part.
+    Attributes:
+        curve: the sampled curve.
+        t, loop: parameter and loop of each sample, shape (samples,).
+        low, high: indices of the first and the last sample of the same part, shape (samples,).
     """
 
     curve: DyadCurve
@@ -135,7 +151,10 @@ def burmester_curve(poses: CouplerPoses) -> DyadCurve:
 
 
 def _find_pin_circle(poses: CouplerPoses, equal: list[int], odd: int) -> PinCircle:
-    """Return the circle of pins: |B - A| is equal in the odd position too, |c + m g| = |arm| for the pin m."""
+    """Return the circle of pins if the positions `equal` have the same angle and the position `odd` has another one.
+
+    The pin m satisfies |c + m g| = |arm|, because |AB| must be the same in the odd position.
+    """
     first = equal[0]
     arm = poses.places[first] - circle_centre(poses.places[equal])
     turned = unit_vector(poses.angles[[first, odd]])
@@ -144,17 +163,30 @@ def _find_pin_circle(poses: CouplerPoses, equal: list[int], odd: int) -> PinCirc
 
 
 def scan_curve(curve: DyadCurve, size: float) -> list[Any]:
-    """Return parameters around every loop, denser where nearby dyads change fast."""
+    """Return the parameters t of samples around every loop, more closely spaced where neighbouring dyads differ
+    more.
+
+    Args:
+        curve: Burmester's curve.
+        size: characteristic length of the task (m).
+    """
     return [] if isinstance(curve, GivenDyad) else [_scan_loop(curve, loop, size) for loop in range(len(curve))]
 
 
 def sample_parts(
     curve: DyadCurve, scans: list[Any], good: Callable[[Dyads], Any], size: float, count: int
 ) -> CurveSamples | None:
-    """Sample the parts of a curve on which dyads are `good`, about `count` samples in all; the ends are found by
-    bisection.
+    """Sample the parts of a curve on which the dyads are acceptable; the ends of the parts are found by bisection.
 
-    None if there are no such parts.
+    Args:
+        curve: Burmester's curve.
+        scans: parameters around every loop (see `scan_curve`).
+        good: function that returns True for each acceptable dyad.
+        size: characteristic length of the task (m).
+        count: approximate number of samples on all parts.
+
+    Returns:
+        The samples; None if no dyad is acceptable.
     """
     if isinstance(curve, GivenDyad):
         return CurveSamples(curve, np.zeros(1), *np.zeros((3, 1), dtype=int))
@@ -198,7 +230,13 @@ def _scan_loop(curve: RotationLoops | PinCircle, loop: int, size: float) -> Any:
 
 
 def refine_parameters(wide: Callable[[Any], Any], first: int, rounds: int) -> Any:
-    """Return parameters around a loop: `first` equal steps, then repeatedly midpoints of steps that are too wide."""
+    """Return parameters around a loop (0 to 2 pi): equal steps, refined by midpoints.
+
+    Args:
+        wide: function that returns True for each step that is too wide.
+        first: number of equal steps.
+        rounds: number of rounds in which midpoints of wide steps are inserted.
+    """
     t = FULL * np.linspace(0, 1, first + 1, dtype=EXACT)
     for _ in range(rounds):
         too_wide = wide(t)
@@ -209,7 +247,7 @@ def refine_parameters(wide: Callable[[Any], Any], first: int, rounds: int) -> An
 
 
 def _compute_relative_gaps(dyads: Dyads, size: float) -> Any:
-    """Return the distances of neighbouring dyads over the size of the task."""
+    """Return the distances between neighbouring dyads, divided by the characteristic length of the task."""
     with np.errstate(all="ignore"):
         return (np.abs(np.diff(dyads.pivot)) + np.abs(np.diff(dyads.pin))) / size
 
@@ -232,9 +270,14 @@ Places = tuple[complex, ...]
 
 
 def burmester_lines(poses: CouplerPoses, about: Sequence[complex]) -> tuple[list[Places], list[Places]]:
-    """Return centre points, and circle points in position 1 (m), near the points `about` of a mechanism.
+    """Return the centre-point curve, and the circle-point curve in position 1, as lines near the mechanism.
 
-    Empty lists if all angles are equal.
+    Args:
+        poses: the four positions.
+        about: points of the mechanism (complex, m).
+
+    Returns:
+        Lines of both curves (complex, m); empty if all angles are equal.
     """
     if equal_angles(poses.angles):
         return [], []
@@ -254,7 +297,10 @@ def burmester_lines(poses: CouplerPoses, about: Sequence[complex]) -> tuple[list
 
 
 def _split_pieces(curve: DyadCurve, at: Callable[[int, Any], Any]) -> Iterator[Any]:
-    """Yield the pieces of a curve in the drawn area, or whole loops; unit: size of the mechanism, its middle at 0."""
+    """Yield the pieces of a curve that lie in the drawn area. A loop without gaps is one piece.
+
+    Lengths are divided by the size of the mechanism, and its middle is the origin.
+    """
     for loop in range(len(curve)):
         with np.errstate(all="ignore"):
             points = _sample_densely(lambda t, loop=loop: at(loop, t))  # type: ignore[misc]
@@ -288,9 +334,10 @@ def _is_near(points: Any) -> Any:
 
 
 def sheet_extent(bar: Sequence[complex], curves: Sequence[Places]) -> Places:
-    """Return two corners (m) of the area of the curves' sheet.
+    """Return two opposite corners of the area shown on the sheet of the curves (complex, m).
 
-    It contains the four-bar, the curves near it, and pieces of curves that leave it only a little before they return.
+    It contains the four-bar, the curves near it, and pieces of curves that leave this area only slightly before they
+    return.
     """
     corners = np.array(bar)
     low, high = (complex(f(corners.real), f(corners.imag)) for f in (np.min, np.max))

@@ -1,10 +1,12 @@
-"""Dyads AB and DC of a four-bar that guides its coupler: from given data, or the best pair on Burmester's curves.
+"""Dyads AB and DC of a four-bar that guides its coupler, from given quantities or as the best pair on Burmester's
+curves.
 
-The parts of the curves with links of sensible length (for AB: that reaches the positions in order by rotating one way)
-are sampled about evenly, and all pairs of samples are rated. Every pair that is better than its neighbours is a
-starting point, pairs with a defect too, as feasible pairs may lie in a narrow strip between samples. The starting
-points are improved together; then, for the best of them, the best DC is found for every AB: the best transmission angle
-often lies on a ridge, where two positions of the mechanism are equally bad.
+The search uses the parts of the curves on which the links have a reasonable length. For AB the link must also reach the
+positions in order while it rotates in one direction. Samples are taken along these parts at about equal distances, and
+all pairs of samples are rated. Every pair that is better than its neighbours is a starting point; pairs with a defect
+are included, because feasible pairs may lie in a narrow strip between samples. All starting points are improved
+together. For the best of them the best DC is then found for every AB, because the best transmission angle often lies on
+a ridge where two positions of the mechanism are equally unfavourable.
 """
 
 from __future__ import annotations
@@ -50,8 +52,12 @@ APART, REACH = 0.05, 2.0  # in samples: distance of distinct pairs; search inter
 
 @dataclass(frozen=True)
 class LinkLimits:
-    """Limits of lengths (m): shortest link, longest link, frame and coupler; outside: distance of pivots from a box
-    (m).
+    """Limits of the link lengths in the search (m).
+
+    Attributes:
+        shortest: shortest link.
+        link, frame, coupler: greatest length of AB and DC, of the frame, and of the coupler.
+        outside: function that returns the distance of pivots from the allowed rectangle (m); None for no rectangle.
     """
 
     shortest: float
@@ -64,10 +70,19 @@ class LinkLimits:
 def best_on_curves(
     poses: CouplerPoses, size: float, limits: LinkLimits, given_dyads: dict[str, Dyads], loose: bool = False
 ) -> tuple[Dyads, Dyads, float] | None:
-    """Return the best dyads AB and DC on Burmester's curves and their rating; None if no link is sensible.
+    """Return the best dyads AB and DC on Burmester's curves, and their rating.
 
-    The rating is the smallest transmission angle (rad); negative with a defect, or if coupler or frame is not sensible.
-    loose: positions may be on different assemblies.
+    Args:
+        poses: the four positions.
+        size: characteristic length of the task (m).
+        limits: limits of the link lengths.
+        given_dyads: dyads that are already determined, by name (AB, DC).
+        loose: True if the positions may belong to both assemblies.
+
+    Returns:
+        Dyad AB, dyad DC and rating: the smallest transmission angle (rad), or a negative number if the four-bar has a
+            defect
+        or the length of coupler or frame is unreasonable. None if no link has a reasonable length.
     """
     whole = burmester_curve(poses)
     scans = scan_curve(whole, size)
@@ -118,9 +133,16 @@ def _sample_sensible(
 
 
 def rate_pairs(poses: CouplerPoses, first: Dyads, second: Dyads, limits: LinkLimits, loose: bool = False) -> Any:
-    """Rate four-bars of dyads AB and DC (broadcast together): smallest transmission angle (rad) through the positions.
+    """Return the rating of the four-bars formed by dyads AB and DC.
 
-    Negative if the four-bar is not feasible; the further from feasible, the lower.
+    It is the smallest transmission angle (rad) from the first to the last position. If the four-bar is not feasible, it
+    is a negative number, the lower the further the four-bar is from being feasible.
+
+    Args:
+        poses: required positions of the coupler.
+        first, second: dyads AB and DC, arrays that can be broadcast together.
+        limits: limits of the link lengths.
+        loose: True if the positions may belong to both assemblies.
     """
     b, c = (np.asarray(poses.on_frame(x.pin), complex) for x in (first, second))
     a, d = (np.asarray(x.pivot, complex) for x in (first, second))
@@ -148,7 +170,7 @@ def rate_pairs(poses: CouplerPoses, first: Dyads, second: Dyads, limits: LinkLim
 
 
 def _find_local_peaks(table: Any, first: CurveSamples, second: CurveSamples) -> tuple[Any, Any]:
-    """Return the indices of the pairs not worse than their neighbours on the same parts, best first."""
+    """Return the indices of the pairs that are at least as good as their neighbours on the same parts, best first."""
     top = np.ones(table.shape, bool)
     for axis, rows in enumerate((first, second)):
         values, peak = np.moveaxis(table, axis, 0), np.moveaxis(top, axis, 0)
@@ -161,7 +183,10 @@ def _find_local_peaks(table: Any, first: CurveSamples, second: CurveSamples) -> 
 
 
 def _improve_pairs(score: Any, x: Any, y: Any, first: CurveSamples, second: CurveSamples) -> tuple[Any, Any, Any]:
-    """Improve all starting points together: rate a small grid around each, and shrink it where its middle is best."""
+    """Improve all starting points together.
+
+    In each round a small grid around each point is rated. The grid shrinks when its best point is not at its edge.
+    """
     shifts = np.linspace(-1.5, 1.5, 7)
     ends = [(rows.low[at.astype(int)], rows.high[at.astype(int)]) for rows, at in ((first, x), (second, y))]
     step = np.ones(len(x))
@@ -183,7 +208,7 @@ def _improve_pairs(score: Any, x: Any, y: Any, first: CurveSamples, second: Curv
 def _refine_best(
     score: Any, x: Any, y: Any, value: Any, ab_samples: CurveSamples, dc_samples: CurveSamples
 ) -> tuple[Any, Any, Any]:
-    """Refine the best distinct pairs: for every AB take the best DC."""
+    """Refine the best distinct pairs: AB is optimised, with the best DC for each AB."""
     kept: list[int] = []
     for k in np.argsort(-value, kind="stable").tolist():
         if len(kept) < LAST and all(abs(x[k] - x[m]) + abs(y[k] - y[m]) > APART for m in kept):
@@ -191,8 +216,8 @@ def _refine_best(
     (low, high), (first, last) = (_limit_search(rows, at[kept]) for rows, at in ((ab_samples, x), (dc_samples, y)))
 
     def of_best(x: Any) -> tuple[Any, Any]:
-        """Return the best positions of DC for positions of AB (all starting points repeated), and their negative
-        rating.
+        """Return the best DC for each AB, and the negative rating. The starting points may be repeated several times in
+        x.
         """
         again = len(x) // len(kept)
         return find_minima(lambda y: -score(np.resize(x, len(y)), y), np.tile(first, again), np.tile(last, again))
@@ -202,7 +227,7 @@ def _refine_best(
 
 
 def _limit_search(rows: CurveSamples, at: Any) -> tuple[Any, Any]:
-    """Return the ends of the interval around each index in which its peak is searched."""
+    """Return the ends of the search interval around each index."""
     sample = at.astype(int)
     return np.maximum(at - REACH, rows.low[sample]), np.minimum(at + REACH, rows.high[sample])
 
@@ -231,7 +256,14 @@ NO_LINKS: Final = N_(
 
 
 def find_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads, GuidanceQuality]:
-    """Return the dyads AB and DC and their quality. Raises Infeasible."""
+    """Find the dyads AB and DC that satisfy the task.
+
+    Returns:
+        Dyad AB, dyad DC and the quality of the four-bar.
+
+    Raises:
+        Infeasible: no four-bar satisfies the task, or it has a defect that the task does not accept.
+    """
     first, second = solve_both_dyads(task)
     if not min(abs(first.pivot - second.pivot), abs(first.pin - second.pin)) > SAME_POINTS * task.size:
         raise Infeasible(_find_given_key(task, "DC"), _("AB and DC have a common pin or pivot: this is not a four-bar"))
@@ -242,7 +274,9 @@ def find_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads, GuidanceQualit
 
 
 def _search_is_quick(task: CouplerPositionsTask) -> bool:
-    """Return True if other values can be tried; False if a link is free on Burmester's curves, which takes long."""
+    """Return False if a dyad must be searched for on Burmester's curves: trying other values would then take too
+    long.
+    """
     return len(task.places) < 4 or len(task.sides) == 2 or task.still
 
 
@@ -254,7 +288,7 @@ def _find_given_key(task: CouplerPositionsTask, name: str) -> str:
 
 
 def solve_both_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
-    """Return the dyads AB and DC. Raises Infeasible."""
+    """Return the dyads AB and DC for any number of positions. Raises Infeasible."""
     if len(task.places) < 4:
         return solve_dyad(task, "AB"), solve_dyad(task, "DC")
     if task.still:
@@ -264,7 +298,7 @@ def solve_both_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
 
 
 def solve_dyad(task: CouplerPositionsTask, name: str) -> Dyads:
-    """Return the dyad of two or three positions. Raises Infeasible."""
+    """Return the dyad AB or DC for two or three positions. Raises Infeasible."""
     side, poses = task.sides[name], task.poses
     pin_given = side.pin is not None
     point = name[1] if pin_given else name[0]
@@ -289,9 +323,10 @@ def solve_dyad(task: CouplerPositionsTask, name: str) -> Dyads:
 
 
 def given_dyads(task: CouplerPositionsTask) -> dict[str, Dyads]:
-    """Return the dyads of four positions that the task specifies by a rotation or by a point near the pivot.
+    """Return the dyads for four positions that are specified by a rotation or by a point near the pivot, by name.
 
-    Raises Infeasible.
+    Raises:
+        Infeasible: no link of reasonable length satisfies the specification.
     """
     dyads = {
         name: dyads_by_rotation(task.poses, np.asarray(side.turn, np.longdouble), side.branch)
@@ -310,7 +345,11 @@ def given_dyads(task: CouplerPositionsTask) -> dict[str, Dyads]:
 
 
 def nearest_dyad(task: CouplerPositionsTask, name: str) -> Dyads:
-    """Return the dyad of four positions whose pivot, on the centre-point curve, is nearest to the required point."""
+    """Return the dyad for four positions whose pivot on the centre-point curve is nearest to the required point.
+
+    Raises:
+        Infeasible: no dyad has a reasonable length.
+    """
     target = complex(task.sides[name].near)
 
     def away(turns: Any, branch: int) -> Any:
@@ -331,7 +370,7 @@ def nearest_dyad(task: CouplerPositionsTask, name: str) -> Dyads:
 
 
 def are_sensible(task: CouplerPositionsTask, dyads: Dyads) -> Any:
-    """Return True for dyads that exist, with ends not far from position 1 and a length greater than zero."""
+    """Return True for each dyad that exists, whose ends are not far from position 1 and whose length is not zero."""
     with np.errstate(all="ignore"):
         reach = np.maximum(np.abs(dyads.pivot - task.poses.places[0]), np.abs(dyads.pin))
         length = np.abs(task.poses.on_frame(dyads.pin)[..., 0] - dyads.pivot)
@@ -339,9 +378,14 @@ def are_sensible(task: CouplerPositionsTask, dyads: Dyads) -> Any:
 
 
 def best_dyads(task: CouplerPositionsTask, specified: dict[str, Dyads]) -> tuple[Dyads, Dyads]:
-    """Return the dyads on Burmester's curves with the best transmission angle, without defects if possible.
+    """Return the dyads on Burmester's curves that give the best transmission angle, without defects if possible.
 
-    Raises Infeasible.
+    Args:
+        task: required positions.
+        specified: dyads that the task determines, by name (AB, DC).
+
+    Raises:
+        Infeasible: no links of reasonable length exist, or none have their pivots inside the rectangle.
     """
     first, size = task.poses.places[0], task.size
     frame = max((float(abs(dyad.pivot - first)) for dyad in specified.values()), default=0.0)
@@ -365,10 +409,13 @@ def best_dyads(task: CouplerPositionsTask, specified: dict[str, Dyads]) -> tuple
 
 
 def parallelogram_dyads(task: CouplerPositionsTask) -> tuple[Dyads, Dyads]:
-    """Return the dyads for four positions of equal angle: the coupler of a parallelogram whose arms follow P on its
-    circle.
+    """Return the dyads of a parallelogram linkage for four positions with equal angles of the coupler.
 
-    AD is free; it is taken perpendicular to the arms in the middle of their range. Raises Infeasible.
+    The origin P of the coupler must move on a circle, and both cranks are equal and parallel to its radius. The frame
+    AD is free; it is taken perpendicular to the cranks in the middle of their range.
+
+    Raises:
+        Infeasible: the four points P do not lie on a circle.
     """
     origins, angles = task.poses.places, task.poses.angles
     centres = [circle_centre(np.delete(origins, out)) for out in range(4)]

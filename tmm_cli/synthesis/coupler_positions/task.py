@@ -1,4 +1,4 @@
-"""Four-bar by positions of its coupler: solution, drawings, keys of the task."""
+"""Synthesis of a four-bar from positions of its coupler: solution, drawings, keys of the task."""
 
 from __future__ import annotations
 
@@ -55,12 +55,17 @@ BY_PIVOT: Final = N_("dashed: bisectors of the pivot and its positions ′, rota
 def draw_construction(
     poses: CouplerPoses, ab_dyad: Dyads, dc_dyad: Dyads, by_pivot: tuple[bool, bool] = (False, False)
 ) -> tuple[GeometricConstruction, ...]:
-    """Draw the four-bar in position 1, the other positions thin, the arcs of the pins, and the construction of its
-    dyads.
+    """Draw the four-bar in position 1, the other positions in thin lines, the arcs of the pins, and the
+    construction.
 
-    by_pivot: for each dyad, True if its pivot is given: then the positions of the pivot seen from the plane in position
-    1 lie on a circle about the pin (inversion); else the positions of the pin lie on a circle about the pivot. With
-    four positions Burmester's curves are drawn near the mechanism, and as a whole on a second sheet.
+    If the pivot of a dyad is given, its positions relative to the coupler in position 1 lie on a circle about the pin
+    (inversion). Otherwise the positions of the pin lie on a circle about the pivot. With four positions Burmester's
+    curves are drawn near the mechanism, and as a whole on a second sheet.
+
+    Args:
+        poses: required positions of the coupler.
+        ab_dyad, dc_dyad: dyads AB and DC.
+        by_pivot: for each dyad, True if its pivot is given.
     """
     rows = [(np.asarray(poses.on_frame(x.pin), complex), complex(x.pivot)) for x in (ab_dyad, dc_dyad)]
     count = len(poses.places)
@@ -201,12 +206,12 @@ LISTED: Final = 360  # tabulated rotations for each branch of Burmester's curves
 
 
 def refuse(task: CouplerPositionsTask) -> None:
-    """Raise Infeasible, with the reason, if no four-bar guides the coupler."""
+    """Raise Infeasible, with the reason, if no four-bar satisfies the task."""
     find_dyads(task)
 
 
 def solve(task: CouplerPositionsTask) -> SynthesisOutcome:
-    """Solve the task of one file. Raises Infeasible."""
+    """Find the four-bar, draw its construction and tabulate Burmester's curves. Raises Infeasible."""
     first, second, rating = find_dyads(task)
     numbers = _compute_parameters(task, first, second)
     values = [NamedValue(name, float(numbers[name]), kind, NAMES[name]) for name, kind in PARAMETERS.items()]
@@ -238,7 +243,7 @@ def solve(task: CouplerPositionsTask) -> SynthesisOutcome:
 
 
 def _compute_parameters(task: CouplerPositionsTask, first: Dyads, second: Dyads) -> dict[str, Any]:
-    """Return all parameters in extended precision."""
+    """Return the values of all parameters (SI, rad) in extended precision, by name."""
     b, c = (task.poses.on_frame(x.pin)[..., 0] for x in (first, second))
     a, d = first.pivot, second.pivot
     size = task.size + np.max(np.abs(np.asarray(task.places))) + np.abs(a) + np.abs(d)
@@ -251,7 +256,9 @@ def _compute_parameters(task: CouplerPositionsTask, first: Dyads, second: Dyads)
 
 
 def _list_curve_values(task: CouplerPositionsTask, name: str, dyad: Dyads) -> Iterator[NamedValue]:
-    """Yield rotation and branch of a dyad on Burmester's curves, as a file can specify them."""
+    """Yield the rotation and the branch of a dyad on Burmester's curves, with which a file can specify the same
+    dyad.
+    """
     side = task.sides.get(name, DyadData())
     if side.turn is None:
         pins = task.poses.on_frame(dyad.pin)
@@ -265,7 +272,7 @@ def _list_curve_values(task: CouplerPositionsTask, name: str, dyad: Dyads) -> It
 
 
 def _tabulate_curve(task: CouplerPositionsTask) -> Listing:
-    """Tabulate pivots and pins of Burmester's curves by the rotation of the link and the branch."""
+    """Tabulate the pivots and pins on Burmester's curves, by the rotation of the link and the branch."""
     columns = (
         ("branch", N_("branch"), "name"),
         ("turn", N_("rotation from position 1 to 2"), "angle"),
@@ -291,7 +298,7 @@ def _tabulate_curve(task: CouplerPositionsTask) -> Listing:
 
 
 def _describe_position(k: int) -> tuple[str, str, str]:
-    """Return the descriptions of x, y and angle of a position."""
+    """Return the descriptions of x, y and the angle of a position."""
     return (
         Phrase("position {number}: P, x", number=k + 1),
         Phrase("position {number}: P, y", number=k + 1),
@@ -316,7 +323,7 @@ def _list_demands(task: CouplerPositionsTask, first: Dyads, second: Dyads, ratin
 
 
 def _measure_pose(coordinate: str, at: dict[str, Any], results: Any) -> float:
-    """Measure a coordinate of the coupler at the angle of AB from AD that belongs to a position."""
+    """Return a coordinate of the coupler of the analysed mechanism, at the angle of AB that belongs to a position."""
     pins = four_bar.pin_positions(results, np.array([at["phi"]]))
     if pins is None:
         return float("nan")
@@ -365,7 +372,9 @@ DYADS = ("AB", "DC")
 
 
 class CouplerPositionsBlock(TaskBlock):
-    """A four-bar ABCD (AB drives) whose coupler takes 2, 3 or 4 positions."""
+    """Keys of the task `coupler-positions`: 2, 3 or 4 positions of the coupler, and given quantities of the links AB
+    and DC.
+    """
 
     task: Literal["coupler-positions"]
     positions: list[Position] = Field(
@@ -443,7 +452,7 @@ def read(block: CouplerPositionsBlock, values: ValueReader) -> CouplerPositionsT
 def _read_box(
     block: CouplerPositionsBlock, values: ValueReader, count: int, sides: dict[str, DyadData]
 ) -> tuple[complex, complex] | None:
-    """Read the corners of the box for free pivots; None if none is given."""
+    """Read the corners of the rectangle for the pivots that are not given; None if the key is omitted."""
     if block.pivots_within is None:
         return None
     if count != 4 or len(sides) == 2:
@@ -460,7 +469,9 @@ def _read_box(
 
 
 def _read_dyad(block: CouplerPositionsBlock, values: ValueReader, name: str, count: int) -> DyadData | None:
-    """Read the data of a dyad, which must be exactly those that the number of positions requires."""
+    """Read the given quantities of a dyad; None if there are none. Raises ProblemError if they are too few or too
+    many.
+    """
     pivot, pin, turn, near = name[0], name[1], f"{name}_turn", f"{name[0]}_near"
     sets = {2: ((pin, name), (pivot, name)), 3: ((pin,), (pivot,)), 4: ((turn,), (near,), ())}[count]
     refusal = _("these keys do not determine link {link}; number of positions: {count}").format(link=name, count=count)

@@ -142,23 +142,23 @@ def read(block: OptimalBlock, reader: ValueReader, file_with: FileWith) -> Optim
     parameters = read_ranges(block.vary, reader, block.names, file_with)
     files = _FileVariants(parameters, block, reader, file_with)
     middles = nearest_allowed([(p.low + p.high) / 2 for p in parameters], parameters).tolist()
-    files.over = read_over(block.over, files.plain(middles).linkage.driver, reader)
-    middle = with_driver_range(files.plain(middles), files.over)
+    files.over = read_over(block.over, files.build_problem(middles).linkage.driver, reader)
+    middle = with_driver_range(files.build_problem(middles), files.over)
     _check_mobility(middle)
     for k, parameter in enumerate(parameters):
         for end in (parameter.low, parameter.high):
-            files.variant([*middles[:k], end, *middles[k + 1 :]])
+            files.build_variant([*middles[:k], end, *middles[k + 1 :]])
     constraints = tuple(
-        _read_constraint(keys, middle, reader, n, files.asked(keys, ("constraints", n), middles, middle))
+        _read_constraint(keys, middle, reader, n, files.read_targets(keys, ("constraints", n), middles, middle))
         for n, keys in enumerate(block.constraints)
     )
-    targets = files.asked(block.objective, ("objective",), middles, middle)
+    targets = files.read_targets(block.objective, ("objective",), middles, middle)
     objective, target = _read_quantity(block.objective, middle, reader, ("objective",), targets), block.objective.target
     if target is not None:
-        target = reader.number(target, DIMENSIONS[_kind_of(objective, middle)].dimension, ("objective", "target"))
+        target = reader.number(target, DIMENSIONS[_find_kind(objective, middle)].dimension, ("objective", "target"))
     return OptimalTask(
         parameters,
-        files.variant,
+        files.build_variant,
         objective,
         constraints,
         target,
@@ -167,7 +167,7 @@ def read(block: OptimalBlock, reader: ValueReader, file_with: FileWith) -> Optim
         block.generations,
         block.seed,
         files.accepts,
-        _progress_bar(),
+        _make_progress_bar(),
     )
 
 
@@ -184,24 +184,24 @@ class _FileVariants:
         self.goals: list[tuple[Path, QuantityKeys]] = [(("objective",), block.objective)]
         self.goals += [(("constraints", n), keys) for n, keys in enumerate(block.constraints)]
 
-    def plain(self, numbers: Sequence[Any]) -> Problem:
+    def build_problem(self, numbers: Sequence[Any]) -> Problem:
         """Build the problem with these values. Raises TriedFileError."""
-        return self.file_with(*self._given(numbers))
+        return self.file_with(*self._make_parameters(numbers))
 
-    def _given(self, numbers: Sequence[Any]) -> tuple[dict[str, PhysicalValue], UnitSystem]:
+    def _make_parameters(self, numbers: Sequence[Any]) -> tuple[dict[str, PhysicalValue], UnitSystem]:
         parameters = {
             self.names.get(p.name, p.name): PhysicalValue(x, DIMENSIONS[p.kind].dimension)
             for p, x in zip(self.parameters, numbers, strict=True)
         }
         return parameters, self.varied if any(isinstance(x, TracedNumber) for x in numbers) else self.units
 
-    def asked(self, keys: QuantityKeys, path: Path, numbers: Sequence[Any], variant: Variant) -> DriverTargets:
+    def read_targets(self, keys: QuantityKeys, path: Path, numbers: Sequence[Any], variant: Variant) -> DriverTargets:
         """Return the driver coordinates of a quantity and the values required of a link there; both may depend on the
         parameters.
 
         Raises ProblemError.
         """
-        parameters, units = self._given(numbers)
+        parameters, units = self._make_parameters(numbers)
         reader, linkage = ValueReader({**self.own, **parameters}, units), variant.linkage
         coordinates = tuple(read_position(v, variant, reader, (*path, "at", n)) for n, v in enumerate(keys.at))
         if not keys.values or keys.link not in linkage.moving:
@@ -209,7 +209,7 @@ class _FileVariants:
         dimension = ANGLE if linkage.output_swings(keys.link) else LENGTH
         return coordinates, tuple(reader.number(v, dimension, (*path, "values", n)) for n, v in enumerate(keys.values))
 
-    def variant(self, numbers: Sequence[Any]) -> Variant:
+    def build_variant(self, numbers: Sequence[Any]) -> Variant:
         """Build the variant with these values.
 
         Raises:
@@ -217,8 +217,8 @@ class _FileVariants:
             ProblemError: a driver coordinate or required value of the task is invalid.
         """
         try:
-            variant = with_driver_range(self.plain(numbers), self.over)
-            targets = [self.asked(keys, path, numbers, variant) for path, keys in self.goals]
+            variant = with_driver_range(self.build_problem(numbers), self.over)
+            targets = [self.read_targets(keys, path, numbers, variant) for path, keys in self.goals]
             coordinates, required = (tuple(chain.from_iterable(column)) for column in zip(*targets, strict=True))
             return replace(variant, asked=coordinates, wanted=required)
         except TriedFileError as error:
@@ -235,7 +235,7 @@ class _FileVariants:
     def accepts(self, numbers: Sequence[float]) -> bool:
         """Return True if the file is valid with these values."""
         try:
-            self.variant(numbers)
+            self.build_variant(numbers)
         except (TriedFileError, ProblemError):
             return False
         return True
@@ -262,7 +262,7 @@ def _read_constraint(
 ) -> task.QuantityConstraint:
     path: Path = ("constraints", n)
     quantity = _read_quantity(keys, variant, reader, path, targets)
-    dimension = DIMENSIONS[_kind_of(quantity, variant)].dimension
+    dimension = DIMENSIONS[_find_kind(quantity, variant)].dimension
     sides = {
         key: reader.number(value, dimension, (*path, key))
         for key in ("least", "most", "equal")
@@ -280,7 +280,7 @@ def _read_constraint(
     return task.QuantityConstraint(quantity, least, most, (*path, list(sides)[-1]))
 
 
-def _kind_of(quantity: MechanismQuantity, variant: Variant) -> str:
+def _find_kind(quantity: MechanismQuantity, variant: Variant) -> str:
     return quantity.kind(variant.linkage, analyse_mobile_structure(variant.linkage).solved)
 
 
@@ -322,7 +322,7 @@ def _read_quantity(
     return kind(name, tuple(keys.links), coordinates, tuple(required), keys.norm, keys.relative)
 
 
-def _progress_bar() -> Callable[[int, int], None]:
+def _make_progress_bar() -> Callable[[int, int], None]:
     """Return a function that shows the progress on a terminal."""
     if not sys.stderr.isatty():
         return lambda at, total: None

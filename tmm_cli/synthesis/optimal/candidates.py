@@ -105,9 +105,9 @@ class Candidates:
             )
             for quantity in self.quantities
         )
-        own_slices = self.own_places(self.count + self.jumps)
-        self.exact = [own_slice or self.shares_of(n, self.count) for n, own_slice in enumerate(own_slices)]
-        self.places = DriverSamples(self.shares_over(self.count), self.with_sketch(np.zeros(0)), asked=True)
+        own_slices = self.slice_own_coordinates(self.count + self.jumps)
+        self.exact = [own_slice or self.slice_samples(n, self.count) for n, own_slice in enumerate(own_slices)]
+        self.places = DriverSamples(self.sample_range(self.count), self.append_sketch(np.zeros(0)), asked=True)
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> dict[str, Any]:
         return {
@@ -136,7 +136,7 @@ class Candidates:
         fractions: Real = (numbers - self.low) / (self.high - self.low)
         return fractions
 
-    def shares_over(self, count: int) -> Real:
+    def sample_range(self, count: int) -> Real:
         """Return `count` fractions of the driver range.
 
         Of a closed range without its end; the end is appended if forces differ there.
@@ -144,11 +144,11 @@ class Candidates:
         shares = np.arange(count) / (count if self.closed else count - 1)
         return np.append(shares, 1.0) if self.jumps else shares
 
-    def shares_of(self, n: int, count: int) -> slice:
-        """Return the slice of the sample points (see `shares_over`) that quantity `n` uses."""
+    def slice_samples(self, n: int, count: int) -> slice:
+        """Return the slice of the sample points (see `sample_range`) that quantity `n` uses."""
         return slice(0, count + 1 if self.jumps and not self.overs[n].closed else count)
 
-    def own_places(self, count: int) -> list[slice | None]:
+    def slice_own_coordinates(self, count: int) -> list[slice | None]:
         """Return, for each quantity, the slice of its own driver coordinates after `count` sample points; None if it
         has none.
         """
@@ -166,7 +166,7 @@ class Candidates:
             else template
         )
 
-    def with_sketch(self, driver: Real) -> Real:
+    def append_sketch(self, driver: Real) -> Real:
         """Append the driver coordinate of the sketch, if the sign of a determinant there matters."""
         return np.append(driver, self.linkage.sketch.at) if self.single else driver
 
@@ -184,8 +184,8 @@ class Candidates:
         with np.errstate(all="ignore"):
             values = self.values(x)
             both = zip(self.constraints, values[1:], strict=True)
-            violation = sum(constraint.missed(value) for constraint, value in both)
-            lost = self.constraints[0].missed(values[1])
+            violation = sum(constraint.compute_violation(value) for constraint, value in both)
+            lost = self.constraints[0].compute_violation(values[1])
             violation = np.where(lost > 0, LOST + 10 * lost, violation)
             violation = np.where(np.isfinite(violation), violation, NONE)
             objective = self.objective_value(values[0])

@@ -63,7 +63,7 @@ class _Generations:
     def left(self) -> int:
         return self.generations - len(self.history)
 
-    def judged(self, f: Real, v: Real) -> Real:
+    def compute_merits(self, f: Real, v: Real) -> Real:
         """Return Deb's ranking as one number: smaller violation first, then, among feasible ones, the smaller
         objective.
         """
@@ -73,7 +73,7 @@ class _Generations:
         self.progress(len(self.history), self.generations)
         x = columns.T
         f, v = self.evaluate(x)
-        merits = self.judged(f, v)
+        merits = self.compute_merits(f, v)
         first = np.argsort(merits)[:1]
         if merits[first[0]] < self.leading or not self.history:
             self.leading = float(merits[first[0]])
@@ -153,7 +153,7 @@ def evolve(
     if not watched.kept:
         raise KeyboardInterrupt
     x, f, v = (np.concatenate(parts) for parts in zip(*watched.kept, strict=True))
-    order = np.argsort(watched.judged(f, v), kind="stable")
+    order = np.argsort(watched.compute_merits(f, v), kind="stable")
     return EvolutionResult(x[order], f[order], v[order], np.array(watched.history), stopped)
 
 
@@ -193,7 +193,7 @@ class DiscreteChoices:
                 self.best[tuple(key)] = violation, objective, point.copy()
         return f, v
 
-    def every(self) -> EvolutionResult:
+    def evaluate_all(self) -> EvolutionResult:
         """Evaluate all candidates, best first."""
         task = self.candidates.task
         x = self.candidates.shares(np.array(list(product(*(p.values for p in task.parameters)))))
@@ -212,7 +212,7 @@ class DiscreteChoices:
         f, v = evaluated[:, order]
         return EvolutionResult(x[order], f, v, evaluated.T, stopped, every=True)
 
-    def starts(self) -> list[Real]:
+    def find_starts(self) -> list[Real]:
         """Return starting points: the combinations nearest to feasible, and of the others those with the smallest
         objective.
         """

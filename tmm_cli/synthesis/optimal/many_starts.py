@@ -62,9 +62,9 @@ def minimize_squares(evaluate: Evaluate, x: Real, steps: int) -> tuple[Real, Rea
         if not len(going):
             break
         at = x[going]
-        rows, slopes = _difference_slopes(evaluate, at)
+        rows, slopes = _estimate_derivatives(evaluate, at)
         tried = np.clip(damping[going, None] * np.array(DAMPINGS), LEAST, LARGEST)
-        ends = _step_ends(evaluate, rows, slopes, at, tried)
+        ends = _take_steps(evaluate, rows, slopes, at, tried)
         costs = evaluate(ends.reshape(-1, n), 1).cost().reshape(len(going), -1)
         each, best = np.arange(len(going)), np.argmin(costs, axis=1)
         better = costs[each, best] < cost[going] * (1 - GAIN)
@@ -74,7 +74,7 @@ def minimize_squares(evaluate: Evaluate, x: Real, steps: int) -> tuple[Real, Rea
     return x, cost
 
 
-def _step_ends(evaluate: Evaluate, rows: ResidualRows, slopes: ResidualRows, x: Real, dampings: Real) -> Real:
+def _take_steps(evaluate: Evaluate, rows: ResidualRows, slopes: ResidualRows, x: Real, dampings: Real) -> Real:
     """Return the ends of steps (s, 2 d, n): for each damping (s, d) one step without and one with second-order
     correction.
     """
@@ -89,7 +89,7 @@ def _step_ends(evaluate: Evaluate, rows: ResidualRows, slopes: ResidualRows, x: 
     return ends
 
 
-def _difference_slopes(evaluate: Evaluate, x: Real) -> tuple[ResidualRows, ResidualRows]:
+def _estimate_derivatives(evaluate: Evaluate, x: Real) -> tuple[ResidualRows, ResidualRows]:
     """Return the rows at points (s, n), and their derivatives (s, rows, n); an unknown derivative counts as zero."""
     s, n = x.shape
     run = np.where(x > 0.5, -STEP, STEP)
@@ -159,17 +159,17 @@ class LinearParameters:
         self.candidates = candidates
         assert isinstance(candidates.task.objective, Deviation)
         self.objective = candidates.task.objective
-        self.linear = self._linear()
+        self.linear = self._find_linear()
 
     def __call__(self, x: Real) -> Real:
         if not self.linear or not len(x):
             return x
         with np.errstate(all="ignore"):
             return np.concatenate(
-                [self._settled(x[at : at + SETTLED_AT_ONCE]) for at in range(0, len(x), SETTLED_AT_ONCE)]
+                [self._solve_block(x[at : at + SETTLED_AT_ONCE]) for at in range(0, len(x), SETTLED_AT_ONCE)]
             )
 
-    def _settled(self, x: Real) -> Real:
+    def _solve_block(self, x: Real) -> Real:
         ends = np.repeat(x[None], 1 + len(self.linear), axis=0)
         ends[:, :, self.linear] = 0
         ends[np.arange(1, len(ends)), :, self.linear] = 1
@@ -182,9 +182,9 @@ class LinearParameters:
                 near = nearest_corners(off.real.copy(), off.imag.copy(), required).T
                 off = np.take_along_axis(off, near, axis=1)
                 own_slopes = np.take_along_axis(slopes, near[..., None], axis=1)
-            rows = ResidualRows(_as_real(off - required), np.zeros((len(x), 0)))
+            rows = ResidualRows(_split_complex(off - required), np.zeros((len(x), 0)))
             step = damped_step(
-                rows, ResidualRows(_as_real(own_slopes), np.zeros((len(x), 0, len(self.linear)))), parameters, DAMPING
+                rows, ResidualRows(_split_complex(own_slopes), np.zeros((len(x), 0, len(self.linear)))), parameters, DAMPING
             )
             parameters = np.clip(parameters + step, 0, 1)
         settled = x.copy()
@@ -197,7 +197,7 @@ class LinearParameters:
         outputs = candidates.coarse(candidates.numbers(x), candidates.places)
         return self.objective.curve(quantity_reader(outputs, 0, candidates.exact[0]))
 
-    def _linear(self) -> list[int]:
+    def _find_linear(self) -> list[int]:
         """Return the parameters whose changes superpose, with themselves and with one another."""
         x = np.random.default_rng(0).random((DRAWN, len(self.candidates.low)))
         x = x[self.candidates.evaluate(x)[1] < LOST][:SHOWN]
@@ -219,7 +219,7 @@ class LinearParameters:
         return linear
 
 
-def _as_real(rows: Any) -> Real:
+def _split_complex(rows: Any) -> Real:
     """Split each complex row into two real ones, (variants, rows, ...)."""
     return np.concatenate([rows.real, rows.imag], axis=1) if np.iscomplexobj(rows) else rows
 
@@ -280,7 +280,7 @@ class ManyStartsResult:
     stopped: bool
 
 
-def is_applicable(candidates: Candidates) -> bool:
+def is_least_squares(candidates: Candidates) -> bool:
     """Return True if the objective is a sum of squares without a target and no parameter has discrete values."""
     task = candidates.task
     squares = isinstance(task.objective, Deviation) and task.objective.norm == "least squares"
@@ -297,7 +297,7 @@ def search_from_many(candidates: Candidates, evolved: Sequence[Real]) -> ManySta
     try:
         for k in range(ROUNDS):
             progress(k, ROUNDS)
-            x = _random_starts(candidates, chance)
+            x = _draw_random_starts(candidates, chance)
             x = np.vstack([*(evolved if k == 0 else ()), x[candidates.evaluate(x)[1] < LOST]])
             won += _run_tournament(candidates, evaluate, settle, x)
             ends = IndependentEnds.of(won)
@@ -314,11 +314,11 @@ def search_from_many(candidates: Candidates, evolved: Sequence[Real]) -> ManySta
     won.sort(key=lambda ranked: ranked[0])
     best = sorted([*won[:WINNERS], *near], key=lambda ranked: ranked[0])[:WINNERS]
     closer = residual_function(Candidates(replace(candidates.task, positions=max(CLOSER, candidates.task.positions))))
-    last = _best_first(*minimize_squares(closer, np.array([x for __, x in best]), LAST))
+    last = _sort_by_cost(*minimize_squares(closer, np.array([x for __, x in best]), LAST))
     return ManyStartsResult([x for __, x in last], IndependentEnds.of([*last, *won[WINNERS:]]), stopped)
 
 
-def _random_starts(candidates: Candidates, chance: np.random.Generator) -> Real:
+def _draw_random_starts(candidates: Candidates, chance: np.random.Generator) -> Real:
     """Return random starting points; every second one is uniform in ratio, as wide bounds leave the size open."""
     x = chance.random((SAMPLES, len(candidates.low)))
     ratio = candidates.low > 0
@@ -341,7 +341,7 @@ def _run_tournament(
     f, violation = candidates.evaluate(x)
     x = x[np.lexsort((f, violation))]
     for count, steps in TOURNAMENT:
-        last = _best_first(*minimize_squares(evaluate, settled(x[:count]), steps))
+        last = _sort_by_cost(*minimize_squares(evaluate, settled(x[:count]), steps))
         x = np.array([point for __, point in last])
     return last
 
@@ -356,7 +356,7 @@ def _shake_best(
         x = np.repeat([x for __, x in best], count // last, axis=0)
         x = np.clip(x + 10 ** chance.uniform(*DECADES, (len(x), 1)) * chance.standard_normal(x.shape), 0, 1)
         for some, steps in SHAKEN:
-            new = _best_first(*minimize_squares(evaluate, x[:some], steps))
+            new = _sort_by_cost(*minimize_squares(evaluate, x[:some], steps))
             x = np.array([point for __, point in new])
         before, best = best[0][0], sorted([*best, *new], key=lambda ranked: ranked[0])[:last]
         if best[0][0] > before * (1 - SHAKE_GAIN):
@@ -364,7 +364,7 @@ def _shake_best(
     return best
 
 
-def _best_first(x: Real, cost: Real) -> list[tuple[float, Real]]:
+def _sort_by_cost(x: Real, cost: Real) -> list[tuple[float, Real]]:
     """Pair costs and points, best first."""
     return sorted(zip(cost.tolist(), x, strict=True), key=lambda ranked: ranked[0])
 

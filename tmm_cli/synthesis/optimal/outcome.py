@@ -85,7 +85,7 @@ def compare_reached(candidates: Candidates, x: Real, n: int) -> tuple[Listing, D
     return (_compare_law if quantity.of == "law" else _compare_path)(candidates, n, quantity, read)
 
 
-def _table_name(candidates: Candidates, n: int) -> str:
+def _make_table_name(candidates: Candidates, n: int) -> str:
     return f"{candidates.quantities[n].of}-{n}" if n else candidates.quantities[n].of
 
 
@@ -121,8 +121,8 @@ def _compare_law(candidates: Candidates, n: int, quantity: MechanismQuantity, re
     )
     up = (N_("angle of the link") if swings else N_("displacement of the link"), kind)
     title = N_("Law of motion over the whole range of the driver")
-    drawn = Diagram(_table_name(candidates, n), title, (N_("driver"), place), up, lines)
-    return Listing(_table_name(candidates, n), N_("Required and reached law of motion"), columns, rows), drawn
+    drawn = Diagram(_make_table_name(candidates, n), title, (N_("driver"), place), up, lines)
+    return Listing(_make_table_name(candidates, n), N_("Required and reached law of motion"), columns, rows), drawn
 
 
 def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, read: Read) -> tuple[Listing, Diagram]:
@@ -137,7 +137,7 @@ def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, r
     else:
         reached = spots(
             DriverSamples(
-                _closest_shares(lambda shares: spots(DriverSamples(shares, NONE)), required, candidates.closed), NONE
+                _find_closest_fractions(lambda shares: spots(DriverSamples(shares, NONE)), required, candidates.closed), NONE
             )
         )
     rows: tuple[tuple[float, ...], ...] = tuple(
@@ -162,7 +162,7 @@ def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, r
         DiagramLine(N_("reached"), reached.real, reached.imag, dots=True),
     )
     drawn = Diagram(
-        _table_name(candidates, n),
+        _make_table_name(candidates, n),
         N_("Path of the point over the whole range of the driver"),
         (N_("x"), "length"),
         (N_("y"), "length"),
@@ -174,10 +174,10 @@ def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, r
         if quantity.places
         else N_("Required points, and the nearest points of the path")
     )
-    return Listing(_table_name(candidates, n), title, columns, rows), drawn
+    return Listing(_make_table_name(candidates, n), title, columns, rows), drawn
 
 
-def _closest_shares(path: Callable[[Real], Vector], points: Vector, closed: bool) -> Real:
+def _find_closest_fractions(path: Callable[[Real], Vector], points: Vector, closed: bool) -> Real:
     """Return the fractions of the driver range at which a path is nearest to points."""
     shares, step = np.linspace(0, 1, CURVE), 1 / (CURVE - 1)
     near = shares[np.argmin(np.abs(path(shares) - points[:, None]), axis=1)]
@@ -222,7 +222,7 @@ def outcome_of(candidates: Candidates, best: BestCandidate) -> SynthesisOutcome:
         )
     listings = [_tabulate_constraints(candidates, best, kinds)]
     title = candidates.quantities[0].title(linkage)
-    drawings = [draw_history(evolved, partial(_in_objective_unit, candidates), best.values[0], title, kinds[0])]
+    drawings = [draw_history(evolved, partial(_convert_objective, candidates), best.values[0], title, kinds[0])]
     for n, quantity in enumerate(candidates.quantities):
         if quantity.wanted:
             listing, drawn = compare_reached(candidates, best.x, n)
@@ -259,9 +259,9 @@ def outcome_of(candidates: Candidates, best: BestCandidate) -> SynthesisOutcome:
             )
         )
     return SynthesisOutcome(
-        _given_values(candidates, ends),
-        _found_values(candidates, best),
-        _source(candidates, best),
+        _list_bounds(candidates, ends),
+        _list_solution_values(candidates, best),
+        _describe_source(candidates, best),
         tuple(demands),
         tuple(drawings),
         tuple(notes),
@@ -270,7 +270,7 @@ def outcome_of(candidates: Candidates, best: BestCandidate) -> SynthesisOutcome:
     )
 
 
-def _given_values(candidates: Candidates, ends: tuple[float, float] | None) -> tuple[NamedValue, ...]:
+def _list_bounds(candidates: Candidates, ends: tuple[float, float] | None) -> tuple[NamedValue, ...]:
     """Return the bounds of the parameters and of the driver."""
     bounds = []
     for p in candidates.task.parameters:
@@ -288,7 +288,7 @@ def _given_values(candidates: Candidates, ends: tuple[float, float] | None) -> t
     return tuple(bounds)
 
 
-def _found_values(candidates: Candidates, best: BestCandidate) -> tuple[NamedValue, ...]:
+def _list_solution_values(candidates: Candidates, best: BestCandidate) -> tuple[NamedValue, ...]:
     """Return the parameters, with a remark if they lie at a bound."""
     numbers = []
     for p, number, share in zip(candidates.task.parameters, best.numbers.tolist(), best.x.tolist(), strict=True):
@@ -302,8 +302,8 @@ def _found_values(candidates: Candidates, best: BestCandidate) -> tuple[NamedVal
     return tuple(numbers)
 
 
-def _source(candidates: Candidates, best: BestCandidate) -> str:
-    if many_starts.is_applicable(candidates):
+def _describe_source(candidates: Candidates, best: BestCandidate) -> str:
+    if many_starts.is_least_squares(candidates):
         return N_(
             "differential evolution (R. Storn, K. Price 1997) and random starting points, then nonlinear least "
             "squares (K. Levenberg 1944, D. Marquardt 1963)"
@@ -324,7 +324,7 @@ def _tabulate_constraints(candidates: Candidates, best: BestCandidate, kinds: li
     side = N_("near") if target is not None else N_("largest angle") if objective.lowest else N_("least")
     first = (
         objective.title(linkage),
-        _subject(objective),
+        _name_subject(objective),
         side,
         target,
         best.values[0],
@@ -346,7 +346,7 @@ def _tabulate_constraints(candidates: Candidates, best: BestCandidate, kinds: li
             if constraint.equal:
                 words = state = N_("equality, met")
                 left = None
-            rows.append((quantity.title(linkage), _subject(quantity), words, bound, value, left, kinds[n], state))
+            rows.append((quantity.title(linkage), _name_subject(quantity), words, bound, value, left, kinds[n], state))
     columns = (
         ("quantity", N_("quantity"), "word"),
         ("of", N_("of"), "name"),
@@ -360,11 +360,11 @@ def _tabulate_constraints(candidates: Candidates, best: BestCandidate, kinds: li
     return Listing("constraints", N_("Objective and constraints"), columns, tuple(rows))
 
 
-def _subject(quantity: MechanismQuantity) -> str:
+def _name_subject(quantity: MechanismQuantity) -> str:
     return quantity.name or ", ".join(quantity.links)
 
 
-def _in_objective_unit(candidates: Candidates, f: Real) -> Real:
+def _convert_objective(candidates: Candidates, f: Real) -> Real:
     """Convert values of the search to the unit of the objective; a target is added to the distance from it."""
     target = candidates.task.target
     if target is not None:

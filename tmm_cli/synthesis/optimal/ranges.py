@@ -33,11 +33,11 @@ def read_ranges(
     vary: Mapping[str, Range], reader: ValueReader, names: Mapping[str, str], file_with: FileWith
 ) -> tuple[Parameter, ...]:
     """Read the ranges of the varied parameters. names: their names in the file. Raises ProblemError."""
-    kinds = _find_kinds({name: _range_values(bounds) for name, bounds in vary.items()}, reader, names, file_with)
+    kinds = _find_kinds({name: _list_range_values(bounds) for name, bounds in vary.items()}, reader, names, file_with)
     return tuple(_read_parameter(name, bounds, kinds[name], reader) for name, bounds in vary.items())
 
 
-def _range_values(bounds: Range) -> list[Any]:
+def _list_range_values(bounds: Range) -> list[Any]:
     """Return every value of a range as written in the file."""
     return (bounds.among or [bounds.from_, bounds.to, bounds.step]) if isinstance(bounds, Chosen) else bounds
 
@@ -93,7 +93,7 @@ def _find_kinds(
     file is invalid in any case, the first kind whose dimension is not the reason is taken.
     """
     dimensions = {
-        name: next((k for v in raw if (k := _dimension_name(v, reader))), "") for name, raw in raw_values.items()
+        name: next((k for v in raw if (k := _find_dimension(v, reader))), "") for name, raw in raw_values.items()
     }
 
     def value(name: str, kind: str) -> PhysicalValue:
@@ -131,7 +131,7 @@ def _find_kinds(
     return dimensions
 
 
-def _dimension_name(source: Any, reader: ValueReader) -> str | None:
+def _find_dimension(source: Any, reader: ValueReader) -> str | None:
     try:
         dimension = evaluate_quantity(source, reader.parameters, reader.units).dimension
     except ProblemError:
@@ -163,7 +163,7 @@ def read_over(over: Any, driver: Driver, reader: ValueReader) -> RangeChoice:
                 allowed=", ".join([*possible, "[from, to]"]),
             )
         return over
-    low, high = (float(reader.number(value, _driver_dimension(driver), ("over", n))) for n, value in enumerate(over))
+    low, high = (float(reader.number(value, _get_driver_dimension(driver), ("over", n))) for n, value in enumerate(over))
     if not low < high or (turns and high - low > 2 * np.pi * (1 + 1e-12)):
         raise ProblemError(
             _("the first value must be smaller than the second, and by at most one revolution"),
@@ -176,13 +176,13 @@ def read_over(over: Any, driver: Driver, reader: ValueReader) -> RangeChoice:
 
 def with_driver_range(problem: Problem, over: RangeChoice) -> Variant:
     """Return the linkage of a file with the range of its driver. Raises ProblemError."""
-    ends, stroke = _driver_ends(problem, over), problem.linkage.driver.stroke
+    ends, stroke = _find_driver_ends(problem, over), problem.linkage.driver.stroke
     if ends is not None and stroke is not None and not (stroke[0] <= ends[0] and ends[1] <= stroke[1]):
-        raise _out_of_range(("over",), over, problem.linkage.driver, stroke, problem.units)
+        raise _make_range_error(("over",), over, problem.linkage.driver, stroke, problem.units)
     return Variant(problem.linkage, problem.request, ends)
 
 
-def _driver_ends(problem: Problem, over: RangeChoice) -> Ends:
+def _find_driver_ends(problem: Problem, over: RangeChoice) -> Ends:
     driver, coordinates = problem.linkage.driver, problem.request.places
     if over == "cycle":
         return None
@@ -206,7 +206,7 @@ def _driver_ends(problem: Problem, over: RangeChoice) -> Ends:
 def read_position(value: Any, variant: Variant, reader: ValueReader, path: Path) -> Any:
     """Read a driver coordinate; whole turns are added if that brings it into the range. Raises ProblemError."""
     driver = variant.linkage.driver
-    place: Any = reader.number(value, _driver_dimension(driver), path)
+    place: Any = reader.number(value, _get_driver_dimension(driver), path)
     if variant.ends is None:
         return place
     low, high = (float(end) for end in variant.ends)
@@ -214,18 +214,18 @@ def read_position(value: Any, variant: Variant, reader: ValueReader, path: Path)
     if driver.kind == "turn" and not low - slack <= place <= high + slack:
         place = place + 2 * np.pi * np.ceil(float(low - slack - place) / (2 * np.pi))
     if not low - slack <= place <= high + slack:
-        raise _out_of_range(path, value, driver, (low, high), reader.units)
+        raise _make_range_error(path, value, driver, (low, high), reader.units)
     return place
 
 
-def _driver_dimension(driver: Driver) -> Dimension:
+def _get_driver_dimension(driver: Driver) -> Dimension:
     return ANGLE if driver.kind == "turn" else LENGTH
 
 
-def _out_of_range(
+def _make_range_error(
     path: Path, given_value: Any, driver: Driver, ends: tuple[Any, Any], units: UnitSystem
 ) -> ProblemError:
-    dimension = _driver_dimension(driver)
+    dimension = _get_driver_dimension(driver)
     low, high = (f"{units.from_si(float(end), dimension):.6g}" for end in ends)
     return ProblemError(
         _("the driver does not reach this position"),

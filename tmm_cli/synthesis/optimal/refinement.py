@@ -178,9 +178,9 @@ def evaluate_exactly(candidates: Candidates, x: Real) -> list[float]:
     undefined.
     """
     with np.errstate(all="ignore"):
-        peaks, coarse = _exact_pieces(candidates, x)(x), candidates.values(x[None])
-        values = [float(_value(candidates, n, pieces)[0]) for n, pieces in enumerate(peaks)]
-        scan, two = candidates.shares_over(candidates.scan), candidates.numbers(x[None])
+        peaks, coarse = _make_peak_function(candidates, x)(x), candidates.values(x[None])
+        values = [float(_reduce_peaks(candidates, n, pieces)[0]) for n, pieces in enumerate(peaks)]
+        scan, two = candidates.sample_range(candidates.scan), candidates.numbers(x[None])
         for n, (quantity, over) in enumerate(zip(candidates.quantities, candidates.overs, strict=True)):
 
             def curve(name: str, shares: Real, n: int = n) -> Real:
@@ -190,10 +190,10 @@ def evaluate_exactly(candidates: Candidates, x: Real) -> list[float]:
                 values[n] = np.nan
             else:
                 values[n] = quantity.refine_value(
-                    values[n], curve, scan[candidates.shares_of(n, candidates.scan)], over
+                    values[n], curve, scan[candidates.slice_samples(n, candidates.scan)], over
                 )
         if candidates.single:
-            scanned = candidates.run(x[None], DriverSamples(scan, candidates.with_sketch(np.zeros(0))))
+            scanned = candidates.run(x[None], DriverSamples(scan, candidates.append_sketch(np.zeros(0))))
             values[1] = -1.0 if candidates.passes_dead_position(scanned, candidates.scan)[0] else values[1]
     return values
 
@@ -209,22 +209,22 @@ def refine_candidate(candidates: Candidates, x: Real) -> Real:
         return points
 
     for narrow in NARROWER if candidates.traced else FEWER:
-        before, pieces = x, _exact_pieces(candidates, x, narrow)
-        top = float(np.max(np.abs(_objective_pieces(candidates, pieces(x)[0])))) or 1.0
+        before, pieces = x, _make_peak_function(candidates, x, narrow)
+        top = float(np.max(np.abs(_find_objective_pieces(candidates, pieces(x)[0])))) or 1.0
         with np.errstate(all="ignore"):
-            best = minimize_locally(lambda some: _local_values(candidates, pieces(all_of(some)), top), x[free])  # noqa: B023
+            best = minimize_locally(lambda some: _make_local_values(candidates, pieces(all_of(some)), top), x[free])  # noqa: B023
         x = all_of(best[None])[0]
         if not narrow and float(np.max(np.abs(x - before))) < SETTLED:
             break
     return x
 
 
-def _exact_pieces(candidates: Candidates, x: Real, narrow: float = 0.0) -> Callable[[Real], list[Real]]:
+def _make_peak_function(candidates: Candidates, x: Real, narrow: float = 0.0) -> Callable[[Real], list[Real]]:
     """Return the function that computes the peaks of every quantity near x exactly, from windows around the peaks of x.
 
     narrow: width of the windows relative to those of the first steps; never less than the scan requires.
     """
-    scan = candidates.shares_over(candidates.scan)
+    scan = candidates.sample_range(candidates.scan)
     outputs = candidates.run(x[None], DriverSamples(scan, np.zeros(0)))
     half = max(narrow / candidates.count, ABOUT / candidates.scan)
     step = 2 * half / (WINDOW - 1)
@@ -232,7 +232,7 @@ def _exact_pieces(candidates: Candidates, x: Real, narrow: float = 0.0) -> Calla
     at = 0
     for n, (quantity, over) in enumerate(zip(candidates.quantities, candidates.overs, strict=True)):
         windows = []
-        for subject, k in quantity.windows(quantity_reader(outputs, n, candidates.shares_of(n, candidates.scan)), over):
+        for subject, k in quantity.windows(quantity_reader(outputs, n, candidates.slice_samples(n, candidates.scan)), over):
             first = scan[k] - half
             if not over.closed:
                 first = min(max(first, 0.0), 1 - 2 * half)
@@ -241,7 +241,7 @@ def _exact_pieces(candidates: Candidates, x: Real, narrow: float = 0.0) -> Calla
             at += WINDOW
         parts.append(windows)
     positions = replace(candidates.places, shares=np.concatenate([*blocks, np.zeros(1)]))
-    exact = [windows or slice(at, at + 1) for windows in candidates.own_places(at + 1)]
+    exact = [windows or slice(at, at + 1) for windows in candidates.slice_own_coordinates(at + 1)]
 
     def pieces(some: Real) -> list[Real]:
         out = candidates.program(candidates.numbers(np.atleast_2d(some)), positions)
@@ -258,26 +258,26 @@ def _exact_pieces(candidates: Candidates, x: Real, narrow: float = 0.0) -> Calla
     return pieces
 
 
-def _value(candidates: Candidates, n: int, pieces: Real) -> Real:
+def _reduce_peaks(candidates: Candidates, n: int, pieces: Real) -> Real:
     """Return the value of a quantity computed from its peaks, (variants,)."""
     extreme: Real = (np.min if candidates.quantities[n].lowest else np.max)(pieces, axis=1)
     return extreme
 
 
-def _objective_pieces(candidates: Candidates, pieces: Real) -> Real:
+def _find_objective_pieces(candidates: Candidates, pieces: Real) -> Real:
     """Return the values to be minimised, differentiable where they are zero."""
     target, objective = candidates.task.target, candidates.task.objective
     if target is not None:
-        off = (_value(candidates, 0, pieces)[:, None] - target) / (abs(target) or 1.0)
+        off = (_reduce_peaks(candidates, 0, pieces)[:, None] - target) / (abs(target) or 1.0)
         return np.hstack([off, -off])
     return -pieces if objective.lowest else objective.smooth(pieces)
 
 
-def _local_values(candidates: Candidates, peaks: list[Real], top: float) -> LocalValues:
+def _make_local_values(candidates: Candidates, peaks: list[Real], top: float) -> LocalValues:
     """Return the objective and the constraints in the form that the local minimisation needs."""
     least, equal = [], []
     for n, (constraint, pieces) in enumerate(zip(candidates.constraints, peaks[1:], strict=True), 1):
-        low = high = _value(candidates, n, pieces)[:, None]
+        low = high = _reduce_peaks(candidates, n, pieces)[:, None]
         if (
             isinstance(constraint.quantity, PeakQuantity) and not constraint.equal
         ):  # then every peak must satisfy the bound
@@ -287,5 +287,5 @@ def _local_values(candidates: Candidates, peaks: list[Real], top: float) -> Loca
         equal += even
     none = np.zeros((len(peaks[0]), 0))
     return LocalValues(
-        _objective_pieces(candidates, peaks[0]) / top, np.hstack([none, *least]), np.hstack([none, *equal])
+        _find_objective_pieces(candidates, peaks[0]) / top, np.hstack([none, *least]), np.hstack([none, *equal])
     )

@@ -36,7 +36,7 @@ def solve(task: OptimalTask) -> SynthesisOutcome:
     candidates = Candidates(task)
     best = find_best(candidates)
     if best.missed:
-        raise _missed_constraint(candidates, best)
+        raise _make_constraint_refusal(candidates, best)
     return outcome_of(candidates, best)
 
 
@@ -45,9 +45,9 @@ def find_best(candidates: Candidates) -> BestCandidate:
     task = candidates.task
     choices = DiscreteChoices(candidates) if len(task.free) < len(task.parameters) else None
     if choices is not None and choices.few:
-        evolved = choices.every()
-        return _refine_starts(candidates, choices.starts(), evolved)
-    many = many_starts.is_applicable(candidates)
+        evolved = choices.evaluate_all()
+        return _refine_starts(candidates, choices.find_starts(), evolved)
+    many = many_starts.is_least_squares(candidates)
     evolved = evolve(
         choices or candidates.evaluate,
         len(task.parameters),
@@ -57,17 +57,17 @@ def find_best(candidates: Candidates) -> BestCandidate:
         equalities=any(constraint.equal for constraint in candidates.constraints),
         progress=task.progress,
     )
-    starts = _distinct_starts(candidates, evolved)
+    starts = _choose_distinct_starts(candidates, evolved)
     if many and not evolved.stopped:
         many_result = many_starts.search_from_many(candidates, starts)
         led = _refine_starts(
             candidates, [*many_result.starts[:1], *starts[:1]], replace(evolved, stopped=many_result.stopped)
         )
         return replace(led, ends=many_result.ends)
-    return _refine_starts(candidates, starts if choices is None else [*starts, *choices.starts()], evolved)
+    return _refine_starts(candidates, starts if choices is None else [*starts, *choices.find_starts()], evolved)
 
 
-def _distinct_starts(candidates: Candidates, evolved: EvolutionResult) -> list[Real]:
+def _choose_distinct_starts(candidates: Candidates, evolved: EvolutionResult) -> list[Real]:
     """Return the best candidates that differ from one another, with admissible discrete values."""
     starts: list[Real] = []
     first = evolved.objective[0]
@@ -91,8 +91,8 @@ def _refine_starts(candidates: Candidates, starts: Iterable[Real], evolved: Evol
         except ValueError:
             return
         both = zip(candidates.constraints, values[1:], strict=True)
-        missed = float(sum(constraint.missed(value) for constraint, value in both))
-        missed += LOST * (candidates.constraints[0].missed(values[1]) > MISS_TOLERANCE)
+        missed = float(sum(constraint.compute_violation(value) for constraint, value in both))
+        missed += LOST * (candidates.constraints[0].compute_violation(values[1]) > MISS_TOLERANCE)
         refined.append(
             (
                 missed if missed > MISS_TOLERANCE else 0.0,
@@ -111,17 +111,17 @@ def _refine_starts(candidates: Candidates, starts: Iterable[Real], evolved: Evol
         if not refined:
             raise
         evolved = replace(evolved, stopped=True)
-    goes = any(candidates.constraints[0].missed(values[1]) <= MISS_TOLERANCE for *__, values in refined)
+    goes = any(candidates.constraints[0].compute_violation(values[1]) <= MISS_TOLERANCE for *__, values in refined)
     refined = [entry for entry in refined if not np.isnan(entry[0] + entry[1])]
     if not refined:
         if goes or evolved.violation[0] == 0.0:
-            raise Infeasible("objective", _no_quantity_reason(candidates, candidates.task.objective))
+            raise Infeasible("objective", _explain_undefined(candidates, candidates.task.objective))
         raise Infeasible("vary", NEVER)
     missed, __, x, values = min(refined, key=lambda entry: entry[:2])
     return BestCandidate(x, candidates.numbers(x), values, missed, evolved)
 
 
-def _no_quantity_reason(candidates: Candidates, quantity: MechanismQuantity) -> str:
+def _explain_undefined(candidates: Candidates, quantity: MechanismQuantity) -> str:
     """Return why no candidate has a quantity; forces are undefined if an accelerated driver does not arrive."""
     if quantity.forces and candidates.variant.accelerated:
         return N_(
@@ -131,16 +131,16 @@ def _no_quantity_reason(candidates: Candidates, quantity: MechanismQuantity) -> 
     return N_("no mechanism was found within the bounds for which this quantity is defined")
 
 
-def _missed_constraint(candidates: Candidates, best: BestCandidate) -> Infeasible:
+def _make_constraint_refusal(candidates: Candidates, best: BestCandidate) -> Infeasible:
     """Return the refusal for the most violated constraint, with its nearest value under the other constraints."""
-    misses = [float(c.missed(value)) for c, value in zip(candidates.constraints, best.values[1:], strict=True)]
+    misses = [float(c.compute_violation(value)) for c, value in zip(candidates.constraints, best.values[1:], strict=True)]
     n = int(np.argmax(misses))
     constraint, value = candidates.constraints[n], best.values[n + 1]
     if misses[0] > MISS_TOLERANCE:
         return Infeasible("vary", NEVER)
     if np.isnan(value):
-        return Infeasible(constraint.at, _no_quantity_reason(candidates, constraint.quantity))
-    bound, at = constraint.broken(value)
+        return Infeasible(constraint.at, _explain_undefined(candidates, constraint.quantity))
+    bound, at = constraint.find_violated_bound(value)
     others = tuple(other for other in candidates.task.constraints if other is not constraint)
     task = replace(candidates.task, objective=constraint.quantity, constraints=others, target=bound)
     near = _refine_starts(Candidates(task), [best.x], best.evolved)

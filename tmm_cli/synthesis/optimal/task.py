@@ -54,7 +54,7 @@ class QuantityConstraint:
             return 1.0
         return max(abs(self.least or 0.0), abs(self.most or 0.0)) or 1.0
 
-    def missed(self, value: Any) -> Any:
+    def compute_violation(self, value: Any) -> Any:
         """Return the violation relative to the scale; 0 if satisfied, inf if the quantity is undefined."""
         low = 0.0 if self.least is None else self.least - value
         high = 0.0 if self.most is None else value - self.most
@@ -71,7 +71,7 @@ class QuantityConstraint:
         least = [] if self.least is None else [(low - self.least) / self.scale]
         return [*least, *([] if self.most is None else [(self.most - high) / self.scale])], []
 
-    def broken(self, value: float) -> tuple[float, Keys]:
+    def find_violated_bound(self, value: float) -> tuple[float, Keys]:
         """Return the bound that a value violates, and the path of its key in the file."""
         low = self.least is not None and value < self.least
         bound = self.least if low else self.most
@@ -109,7 +109,7 @@ class OptimalTask:
         """Indices of the continuous parameters."""
         return [k for k, parameter in enumerate(self.parameters) if not parameter.values]
 
-    def with_one(self, first: Sequence[float], k: int, numbers: Sequence[float]) -> list[list[float]]:
+    def vary_parameter(self, first: Sequence[float], k: int, numbers: Sequence[float]) -> list[list[float]]:
         """Return parameter lists with other values of parameter k, without those that the file refuses."""
         tried = ([*first[:k], float(number), *first[k + 1 :]] for number in numbers)
         return [numbers_tried for numbers_tried in tried if self.accepts(numbers_tried)]
@@ -187,9 +187,9 @@ def _check_cycle(task: OptimalTask, first: Sequence[float], linkage: Linkage) ->
     for k, p in enumerate(task.parameters):
         checked_values = p.values or [p.low + share * (p.high - p.low) for share in SHARES]
         turns: set[Any] = set()  # or the ratios, if there is no common cycle
-        for numbers in task.with_one(first, k, checked_values[:: -(-len(checked_values) // MOST_LOOKED)]):
+        for numbers in task.vary_parameter(first, k, checked_values[:: -(-len(checked_values) // MOST_LOOKED)]):
             other = task.make(numbers).linkage
-            turns.add(cycle_turns(other, kernels) or _speed_ratios(other))
+            turns.add(cycle_turns(other, kernels) or _list_speed_ratios(other))
         if len(turns) > 1:
             reason = _(
                 "the number of revolutions in a cycle depends on this parameter; it must be the same for all candidates"
@@ -197,7 +197,7 @@ def _check_cycle(task: OptimalTask, first: Sequence[float], linkage: Linkage) ->
             raise Infeasible(("vary", p.name), reason)
 
 
-def _speed_ratios(linkage: Linkage) -> tuple[str, ...]:
+def _list_speed_ratios(linkage: Linkage) -> tuple[str, ...]:
     """Return the speed ratios of gears and drivers, to 12 digits, on which their common cycle depends."""
     wheels = [mesh.ratio for mesh in linkage.meshes if mesh.kind == "gear"]
     return tuple(f"{ratio:.12g}" for ratio in (*wheels, *(o.rate / linkage.driver.rate for o in linkage.others)))
@@ -207,7 +207,7 @@ def has_one_sense(task: OptimalTask, first: Sequence[float]) -> bool:
     """Return True if no driver moves forward in some candidates and backward in others."""
     senses = set()
     for k, p in enumerate(task.parameters):
-        for numbers in task.with_one(first, k, (p.low, p.high)):
+        for numbers in task.vary_parameter(first, k, (p.low, p.high)):
             linkage = task.make(numbers).linkage
             senses.add(tuple(driver.sense for driver in (linkage.driver, *linkage.others)))
     return len(senses) <= 1

@@ -1,1 +1,3 @@
-"""Structural synthesis: kinematic chains, schemes of mechanisms from Assur groups, and problem files for them."""
+"""Structural synthesis: kinematic chains, schemes of mechanisms composed of Assur groups, and problem files for
+them.
+"""

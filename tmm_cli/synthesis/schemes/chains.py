@@ -1,8 +1,9 @@
 """Enumeration of kinematic chains, and a canonical form of small graphs with coloured vertices and edges.
 
-Colours are refined by those of the neighbours until nothing changes. If vertices of equal colour remain, each of them
-in turn is given a colour of its own, and the smallest of all forms is kept. Two graphs are isomorphic exactly if their
-forms are equal. Source: B. D. McKay, Practical graph isomorphism, Congressus Numerantium 30 (1981).
+The colour of each vertex is refined by the colours of its neighbours until nothing changes. If several vertices still
+have the same colour, each of them in turn receives a different colour, and the smallest of all resulting forms is kept.
+Two graphs are isomorphic if and only if their canonical forms are equal. Source: B. D. McKay, Practical graph
+isomorphism, Congressus Numerantium 30 (1981).
 """
 
 from __future__ import annotations
@@ -20,8 +21,11 @@ GraphForm = tuple[tuple[int, ...], tuple[tuple[int, int, int], ...]]
 
 
 def canonical_form(colours: Sequence[int], edges: Mapping[tuple[int, int], int]) -> GraphForm:
-    """Return the canonical form of a simple graph on the vertices 0 .. len(colours) - 1; edges: kind by pair of
-    vertices.
+    """Return the canonical form of a simple graph.
+
+    Args:
+        colours: colour of each vertex 0, 1, ....
+        edges: kind of each edge, by its pair of vertices.
     """
     beyond = 2 * max(len(colours), *colours) + 2  # number of possible colours: one number encodes kind and colour
     beside: list[list[tuple[int, int]]] = [[] for _ in colours]
@@ -57,7 +61,7 @@ def _find_smallest_form(
 
 
 def _refine_colours(colours: list[int], beside: list[list[tuple[int, int]]]) -> list[int]:
-    """Return colours 0, 1, ... that distinguish vertices by their neighbours, the neighbours of these, and so on."""
+    """Refine the colours 0, 1, ... of vertices by their neighbours until they no longer change."""
     count = 0
     while True:
         keys = [
@@ -93,14 +97,19 @@ Bundle = tuple[int, int, int]
 
 @dataclass(frozen=True)
 class KinematicChain:
-    """A kinematic chain: links 0 .. n - 1 (those with most pairs first) and its revolute pairs (i, j), i < j."""
+    """A kinematic chain with revolute pairs.
+
+    Attributes:
+        links: number of links n; the links are numbered 0 .. n - 1, those with most pairs first.
+        pairs: revolute pairs as pairs of links (i, j), i < j.
+    """
 
     links: int
     pairs: tuple[tuple[int, int], ...]
 
     @property
     def mobility(self) -> int:
-        """3(n - 1) - 2p, with one link fixed."""
+        """Mobility 3(n - 1) - 2p of the chain of n links and p pairs, with one link fixed."""
         return 3 * (self.links - 1) - 2 * len(self.pairs)
 
     @cached_property
@@ -111,30 +120,33 @@ class KinematicChain:
 
     @cached_property
     def fractionated(self) -> bool:
-        """True if removing one link separates the rest (a pair with this property has such a link beside it)."""
+        """True if the chain separates when one link is removed.
+
+        A chain that separates when a pair is removed always has such a link.
+        """
         return any(not _is_connected(set(range(self.links)) - {link}, self.pairs) for link in range(self.links))
 
     @cached_property
     def form(self) -> GraphForm:
-        """Canonical form: equal exactly for isomorphic chains."""
+        """Canonical form. Two chains are isomorphic if and only if their forms are equal."""
         return canonical_form([0] * self.links, dict.fromkeys(self.pairs, 0))
 
 
 def independent_contours(links: int, mobility: int) -> int | None:
-    """Return the number of independent contours of a closed chain; None if there is no such chain."""
+    """Return the number of independent contours of a closed chain; None if no such chain exists."""
     twice = links - mobility - 1
     return twice // 2 if mobility >= 1 and twice >= 2 and twice % 2 == 0 else None
 
 
 def enumerate_chains(links: int, mobility: int = 1) -> tuple[KinematicChain, ...]:
-    """Enumerate all non-isomorphic chains with so many links.
+    """Enumerate all non-isomorphic kinematic chains with a given number of links.
 
     Args:
         links: number of links, at most MOST_LINKS_OF_CHAIN.
         mobility: mobility W of the chain with one link fixed.
 
     Returns:
-        The chains, ordered by assortment of links; () if there is none.
+        The chains, sorted by their numbers of binary, ternary, ... links; () if there is none.
 
     Raises:
         ValueError: too many links.
@@ -155,7 +167,10 @@ def enumerate_chains(links: int, mobility: int = 1) -> tuple[KinematicChain, ...
 
 
 def _enumerate_multigraphs(loops: int) -> Iterator[tuple[int, tuple[Bundle, ...]]]:
-    """Yield connected multigraphs with so many independent contours and all degrees 3 or more: vertices, bundles."""
+    """Yield connected multigraphs with a given number of independent contours, and no vertex of degree less than 3.
+
+    Each is yielded as the number of its vertices and its bundles of edges.
+    """
     seen = set()
     for extra in _enumerate_partitions(2 * (loops - 1)):
         degrees = [2 + k for k in extra]
@@ -179,7 +194,7 @@ def _enumerate_partitions(total: int, most: int | None = None) -> Iterator[list[
 
 
 def _fill_degrees(left: list[int], i: int, j: int) -> Iterator[list[Bundle]]:
-    """Yield all ways to use up the remaining degrees, from the bundle (i, j) on."""
+    """Yield all sets of bundles, from the bundle (i, j) on, that give the vertices their remaining degrees."""
     if i == len(left):
         yield []
         return
@@ -199,10 +214,11 @@ def _fill_degrees(left: list[int], i: int, j: int) -> Iterator[list[Bundle]]:
 def _distribute_binary_links(
     vertices: int, bundles: Sequence[Bundle], binary: int
 ) -> Iterator[tuple[tuple[int, ...], ...]]:
-    """Yield the ways to put binary links on the edges, one of each isomorphism class: their numbers, bundle by bundle.
+    """Yield the distributions of binary links over the edges of a multigraph, one of each isomorphism class.
 
-    Of all sub-chains around a set S of vertices, the one with all edges that carry fewer than two binary links has the
-    smallest mobility (an edge with m of them removes 2 - m freedoms).
+    Each is yielded as the numbers of binary links on the edges of every bundle. Distributions with a rigid sub-chain
+    are omitted. Of all sub-chains around a set of vertices, the one with all edges that carry fewer than two binary
+    links has the smallest mobility, as an edge with m of them removes 2 - m degrees of freedom.
     """
     inside = [
         (3 * (size - 1), [k for k, (i, j, _) in enumerate(bundles) if i in vertex_set and j in vertex_set])
@@ -222,7 +238,7 @@ def _distribute_binary_links(
 
 
 def _spread_binary_links(bundles: Sequence[Bundle], binary: int) -> Iterator[tuple[tuple[int, ...], ...]]:
-    """Yield numbers of binary links on the edges of each bundle, such that no contour of a bundle is rigid."""
+    """Yield the numbers of binary links on the edges of each bundle for which no contour of a bundle is rigid."""
     if not bundles:
         if binary == 0:
             yield ()
@@ -238,12 +254,14 @@ def _spread_binary_links(bundles: Sequence[Bundle], binary: int) -> Iterator[tup
 
 
 def _count_fewest_binary_links(loop: bool, count: int) -> int:
-    """Return the smallest number of binary links that a bundle needs: a contour has at least four links."""
+    """Return the smallest number of binary links on a bundle of edges for which every contour has at least four
+    links.
+    """
     return 3 * count if loop else max(0, 2 * (count - 1))
 
 
 def _enumerate_ascending_tuples(count: int, most: int, least: int) -> Iterator[tuple[int, ...]]:
-    """Yield ascending tuples of `count` numbers from `least` on, with a sum of at most `most`."""
+    """Yield all ascending tuples of `count` numbers, none below `least`, whose sum is at most `most`."""
     if count == 0:
         yield ()
         return
@@ -253,7 +271,7 @@ def _enumerate_ascending_tuples(count: int, most: int, least: int) -> Iterator[t
 
 
 def _find_automorphisms(vertices: int, bundles: Sequence[Bundle]) -> list[list[int]]:
-    """Return all automorphisms of the multigraph, each as the indices of the images of its bundles."""
+    """Return all automorphisms of a multigraph. Each lists, for every bundle, the index of its image."""
     counts = {(i, j): count for i, j, count in bundles}
     number = {(i, j): k for k, (i, j, _) in enumerate(bundles)}
     mappings = []
@@ -265,7 +283,7 @@ def _find_automorphisms(vertices: int, bundles: Sequence[Bundle]) -> list[list[i
 
 
 def _insert_binary_links(bundles: Sequence[Bundle], binaries: Sequence[Sequence[int]], links: int) -> KinematicChain:
-    """Build the chain with binary links in its edges, links with most pairs first."""
+    """Build the kinematic chain of a multigraph with binary links inserted in its edges."""
     after = 1 + max(j for _, j, _ in bundles)
     pairs = []
     for (i, j, _), numbers in zip(bundles, binaries, strict=True):

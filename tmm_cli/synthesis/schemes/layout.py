@@ -1,7 +1,7 @@
-"""Layout of a scheme: random positions of its groups that assemble, rounded to dimensions for a problem file.
+"""Layout of a scheme: dimensions in whole millimetres with which its groups can be assembled, chosen at random.
 
-Everything is in mm and degrees, as in the problem file; only axis angles are in radians. The crank stands at CRANK_AT
-and is short, so that it is likely to rotate fully.
+All lengths are in mm and all angles in degrees, as in the problem file; only the angles of link axes are in radians.
+The first crank has the direction CRANK_AT[0]. Cranks are short, so that they are likely to rotate fully.
 """
 
 from __future__ import annotations
@@ -25,7 +25,13 @@ WEIGHT = 3.0  # a transmission angle of 0 costs as much as this length of links 
 
 @dataclass(frozen=True)
 class PrismaticLayout:
-    """A prismatic pair: the runner's point stays on the line through `through` at `angle` (deg), in carrier axes."""
+    """Dimensions of a prismatic pair: a point of the runner moves along a line of the carrier.
+
+    Attributes:
+        carrier, runner: numbers of the link with the guide and of the link that slides.
+        through, angle: a point (complex, mm) and the direction (deg) of the line in the carrier's axes.
+        point: name of the runner's point.
+    """
 
     carrier: int
     runner: int
@@ -36,14 +42,16 @@ class PrismaticLayout:
 
 @dataclass(frozen=True)
 class SchemeLayout:
-    """Dimensions of a scheme and its sketch.
+    """Dimensions of a scheme, and its sketch.
 
     Attributes:
-        points: points of every link in its own axes (of the frame: in the drawing).
-        places: points of the moving links in the sketch.
-        angles: sketch angles of links that slide on one another while hinged to two others.
-        cranks: crank angles (deg) in the sketch.
-        cost: lower is better.
+        points: points of each link in its own axes (complex, mm), by link and name; the points of the frame are in the
+            axes of the drawing.
+        slides: prismatic pairs.
+        places: points of the moving links in the sketch (complex, mm), by name.
+        angles: angles in the sketch (deg) of the slotted links of RPR groups, by link.
+        cranks: crank angles in the sketch (deg).
+        cost: rating of the layout; lower is better.
     """
 
     points: dict[int, dict[str, complex]]
@@ -55,12 +63,24 @@ class SchemeLayout:
 
 
 class UnfitLayout(Exception):  # noqa: N818
-    """This layout is not usable."""
+    """Raised if a layout cannot be used."""
 
 
 @dataclass
 class LayoutDraft:
-    """Points (mm) and axis angles (rad) of the links, link by link; a subclass places the groups."""
+    """A layout while its links are being placed one after another; a subclass places the groups.
+
+    Attributes:
+        scheme: the scheme.
+        random: random number generator.
+        points: points of each link (complex, mm), by link and name.
+        axis_angle: angle of each link's x axis (rad), by link.
+        slides: prismatic pairs: carrier, runner, point of the guide (complex, mm), its direction (rad), name of the
+            point.
+        slotted_links: slotted links of RPR groups.
+        penalties: penalties of the groups.
+        names: letters for further points.
+    """
 
     scheme: Scheme
     random: Random
@@ -76,13 +96,13 @@ class LayoutDraft:
         return range(1, self.scheme.cranks + 1)
 
     def pivot(self, crank: int) -> complex:
-        """Return the pivot of a crank on the frame."""
+        """Return the pivot of a crank on the frame (complex, mm)."""
         return next(iter(self.points[crank].values()))
 
     # --- random choices
 
     def random_vector(self, shortest: float, longest: float, low: float = 0.0, high: float = 360.0) -> complex:
-        """Return a random vector with length (mm) and direction (deg) between bounds."""
+        """Return a random vector (complex, mm) with its length (mm) and direction (deg) within limits."""
         angle = math.radians(self.random.uniform(low, high))
         return cmath.rect(self.random.uniform(shortest, longest), angle)
 
@@ -92,16 +112,18 @@ class LayoutDraft:
     # --- links
 
     def place_link(self, link: int, turn: float, **points: complex) -> None:
-        """Place a link with its first point as origin and its axes rotated by `turn` (rad)."""
+        """Place a link whose axes are rotated by `turn` (rad); its first point is the origin of its axes."""
         self.axis_angle[link] = turn
         self.points[link] = dict(points)
 
     def place_bar(self, link: int, first: str, A: complex, second: str, B: complex) -> None:
-        """Place a link with two hinges, its axis from the first to the second."""
+        """Place a link with two hinges; its x axis points from the first to the second."""
         self.place_link(link, cmath.phase(B - A), **{first: A, second: B})
 
     def new_hinge(self, link: int) -> complex | None:
-        """Return a point for one more hinge of a link; None for the frame, where any point will do."""
+        """Return a point (complex, mm) for another hinge of a link; None for the frame, on which any point is
+        possible.
+        """
         points = list(self.points[link].values())
         if link == 0:
             return None
@@ -119,12 +141,15 @@ class LayoutDraft:
         return (A + B) / 2 + 1j * along * self.random_side() * self.random.uniform(60, 140)
 
     def centre_of(self, link: int) -> complex | None:
-        """Return the mean of a link's points; None for the frame."""
+        """Return the mean of the points of a link (complex, mm); None for the frame."""
         points = list(self.points[link].values())
         return None if link == 0 else sum(points) / len(points)
 
     def new_hinges(self, X: int, Y: int, shortest: float, longest: float) -> tuple[complex, complex]:
-        """Return external hinges on two links; one on the frame is placed at a random distance from the other."""
+        """Return points (complex, mm) for a hinge on each of two links.
+
+        A hinge on the frame is placed at a random distance (mm) from the other one.
+        """
         A, B = self.new_hinge(X), self.new_hinge(Y)
         if A is None:
             assert B is not None
@@ -134,8 +159,13 @@ class LayoutDraft:
         return A, B
 
     def guide_direction(self, carrier: int, turn: float, spread: float) -> float:
-        """Return a guide direction (rad) around `turn`: on the frame in steps of 15 degrees, on other links of 1
-        degree.
+        """Return a random direction (rad) for a guide.
+
+        Args:
+            carrier: link with the guide. The direction is rounded to 15 degrees on the frame, to 1 degree on other
+                links.
+            turn: mean direction (rad).
+            spread: largest deviation from it (deg).
         """
         turn += math.radians(self.random.uniform(-spread, spread))
         step = math.radians(15 if carrier == 0 else 1)
@@ -145,17 +175,21 @@ class LayoutDraft:
         self.slides.append((carrier, runner, through, turn, point))
 
     def add_transmission_penalty(self, transmission: float) -> None:
-        """Add the penalty of a group for the sine of its transmission angle."""
+        """Add the penalty of a group for the sine of its transmission angle. Raises UnfitLayout if the sine is less
+        than 0.5.
+        """
         if abs(transmission) < 0.5:
             raise UnfitLayout
         self.penalties.append((1 - min(1.0, abs(transmission))) ** 2)
 
     def add_reserve_penalty(self, reserve: float) -> None:
-        """Add the penalty of a group for the distance (mm) by which it can still move; a crank diameter is enough."""
+        """Add the penalty of a group for its remaining range of motion (mm); a range of one crank diameter costs
+        nothing.
+        """
         self.penalties.append((1 - max(0.0, min(1.0, reserve / (2 * CRANK)))) ** 2)
 
     def name_hinge(self, link: int, place: complex) -> str:
-        """Add a named hinge to an existing link, and return its name."""
+        """Add a hinge with a new name to an existing link, and return the name."""
         name = next(self.names)
         self.points[link][name] = complex(round(place.real), round(place.imag)) if link == 0 else place
         return name
@@ -163,7 +197,11 @@ class LayoutDraft:
     # --- dimensions
 
     def to_layout(self) -> SchemeLayout:
-        """Return the layout in whole numbers. Raises UnfitLayout if links are too long or points too close together."""
+        """Round the draft to whole millimetres and degrees.
+
+        Raises:
+            UnfitLayout: a link is too long, or two points are too close together.
+        """
         all_points = {name: place for points in self.points.values() for name, place in points.items()}
         if any(abs(p - q) < NEAREST for p, q in combinations(all_points.values(), 2)):
             raise UnfitLayout
@@ -194,18 +232,18 @@ class LayoutDraft:
         return SchemeLayout(points, slides, moving, angles, cranks, sum(spans) / 1000 + WEIGHT * sum(self.penalties))
 
     def to_link_axes(self, link: int, place: complex) -> complex:
-        """Return a point in a link's axes, in whole millimetres."""
+        """Return a point in the axes of a link, rounded to whole millimetres."""
         origin = next(iter(self.points[link].values())) if link else 0j
         return round_to_mm((place - origin) * cmath.rect(1, -self.axis_angle[link]))
 
 
 def round_to_mm(place: complex) -> complex:
-    """Round a point to whole millimetres."""
+    """Round the coordinates of a point to whole millimetres."""
     return complex(round(place.real), round(place.imag))
 
 
 def _wrap_line_angle(angle: int) -> int:
-    """Return the direction of a line in -90 (not included) to 90 degrees."""
+    """Return the direction of a line between -90 (excluded) and 90 degrees."""
     return 90 - (90 - angle) % 180
 
 
@@ -219,14 +257,16 @@ TRIALS = 250
 
 
 def find_layouts(scheme: Scheme, seed: int = 1) -> tuple[SchemeLayout, ...]:
-    """Return layouts of a scheme, best first; the same seed gives the same layouts."""
+    """Return layouts of a scheme, best first. The same seed always gives the same layouts."""
     random = Random(seed)
     layouts = (_GroupPlacer(scheme, random).place_groups() for _ in range(TRIALS))
     return tuple(sorted((x for x in layouts if x is not None), key=lambda layout: layout.cost))
 
 
 class _GroupPlacer(LayoutDraft):
-    """A layout of the whole scheme, its groups placed one after another."""
+    """Draft of a layout that places the groups of the scheme one after another, with a method for each type of
+    group.
+    """
 
     def place_groups(self) -> SchemeLayout | None:
         self.points, self.axis_angle = {0: {}}, {0: 0.0}
@@ -254,7 +294,7 @@ class _GroupPlacer(LayoutDraft):
             return None
 
     def rrr(self, group: PlacedGroup) -> None:
-        (a, b), (X, Y) = group.links, _supporting_links(group)
+        (a, b), (X, Y) = group.links, _find_supporting_links(group)
         A, C = self.new_hinges(X, Y, 200, 380)
         base = C - A
         B = A + base * complex(self.random.uniform(0.2, 0.8), self.random_side() * self.random.uniform(0.35, 0.9))
@@ -266,7 +306,7 @@ class _GroupPlacer(LayoutDraft):
         self.add_reserve_penalty(min(sum(legs) - abs(base), abs(base) - abs(legs[0] - legs[1])))
 
     def rrp(self, group: PlacedGroup) -> None:
-        (a, b), (X, Y) = group.links, _supporting_links(group)
+        (a, b), (X, Y) = group.links, _find_supporting_links(group)
         A, middle = self.new_hinge(X), self.centre_of(Y)
         if middle is not None:
             if A is None:
@@ -289,7 +329,7 @@ class _GroupPlacer(LayoutDraft):
         self.add_reserve_penalty(abs(B - A) - off)
 
     def rpr(self, group: PlacedGroup) -> None:
-        (a, b), (X, Y) = group.links, _supporting_links(group)
+        (a, b), (X, Y) = group.links, _find_supporting_links(group)
         A, B = self.new_hinges(X, Y, 140, 260)
         nA, nB = self.name_hinge(X, A), self.name_hinge(Y, B)
         turn = cmath.phase(A - B)
@@ -300,7 +340,7 @@ class _GroupPlacer(LayoutDraft):
         self.add_transmission_penalty(abs(A - B) / (2 * CRANK))
 
     def prp(self, group: PlacedGroup) -> None:
-        (a, b), (X, Y) = group.links, _supporting_links(group)
+        (a, b), (X, Y) = group.links, _find_supporting_links(group)
         middles = [x for x in (self.centre_of(X), self.centre_of(Y)) if x is not None]
         C = sum(middles) / len(middles) + self.random_vector(60, 220)
         leading, other = (X, Y) if X in self.cranks or (Y not in self.cranks and X > Y) else (Y, X)
@@ -316,7 +356,7 @@ class _GroupPlacer(LayoutDraft):
         self.add_transmission_penalty(math.sin(turns[X] - turns[Y]))
 
     def rpp(self, group: PlacedGroup) -> None:
-        (a, b), (X, Y) = group.links, _supporting_links(group)
+        (a, b), (X, Y) = group.links, _find_supporting_links(group)
         A, middle = self.new_hinge(X), self.centre_of(Y)
         if A is None:
             assert middle is not None
@@ -332,7 +372,7 @@ class _GroupPlacer(LayoutDraft):
         self.add_transmission_penalty(math.sin(across - along))
 
     def iii(self, group: PlacedGroup) -> None:
-        held = _supporting_links(group)
+        held = _find_supporting_links(group)
         ends, names = [], []
         for link in held:
             end = self.new_hinge(link)
@@ -354,11 +394,11 @@ class _GroupPlacer(LayoutDraft):
         # the ternary link is in a dead position if the lines of its legs meet in one point
         ways = [(corner - A) / abs(corner - A) for corner, A in zip(corners, outer, strict=True)]
         rows = [(w.real, w.imag, cross(c - middle, w) / 75) for w, c in zip(ways, corners, strict=True)]
-        self.add_transmission_penalty(_determinant(rows))
+        self.add_transmission_penalty(_compute_determinant(rows))
 
     def iv(self, group: PlacedGroup) -> None:
         first, left, second, right = group.links
-        X, Y = _supporting_links(group)
+        X, Y = _find_supporting_links(group)
         P, Q = self.new_hinges(X, Y, 300, 380)
         along = math.degrees(cmath.phase(Q - P))
         A, D = (
@@ -376,11 +416,11 @@ class _GroupPlacer(LayoutDraft):
         self.place_bar(right, nD, D, nC, C)
 
 
-def _supporting_links(group: PlacedGroup) -> list[int]:
+def _find_supporting_links(group: PlacedGroup) -> list[int]:
     """Return the links to which a group is attached, in the order of its external pairs."""
     return [support for support, _, _ in group.outer]
 
 
-def _determinant(rows: list[tuple[float, float, float]]) -> float:
+def _compute_determinant(rows: list[tuple[float, float, float]]) -> float:
     (a, b, c), (d, e, f), (g, h, i) = rows
     return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)

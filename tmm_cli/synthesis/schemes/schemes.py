@@ -1,17 +1,18 @@
 """Structural synthesis: all schemes of mechanisms formed by attaching Assur groups one after another.
 
-A scheme begins with driving cranks hinged to the frame; every group is attached by its external pairs to the frame and
-to links that are already there (L. V. Assur; I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 3). The
-mobility is then the number of cranks, and no part is overconstrained by count: a group neither adds nor removes
-freedom. A scheme is admissible if it can move:
+A scheme begins with driving cranks hinged to the frame. Every group is attached by its external pairs to the frame and
+to links that are already present (L. V. Assur; I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 3). The
+mobility then equals the number of cranks, because a group neither adds nor removes degrees of freedom. A scheme is
+admissible if it can move:
 
-- the external pairs of a group are not all on one link, with which the group would form a rigid body;
-- every hinge rotates: two links that keep their relative direction (joined by prismatic pairs alone) have no hinge
-  between them, as in a contour with a single revolute pair;
-- every crank drives something, and the mechanism stays connected when the frame is removed.
+- The external pairs of a group are not all on one link, with which the group would form a rigid body.
+- Every hinge can rotate: two links that keep their relative direction, because they are connected only by prismatic
+  pairs, have no hinge between them. A contour with a single revolute pair would have one.
+- Every crank drives a link, and the mechanism stays connected when the frame is removed.
 
-All pairs are simple: a compound hinge is two hinges of a link at one point, which is a matter of dimensions. Two
-schemes are equal if their links correspond, the frame to the frame, cranks to cranks and every pair to one of its kind.
+All pairs are simple. A compound hinge consists of two hinges of a link at one point, which is a matter of dimensions.
+Two schemes are equal if their links correspond: the frame to the frame, cranks to cranks, and every pair to a pair of
+the same kind.
 """
 
 from __future__ import annotations
@@ -37,7 +38,15 @@ MOST_SCHEMES = 2000
 
 @dataclass(frozen=True)
 class GroupType:
-    """An Assur group as a building block: internal pairs between its links 0, 1, ...; external pairs of its links."""
+    """Type of an Assur group.
+
+    Attributes:
+        name: name of the type, e.g. RRP; for class III and IV the class.
+        grade: class of the group as a number.
+        links: number of links; they are numbered 0, 1, ....
+        inner: internal pairs.
+        outer: external pairs, each as a link of the group and the kind of pair.
+    """
 
     name: str
     grade: int
@@ -47,7 +56,7 @@ class GroupType:
 
     @property
     def title(self) -> str:
-        """Class and type, as II RRP; the class alone if only one type of it is enumerated."""
+        """Class and type, e.g. II RRP; the class alone if it has only one type here."""
         return f"{ROMAN[self.grade]} {self.name}" if self.grade == 2 else self.name
 
 
@@ -70,12 +79,19 @@ GROUP_CLASSES = {"II": ("RRR", "RRP", "RPR", "PRP", "RPP"), "III": ("III",), "IV
 
 
 class TooManySchemes(Exception):  # noqa: N818
-    """There are more schemes than MOST_SCHEMES."""
+    """Raised if there are more than MOST_SCHEMES schemes."""
 
 
 @dataclass(frozen=True)
 class PlacedGroup:
-    """A group of a scheme: its type, its links, its internal pairs, and its external pairs in the order of the type."""
+    """An Assur group in a scheme.
+
+    Attributes:
+        type: type of the group.
+        links: numbers of its links in the scheme.
+        inner: internal pairs.
+        outer: external pairs, in the order of the type.
+    """
 
     type: GroupType
     links: tuple[int, ...]
@@ -84,13 +100,20 @@ class PlacedGroup:
 
     @property
     def title(self) -> str:
-        """II(2,3), as in the structural formula."""
+        """Class and links as the structural formula writes them, e.g. II(2,3)."""
         return f"{ROMAN[self.type.grade]}({','.join(map(str, self.links))})"
 
 
 @dataclass(frozen=True)
 class Scheme:
-    """A scheme: link 0 is the frame, then the cranks from 1, then the links of the groups in order of attachment."""
+    """A scheme of a mechanism: driving cranks and Assur groups.
+
+    Link 0 is the frame. The cranks are numbered from 1, followed by the links of the groups in the order of attachment.
+
+    Attributes:
+        cranks: number of cranks.
+        groups: Assur groups in the order of attachment.
+    """
 
     cranks: int
     groups: tuple[PlacedGroup, ...] = ()
@@ -107,7 +130,7 @@ class Scheme:
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
-        """All pairs: of the cranks with the frame, then group by group."""
+        """All kinematic pairs: first those of the cranks with the frame, then those of each group."""
         driving: tuple[Joint, ...] = tuple((0, crank, "R") for crank in range(1, self.cranks + 1))
         return driving + tuple(joint for group in self.groups for joint in (*group.outer, *group.inner))
 
@@ -124,28 +147,33 @@ class Scheme:
 
     @property
     def types(self) -> tuple[str, ...]:
-        """Class and type of each group: II RRR, II RRP, III."""
+        """Class and type of each group, e.g. II RRR, II RRP, III."""
         return tuple(group.type.title for group in self.groups)
 
     @property
     def name(self) -> str:
-        """Name for a file: II-RRR-II-RRP."""
+        """Name for a file, e.g. II-RRR-II-RRP."""
         return "-".join(title.replace(" ", "-") for title in self.types)
 
     @cached_property
     def form(self) -> GraphForm:
-        """Canonical form: equal for one scheme however its links are numbered, and different for different schemes."""
+        """Canonical form, independent of the numbering of the links. Two schemes are equal if and only if their forms
+        are equal.
+        """
         colours = [0, *[1] * self.cranks, *[2] * (self.links - self.cranks)]
         return canonical_form(colours, {(min(i, j), max(i, j)): "RP".index(kind) for i, j, kind in self.joints})
 
     @cached_property
     def directions(self) -> tuple[int, ...]:
-        """For every link, the first link that keeps its direction relative to it (joined by prismatic pairs alone)."""
+        """For each link, the lowest-numbered link whose direction relative to it is constant.
+
+        The two links are connected only by prismatic pairs, or are the same link.
+        """
         return _find_first_joined_links(self.links, [(i, j) for i, j, kind in self.joints if kind == "P"])
 
 
 def enumerate_schemes(links: int, mobility: int = 1, types: Sequence[str] = tuple(GROUP_TYPES)) -> tuple[Scheme, ...]:
-    """Enumerate all admissible schemes, ordered by the types of their groups.
+    """Enumerate all admissible schemes, sorted by the types of their groups.
 
     Args:
         links: number of moving links.
@@ -153,8 +181,8 @@ def enumerate_schemes(links: int, mobility: int = 1, types: Sequence[str] = tupl
         types: names of the group types to use.
 
     Raises:
-        TooManySchemes: more than MOST_SCHEMES.
-        ValueError: links or mobility out of range.
+        TooManySchemes: there are more than MOST_SCHEMES schemes.
+        ValueError: the number of links or cranks is out of range.
     """
     if not (mobility <= links <= MOST_LINKS_OF_SCHEME and 1 <= mobility <= MOST_CRANKS):
         raise ValueError(f"1 to {MOST_CRANKS} cranks and at most {MOST_LINKS_OF_SCHEME} moving links")
@@ -176,7 +204,7 @@ def enumerate_schemes(links: int, mobility: int = 1, types: Sequence[str] = tupl
 
 
 def attach_group(scheme: Scheme, kind: GroupType) -> Iterator[Scheme]:
-    """Yield every way to attach one more group of this type; some of the schemes may be equal."""
+    """Yield every scheme that results from attaching a group of this type; some of them may be equal."""
     first = scheme.links + 1
     new_links = tuple(range(first, first + kind.links))
     inner = tuple((new_links[a], new_links[b], pair) for a, b, pair in kind.inner)
@@ -190,12 +218,12 @@ def attach_group(scheme: Scheme, kind: GroupType) -> Iterator[Scheme]:
 
 
 def _is_connected_without_frame(scheme: Scheme) -> bool:
-    """Return True if the moving links, including every crank, are connected without the frame."""
+    """Return True if all moving links, including the cranks, stay connected when the frame is removed."""
     return len(set(_find_first_joined_links(scheme.links, [(i, j) for i, j, _ in scheme.joints if i and j])[1:])) == 1
 
 
 def _find_first_joined_links(links: int, pairs: Iterable[tuple[int, int]]) -> tuple[int, ...]:
-    """Return, for every link 0 to `links`, the first link that these pairs connect with it, itself included."""
+    """Return, for each link 0 to `links`, the lowest-numbered link that these pairs connect with it, or itself."""
     first = list(range(links + 1))
     for i, j in pairs:
         low, high = sorted((first[i], first[j]))

@@ -105,7 +105,7 @@ class MechanismQuantity(ABC):
         """
 
     @abstractmethod
-    def measured(self, results: Results, ends: DriverEnds) -> float:
+    def measure_range(self, results: Results, ends: DriverEnds) -> float:
         """Measure the quantity on an analysed mechanism that completes its range; see `measure`."""
 
     def measure(self, results: Results, ends: DriverEnds) -> float:
@@ -114,7 +114,7 @@ class MechanismQuantity(ABC):
 
         nan if the mechanism has no such quantity.
         """
-        return self.measured(results, ends) if measures.completes_range(results, ends) else measures.NO_VALUE
+        return self.measure_range(results, ends) if measures.completes_range(results, ends) else measures.NO_VALUE
 
     def windows(self, read: Read, over: QuantityRange) -> list[tuple[Any, int]]:
         """Return the windows to evaluate finely: what each shows, and its central index in a scan of one variant."""
@@ -153,7 +153,7 @@ class MechanismQuantity(ABC):
         link = self.output(linkage, groups)
         return link is not None and not linkage.output_swings(link)
 
-    def outputs_of(self, results: Results, q: Real) -> Mapping[str, Any]:
+    def compute_outputs(self, results: Results, q: Real) -> Mapping[str, Any]:
         """Return the outputs at driver coordinates q of an analysed mechanism."""
         motion = motion_at(results, q)
         plan = solve_forces(motion, results.structure, results.strokes) if self.forces else None
@@ -171,8 +171,8 @@ class ConstantQuantity(MechanismQuantity):
     def fine(self, parts: Windows, exact: Read, over: QuantityRange, step: float) -> Real:
         return exact("value")[:, :1]
 
-    def measured(self, results: Results, ends: DriverEnds) -> float:
-        return float(self.outputs_of(results, np.array([results.start]))["value"])
+    def measure_range(self, results: Results, ends: DriverEnds) -> float:
+        return float(self.compute_outputs(results, np.array([results.start]))["value"])
 
 
 class PeakQuantity(MechanismQuantity):
@@ -202,9 +202,9 @@ class PeakQuantity(MechanismQuantity):
             return highest_value(lambda shares: curve("y", shares), scan, closed=over.closed)
         return value
 
-    def measured(self, results: Results, ends: DriverEnds) -> float:
+    def measure_range(self, results: Results, ends: DriverEnds) -> float:
         total = sum(
-            highest_over_range(lambda q, n=name: np.asarray(self.outputs_of(results, q)[n]), results, ends)  # type: ignore[misc]
+            highest_over_range(lambda q, n=name: np.asarray(self.compute_outputs(results, q)[n]), results, ends)  # type: ignore[misc]
             for name in self.curves
         )
         return -total if self.lowest else total

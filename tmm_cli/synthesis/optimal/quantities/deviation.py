@@ -43,7 +43,7 @@ class Deviation(MechanismQuantity):
         """Return the deviations from all required values, (variants, required values), m or rad."""
 
     @abstractmethod
-    def deviations_on(self, results: Results, ends: DriverEnds) -> Real:
+    def measure_deviations(self, results: Results, ends: DriverEnds) -> Real:
         """Return the deviations of an analysed mechanism, (required values,)."""
 
     @abstractmethod
@@ -80,8 +80,8 @@ class Deviation(MechanismQuantity):
     def smooth(self, pieces: Real) -> Real:
         return pieces if self.norm == "largest" else pieces**2
 
-    def measured(self, results: Results, ends: DriverEnds) -> float:
-        return float(self.aggregate(self.deviations_on(results, ends)[None, :])[0])
+    def measure_range(self, results: Results, ends: DriverEnds) -> float:
+        return float(self.aggregate(self.measure_deviations(results, ends)[None, :])[0])
 
 
 class LawDeviation(Deviation):
@@ -111,7 +111,7 @@ class LawDeviation(Deviation):
     def curve(self, read: Read) -> Any:
         return read("run")
 
-    def deviations_on(self, results: Results, ends: DriverEnds) -> Real:
+    def measure_deviations(self, results: Results, ends: DriverEnds) -> Real:
         run = output_coordinate(motion_at(results, np.array(self.places)), self.name)
         over = QuantityRange(results.linkage, results.linkage.output_swings(self.name))
         deviations: Real = self.deviations({"run": run[None, :], WANTED: np.array([self.wanted])}.__getitem__, over)[0]
@@ -141,7 +141,7 @@ class PathDeviation(Deviation):
         if self.places:
             return np.hstack([x - np.real(self.wanted), y - np.imag(self.wanted)])
         place = (x + 1j * y).reshape(len(x) // each, each, -1)
-        return _distances_across(place, np.array(self.wanted), over.closed).reshape(len(x), -1)
+        return _measure_across_path(place, np.array(self.wanted), over.closed).reshape(len(x), -1)
 
     def curve(self, read: Read) -> Any:
         return read("px") + 1j * read("py")
@@ -157,7 +157,7 @@ class PathDeviation(Deviation):
         off = np.sqrt(np.maximum(np.stack([-window_peak(square) for square in squares], axis=1), 0))
         return off if self.norm == "largest" else self.aggregate(off)[:, None]
 
-    def deviations_on(self, results: Results, ends: DriverEnds) -> Real:
+    def measure_deviations(self, results: Results, ends: DriverEnds) -> Real:
         if self.places:
             apart: Real = np.abs(motion_at(results, np.array(self.places)).spot(self.name) - np.array(self.wanted))
             return apart
@@ -170,7 +170,7 @@ class PathDeviation(Deviation):
         return np.sqrt(np.maximum([-near(point) for point in self.wanted], 0.0))
 
 
-def _distances_across(place: Any, points: Real, closed: bool) -> Real:
+def _measure_across_path(place: Any, points: Real, closed: bool) -> Real:
     """Return distances across the path where the first variant of each set is nearest to the points.
 
     Shapes: place (sets, variants, corners), result (..., points). The distances change sign where the path passes

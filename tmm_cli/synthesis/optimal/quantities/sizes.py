@@ -65,7 +65,7 @@ class MotionBox(PeakQuantity):
     curves = ("y0", "y1", "y2", "y3")
 
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
-        spots = [motion.spot(point) for point in _moving_points(motion.linkage)]
+        spots = [motion.spot(point) for point in _list_moving_points(motion.linkage)]
         x, y = [p.real for p in spots], [p.imag for p in spots]
         closely = {f"{CLOSELY}{axis}{k}": v for axis, vs in (("x", x), ("y", y)) for k, v in enumerate(vs)}
         return closely | {
@@ -78,7 +78,7 @@ class MotionBox(PeakQuantity):
     def windows(self, read: Read, over: QuantityRange) -> list[tuple[Any, int]]:
         windows: list[tuple[Any, int]] = []
         for side, (axis, sign) in enumerate(SIDES):
-            ys = {k: sign * read(f"{CLOSELY}{axis}{k}")[0] for k in range(len(_moving_points(over.linkage)))}
+            ys = {k: sign * read(f"{CLOSELY}{axis}{k}")[0] for k in range(len(_list_moving_points(over.linkage)))}
             tops = [(y[at], k, at) for k, y in ys.items() for at in highest_peaks(y, MOST_PEAKS, over.closed)]
             windows += [((side, k), at) for __, k, at in sorted(tops, reverse=True)[:OF_A_SIDE]]
         return windows
@@ -92,7 +92,7 @@ class MotionBox(PeakQuantity):
         return np.stack([np.sum(some, axis=0) for some in product(*sides)], axis=1)
 
 
-def _moving_points(linkage: Linkage) -> list[str]:
+def _list_moving_points(linkage: Linkage) -> list[str]:
     """Return the points of moving links, those on the frame first."""
     fixed = linkage.links[FRAME].points
     points = {point for name in linkage.moving for point in linkage.links[name].points}

@@ -74,7 +74,7 @@ class OutputStroke(StrokeQuantity):
         return travel
 
     def between(self, parts: Windows, over: QuantityRange, step: float) -> Real:
-        runs = followed_runs(parts, over)
+        runs = unwrap_runs(parts, over)
         if over.closed and len(parts) > FOUR:
             return stroke_lengths(runs).T
         whole = np.vstack(runs)
@@ -89,7 +89,7 @@ class OutputStroke(StrokeQuantity):
         top = highest_value(lambda shares: curve("run", shares), scan, closed=over.closed)
         return top + highest_value(lambda shares: -curve("run", shares), scan, closed=over.closed)
 
-    def measured(self, results: Results, ends: DriverEnds) -> float:
+    def measure_range(self, results: Results, ends: DriverEnds) -> float:
         return measures.output_stroke(results, ends)
 
 
@@ -116,7 +116,7 @@ class TimeRatio(StrokeQuantity):
     def refine_value(self, value: float, curve: Curve, scan: Real, over: QuantityRange) -> float:
         return time_ratio_of_curve(lambda shares: curve("slope", shares), scan)
 
-    def measured(self, results: Results, ends: DriverEnds) -> float:
+    def measure_range(self, results: Results, ends: DriverEnds) -> float:
         k = measures.time_ratio(results)
         return max(k, 1 / k)
 
@@ -146,13 +146,13 @@ class MeanOutputSpeed(StrokeQuantity):
 
     def between(self, parts: Windows, over: QuantityRange, step: float) -> Real:
         speed: Real = (
-            np.sum(stroke_lengths(followed_runs(parts, over)), axis=0)
+            np.sum(stroke_lengths(unwrap_runs(parts, over)), axis=0)
             * mean_crank_speed(parts[0][2], over)
             / over.cycle
         )
         return speed[:, None]
 
-    def measured(self, results: Results, ends: DriverEnds) -> float:
+    def measure_range(self, results: Results, ends: DriverEnds) -> float:
         return measures.mean_output_speed(results)
 
 
@@ -189,7 +189,7 @@ def count_reversals(slope: Real) -> Real:
     return reversals
 
 
-def followed_runs(parts: Windows, over: QuantityRange) -> list[Real]:
+def unwrap_runs(parts: Windows, over: QuantityRange) -> list[Real]:
     """Return the motion of the output in each window; an angle is unwrapped."""
     runs = []
     for angle, __, read in parts:

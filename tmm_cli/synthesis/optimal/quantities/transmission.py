@@ -67,7 +67,7 @@ class LargestPressureAngle(PeakQuantity):
     def from_curve(self, y: Any) -> Any:
         return np.arctan(y)
 
-    def measured(self, results: Results, ends: DriverEnds) -> float:
+    def measure_range(self, results: Results, ends: DriverEnds) -> float:
         return measures.largest_pressure_angle(results, ends)
 
 
