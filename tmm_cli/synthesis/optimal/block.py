@@ -48,7 +48,7 @@ else:
 
 
 class QuantityKeys(Strict):
-    """A quantity of the mechanism over its cycle."""
+    """Keys that specify a quantity of the mechanism."""
 
     of: QuantityName = Field(
         description=(
@@ -78,13 +78,13 @@ class QuantityKeys(Strict):
 
 
 class ObjectiveKeys(QuantityKeys):
-    """Objective: the quantity to be minimised (a margin: maximised), or brought near to a target."""
+    """Keys of the objective: a quantity that is minimised (a margin: maximised) or brought close to a target value."""
 
     target: Value | None = Field(default=None, description="value to approach, instead of the smallest one")
 
 
 class ConstraintKeys(QuantityKeys):
-    """A constraint: bounds of a quantity."""
+    """Keys of a constraint: a quantity and its bounds."""
 
     least: Value | None = None
     most: Value | None = None
@@ -96,7 +96,7 @@ def _expand_short(quantity: Any) -> Any:
 
 
 class OptimalBlock(TaskBlock):
-    """Parameters within bounds that minimise an objective and satisfy constraints over the range of the driver."""
+    """Keys of the task `optimal`: the varied parameters with their bounds, the objective, and the constraints."""
 
     task: Literal["optimal"]
     vary: dict[Name, Range] = Field(
@@ -133,12 +133,21 @@ BLOCK = OptimalBlock
 
 
 def parameters(block: OptimalBlock) -> dict[str, str]:
-    """Return the names of the parameters to be found; their kinds follow from the bounds later."""
+    """Return the names of the varied parameters, all with the provisional kind `length`.
+
+    The actual kinds are determined when the bounds are read.
+    """
     return dict.fromkeys(block.vary, "length")
 
 
 def read(block: OptimalBlock, reader: ValueReader, file_with: FileWith) -> OptimalTask:
-    """Read the task into SI. Raises ProblemError."""
+    """Read the task into SI. Raises ProblemError.
+
+    Args:
+        block: validated keys.
+        reader: reader of numbers with units.
+        file_with: function that builds the problem with given parameter values and units.
+    """
     parameters = read_ranges(block.vary, reader, block.names, file_with)
     files = _FileVariants(parameters, block, reader, file_with)
     middles = nearest_allowed([(p.low + p.high) / 2 for p in parameters], parameters).tolist()
@@ -172,7 +181,10 @@ def read(block: OptimalBlock, reader: ValueReader, file_with: FileWith) -> Optim
 
 
 class _FileVariants:
-    """Variants of the file with other values (SI, or TracedNumbers) of the varied parameters."""
+    """Builder of variants of the problem file with other values of the varied parameters.
+
+    The values are in SI; they may be TracedNumbers, with which the calculation is recorded.
+    """
 
     def __init__(
         self, parameters: Sequence[Parameter], block: OptimalBlock, reader: ValueReader, file_with: FileWith
@@ -185,7 +197,7 @@ class _FileVariants:
         self.goals += [(("constraints", n), keys) for n, keys in enumerate(block.constraints)]
 
     def build_problem(self, numbers: Sequence[Any]) -> Problem:
-        """Build the problem with these values. Raises TriedFileError."""
+        """Build the problem with these parameter values (SI). Raises TriedFileError."""
         return self.file_with(*self._make_parameters(numbers))
 
     def _make_parameters(self, numbers: Sequence[Any]) -> tuple[dict[str, PhysicalValue], UnitSystem]:
@@ -196,10 +208,19 @@ class _FileVariants:
         return parameters, self.varied if any(isinstance(x, TracedNumber) for x in numbers) else self.units
 
     def read_targets(self, keys: QuantityKeys, path: Path, numbers: Sequence[Any], variant: Variant) -> DriverTargets:
-        """Return the driver coordinates of a quantity and the values required of a link there; both may depend on the
-        parameters.
+        """Return the driver coordinates and required values of a quantity. Both may depend on the varied parameters.
 
-        Raises ProblemError.
+        Args:
+            keys: keys of the quantity.
+            path: path of the quantity in the block.
+            numbers: values of the varied parameters (SI).
+            variant: the linkage with these values.
+
+        Returns:
+            Driver coordinates, and the values required of a link there (SI, rad); zeros if the quantity has none.
+
+        Raises:
+            ProblemError: a value is invalid.
         """
         parameters, units = self._make_parameters(numbers)
         reader, linkage = ValueReader({**self.own, **parameters}, units), variant.linkage
@@ -210,7 +231,7 @@ class _FileVariants:
         return coordinates, tuple(reader.number(v, dimension, (*path, "values", n)) for n, v in enumerate(keys.values))
 
     def build_variant(self, numbers: Sequence[Any]) -> Variant:
-        """Build the variant with these values.
+        """Build the variant with these parameter values (SI).
 
         Raises:
             TriedFileError: the file is invalid with these values, which the message lists.
@@ -233,7 +254,7 @@ class _FileVariants:
             raise TriedFileError(refused) from None
 
     def accepts(self, numbers: Sequence[float]) -> bool:
-        """Return True if the file is valid with these values."""
+        """Return True if the file is valid with these parameter values (SI)."""
         try:
             self.build_variant(numbers)
         except (TriedFileError, ProblemError):
@@ -242,8 +263,9 @@ class _FileVariants:
 
 
 def _check_mobility(variant: Variant) -> None:
-    """Raise ProblemError for redundant constraints: such a linkage moves only with exact dimensions, which a parameter
-    spoils.
+    """Raise ProblemError if the linkage has redundant constraints.
+
+    Such a linkage moves only with exact dimensions, so that a varied parameter would lock it.
     """
     try:
         analyse_mobile_structure(variant.linkage)
@@ -323,7 +345,7 @@ def _read_quantity(
 
 
 def _make_progress_bar() -> Callable[[int, int], None]:
-    """Return a function that shows the progress on a terminal."""
+    """Return a function that shows the progress of the search on a terminal; elsewhere it does nothing."""
     if not sys.stderr.isatty():
         return lambda at, total: None
     from rich.console import Console

@@ -1,4 +1,4 @@
-"""Candidates of an optimal synthesis: variants of a file's linkage, evaluated a whole generation at a time."""
+"""Candidates of an optimal synthesis: variants of the linkage of a file, evaluated one generation at a time."""
 
 from __future__ import annotations
 
@@ -51,9 +51,17 @@ LOST = 10.0  # violation of linkages that cannot be assembled, above all others
 
 
 class Candidates:
-    """Candidates of a task; x (variants, n) are fractions 0..1 of the ranges of the parameters.
+    """Evaluator of the candidates of a task.
 
-    The first constraint is that the linkage can be assembled over the whole range. Raises Infeasible.
+    A candidate is given by x, the fractions 0..1 of the ranges of its parameters; arrays of candidates have the shape
+    (variants, parameters). To the constraints of the task one is added as the first: the linkage can be assembled in
+    all positions.
+
+    Args:
+        task: task of the optimal synthesis.
+
+    Raises:
+        Infeasible: the task fails the checks before the search.
     """
 
     def __init__(self, task: OptimalTask) -> None:
@@ -137,26 +145,29 @@ class Candidates:
         return fractions
 
     def sample_range(self, count: int) -> Real:
-        """Return `count` fractions of the driver range.
+        """Return `count` evenly spaced fractions of the driver range.
 
-        Of a closed range without its end; the end is appended if forces differ there.
+        For a full cycle its end, which equals its start, is omitted. It is appended only if forces differ between both.
         """
         shares = np.arange(count) / (count if self.closed else count - 1)
         return np.append(shares, 1.0) if self.jumps else shares
 
     def slice_samples(self, n: int, count: int) -> slice:
-        """Return the slice of the sample points (see `sample_range`) that quantity `n` uses."""
+        """Return the slice of the samples of the driver range (see `sample_range`) that quantity `n` uses."""
         return slice(0, count + 1 if self.jumps and not self.overs[n].closed else count)
 
     def slice_own_coordinates(self, count: int) -> list[slice | None]:
-        """Return, for each quantity, the slice of its own driver coordinates after `count` sample points; None if it
-        has none.
+        """Return, for each quantity, the slice of the driver coordinates at which it has required values.
+
+        In an array these coordinates follow `count` samples of the driver range. None if the quantity has none.
         """
         ends = count + np.cumsum([0, *(len(quantity.places) for quantity in self.quantities)])
         return [slice(first, last) if first < last else None for first, last in pairwise(ends.tolist())]
 
     def quantity(self, n: int, numbers: Real) -> MechanismQuantity:
-        """Return quantity `n` with its driver coordinates and required values in the candidate `numbers` (SI)."""
+        """Return quantity `n` with the driver coordinates and required values that it has for the parameter values
+        `numbers` (SI).
+        """
         first, template = sum(len(quantity.places) for quantity in self.quantities[:n]), self.quantities[n]
         variant, last = self.task.make(numbers.tolist()), first + len(template.places)
         template = replace(template, places=tuple(map(float, variant.asked[first:last])))
@@ -167,15 +178,20 @@ class Candidates:
         )
 
     def append_sketch(self, driver: Real) -> Real:
-        """Append the driver coordinate of the sketch, if the sign of a determinant there matters."""
+        """Append the driver coordinate of the sketch, if the sign of a determinant there is needed to detect dead
+        positions.
+        """
         return np.append(driver, self.linkage.sketch.at) if self.single else driver
 
     def run(self, x: Real, positions: DriverSamples) -> Mapping[str, Real]:
-        """Compute all outputs."""
+        """Compute all outputs of candidates at these positions, by name."""
         return self.program(self.numbers(x), positions)
 
     def evaluate(self, x: Real) -> tuple[Real, Real]:
-        """Return objective and constraint violation of candidates, computed in blocks that fit the cache."""
+        """Return the objective and the constraint violation of candidates, each of shape (variants,).
+
+        Candidates are computed in blocks that fit into the processor's cache.
+        """
         block = FOLLOWED if isinstance(self.program, TracedVariants) and self.program.continuation else BLOCK
         blocks = [self._evaluate(chunk) for chunk in np.array_split(x, -(-len(x) * self.turns // block))]
         return np.concatenate([f for f, __ in blocks]), np.concatenate([v for __, v in blocks])
@@ -194,8 +210,11 @@ class Candidates:
     def evaluate_coarsely(
         self, x: Real
     ) -> tuple[Mapping[str, Real], list[tuple[MechanismQuantity, Read, QuantityRange]]]:
-        """Return the outputs at the positions of the search, and each quantity with the function that reads its own
-        outputs.
+        """Compute candidates at the positions of the search.
+
+        Returns:
+            Outputs by name; and for each quantity the quantity, the function that reads its outputs, and its driver
+            range.
         """
         outputs = self.coarse(self.numbers(x), self.places)
         numbered = enumerate(zip(self.quantities, self.exact, self.overs, strict=True))
@@ -204,14 +223,20 @@ class Candidates:
         ]
 
     def values(self, x: Real) -> list[Real]:
-        """Return coarse values of the objective and of the constrained quantities."""
+        """Return approximate values of the objective and of the constrained quantities, each of shape (variants,)."""
         outputs, parts = self.evaluate_coarsely(x)
         values = [quantity.coarse(read, over) for quantity, read, over in parts]
         values[1] = np.where(self.passes_dead_position(outputs, self.count), -1.0, values[1])
         return values
 
     def passes_dead_position(self, outputs: Mapping[str, Real], count: int) -> Real:
-        """Return True for variants (variants,) that pass a dead position without stopping there, in `count` samples."""
+        """Return True for each variant in which a group passes through a dead position between samples, shape
+        (variants,).
+
+        Args:
+            outputs: outputs of the variants by name.
+            count: number of samples.
+        """
         over: Any = False
         for name in self.single:
             det = np.hstack([outputs[name][:, :count], outputs[name][:, -1:]])
@@ -219,14 +244,17 @@ class Candidates:
         return np.asarray(over)
 
     def objective_value(self, value: Real) -> Real:
-        """Return the value to be minimised: of a margin its negative, of a target the relative distance from it."""
+        """Return the value that the search minimises.
+
+        For a margin it is the negative value; with a target it is the relative distance from the target.
+        """
         if self.task.target is not None:
             return np.abs(value - self.task.target) / (abs(self.task.target) or 1.0)
         return -value if self.task.objective.lowest else value
 
     def sketch(self, x: Real) -> Sketch | None:
-        """Return the assembly of a candidate at the sketch position, if the sketch of the file does not show it; else
-        None.
+        """Return the assembly of a candidate at the driver coordinate of the sketch; None if the file's sketch selects
+        the same.
         """
         numbers = self.numbers(x)
         candidate_sketch = self.program.sketch(numbers)
@@ -239,5 +267,5 @@ class Candidates:
 
 
 def quantity_reader(outputs: Mapping[str, Real], n: int, where: slice) -> Callable[[str], Real]:
-    """Return a function that reads outputs of quantity `n` by name, at some of the positions."""
+    """Return a function that reads an output of quantity `n` by name, at the positions in a slice."""
     return lambda name: outputs[name if name == WANTED else f"{n}.{name}"][:, where]

@@ -1,7 +1,8 @@
-"""Differential evolution with constraints, a global search over a box by scipy; parameters with discrete values.
+"""Differential evolution with constraints, a global search over the unit cube by scipy; parameters with discrete
+values.
 
-R. Storn, K. Price, Differential Evolution, Journal of Global Optimization 11 (1997); constraints by the rules of K.
-Deb, Comput. Methods Appl. Mech. Engrg. 186 (2000), for equalities with a shrinking tolerance (T. Takahama, S. Sakai,
+Sources: R. Storn, K. Price, Differential Evolution, Journal of Global Optimization 11 (1997); constraints by the rules
+of K. Deb, Comput. Methods Appl. Mech. Engrg. 186 (2000); equalities with a decreasing tolerance (T. Takahama, S. Sakai,
 2006).
 """
 
@@ -34,11 +35,12 @@ class EvolutionResult:
     """Result of an evolution.
 
     Attributes:
-        population: the first candidates and the best of each generation, best first, (variants, n), with their
-            objective and violation.
-        history: objective and violation of the leading candidate in each generation.
-        stopped: True if stopped by the user.
-        every: True if all candidates were evaluated without evolution; history is then of each candidate.
+        population: candidates of the first generation and the best one of each later generation, best first, shape
+            (variants, n).
+        objective, violation: objective and constraint violation of each, shape (variants,).
+        history: objective and violation of the leading candidate in each generation, shape (generations, 2).
+        stopped: True if the user stopped the search.
+        every: True if all candidates were evaluated without evolution; `history` then has a row for each candidate.
     """
 
     population: Real
@@ -50,7 +52,10 @@ class EvolutionResult:
 
 
 class _Generations:
-    """The function that scipy calls with a generation (n, variants); keeps the first and the best of each."""
+    """Function that scipy calls to evaluate a generation (n, variants).
+
+    It keeps the candidates of the first generation and the best one of each later generation.
+    """
 
     def __init__(self, evaluate: Evaluate, generations: int, progress: Callable[[int, int], None]) -> None:
         self.evaluate, self.generations, self.progress = evaluate, generations, progress
@@ -64,8 +69,9 @@ class _Generations:
         return self.generations - len(self.history)
 
     def compute_merits(self, f: Real, v: Real) -> Real:
-        """Return Deb's ranking as one number: smaller violation first, then, among feasible ones, the smaller
-        objective.
+        """Return a number that ranks candidates by the rules of K. Deb; the smallest is best.
+
+        A smaller violation is better; of feasible candidates the one with the smaller objective is better.
         """
         return np.where(v > self.tolerance, FORBIDDEN * v, np.where(np.isfinite(f), f, np.inf))
 
@@ -94,21 +100,22 @@ def evolve(
     equalities: bool = False,
     progress: Callable[[int, int], None] = lambda at, of: None,
 ) -> EvolutionResult:
-    """Search the unit cube by differential evolution; the same seed gives the same result.
+    """Search the unit cube by differential evolution. The same seed always gives the same result.
 
     A population that converges early is replaced by a new one.
 
     Args:
-        evaluate: returns objective and violation of candidates (variants, n) in 0..1.
+        evaluate: function that returns objective and violation of candidates in 0..1, shape (variants, n).
         size: number of dimensions n.
-        population: candidates in a generation.
-        generations: number of generations, over all populations.
+        population: number of candidates in a generation.
+        generations: number of generations of all populations together.
         seed: seed of the random numbers.
-        equalities: True if there are equality constraints; their tolerance then shrinks step by step.
-        progress: called with the generation and the number of generations.
+        equalities: True if there are equality constraints; their tolerance then decreases step by step.
+        progress: function that is called with the current generation and the number of generations.
 
     Raises:
-        KeyboardInterrupt: stopped by the user before the first generation; later the result so far is returned.
+        KeyboardInterrupt: the user stopped the search before the end of the first generation. Later the result so far
+            is returned.
     """
     from scipy.optimize import differential_evolution
 
@@ -169,9 +176,10 @@ NEAR = 0.3  # violation that refinement may remove
 
 
 class DiscreteChoices:
-    """Wrapper of `candidates.evaluate` that keeps the best candidate of each combination of discrete values.
+    """Wrapper of `Candidates.evaluate` that keeps the best candidate of each combination of discrete values.
 
-    Evolution soon gathers around one combination, although another may be better once its other parameters are refined.
+    Evolution soon concentrates on one combination, although another one may be better after its continuous parameters
+    have been refined.
     """
 
     def __init__(self, candidates: Candidates) -> None:
@@ -194,7 +202,7 @@ class DiscreteChoices:
         return f, v
 
     def evaluate_all(self) -> EvolutionResult:
-        """Evaluate all candidates, best first."""
+        """Evaluate all combinations of discrete values, without evolution."""
         task = self.candidates.task
         x = self.candidates.shares(np.array(list(product(*(p.values for p in task.parameters)))))
         evaluated, stopped = np.zeros((2, 0)), False
@@ -213,8 +221,9 @@ class DiscreteChoices:
         return EvolutionResult(x[order], f, v, evaluated.T, stopped, every=True)
 
     def find_starts(self) -> list[Real]:
-        """Return starting points: the combinations nearest to feasible, and of the others those with the smallest
-        objective.
+        """Return starting points for the refinement in 0..1.
+
+        These are the combinations closest to feasibility, and of the others those with the smallest objective.
         """
         half = (POLISHED if self.candidates.traced else FEW) // 2
         ranked = sorted(self.best.values(), key=lambda combination: combination[:2])

@@ -1,9 +1,9 @@
-"""Levenberg-Marquardt from many starting points at once, within bounds and constraints.
+"""Least squares by the Levenberg-Marquardt method from many starting points at once, within bounds and constraints.
 
-Each step minimises the squares of the linearised residuals (K. Levenberg 1944, D. Marquardt 1963); a step with second-
-order correction is tried too (M. Transtrum, J. Sethna 2012), as minima lie at the ends of long curved valleys.
-Constraints and bounds that a step would violate become weighted residuals. Derivatives are differences: a starting
-point and its neighbours are variants of one evaluation.
+Each step minimises the squares of the linearised residuals (K. Levenberg 1944, D. Marquardt 1963). A step with a
+second-order correction is tried as well (M. Transtrum, J. Sethna 2012), because minima lie at the ends of long curved
+valleys. Constraints and bounds that a step would violate become weighted residuals. Derivatives are difference
+quotients: a starting point and its neighbours are evaluated together as variants.
 """
 
 from __future__ import annotations
@@ -29,13 +29,20 @@ GAIN = 1e-14  # relative decrease of the sum of squares that a step must bring
 
 @dataclass(frozen=True)
 class ResidualRows:
-    """Residuals of variants (v, n), and quantities that must stay above zero (v, m)."""
+    """Residuals and inequalities of variants.
+
+    Attributes:
+        off: residuals whose squares are minimised, shape (variants, residuals).
+        least: quantities that must not be negative, shape (variants, inequalities).
+    """
 
     off: Real
     least: Real
 
     def cost(self) -> Real:
-        """Return the sums of squares, (v,); inf for variants that cannot be assembled."""
+        """Return the sum of squares with the weighted violations, shape (variants,); inf if a variant cannot be
+        assembled.
+        """
         total = np.sum(self.off**2, axis=1) + WEIGHT**2 * np.sum(np.minimum(self.least, 0) ** 2, axis=1)
         return np.where(np.isfinite(total), total, np.inf)
 
@@ -44,15 +51,17 @@ Evaluate = Callable[[Real, int], ResidualRows]  # variants (v, n) in 0..1, and v
 
 
 def minimize_squares(evaluate: Evaluate, x: Real, steps: int) -> tuple[Real, Real]:
-    """Descend from many starting points by Levenberg-Marquardt steps.
+    """Minimise sums of squares by Levenberg-Marquardt steps from many starting points.
 
     Args:
-        evaluate: computes residuals of variants.
-        x: starting points in 0..1, (starts, n).
+        evaluate: function that returns the residuals of variants; its second argument is the number of consecutive
+            variants that form a set (a point and its neighbours).
+        x: starting points in 0..1, shape (starts, n).
         steps: largest number of steps.
 
     Returns:
-        End points (starts, n) and their sums of squares (starts,); inf if a starting point cannot be assembled.
+        End points, shape (starts, n), and their sums of squares, shape (starts,); inf if a starting point cannot be
+        assembled.
     """
     n = x.shape[1]
     x, damping = x.copy(), np.full(len(x), FIRST)
@@ -75,8 +84,15 @@ def minimize_squares(evaluate: Evaluate, x: Real, steps: int) -> tuple[Real, Rea
 
 
 def _take_steps(evaluate: Evaluate, rows: ResidualRows, slopes: ResidualRows, x: Real, dampings: Real) -> Real:
-    """Return the ends of steps (s, 2 d, n): for each damping (s, d) one step without and one with second-order
-    correction.
+    """Return the ends of steps from each point, shape (starts, 2 dampings, n).
+
+    For each damping there is a step without and a step with second-order correction.
+
+    Args:
+        evaluate: function that returns the residuals of variants.
+        rows, slopes: residuals at the points, and their derivatives.
+        x: points, shape (starts, n).
+        dampings: dampings to try, shape (starts, dampings).
     """
     rows, slopes = (ResidualRows(residuals.off[:, None], residuals.least[:, None]) for residuals in (rows, slopes))
     x = x[:, None]
@@ -90,7 +106,11 @@ def _take_steps(evaluate: Evaluate, rows: ResidualRows, slopes: ResidualRows, x:
 
 
 def _estimate_derivatives(evaluate: Evaluate, x: Real) -> tuple[ResidualRows, ResidualRows]:
-    """Return the rows at points (s, n), and their derivatives (s, rows, n); an unknown derivative counts as zero."""
+    """Return the residuals at points (starts, n), and their derivatives by differences, shape (starts, residuals,
+    n).
+
+    A derivative that cannot be computed is set to zero.
+    """
     s, n = x.shape
     run = np.where(x > 0.5, -STEP, STEP)
     ends = np.repeat(x[:, None], n + 1, axis=1)
@@ -106,16 +126,16 @@ def _estimate_derivatives(evaluate: Evaluate, x: Real) -> tuple[ResidualRows, Re
 
 
 def damped_step(rows: ResidualRows, slopes: ResidualRows, x: Real, damping: Any) -> Real:
-    """Return the damped step of each starting point, within the bounds 0..1.
+    """Return the Levenberg-Marquardt step of each point, limited to the bounds 0..1.
 
     Args:
         rows: residuals and inequalities at the points.
-        slopes: their derivatives, (..., rows, n).
-        x: points, (..., n).
-        damping: Levenberg-Marquardt damping of each point.
+        slopes: their derivatives, shape (..., rows, n).
+        x: points, shape (..., n).
+        damping: damping of each point, shape (...).
 
     Returns:
-        Steps (..., n).
+        Steps, shape (..., n).
     """
     n = x.shape[-1]
     square = slopes.off.mT @ slopes.off
@@ -153,7 +173,10 @@ SETTLED_AT_ONCE = 250  # candidates in a block
 
 
 class LinearParameters:
-    """Solver for the parameters on which the motion depends linearly; improves candidates (variants, n) in 0..1."""
+    """Solver for the parameters on which the motion depends linearly.
+
+    Called with candidates in 0..1, shape (variants, n), it returns them with these parameters improved.
+    """
 
     def __init__(self, candidates: Candidates) -> None:
         self.candidates = candidates
@@ -183,22 +206,23 @@ class LinearParameters:
                 off = np.take_along_axis(off, near, axis=1)
                 own_slopes = np.take_along_axis(slopes, near[..., None], axis=1)
             rows = ResidualRows(_split_complex(off - required), np.zeros((len(x), 0)))
-            step = damped_step(
-                rows, ResidualRows(_split_complex(own_slopes), np.zeros((len(x), 0, len(self.linear)))), parameters, DAMPING
-            )
+            derivatives = ResidualRows(_split_complex(own_slopes), np.zeros((len(x), 0, len(self.linear))))
+            step = damped_step(rows, derivatives, parameters, DAMPING)
             parameters = np.clip(parameters + step, 0, 1)
         settled = x.copy()
         settled[:, self.linear] = parameters
         return settled
 
     def _curve(self, x: Real) -> Any:
-        """Return the path or motion of candidates that is compared with the required one, (variants, positions)."""
+        """Return the path or motion of candidates that is compared with the required one, shape (variants,
+        positions).
+        """
         candidates = self.candidates
         outputs = candidates.coarse(candidates.numbers(x), candidates.places)
         return self.objective.curve(quantity_reader(outputs, 0, candidates.exact[0]))
 
     def _find_linear(self) -> list[int]:
-        """Return the parameters whose changes superpose, with themselves and with one another."""
+        """Return the indices of parameters on which the motion depends linearly, separately and together."""
         x = np.random.default_rng(0).random((DRAWN, len(self.candidates.low)))
         x = x[self.candidates.evaluate(x)[1] < LOST][:SHOWN]
 
@@ -220,7 +244,7 @@ class LinearParameters:
 
 
 def _split_complex(rows: Any) -> Real:
-    """Split each complex row into two real ones, (variants, rows, ...)."""
+    """Replace each complex residual by its real and imaginary part, shape (variants, residuals, ...)."""
     return np.concatenate([rows.real, rows.imag], axis=1) if np.iscomplexobj(rows) else rows
 
 
@@ -248,9 +272,13 @@ BLOCK = 400  # variants in a block
 
 @dataclass(frozen=True)
 class IndependentEnds:
-    """Ends of independent descents.
+    """Agreement of descents from independent starting points.
 
-    count: all; same: at the minimum; near: within NEAR of it; met: the minimum is zero.
+    Attributes:
+        count: number of descents.
+        same: number of descents that reached the minimum.
+        near: number of descents whose result is within the fraction NEAR of the minimum.
+        met: True if the minimum is zero.
     """
 
     count: int
@@ -267,13 +295,19 @@ class IndependentEnds:
 
     @property
     def agree(self) -> bool:
-        """True if another seed is likely to give the same minimum."""
+        """True if enough descents reached the same minimum; another seed is then likely to give it as well."""
         return self.met or self.same >= AGREED
 
 
 @dataclass(frozen=True)
 class ManyStartsResult:
-    """Result of the search. starts: best first; ends: None if no candidate can be assembled; stopped: by the user."""
+    """Result of the search from many starting points.
+
+    Attributes:
+        starts: best points found, best first, as starting points for the refinement.
+        ends: agreement of the descents; None if no candidate can be assembled.
+        stopped: True if the user stopped the search.
+    """
 
     starts: list[Real]
     ends: IndependentEnds | None
@@ -281,14 +315,22 @@ class ManyStartsResult:
 
 
 def is_least_squares(candidates: Candidates) -> bool:
-    """Return True if the objective is a sum of squares without a target and no parameter has discrete values."""
+    """Return True if the search from many starting points can be used.
+
+    The objective must be a sum of squares without a target, and all parameters must be continuous.
+    """
     task = candidates.task
     squares = isinstance(task.objective, Deviation) and task.objective.norm == "least squares"
     return squares and task.target is None and candidates.traced and len(task.free) == len(task.parameters)
 
 
 def search_from_many(candidates: Candidates, evolved: Sequence[Real]) -> ManyStartsResult:
-    """Search from many starting points; evolved: starting points of the first round besides the random ones."""
+    """Search for the minimum from many starting points.
+
+    Args:
+        candidates: evaluator of the candidates.
+        evolved: candidates from the evolution, additional starting points of the first round.
+    """
     chance = np.random.default_rng(candidates.task.seed)
     evaluate, settle = residual_function(candidates), LinearParameters(candidates)
     won: list[tuple[float, Real]] = []
@@ -319,7 +361,11 @@ def search_from_many(candidates: Candidates, evolved: Sequence[Real]) -> ManySta
 
 
 def _draw_random_starts(candidates: Candidates, chance: np.random.Generator) -> Real:
-    """Return random starting points; every second one is uniform in ratio, as wide bounds leave the size open."""
+    """Return random starting points in 0..1, shape (starts, n).
+
+    In every second point the logarithms of the parameters are evenly distributed, because with wide bounds the size of
+    the mechanism is unknown.
+    """
     x = chance.random((SAMPLES, len(candidates.low)))
     ratio = candidates.low > 0
     low, high = candidates.low[ratio], candidates.high[ratio]
@@ -330,10 +376,10 @@ def _draw_random_starts(candidates: Candidates, chance: np.random.Generator) -> 
 def _run_tournament(
     candidates: Candidates, evaluate: Evaluate, settle: LinearParameters, x: Real
 ) -> list[tuple[float, Real]]:
-    """Run a tournament: return the sums of squares and the end points of its last stage, best first."""
+    """Run a tournament of starting points; return sums of squares and end points of its last stage, best first."""
 
     def settled(x: Real) -> Real:
-        """Solve the linear parameters, and keep only improvements, as that solver ignores constraints."""
+        """Solve for the linear parameters. Only improvements are kept, because constraints are ignored in this step."""
         ends = settle(x)
         return np.where((evaluate(ends, 1).cost() < evaluate(x, 1).cost())[:, None], ends, x)
 
@@ -349,7 +395,9 @@ def _run_tournament(
 def _shake_best(
     evaluate: Evaluate, won: list[tuple[float, Real]], chance: np.random.Generator
 ) -> list[tuple[float, Real]]:
-    """Perturb the best end points by small and large amounts, and descend again, as long as this brings a gain."""
+    """Perturb the best end points by small and large amounts and minimise again, as long as this brings an
+    improvement.
+    """
     (count, __), last = SHAKEN[0], SHAKEN[-1][0]
     best = sorted(won, key=lambda ranked: ranked[0])[:last]
     for __ in range(SHAKES):
@@ -365,12 +413,14 @@ def _shake_best(
 
 
 def _sort_by_cost(x: Real, cost: Real) -> list[tuple[float, Real]]:
-    """Pair costs and points, best first."""
+    """Pair each sum of squares with its point, best first."""
     return sorted(zip(cost.tolist(), x, strict=True), key=lambda ranked: ranked[0])
 
 
 def residual_function(candidates: Candidates) -> Evaluate:
-    """Return the function that computes the residuals of the objective; equality constraints are weighted residuals."""
+    """Return the function that computes the residuals of the objective. Equality constraints are included as weighted
+    residuals.
+    """
     objective, constraints = candidates.task.objective, candidates.constraints
     assert isinstance(objective, Deviation)
     unit = objective.spread * np.sqrt(len(objective.wanted))

@@ -1,6 +1,4 @@
-"""Outcome of an optimal synthesis: best candidate, constraints, diagram of the search, required and reached path or
-law.
-"""
+"""Outcome of an optimal synthesis: best candidate, constraints, diagram of the search, required and reached motion."""
 
 from __future__ import annotations
 
@@ -32,16 +30,18 @@ Read = Callable[[DriverSamples, str], Real]
 def draw_history(
     evolved: EvolutionResult, to_shown: Callable[[Real], Real], polished: float, quantity: str, kind: str
 ) -> Diagram:
-    """Draw the search by generation.
+    """Plot the course of the search by generation.
+
+    The upper panel shows the best objective so far among feasible candidates, and behind it the leading candidate of
+    each generation. Early leading candidates violate constraints, because the tolerance decreases only gradually. The
+    lower panel shows their violation. If all candidates were evaluated, the diagram shows every feasible one and the
+    best so far.
 
     Args:
-        shown: converts objectives to the values that users read.
-        polished: objective of the solution.
-        quantity, kind: description and kind of the objective.
-
-    Above: the best objective so far among feasible candidates, and behind it the leading candidate of each generation
-    (early on it violates constraints: the tolerance shrinks). Below: the violation of that candidate. If all candidates
-    were evaluated, every feasible one, and the best so far.
+        evolved: result of the evolution.
+        to_shown: function that converts objective values of the search to the values of the quantity.
+        polished: value of the objective for the solution.
+        quantity, kind: description of the objective, and name of its dimension.
     """
     objective, violation = evolved.history.T
     if evolved.every:
@@ -74,7 +74,13 @@ def draw_history(
 
 
 def compare_reached(candidates: Candidates, x: Real, n: int) -> tuple[Listing, Diagram]:
-    """Tabulate and draw required and reached values of quantity `n`, for fractions x of the ranges."""
+    """Tabulate and plot the required and the reached values of quantity `n`.
+
+    Args:
+        candidates: evaluator of the candidates.
+        x: fractions of the ranges of the parameters, shape (n,).
+        n: index of the quantity.
+    """
     two = x[None]
 
     def read(positions: DriverSamples, key: str) -> Real:
@@ -135,11 +141,10 @@ def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, r
     if quantity.places:
         reached = spots(DriverSamples(NONE, np.array(quantity.places)))
     else:
-        reached = spots(
-            DriverSamples(
-                _find_closest_fractions(lambda shares: spots(DriverSamples(shares, NONE)), required, candidates.closed), NONE
-            )
+        fractions = _find_closest_fractions(
+            lambda shares: spots(DriverSamples(shares, NONE)), required, candidates.closed
         )
+        reached = spots(DriverSamples(fractions, NONE))
     rows: tuple[tuple[float, ...], ...] = tuple(
         (w.real, w.imag, p.real, p.imag, abs(p - w)) for w, p in zip(required.tolist(), reached.tolist(), strict=True)
     )
@@ -178,7 +183,7 @@ def _compare_path(candidates: Candidates, n: int, quantity: MechanismQuantity, r
 
 
 def _find_closest_fractions(path: Callable[[Real], Vector], points: Vector, closed: bool) -> Real:
-    """Return the fractions of the driver range at which a path is nearest to points."""
+    """Return the fractions of the driver range at which a path is closest to each of the points."""
     shares, step = np.linspace(0, 1, CURVE), 1 / (CURVE - 1)
     near = shares[np.argmin(np.abs(path(shares) - points[:, None]), axis=1)]
     low, high = near - step, near + step
@@ -194,7 +199,7 @@ ACTIVE = 1e-6  # relative: a constraint closer to its bound is active
 
 
 def outcome_of(candidates: Candidates, best: BestCandidate) -> SynthesisOutcome:
-    """Return the outcome of a search that satisfies the constraints."""
+    """Return the outcome of a search whose best candidate satisfies all constraints."""
     task, evolved, linkage = candidates.task, best.evolved, candidates.linkage
     kinds = [quantity.kind(linkage, candidates.groups) for quantity in candidates.quantities]
     ends = task.make(best.numbers.tolist()).ends
@@ -271,7 +276,7 @@ def outcome_of(candidates: Candidates, best: BestCandidate) -> SynthesisOutcome:
 
 
 def _list_bounds(candidates: Candidates, ends: tuple[float, float] | None) -> tuple[NamedValue, ...]:
-    """Return the bounds of the parameters and of the driver."""
+    """List the bounds of the parameters and the range of the driver."""
     bounds = []
     for p in candidates.task.parameters:
         bounds.append(NamedValue(p.name, p.low, p.kind, N_("lower bound")))
@@ -289,7 +294,7 @@ def _list_bounds(candidates: Candidates, ends: tuple[float, float] | None) -> tu
 
 
 def _list_solution_values(candidates: Candidates, best: BestCandidate) -> tuple[NamedValue, ...]:
-    """Return the parameters, with a remark if they lie at a bound."""
+    """List the parameter values found; the description states whether a value lies at a bound."""
     numbers = []
     for p, number, share in zip(candidates.task.parameters, best.numbers.tolist(), best.x.tolist(), strict=True):
         if share < ACTIVE:
@@ -319,7 +324,7 @@ def _describe_source(candidates: Candidates, best: BestCandidate) -> str:
 
 
 def _tabulate_constraints(candidates: Candidates, best: BestCandidate, kinds: list[str]) -> Listing:
-    """Tabulate the objective and every constraint: bound, value, margin, state."""
+    """Tabulate the objective and every constraint: bound, value, margin and state."""
     linkage, objective, target = candidates.linkage, candidates.task.objective, candidates.task.target
     side = N_("near") if target is not None else N_("largest angle") if objective.lowest else N_("least")
     first = (
@@ -365,7 +370,9 @@ def _name_subject(quantity: MechanismQuantity) -> str:
 
 
 def _convert_objective(candidates: Candidates, f: Real) -> Real:
-    """Convert values of the search to the unit of the objective; a target is added to the distance from it."""
+    """Convert objective values of the search to values of the quantity: relative distances from a target, or negated
+    margins.
+    """
     target = candidates.task.target
     if target is not None:
         return target * (1 + f) if target else f

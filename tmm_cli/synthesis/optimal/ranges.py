@@ -1,4 +1,4 @@
-"""Ranges of an optimal synthesis: of the parameters that vary, and of the driver."""
+"""Ranges of an optimal synthesis: bounds of the varied parameters, and the range of the driver."""
 
 from __future__ import annotations
 
@@ -32,13 +32,23 @@ FileWith = Callable[[dict[str, PhysicalValue], UnitSystem], Problem]
 def read_ranges(
     vary: Mapping[str, Range], reader: ValueReader, names: Mapping[str, str], file_with: FileWith
 ) -> tuple[Parameter, ...]:
-    """Read the ranges of the varied parameters. names: their names in the file. Raises ProblemError."""
+    """Read the ranges of the varied parameters.
+
+    Args:
+        vary: ranges by name of the parameter.
+        reader: reader of numbers with units.
+        names: names of the parameters in the file, where they differ.
+        file_with: function that builds the problem with given parameter values and units.
+
+    Raises:
+        ProblemError: a range is invalid.
+    """
     kinds = _find_kinds({name: _list_range_values(bounds) for name, bounds in vary.items()}, reader, names, file_with)
     return tuple(_read_parameter(name, bounds, kinds[name], reader) for name, bounds in vary.items())
 
 
 def _list_range_values(bounds: Range) -> list[Any]:
-    """Return every value of a range as written in the file."""
+    """Return all values of a range as the file gives them."""
     return (bounds.among or [bounds.from_, bounds.to, bounds.step]) if isinstance(bounds, Chosen) else bounds
 
 
@@ -86,11 +96,12 @@ def _read_parameter(name: str, bounds: Range, kind: str, reader: ValueReader) ->
 def _find_kinds(
     raw_values: Mapping[str, list[Any]], reader: ValueReader, names: Mapping[str, str], file_with: FileWith
 ) -> dict[str, str]:
-    """Return the dimension of each parameter: that of its values, or else the first that the file accepts, length
-    first.
+    """Return the dimension of each parameter.
 
-    A bare number that the file accepts both as a length and as a number is a number (a fraction of a distance). If the
-    file is invalid in any case, the first kind whose dimension is not the reason is taken.
+    If the values of a parameter have a unit, it determines the dimension. Otherwise it is the first dimension with
+    which the file is valid; length is tried first. A number that the file accepts both as a length and as a plain
+    number is a number, e.g. a fraction of a distance. If the file is never valid, it is the first dimension that is not
+    itself the cause.
     """
     dimensions = {
         name: next((k for v in raw if (k := _find_dimension(v, reader))), "") for name, raw in raw_values.items()
@@ -103,8 +114,8 @@ def _find_kinds(
         return PhysicalValue(float(reader.number(raw_values[name][0], dimension, ())), dimension)
 
     def minded(kinds: Mapping[str, str]) -> int:
-        """Return 2 if the file refuses the dimensions of the first values, 1 if it refuses the values otherwise, 0 if
-        it accepts.
+        """Return 0 if the file is valid with these dimensions, 2 if they make it invalid, 1 if it is invalid for
+        another reason.
         """
         try:
             file_with({names.get(name, name): value(name, kind) for name, kind in kinds.items()}, reader.units)
@@ -115,8 +126,9 @@ def _find_kinds(
         return 0
 
     def is_share(name: str, kinds: Mapping[str, str]) -> bool:
-        """Return True if the file accepts a number for the parameter, but not an angle: parameters not used accept
-        anything.
+        """Return True if the file accepts a plain number for the parameter, but no angle.
+
+        A parameter that the file does not use would accept both.
         """
         return not minded({**kinds, name: "number"}) and bool(minded({**kinds, name: "angle"}))
 
@@ -148,7 +160,19 @@ RangeChoice = str | tuple[float, float]
 
 
 def read_over(over: Any, driver: Driver, reader: ValueReader) -> RangeChoice:
-    """Read the key `over`, with driver coordinates in SI; the default if it is omitted. Raises ProblemError."""
+    """Read the key `over`, the range of the driver over which quantities are evaluated.
+
+    Args:
+        over: value of the key; None for the default.
+        driver: driver of the linkage.
+        reader: reader of numbers with units.
+
+    Returns:
+        `cycle`, `stroke`, `positions`, or two driver coordinates (rad or m).
+
+    Raises:
+        ProblemError: the driver has no such range.
+    """
     turns, stroked = driver.kind == "turn", driver.stroke is not None
     available = {"cycle": turns and not stroked, "stroke": stroked, "positions": True}
     possible = [choice for choice, has in available.items() if has]
@@ -163,7 +187,8 @@ def read_over(over: Any, driver: Driver, reader: ValueReader) -> RangeChoice:
                 allowed=", ".join([*possible, "[from, to]"]),
             )
         return over
-    low, high = (float(reader.number(value, _get_driver_dimension(driver), ("over", n))) for n, value in enumerate(over))
+    dimension = _get_driver_dimension(driver)
+    low, high = (float(reader.number(value, dimension, ("over", n))) for n, value in enumerate(over))
     if not low < high or (turns and high - low > 2 * np.pi * (1 + 1e-12)):
         raise ProblemError(
             _("the first value must be smaller than the second, and by at most one revolution"),
@@ -175,7 +200,7 @@ def read_over(over: Any, driver: Driver, reader: ValueReader) -> RangeChoice:
 
 
 def with_driver_range(problem: Problem, over: RangeChoice) -> Variant:
-    """Return the linkage of a file with the range of its driver. Raises ProblemError."""
+    """Return the linkage of a problem together with the range of its driver. Raises ProblemError."""
     ends, stroke = _find_driver_ends(problem, over), problem.linkage.driver.stroke
     if ends is not None and stroke is not None and not (stroke[0] <= ends[0] and ends[1] <= stroke[1]):
         raise _make_range_error(("over",), over, problem.linkage.driver, stroke, problem.units)
@@ -204,7 +229,10 @@ def _find_driver_ends(problem: Problem, over: RangeChoice) -> Ends:
 
 
 def read_position(value: Any, variant: Variant, reader: ValueReader, path: Path) -> Any:
-    """Read a driver coordinate; whole turns are added if that brings it into the range. Raises ProblemError."""
+    """Read a driver coordinate (rad or m). Raises ProblemError if it is out of range.
+
+    Full turns are added to an angle if this brings it into the range.
+    """
     driver = variant.linkage.driver
     place: Any = reader.number(value, _get_driver_dimension(driver), path)
     if variant.ends is None:

@@ -1,8 +1,9 @@
-"""Local refinement of a candidate: sequential quadratic programming by scipy (D. Kraft's SLSQP), central differences.
+"""Local refinement of a candidate by sequential quadratic programming (SLSQP of D. Kraft, in scipy).
 
-The largest of several pieces is minimised as a bound t above all of them: this makes the minimax problem smooth.
-Coordinates are counted from the start, scaled so that a unit step would reduce the steepest piece to zero if it were
-linear: the method assumes an initial curvature of 1, and with steep pieces its first steps would leave the valley.
+The objective is the largest of several peaks. It is replaced by an upper bound t of all peaks, which is minimised: this
+makes the minimax problem differentiable. Derivatives are central differences. Coordinates are measured from the
+starting point and scaled such that a unit step would reduce the steepest peak to zero if it were linear. The method
+assumes an initial curvature of 1; without this scaling its first steps would leave the valley.
 """
 
 from __future__ import annotations
@@ -29,7 +30,13 @@ WEIGHT = 10.0  # weight of violations relative to the objective
 
 @dataclass(frozen=True)
 class LocalValues:
-    """Values of a problem for variants (v): peaks of the objective, inequalities >= 0, equalities, each (v, n)."""
+    """Values of an optimisation problem for several variants, each of shape (variants, n).
+
+    Attributes:
+        pieces: peaks of the objective; the largest is minimised.
+        least: inequalities, satisfied if >= 0.
+        equal: equalities, satisfied if 0.
+    """
 
     pieces: Real
     least: Real
@@ -37,11 +44,14 @@ class LocalValues:
 
 
 class _End(Exception):  # noqa: N818  where the steps end
-    """The first candidate cannot be assembled, or further steps bring no gain."""
+    """Raised to end the refinement: the starting point cannot be assembled, or further steps bring no improvement."""
 
 
 class _Differences:
-    """Values (values,) and derivatives (values, n) of the parts of LocalValues at a point, cached for the next call."""
+    """Values and derivatives of the three fields of LocalValues at a point, shapes (values,) and (values, n).
+
+    The last point is cached, as scipy requests values and derivatives separately.
+    """
 
     def __init__(self, evaluate: Callable[[Real], LocalValues], size: int) -> None:
         self.evaluate, self.size = evaluate, size
@@ -49,8 +59,12 @@ class _Differences:
         self.found: tuple[tuple[Real, Real], ...] = ()
 
     def __call__(self, x: Real) -> tuple[tuple[Real, Real], ...]:
-        """Return values and derivatives; beyond the assembly limit huge values. Raises _End if the first point is
-        there.
+        """Return values and derivatives of peaks, inequalities and equalities at a point.
+
+        If the linkage cannot be assembled there, the peaks are huge.
+
+        Raises:
+            _End: the starting point cannot be assembled.
         """
         n = self.size
         if not np.array_equal(x, self.at):
@@ -69,14 +83,14 @@ class _Differences:
 
 
 def minimize_locally(evaluate: Callable[[Real], LocalValues], x: Real) -> Real:
-    """Find the nearest local minimum of the largest piece of an objective, under constraints.
+    """Find the nearest local minimum of the largest peak of an objective, under constraints.
 
     Args:
-        evaluate: computes the problem for variants (v, n) in 0..1.
-        x: starting point in 0..1, (n,).
+        evaluate: function that returns the values of the problem for variants in 0..1, shape (variants, n).
+        x: starting point in 0..1, shape (n,).
 
     Returns:
-        The best point reached, (n,); x itself if it cannot be assembled.
+        The best point reached, shape (n,); x itself if the linkage cannot be assembled there.
     """
     from scipy.optimize import minimize
 
@@ -92,7 +106,7 @@ def minimize_locally(evaluate: Callable[[Real], LocalValues], x: Real) -> Real:
         return tuple((values, scale * slopes) for values, slopes in differences(place(z)))
 
     def take(z: Real) -> None:
-        """Record a step. Raises _End."""
+        """Record the point of a step. Raises _End after several steps without improvement."""
         nonlocal idle
         f, c, e = (values for values, slopes in near(z))
         bad = float(np.max(f) + WEIGHT * (np.sum(np.maximum(-c, 0)) + np.sum(np.abs(e))))
@@ -102,7 +116,7 @@ def minimize_locally(evaluate: Callable[[Real], LocalValues], x: Real) -> Real:
             raise _End
 
     def above(z: Real) -> Real:
-        """Return t minus every peak, and the inequalities."""
+        """Return t minus each peak, followed by the inequalities; all must be >= 0."""
         pieces, least, __ = near(z)
         return np.append(z[n] - pieces[0], least[0])
 
@@ -151,13 +165,15 @@ SETTLED = 1e-9  # fraction of the ranges: a smaller change ends the refinement
 
 @dataclass(frozen=True)
 class BestCandidate:
-    """The best candidate.
+    """The best candidate of a search.
 
     Attributes:
-        x, numbers: fractions of the ranges, and parameter values (SI).
-        values: objective and constrained quantities.
+        x: fractions of the ranges of its parameters.
+        numbers: parameter values (SI).
+        values: values of the objective and of the constrained quantities (SI).
         missed: constraint violation.
-        ends: ends of independent descents; None if there were none.
+        evolved: result of the evolution.
+        ends: agreement of independent descents; None if there were none.
     """
 
     x: Real
@@ -169,13 +185,19 @@ class BestCandidate:
 
     @property
     def agree(self) -> bool:
-        """True if independent starting points led to it."""
+        """True if enough independent descents reached this candidate, or if there were none."""
         return self.ends is None or self.ends.agree
 
 
 def evaluate_exactly(candidates: Candidates, x: Real) -> list[float]:
-    """Return objective and constrained quantities of x in 0..1 as accurately as they are measured later; nan:
-    undefined.
+    """Return the objective and the constrained quantities of a candidate, as accurately as they are measured later.
+
+    Args:
+        candidates: evaluator of the candidates.
+        x: fractions of the ranges of the parameters, shape (n,).
+
+    Returns:
+        Values (SI); nan where a quantity is undefined.
     """
     with np.errstate(all="ignore"):
         peaks, coarse = _make_peak_function(candidates, x)(x), candidates.values(x[None])
@@ -199,11 +221,11 @@ def evaluate_exactly(candidates: Candidates, x: Real) -> list[float]:
 
 
 def refine_candidate(candidates: Candidates, x: Real) -> Real:
-    """Return the best point near x; parameters with discrete values stay unchanged."""
+    """Return the local optimum near a candidate; parameters with discrete values stay unchanged."""
     whole, free = x, candidates.task.free
 
     def all_of(some: Real) -> Real:
-        """Return candidates with all their parameters, from the continuous ones."""
+        """Return candidates with all their parameters, for given values of the continuous ones."""
         points = np.repeat(whole[None], len(some), axis=0)
         points[:, free] = some
         return points
@@ -220,9 +242,15 @@ def refine_candidate(candidates: Candidates, x: Real) -> Real:
 
 
 def _make_peak_function(candidates: Candidates, x: Real, narrow: float = 0.0) -> Callable[[Real], list[Real]]:
-    """Return the function that computes the peaks of every quantity near x exactly, from windows around the peaks of x.
+    """Return a function that computes the peaks of every quantity accurately for candidates near x.
 
-    narrow: width of the windows relative to those of the first steps; never less than the scan requires.
+    It evaluates candidates only in windows of positions around the peaks of x.
+
+    Args:
+        candidates: evaluator of the candidates.
+        x: candidate at the centre.
+        narrow: width of the windows as a fraction of the position spacing in the search; at least as wide as the scan
+            requires.
     """
     scan = candidates.sample_range(candidates.scan)
     outputs = candidates.run(x[None], DriverSamples(scan, np.zeros(0)))
@@ -232,7 +260,8 @@ def _make_peak_function(candidates: Candidates, x: Real, narrow: float = 0.0) ->
     at = 0
     for n, (quantity, over) in enumerate(zip(candidates.quantities, candidates.overs, strict=True)):
         windows = []
-        for subject, k in quantity.windows(quantity_reader(outputs, n, candidates.slice_samples(n, candidates.scan)), over):
+        read = quantity_reader(outputs, n, candidates.slice_samples(n, candidates.scan))
+        for subject, k in quantity.windows(read, over):
             first = scan[k] - half
             if not over.closed:
                 first = min(max(first, 0.0), 1 - 2 * half)
@@ -259,13 +288,13 @@ def _make_peak_function(candidates: Candidates, x: Real, narrow: float = 0.0) ->
 
 
 def _reduce_peaks(candidates: Candidates, n: int, pieces: Real) -> Real:
-    """Return the value of a quantity computed from its peaks, (variants,)."""
+    """Return the value of quantity `n` from its peaks, shape (variants,)."""
     extreme: Real = (np.min if candidates.quantities[n].lowest else np.max)(pieces, axis=1)
     return extreme
 
 
 def _find_objective_pieces(candidates: Candidates, pieces: Real) -> Real:
-    """Return the values to be minimised, differentiable where they are zero."""
+    """Return the values whose largest is minimised, in a form that is differentiable where they are zero."""
     target, objective = candidates.task.target, candidates.task.objective
     if target is not None:
         off = (_reduce_peaks(candidates, 0, pieces)[:, None] - target) / (abs(target) or 1.0)
@@ -274,7 +303,7 @@ def _find_objective_pieces(candidates: Candidates, pieces: Real) -> Real:
 
 
 def _make_local_values(candidates: Candidates, peaks: list[Real], top: float) -> LocalValues:
-    """Return the objective and the constraints in the form that the local minimisation needs."""
+    """Return the objective and the constraints in the form that the local minimisation requires."""
     least, equal = [], []
     for n, (constraint, pieces) in enumerate(zip(candidates.constraints, peaks[1:], strict=True), 1):
         low = high = _reduce_peaks(candidates, n, pieces)[:, None]

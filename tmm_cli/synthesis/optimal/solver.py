@@ -1,4 +1,4 @@
-"""Optimal synthesis: task -> candidates -> differential evolution -> refinement of the best -> outcome."""
+"""Search of an optimal synthesis: candidates, differential evolution, refinement of the best, outcome."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ NEVER: Final = N_(
 
 
 def solve(task: OptimalTask) -> SynthesisOutcome:
-    """Solve the task of one file. Raises Infeasible."""
+    """Find the best mechanism. Raises Infeasible."""
     candidates = Candidates(task)
     best = find_best(candidates)
     if best.missed:
@@ -41,7 +41,9 @@ def solve(task: OptimalTask) -> SynthesisOutcome:
 
 
 def find_best(candidates: Candidates) -> BestCandidate:
-    """Search and refine. Raises Infeasible."""
+    """Search globally and refine the best candidates. Raises Infeasible if no candidate completes the range of its
+    driver.
+    """
     task = candidates.task
     choices = DiscreteChoices(candidates) if len(task.free) < len(task.parameters) else None
     if choices is not None and choices.few:
@@ -68,7 +70,9 @@ def find_best(candidates: Candidates) -> BestCandidate:
 
 
 def _choose_distinct_starts(candidates: Candidates, evolved: EvolutionResult) -> list[Real]:
-    """Return the best candidates that differ from one another, with admissible discrete values."""
+    """Return the best candidates of an evolution that differ clearly from one another, with admissible discrete
+    values.
+    """
     starts: list[Real] = []
     first = evolved.objective[0]
     population = candidates.shares(candidates.numbers(evolved.population))
@@ -82,7 +86,7 @@ def _choose_distinct_starts(candidates: Candidates, evolved: EvolutionResult) ->
 
 
 def _refine_starts(candidates: Candidates, starts: Iterable[Real], evolved: EvolutionResult) -> BestCandidate:
-    """Return the best candidate among the starting points and the points that refinement reaches from them."""
+    """Return the best candidate among the starting points and the local optima near them. Raises Infeasible."""
     refined: list[tuple[float, float, Real, list[float]]] = []
 
     def take(x: Real) -> None:
@@ -122,7 +126,10 @@ def _refine_starts(candidates: Candidates, starts: Iterable[Real], evolved: Evol
 
 
 def _explain_undefined(candidates: Candidates, quantity: MechanismQuantity) -> str:
-    """Return why no candidate has a quantity; forces are undefined if an accelerated driver does not arrive."""
+    """Return the reason why a quantity is undefined for all candidates.
+
+    Forces are undefined if an accelerated driver does not reach all positions.
+    """
     if quantity.forces and candidates.variant.accelerated:
         return N_(
             "with this acceleration the driver does not reach all positions of its range: it stops earlier, or "
@@ -132,8 +139,11 @@ def _explain_undefined(candidates: Candidates, quantity: MechanismQuantity) -> s
 
 
 def _make_constraint_refusal(candidates: Candidates, best: BestCandidate) -> Infeasible:
-    """Return the refusal for the most violated constraint, with its nearest value under the other constraints."""
-    misses = [float(c.compute_violation(value)) for c, value in zip(candidates.constraints, best.values[1:], strict=True)]
+    """Return the error for the most violated constraint, with the nearest value that is possible under the other
+    constraints.
+    """
+    both = zip(candidates.constraints, best.values[1:], strict=True)
+    misses = [float(constraint.compute_violation(value)) for constraint, value in both]
     n = int(np.argmax(misses))
     constraint, value = candidates.constraints[n], best.values[n + 1]
     if misses[0] > MISS_TOLERANCE:

@@ -23,8 +23,13 @@ Keys = tuple[str | int, ...]  # path inside the block
 
 @dataclass(frozen=True)
 class Parameter:
-    """A varied parameter (SI) and its dimension; values: its discrete values in ascending order, () if it is
-    continuous.
+    """A varied parameter.
+
+    Attributes:
+        name: name of the parameter.
+        low, high: bounds (SI).
+        kind: name of its dimension.
+        values: admissible discrete values (SI) in ascending order; () if the parameter is continuous.
     """
 
     name: str
@@ -36,7 +41,13 @@ class Parameter:
 
 @dataclass(frozen=True)
 class QuantityConstraint:
-    """least <= quantity <= most (SI); equality if both are equal. at: its path in the block."""
+    """A constraint: least <= quantity <= most. With equal bounds it is an equality.
+
+    Attributes:
+        quantity: quantity of the mechanism.
+        least, most: bounds (SI); None for no bound.
+        at: path of its key in the block.
+    """
 
     quantity: MechanismQuantity
     least: float | None = None
@@ -49,22 +60,28 @@ class QuantityConstraint:
 
     @property
     def scale(self) -> float:
-        """Reference of its relative violation."""
+        """Reference for the relative violation."""
         if self.quantity.lowest:
             return 1.0
         return max(abs(self.least or 0.0), abs(self.most or 0.0)) or 1.0
 
     def compute_violation(self, value: Any) -> Any:
-        """Return the violation relative to the scale; 0 if satisfied, inf if the quantity is undefined."""
+        """Return the violation relative to `scale`: 0 if the constraint is satisfied, inf if the quantity is
+        undefined.
+        """
         low = 0.0 if self.least is None else self.least - value
         high = 0.0 if self.most is None else value - self.most
         missed = np.maximum(np.maximum(low, high), 0.0) / self.scale
         return np.where(np.isnan(missed), np.inf, missed)
 
     def rows(self, low: Any, high: Any) -> tuple[list[Any], list[Any]]:
-        """Return inequalities (>= 0) and equalities (= 0), relative to the scale.
+        """Return the constraint as functions for an optimiser, relative to `scale`.
 
-        low, high: values compared with the lower and with the upper bound.
+        Args:
+            low, high: values of the quantity to be compared with the lower and with the upper bound.
+
+        Returns:
+            Inequalities (satisfied if >= 0) and equalities (satisfied if 0).
         """
         if self.equal:
             return [], [(low - self.least) / self.scale]
@@ -85,11 +102,17 @@ class OptimalTask:
     """An optimal synthesis.
 
     Attributes:
-        make: builds the linkage, with its driver range, for parameter values (SI).
-        target: value that the objective must approach; None: it is minimised.
-        positions: positions in a cycle during the search.
-        population, generations: 0: chosen by the number of parameters.
-        accepts: returns True if the file is valid with these values.
+        parameters: varied parameters.
+        make: function that builds the linkage, with its driver range, for parameter values (SI).
+        objective: quantity to be optimised.
+        constraints: constraints.
+        target: value (SI) to which the objective is brought close; None to minimise the objective.
+        positions: number of positions per cycle during the search.
+        population, generations: size of a generation and number of generations; 0 to choose them by the number of
+            parameters.
+        seed: seed of the random numbers.
+        accepts: function that returns True if the file is valid with these parameter values (SI).
+        progress: function that is called with the current generation and the number of generations.
     """
 
     parameters: tuple[Parameter, ...]
@@ -110,13 +133,15 @@ class OptimalTask:
         return [k for k, parameter in enumerate(self.parameters) if not parameter.values]
 
     def vary_parameter(self, first: Sequence[float], k: int, numbers: Sequence[float]) -> list[list[float]]:
-        """Return parameter lists with other values of parameter k, without those that the file refuses."""
+        """Return copies of the parameter values `first` with other values of parameter k, omitting those that the file
+        rejects.
+        """
         tried = ([*first[:k], float(number), *first[k + 1 :]] for number in numbers)
         return [numbers_tried for numbers_tried in tried if self.accepts(numbers_tried)]
 
 
 def nearest_allowed(numbers: Any, parameters: Sequence[Parameter]) -> Real:
-    """Return the nearest values (..., n) that the parameters may have."""
+    """Return parameter values (..., n) with discrete parameters rounded to the nearest admissible value."""
     nearest = np.array(numbers, dtype=float)
     for k, parameter in enumerate(parameters):
         if parameter.values:
@@ -134,10 +159,12 @@ MOST_LOOKED = 100  # values of a discrete parameter that are checked
 
 
 def find_first(task: OptimalTask) -> list[float]:
-    """Return parameter values (SI) whose linkage can be assembled as sketched: the middle of the bounds, or random
-    ones.
+    """Return parameter values (SI) with which the linkage can be assembled as sketched.
 
-    Raises Infeasible.
+    The middle of the bounds is tried first, then random values.
+
+    Raises:
+        Infeasible: the linkage cannot be assembled with any of them.
     """
     low, high = (np.array([getattr(p, end) for p in task.parameters]) for end in ("low", "high"))
     chance = np.random.default_rng(0)
@@ -153,10 +180,13 @@ def find_first(task: OptimalTask) -> list[float]:
 
 
 def check_task(task: OptimalTask, first: Sequence[float]) -> None:
-    """Check that every parameter has an effect, that the linkage has all quantities, and that all candidates have one
+    """Check a task before the search.
+
+    Every parameter must have an effect, the linkage must have all quantities, and all candidates must have the same
     cycle.
 
-    Raises Infeasible.
+    Raises:
+        Infeasible: one of these conditions is not met.
     """
     variant = task.make(first)
     before = dict(numbers_of(variant))
@@ -175,9 +205,9 @@ def check_task(task: OptimalTask, first: Sequence[float]) -> None:
 
 
 def _check_cycle(task: OptimalTask, first: Sequence[float], linkage: Linkage) -> None:
-    """Raise Infeasible if the cycle is not the same number of crank turns for all candidates.
+    """Raise Infeasible if the number of crank revolutions in a cycle is not the same for all candidates.
 
-    Gears and further drivers have a common cycle only if their ratios are those of whole numbers.
+    Gears and further drivers have a common cycle only if their speed ratios are ratios of integers.
     """
     geared = any(mesh.kind == "gear" for mesh in linkage.meshes) or linkage.others
     moves = any(quantity.moves for quantity in (task.objective, *(c.quantity for c in task.constraints)))
@@ -198,13 +228,13 @@ def _check_cycle(task: OptimalTask, first: Sequence[float], linkage: Linkage) ->
 
 
 def _list_speed_ratios(linkage: Linkage) -> tuple[str, ...]:
-    """Return the speed ratios of gears and drivers, to 12 digits, on which their common cycle depends."""
+    """Return the speed ratios of gears and drivers to 12 digits, as texts."""
     wheels = [mesh.ratio for mesh in linkage.meshes if mesh.kind == "gear"]
     return tuple(f"{ratio:.12g}" for ratio in (*wheels, *(o.rate / linkage.driver.rate for o in linkage.others)))
 
 
 def has_one_sense(task: OptimalTask, first: Sequence[float]) -> bool:
-    """Return True if no driver moves forward in some candidates and backward in others."""
+    """Return True if every driver has the same sense of motion in all candidates."""
     senses = set()
     for k, p in enumerate(task.parameters):
         for numbers in task.vary_parameter(first, k, (p.low, p.high)):

@@ -1,4 +1,4 @@
-"""Quantities that may be an objective or a constraint: one class each, registered here by name."""
+"""Quantities that may be an objective or a constraint, each a class that is registered here by name."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""A quantity of a mechanism over its cycle, for many variants at once.
+"""Base classes of the quantities of a mechanism in an optimal synthesis, evaluated for many variants at once.
 
-It is traced together with the linkage (`outputs`), then evaluated coarsely from positions around the cycle (`coarse`),
-or finely from windows of positions around its peaks and zeros (`windows`, `fine`), to about 1e-12; and it is measured
-on a mechanism that the ordinary stages have analysed (`measure`).
+A quantity is traced together with the linkage (`outputs`). Its value is then computed approximately from positions
+around the cycle (`coarse`), or to about 1e-12 from windows of positions around its peaks and zeros (`windows`, `fine`).
+It can also be measured on a mechanism after an ordinary analysis (`measure`).
 """
 
 from __future__ import annotations
@@ -38,11 +38,12 @@ class QuantityRange:
     """Range of the driver over which a quantity is evaluated.
 
     Attributes:
-        swings: True if the motion of the output is an angle.
-        closed: True if the driver rotates continuously.
-        cycle: length of the cycle (rad).
+        linkage: the linkage.
+        swings: True if the coordinate of the output link is an angle.
+        closed: True if the range is a full cycle.
+        cycle: length of the cycle or range (rad or m).
         rough: True if forces may jump, so that their peaks are not smooth.
-        traced: True if evaluating many positions is cheap.
+        traced: True if many positions can be evaluated at low cost.
     """
 
     linkage: Linkage
@@ -55,16 +56,16 @@ class QuantityRange:
 
 @dataclass(frozen=True)
 class MechanismQuantity(ABC):
-    """A quantity and the data that a task gives for it.
+    """A quantity of the mechanism, with the data that the task specifies for it.
 
     Attributes:
-        name: the pair, point or link.
-        links: the links whose lengths count.
-        places: driver coordinates (rad or m) of the required values; without them a path may pass through the points at
+        name: the pair, point or link concerned.
+        links: links whose lengths are added.
+        places: driver coordinates (rad or m) of the required values; empty if the path may pass the required points at
             any position.
-        wanted: required values.
-        norm: how deviations are combined.
-        relative: True if a law counts from its first value.
+        wanted: required values (SI, rad).
+        norm: how deviations are combined: `least squares` or `largest`.
+        relative: True if a law of motion is measured from its first value.
     """
 
     name: str = ""
@@ -86,46 +87,70 @@ class MechanismQuantity(ABC):
 
     @abstractmethod
     def outputs(self, motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
-        """Return the traced outputs that the quantity needs, by name."""
+        """Return the traced outputs from which the quantity is computed, by name."""
 
     @abstractmethod
     def coarse(self, read: Read, over: QuantityRange) -> Real:
-        """Return the coarse value from positions over the driver range, or from the quantity's own `places`;
-        (variants,).
+        """Return the approximate value, shape (variants,), from samples of the driver range or from the coordinates
+        `places`.
         """
 
     @abstractmethod
     def fine(self, parts: Windows, exact: Read, over: QuantityRange, step: float) -> Real:
-        """Return candidate peaks of the quantity, (variants, peaks); the largest counts, with `lowest` the smallest.
+        """Return accurate values of the peaks, shape (variants, peaks).
+
+        The value of the quantity is the largest peak, or with `lowest` the smallest.
 
         Args:
             parts: windows around the peaks.
-            exact: outputs at the quantity's own `places`.
-            step: distance of the positions in a window, as a fraction of the driver range.
+            exact: function that reads outputs at the coordinates `places`.
+            over: range of the driver.
+            step: spacing of the positions in a window, as a fraction of the driver range.
         """
 
     @abstractmethod
     def measure_range(self, results: Results, ends: DriverEnds) -> float:
-        """Measure the quantity on an analysed mechanism that completes its range; see `measure`."""
+        """Measure the quantity (SI, rad) on an analysed mechanism whose driver completes the range.
+
+        Args:
+            results: analysis of the mechanism.
+            ends: range of the driver (rad or m); None for a cycle.
+        """
 
     def measure(self, results: Results, ends: DriverEnds) -> float:
-        """Measure the quantity on an analysed mechanism (SI, rad) between two ends of the driver range, or over the
-        cycle.
+        """Measure the quantity (SI, rad) on an analysed mechanism; nan if its driver does not complete the range.
 
-        nan if the mechanism has no such quantity.
+        Args:
+            results: analysis of the mechanism.
+            ends: range of the driver (rad or m); None for a cycle.
         """
         return self.measure_range(results, ends) if measures.completes_range(results, ends) else measures.NO_VALUE
 
     def windows(self, read: Read, over: QuantityRange) -> list[tuple[Any, int]]:
-        """Return the windows to evaluate finely: what each shows, and its central index in a scan of one variant."""
+        """Return the windows that must be evaluated accurately.
+
+        Args:
+            read: function that reads outputs in a scan of one variant.
+            over: range of the driver.
+
+        Returns:
+            For each window the identification of its curve, and its central index in the scan.
+        """
         return []
 
     def refine_value(self, value: float, curve: Curve, scan: Real, over: QuantityRange) -> float:
-        """Refine the value of one candidate where windows are not accurate enough; value: the one from windows."""
+        """Refine the value of one candidate if the windows are not accurate enough; unchanged by default.
+
+        Args:
+            value: value from the windows.
+            curve: function that returns an output at fractions of the driver range.
+            scan: fractions of the driver range in a scan.
+            over: range of the driver.
+        """
         return value
 
     def smooth(self, pieces: Real) -> Real:
-        """Return a function of the peaks to be minimised instead of them, differentiable where they are zero."""
+        """Convert peaks to values that have the same minimum and are differentiable where the peaks are zero."""
         return pieces
 
     def open(self, results: Results) -> float:
@@ -133,35 +158,41 @@ class MechanismQuantity(ABC):
         return 0.0
 
     def kind(self, linkage: Linkage, groups: Any) -> str:
-        """Return the name of its dimension."""
+        """Return the name of the quantity's dimension."""
         return self.dimension
 
     def title(self, linkage: Linkage) -> str:
-        """Return its description."""
+        """Return the description of the quantity."""
         return self.text
 
     def unfit(self, linkage: Linkage, groups: Any, *, closed: bool) -> str | None:
-        """Return why this quantity is not defined for a linkage, or None if it is."""
+        """Return the reason why the quantity is undefined for a linkage; None if it is defined.
+
+        Args:
+            linkage: the linkage.
+            groups: its Assur groups.
+            closed: True if the range of the driver is a full cycle.
+        """
         return None
 
     def output(self, linkage: Linkage, groups: Any) -> str | None:
-        """Return the link whose motion the quantity depends on."""
+        """Return the link on whose motion the quantity depends; None if there is none."""
         return output_link(linkage, groups)
 
     def slides(self, linkage: Linkage, groups: Any) -> bool:
-        """Return True if that link slides."""
+        """Return True if the link returned by `output` slides."""
         link = self.output(linkage, groups)
         return link is not None and not linkage.output_swings(link)
 
     def compute_outputs(self, results: Results, q: Real) -> Mapping[str, Any]:
-        """Return the outputs at driver coordinates q of an analysed mechanism."""
+        """Return the outputs of an analysed mechanism at driver coordinates q (rad or m), by name."""
         motion = motion_at(results, q)
         plan = solve_forces(motion, results.structure, results.strokes) if self.forces else None
         return self.outputs(motion, plan)
 
 
 class ConstantQuantity(MechanismQuantity):
-    """A quantity that is equal in all positions."""
+    """A quantity with the same value in all positions."""
 
     moves = False
 
@@ -176,12 +207,12 @@ class ConstantQuantity(MechanismQuantity):
 
 
 class PeakQuantity(MechanismQuantity):
-    """The largest value of a curve in a cycle, or the sum of the largest values of several curves."""
+    """The largest value of a curve over the driver range, or the sum of the largest values of several curves."""
 
     curves: ClassVar[tuple[str, ...]] = ("y",)
 
     def from_curve(self, y: Any) -> Any:
-        """Convert values of the curve to the quantity (with `lowest`, to its negative)."""
+        """Convert values of the curve to values of the quantity (with `lowest`, to negative values)."""
         return y
 
     def coarse(self, read: Read, over: QuantityRange) -> Real:
@@ -211,12 +242,18 @@ class PeakQuantity(MechanismQuantity):
 
 
 def motion_at(results: Results, q: Real) -> Motion:
-    """Return the motion of an analysed mechanism at other driver coordinates."""
+    """Return the motion of an analysed mechanism at driver coordinates q (rad or m)."""
     return motion_at_positions(results, np.atleast_1d(q))
 
 
 def highest_over_range(curve: Callable[[Real], Real], results: Results, ends: DriverEnds) -> float:
-    """Return the largest value of a curve over the driver range; of a cycle from position 0 on."""
+    """Return the largest value of a curve over the range of the driver.
+
+    Args:
+        curve: function of the driver coordinates (rad or m).
+        results: analysis of the mechanism.
+        ends: range of the driver; None for a cycle, which starts at position 0.
+    """
     assert results.driver_range is not None
     driver, turns = results.linkage.driver, results.driver_range.turns
     if ends is None and not results.driver_range.full:

@@ -1,4 +1,4 @@
-"""Deviation of a motion from required values at several positions: path of a point, law of motion of a link."""
+"""Deviation of a motion from required values: path of a point, law of motion of a link."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ FOOT = 1e-3  # sine of the angle from the normal above which the nearest point i
 
 
 class Deviation(MechanismQuantity):
-    """Root mean square or largest deviation."""
+    """Root mean square or largest deviation from the required values."""
 
     largest: str  # description of the largest deviation
 
@@ -40,31 +40,39 @@ class Deviation(MechanismQuantity):
 
     @abstractmethod
     def deviations(self, read: Read, over: QuantityRange) -> Real:
-        """Return the deviations from all required values, (variants, required values), m or rad."""
+        """Return the deviation from each required value (m or rad), shape (variants, required values)."""
 
     @abstractmethod
     def measure_deviations(self, results: Results, ends: DriverEnds) -> Real:
-        """Return the deviations of an analysed mechanism, (required values,)."""
+        """Return the deviations of an analysed mechanism from the required values (m or rad), shape (required
+        values,).
+        """
 
     @abstractmethod
     def residuals(self, read: Read, over: QuantityRange, each: int) -> Real:
-        """Return the residuals whose squares are minimised, (variants, residuals).
+        """Return the residuals whose squares are minimised, shape (variants, residuals).
 
-        each: variants in a set; the first one of a set determines the nearest positions.
+        Args:
+            read: function that reads outputs by name.
+            over: range of the driver.
+            each: number of consecutive variants in a set. The first of a set determines the nearest positions for all
+                of them.
         """
 
     @abstractmethod
     def curve(self, read: Read) -> Any:
-        """Return the path or motion compared with the required values, (variants, positions): real, or x + iy."""
+        """Return the motion that is compared with the required values, shape (variants, positions); a path as x +
+        iy.
+        """
 
     @property
     def spread(self) -> float:
-        """Standard deviation of the required values, the unit of the residuals."""
+        """Standard deviation of the required values, used as the unit of the residuals."""
         required = np.array(self.wanted)
         return float(np.sqrt(np.mean(np.abs(required - np.mean(required)) ** 2))) or 1.0
 
     def aggregate(self, off: Real) -> Real:
-        """Return the root mean square or the largest deviation, (variants,)."""
+        """Combine deviations to the root mean square or the largest deviation, shape (variants,)."""
         if self.norm == "largest":
             off = np.max(np.abs(off), axis=1, keepdims=True)
         aggregated: Real = np.sqrt(np.mean(off * off, axis=1))
@@ -85,7 +93,10 @@ class Deviation(MechanismQuantity):
 
 
 class LawDeviation(Deviation):
-    """Deviation of a link's motion from a required law, m or rad; relative: from the first position on."""
+    """Deviation of a link's motion from a required law of motion (m or rad).
+
+    With `relative`, both motions are measured from their first position.
+    """
 
     of, text = "law", N_("root mean square deviation from the required law")
     largest = N_("largest deviation from the required law")
@@ -119,7 +130,10 @@ class LawDeviation(Deviation):
 
 
 class PathDeviation(Deviation):
-    """Distance of a point's path from required points, m; without `places` it may pass through them at any position."""
+    """Distance of a point's path from required points (m).
+
+    Without driver coordinates the path may pass the required points at any position of the driver.
+    """
 
     of, text = "path", N_("root mean square distance from the required points")
     largest = N_("largest distance from the required points")
@@ -171,10 +185,18 @@ class PathDeviation(Deviation):
 
 
 def _measure_across_path(place: Any, points: Real, closed: bool) -> Real:
-    """Return distances across the path where the first variant of each set is nearest to the points.
+    """Return the signed distances of required points from the paths of variants, measured perpendicular to a path.
 
-    Shapes: place (sets, variants, corners), result (..., points). The distances change sign where the path passes
-    through a point, so they are smooth there.
+    Each distance is measured where the first variant of the set is nearest to the point. Its sign changes when the path
+    passes through the point, so that the distance is a smooth function there.
+
+    Args:
+        place: corners of the paths (complex, m), shape (sets, variants, corners).
+        points: required points (complex, m).
+        closed: True if the paths are closed.
+
+    Returns:
+        Distances (m), shape (sets, variants, points).
     """
     sets, __, count = place.shape
     lead = np.where(np.isnan(place[:, 0]), AWAY, place[:, 0])
@@ -202,9 +224,14 @@ def _measure_across_path(place: Any, points: Real, closed: bool) -> Real:
 
 
 def distances_to_points(x: Real, y: Real, points: Real, *, closed: bool = True) -> Real:
-    """Return the distances of polygons (variants, corners) from points, (variants, points).
+    """Return the distances of points from polygons (m), shape (variants, points).
 
-    The distance is that of the nearest corner or of the two sides that meet there.
+    Each is the distance from the nearest corner or from one of the two sides that meet there.
+
+    Args:
+        x, y: corners of the polygons (m), shape (variants, corners).
+        points: points (complex, m).
+        closed: True if the last corner is joined to the first.
     """
     x, y = np.ascontiguousarray(x), np.ascontiguousarray(y)
     near, rows, count = nearest_corners(x, y, points), np.arange(len(x)), x.shape[1]
@@ -222,7 +249,12 @@ def distances_to_points(x: Real, y: Real, points: Real, *, closed: bool = True) 
 
 
 def nearest_corners(x: Real, y: Real, points: Real) -> Any:
-    """Return the corners of polygons (variants, corners) that are nearest to points, (points, variants)."""
+    """Return the index of the polygon corner that is nearest to each point, shape (points, variants).
+
+    Args:
+        x, y: corners of the polygons (m), shape (variants, corners).
+        points: points (complex, m).
+    """
     square, near = (x * x + y * y) / 2, np.empty((len(points), len(x)), dtype=int)
     work, other = np.empty_like(x), np.empty_like(x)
     for k, w in zip(near, points, strict=True):  # minimises half the squared distance, without the constant w^2

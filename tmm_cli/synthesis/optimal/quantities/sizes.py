@@ -1,4 +1,4 @@
-"""Sizes: link lengths, mass, bounding box of the moving points."""
+"""Quantities of size: link lengths, mass, bounding box of the moving points."""
 
 from __future__ import annotations
 
@@ -29,9 +29,10 @@ OF_A_SIDE = 3  # points considered on each side
 
 
 class LinkLengthSum(ConstantQuantity):
-    """Sum of link lengths, m, of all links or of some.
+    """Sum of the lengths of all links or of selected links (m).
 
-    The length of a link is the largest distance of its points; of the frame, of its hinges.
+    The length of a link is the largest distance between two of its points; that of the frame, between two of its
+    hinges.
     """
 
     of, text, keys = "length", N_("sum of link lengths"), ("links",)
@@ -47,7 +48,7 @@ class LinkLengthSum(ConstantQuantity):
 
 
 class MovingMass(ConstantQuantity):
-    """Mass of the moving links, kg."""
+    """Total mass of the moving links (kg)."""
 
     of, text, dimension = "mass", N_("mass of the moving links"), "mass"
 
@@ -57,8 +58,9 @@ class MovingMass(ConstantQuantity):
 
 
 class MotionBox(PeakQuantity):
-    """Width + height of the bounding box of the moving points, m. A window shows one point on one side: its path is
-    smooth.
+    """Width plus height (m) of the bounding box of the paths of all moving points.
+
+    Each window shows a single point near one side of the box, because its path is smooth.
     """
 
     of, text = "box", N_("bounding box of the moving points, width + height")
@@ -84,7 +86,7 @@ class MotionBox(PeakQuantity):
         return windows
 
     def fine(self, parts: Windows, exact: Read, over: QuantityRange, step: float) -> Real:
-        """Return the sums of one peak of each side, in all combinations: the largest is the sum of the largest ones."""
+        """Return the sums of one peak per side, in all combinations; the largest sum belongs to the highest peaks."""
         runs = [SIDES[side][1] * read(f"{CLOSELY}{SIDES[side][0]}{k}") for (side, k), __, read in parts]
         sides: list[list[Real]] = [[], [], [], []]
         for ((side, __), *__), top in zip(parts, window_peak(np.vstack(runs)).reshape(len(runs), -1), strict=True):
@@ -93,7 +95,7 @@ class MotionBox(PeakQuantity):
 
 
 def _list_moving_points(linkage: Linkage) -> list[str]:
-    """Return the points of moving links, those on the frame first."""
+    """Return the points of the moving links, first those that are also points of the frame."""
     fixed = linkage.links[FRAME].points
     points = {point for name in linkage.moving for point in linkage.links[name].points}
     return sorted(points, key=lambda point: (point not in fixed, point))

@@ -1,4 +1,4 @@
-"""Strokes of the output, which end where its slope changes sign: length, time ratio, mean speed."""
+"""Quantities of the output strokes (length, time ratio, mean speed). A stroke ends where the output reverses."""
 
 from __future__ import annotations
 
@@ -22,7 +22,9 @@ FOUR = 4  # reversals in a cycle: with more, the extremes may belong to differen
 
 
 class StrokeQuantity(MechanismQuantity):
-    """A quantity of the output's strokes. Windows lie around the ends of strokes; an angle is unwrapped there."""
+    """A quantity of the output strokes. Its windows lie around the ends of the strokes; output angles are unwrapped
+    there.
+    """
 
     of_a_cycle: ClassVar[bool] = False
 
@@ -56,11 +58,11 @@ class StrokeQuantity(MechanismQuantity):
 
     @abstractmethod
     def between(self, parts: Windows, over: QuantityRange, step: float) -> Real:
-        """Return candidate values from windows around the ends of all strokes, (variants, values)."""
+        """Return values of the quantity from windows around the ends of all strokes, shape (variants, values)."""
 
 
 class OutputStroke(StrokeQuantity):
-    """Stroke of the output, m or rad; the longest of several."""
+    """Stroke (m) or swing angle (rad) of the output link; the longest one if there are several."""
 
     of, text = "stroke", N_("stroke of the output link")
 
@@ -94,7 +96,7 @@ class OutputStroke(StrokeQuantity):
 
 
 class TimeRatio(StrokeQuantity):
-    """Time ratio k, duration of the longer stroke over that of the shorter: 1 or more."""
+    """Time ratio k: duration of the slower stroke divided by that of the faster one, at least 1."""
 
     of, text, dimension, of_a_cycle = (
         "k",
@@ -125,7 +127,7 @@ class TimeRatio(StrokeQuantity):
 
 
 class MeanOutputSpeed(StrokeQuantity):
-    """Mean speed of a sliding output over a cycle, m/s; with an accelerated crank over the first cycle."""
+    """Mean speed (m/s) of a sliding output link over a cycle; over the first cycle if the crank accelerates."""
 
     of, text, dimension, of_a_cycle = "speed", N_("mean speed of the output link"), "speed", True
 
@@ -146,9 +148,7 @@ class MeanOutputSpeed(StrokeQuantity):
 
     def between(self, parts: Windows, over: QuantityRange, step: float) -> Real:
         speed: Real = (
-            np.sum(stroke_lengths(unwrap_runs(parts, over)), axis=0)
-            * mean_crank_speed(parts[0][2], over)
-            / over.cycle
+            np.sum(stroke_lengths(unwrap_runs(parts, over)), axis=0) * mean_crank_speed(parts[0][2], over) / over.cycle
         )
         return speed[:, None]
 
@@ -157,7 +157,7 @@ class MeanOutputSpeed(StrokeQuantity):
 
 
 def coarse_travel(read: Read, over: QuantityRange) -> Real:
-    """Return the range of the output's motion, coarsely, (variants,); nan for an output that rotates continuously."""
+    """Return the approximate range of the output motion, shape (variants,); nan if the output rotates continuously."""
     run = read("run")
     travel: Real = np.max(run, axis=1) - np.min(run, axis=1)
     if over.swings and np.any(past := travel > np.pi):  # angles lie in -pi..pi, neighbours less than pi apart
@@ -168,9 +168,12 @@ def coarse_travel(read: Read, over: QuantityRange) -> Real:
 
 
 def longest_stroke(run: Real, travel: Real, *, turns: bool) -> Real:
-    """Return the longest stroke of a closed curve with several reversals, (variants,); travel: its total range.
+    """Return the longest stroke of a periodic curve with several reversals, shape (variants,).
 
-    turns: True if the curve is an angle wrapped to -pi..pi.
+    Args:
+        run: samples over one cycle, shape (variants, positions).
+        travel: total range of each curve, an upper limit of the stroke, shape (variants,).
+        turns: True if the curve is an angle wrapped to -pi..pi.
     """
     step = np.diff(run, axis=1, append=run[:, :1])
     step = (step + np.pi) % (2 * np.pi) - np.pi if turns else step
@@ -183,14 +186,14 @@ def longest_stroke(run: Real, travel: Real, *, turns: bool) -> Real:
 
 
 def count_reversals(slope: Real) -> Real:
-    """Return how often a curve reverses in a cycle, (variants,); a standstill may count twice."""
+    """Return the number of reversals of a curve in a cycle, shape (variants,). A dwell may count twice."""
     sign = np.sign(slope)
     reversals: Real = np.sum(sign != np.roll(sign, 1, axis=1), axis=1)
     return reversals
 
 
 def unwrap_runs(parts: Windows, over: QuantityRange) -> list[Real]:
-    """Return the motion of the output in each window; an angle is unwrapped."""
+    """Return the motion of the output in each window; angles are unwrapped."""
     runs = []
     for angle, __, read in parts:
         run = read("run")
@@ -199,7 +202,7 @@ def unwrap_runs(parts: Windows, over: QuantityRange) -> list[Real]:
 
 
 def stroke_lengths(runs: list[Real]) -> Real:
-    """Return the lengths of the strokes between windows, (strokes, variants)."""
+    """Return the lengths of the strokes between the windows at their ends, shape (strokes, variants)."""
     ends = [
         np.where(run[:, 0] + run[:, -1] < 2 * np.mean(run, axis=1), window_peak(run), -window_peak(-run))
         for run in runs
@@ -208,8 +211,10 @@ def stroke_lengths(runs: list[Real]) -> Real:
 
 
 def forward_share(slope: Real) -> Real:
-    """Return the fraction of the moving time in which a curve rises, from its slope at equal steps; dwells have zero
-    slope.
+    """Return the fraction of the time of motion in which a curve rises, shape (variants,).
+
+    Args:
+        slope: slope of the curve at equal steps, shape (variants, positions); zero in dwells.
     """
     after = np.roll(slope, -1, axis=1)
     up, down = np.maximum(slope, 0) + np.maximum(after, 0), np.maximum(-slope, 0) + np.maximum(-after, 0)
@@ -220,13 +225,15 @@ def forward_share(slope: Real) -> Real:
 
 
 def time_ratio_of_share(share: Real) -> Real:
-    """Return k from the fraction of time of one of two strokes."""
+    """Return the time ratio k of two strokes from the fraction of time that one of them takes."""
     with np.errstate(all="ignore"):
         ratio: Real = np.maximum(share, 1 - share) / np.minimum(share, 1 - share)
     return ratio
 
 
 def mean_crank_speed(read: Read, over: QuantityRange) -> Real:
-    """Return the mean crank speed in the first cycle, (variants,): half the sum of the speeds at its ends."""
+    """Return the mean crank speed in the first cycle, shape (variants,): half the sum of the speeds at its start and
+    end.
+    """
     rate, gain = (read(name)[:, 0] for name in ("rate", "gain"))
     return (rate + np.sqrt(rate * rate + 2 * gain * over.cycle)) / 2

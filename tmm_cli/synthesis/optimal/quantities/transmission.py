@@ -1,5 +1,5 @@
-"""Transmission of motion and forces: assembly, distance from dead positions, pressure angle, balancing moment,
-reactions.
+"""Quantities of the transmission: possibility of assembly, distance from dead positions, pressure angle, balancing
+moment, reactions.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ SIDE: Final = "side"  # outputs whose sign shows the side of a dead position, fo
 
 
 class AssemblyReserve(PeakQuantity):
-    """Reserve of a group before it can no longer be assembled, over the size of the group; negative: not assembled.
+    """Smallest distance of a group from the limit of its assembly, relative to the size of the group.
 
-    Every candidate must be assembled in all positions.
+    It is negative if the group cannot be assembled. Every candidate must be assembled in all positions.
     """
 
     of, text, dimension, lowest = "assembles", N_("driver completes its range (1: yes)"), "number", True
@@ -40,7 +40,7 @@ class AssemblyReserve(PeakQuantity):
 
 
 class DeadPositionMargin(PeakQuantity):
-    """Smallest distance of a group from a dead position, 1 at best."""
+    """Smallest distance of any group from a dead position; 1 is the best possible value."""
 
     of, text, dimension, lowest = "margin", N_("smallest distance from a dead position"), "number", True
 
@@ -49,7 +49,7 @@ class DeadPositionMargin(PeakQuantity):
 
 
 class LargestPressureAngle(PeakQuantity):
-    """Largest pressure angle on the output, rad; its curve is the tangent."""
+    """Largest pressure angle on the output link (rad). The curve that is evaluated is its tangent."""
 
     of, text, dimension = "pressure", N_("largest pressure angle"), "angle"
 
@@ -75,7 +75,7 @@ class LargestPressureAngle(PeakQuantity):
 
 
 class LargestBalancingMoment(PeakQuantity):
-    """Largest balancing moment on the driver, N m; on a sliding driver the balancing force, N."""
+    """Largest balancing moment on the driver (N m), or largest balancing force (N) if the driver slides."""
 
     of, text, forces = "moment", N_("largest balancing moment"), True
 
@@ -91,7 +91,7 @@ class LargestBalancingMoment(PeakQuantity):
 
 
 class LargestReaction(PeakQuantity):
-    """Largest reaction in a pair, N; of a compound hinge the largest of its pairs."""
+    """Largest reaction in a pair (N); in a compound hinge, the largest reaction of its pairs."""
 
     of, text, forces, dimension = "reaction", N_("largest reaction in the pair"), True, "force"
     keys, named = ("pair",), "pair"
