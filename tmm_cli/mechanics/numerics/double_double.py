@@ -1,8 +1,9 @@
-"""NumPy functions of double-double numbers (31 digits).
+"""NumPy functions for double-double numbers (31 digits).
 
-Each number is the unevaluated sum of two float64, in an array that NumPy functions accept. The ordinary code of the
-stages runs on them unchanged, with the same results on every machine; the difference from the results in float64 is the
-rounding error. The real and imaginary parts of a complex number are double-doubles of their own.
+A double-double number is the unevaluated sum of two float64 numbers; arrays of such numbers are accepted by NumPy
+functions. The ordinary code of the calculation therefore runs on them unchanged, with the same results on every
+machine; the difference from its results in float64 is the rounding error. The real and imaginary parts of a complex
+number are separate double-doubles.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ def _where(truth: Any, true_values: Any, false_values: Any) -> DoubleDouble:
 
 
 def _comparison(ufunc: Any) -> Callable[[Any, Any], Any]:
-    """Return a comparison of the high parts, or of the low parts where the high parts are equal."""
+    """Make a NumPy comparison (less, equal, ...) work on double-doubles: high parts first, then low parts."""
 
     def compare(x: Any, y: Any) -> Any:
         (a, b), (c, d) = high_and_low(x), high_and_low(y)
@@ -70,7 +71,7 @@ def _cumsum(x: DoubleDouble, axis: int) -> DoubleDouble:
 
 
 def _interp(x: Any, at: Any, values: Any) -> DoubleDouble:
-    """Interpolate linearly in a table (np.interp), which may jump where two arguments are equal."""
+    """Interpolate linearly in a table, as np.interp does. Two rows with the same argument are a jump."""
     at, values = (DoubleDouble(*high_and_low(array(column))) for column in (at, values))
     left = np.clip(np.searchsorted(at.hi, high_and_low(x)[0], side="right") - 1, 0, max(len(at) - 2, 0))
     right = np.minimum(left + 1, len(at) - 1)

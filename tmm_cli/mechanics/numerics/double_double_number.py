@@ -1,4 +1,4 @@
-"""Double-double arrays and their arithmetic; the NumPy functions for them are in `double_double`."""
+"""Double-double arrays and their arithmetic. The NumPy functions for them are in the module `double_double`."""
 
 from __future__ import annotations
 
@@ -48,7 +48,14 @@ ARRANGING = {
 
 
 class DoubleDouble(NDArrayOperatorsMixin):
-    """Array of double-double numbers hi + lo, real or complex; |lo| is at most half a unit in the last place of hi."""
+    """Array of double-double numbers hi + lo, real or complex.
+
+    Attributes:
+        hi: high parts, the numbers rounded to float64 (or complex128).
+        lo: low parts, the remainders; |lo| is at most half a unit in the last place of hi.
+        turn: cached e^(i x), or None.
+        angle: cached angle of a complex number, or None.
+    """
 
     __slots__ = ("angle", "hi", "lo", "turn")
 
@@ -60,7 +67,11 @@ class DoubleDouble(NDArrayOperatorsMixin):
 
     @classmethod
     def decimal(cls, written: str) -> DoubleDouble:
-        """Convert a decimal string. Raises decimal.InvalidOperation if it is not a number."""
+        """Convert a decimal string, e.g. "0.1", to the nearest double-double.
+
+        Raises:
+            decimal.InvalidOperation: the string is not a number.
+        """
         return from_decimals([EXACT.create_decimal(written)])[0]
 
     @property
@@ -104,7 +115,7 @@ class DoubleDouble(NDArrayOperatorsMixin):
         return DoubleDouble(self.hi.copy(), self.lo.copy())
 
     def astype(self, kind: Any) -> Any:
-        """Return the values rounded to an ordinary NumPy array."""
+        """Return an ordinary NumPy array of this type, rounded from the double-doubles."""
         return self.hi.astype(kind)
 
     def __getitem__(self, key: Any) -> DoubleDouble:
@@ -164,7 +175,7 @@ class DoubleDouble(NDArrayOperatorsMixin):
 
 
 def high_and_low(value: Any) -> Pair:
-    """Return the high and low parts of a double-double or ordinary array; the low parts of the latter are zero."""
+    """Return the high and low parts of an array. The low parts of an ordinary array are zero."""
     if isinstance(value, DoubleDouble):
         return value.hi, value.lo
     array = np.asarray(value)
@@ -172,8 +183,11 @@ def high_and_low(value: Any) -> Pair:
 
 
 def _arguments_of_part(args: Any, part: int) -> Any:
-    """Return the arguments of a rearranging NumPy function with the high (part 0) or low (part 1) parts of double-
-    doubles.
+    """Replace double-doubles among the arguments of a NumPy function by one of their parts.
+
+    Args:
+        args: arguments of a function that only rearranges numbers (stack, reshape, ...).
+        part: 0 for the high parts, 1 for the low parts.
     """
     converted = []
     mixed = any(isinstance(arg, DoubleDouble) for arg in args)
@@ -189,12 +203,12 @@ def _arguments_of_part(args: Any, part: int) -> Any:
 
 
 def to_double_double(values: Any) -> Any:
-    """Convert an ordinary array to double-doubles, exactly."""
+    """Convert an ordinary array to double-doubles, without rounding. Double-doubles are returned unchanged."""
     return values if isinstance(values, DoubleDouble) else DoubleDouble(values)
 
 
 def array(values: Any) -> Any:
-    """Make an array of values; of double-doubles if at least one value is a double-double."""
+    """Convert values to an array, as np.array does; the result is a DoubleDouble if any value is one."""
     if isinstance(values, DoubleDouble):
         return values
     if not isinstance(values, list | tuple):
@@ -207,12 +221,12 @@ def array(values: Any) -> Any:
 
 
 def to_float(values: Any) -> Any:
-    """Round double-doubles to an ordinary array; other values are returned unchanged."""
+    """Round double-doubles to an ordinary NumPy array. Other values are returned unchanged."""
     return values.hi if isinstance(values, DoubleDouble) else values
 
 
 def from_decimals(numbers: Sequence[Decimal]) -> DoubleDouble:
-    """Convert decimals to the nearest double-doubles."""
+    """Convert decimal.Decimal numbers to the nearest double-doubles."""
     hi = [float(number) for number in numbers]
     lo = [EXACT.subtract(number, Decimal(h)) for number, h in zip(numbers, hi, strict=True)]
     return DoubleDouble(np.array(hi), np.array(lo, float))
@@ -229,20 +243,20 @@ LARGEST_POWER = 8  # largest exponent computed by multiplication
 
 
 def two_sum(a: Any, b: Any) -> Pair:
-    """Return a + b rounded, and the exact rounding error."""
+    """Return the rounded sum a + b and its exact rounding error."""
     total = a + b
     other = total - a
     return total, (a - (total - other)) + (b - other)
 
 
 def fast_two_sum(a: Any, b: Any) -> Pair:
-    """Return a + b rounded, and the exact rounding error; requires |a| >= |b|."""
+    """Return the rounded sum a + b and its exact rounding error. Requires |a| >= |b|."""
     total = a + b
     return total, b - (total - a)
 
 
 def two_product(a: Any, b: Any) -> Pair:
-    """Return a b rounded, and the exact rounding error; at least one of them is real."""
+    """Return the rounded product of a and b and its exact rounding error. At most one of them may be complex."""
     product = a * b
     torn = SPLIT * a
     a1 = torn - (torn - a)
@@ -253,7 +267,7 @@ def two_product(a: Any, b: Any) -> Pair:
 
 
 def add(x: Any, y: Any) -> DoubleDouble:
-    """Return x + y; at least one of them is a double-double."""
+    """Return x + y, where at least one of x and y is a double-double."""
     if not isinstance(y, DoubleDouble):
         x, y = y, x
     total, error = two_sum(y.hi, x.hi if isinstance(x, DoubleDouble) else x)
@@ -270,12 +284,12 @@ def negative(x: DoubleDouble) -> DoubleDouble:
 
 
 def subtract(x: Any, y: Any) -> DoubleDouble:
-    """Return x - y; at least one of them is a double-double."""
+    """Return x - y, where at least one of x and y is a double-double."""
     return add(x, -y)
 
 
 def multiply(x: Any, y: Any) -> DoubleDouble:
-    """Return x y, real or complex; at least one of them is a double-double."""
+    """Return the product of x and y, real or complex, where at least one of them is a double-double."""
     if not isinstance(y, DoubleDouble):
         x, y = y, x
     if isinstance(x, DoubleDouble):
@@ -296,21 +310,21 @@ def multiply(x: Any, y: Any) -> DoubleDouble:
 
 
 def _is_exact_factor(x: Any) -> bool:
-    """Return True if products with x are exact: x is a power of two, i or -i."""
+    """Return True if multiplication by x causes no rounding: x is a power of two, i or -i."""
     if isinstance(x, complex):
         return x in (1j, -1j)
     return isinstance(x, int | float) and abs(frexp(x)[0]) == 0.5
 
 
 def _real_and_imaginary(values: Any) -> Any:
-    """Return the real and imaginary parts on a new first axis."""
+    """Stack the real and imaginary parts of complex numbers along a new first axis."""
     planes = np.empty((2, *values.shape))
     planes[0], planes[1] = values.real, values.imag
     return planes
 
 
 def divide(x: Any, y: Any) -> DoubleDouble:
-    """Return x / y, real or complex."""
+    """Return the quotient x / y, real or complex."""
     x, y = DoubleDouble(*high_and_low(x)), DoubleDouble(*high_and_low(y))
     if y.dtype.kind == "c":
         return divide(multiply(x, y.conjugate()), square(y))
@@ -321,7 +335,7 @@ def divide(x: Any, y: Any) -> DoubleDouble:
 
 
 def _keep_nonfinite(refined: DoubleDouble, plain: Any) -> DoubleDouble:
-    """Return `refined`, but the float64 result `plain` where that is infinite or nan."""
+    """Return the double-double quotient or root `refined`, but the float64 one where that is infinite or nan."""
     sound = np.isfinite(plain)
     if sound.all():
         return refined
@@ -329,7 +343,7 @@ def _keep_nonfinite(refined: DoubleDouble, plain: Any) -> DoubleDouble:
 
 
 def square(z: DoubleDouble) -> DoubleDouble:
-    """Return |z|^2 of complex numbers."""
+    """Return the squared magnitude |z|^2 of complex numbers."""
     planes = _real_and_imaginary(z.hi)
     squares, errors = two_product(planes, planes)
     total, error = two_sum(squares[0], squares[1])
@@ -338,7 +352,7 @@ def square(z: DoubleDouble) -> DoubleDouble:
 
 
 def sqrt(x: DoubleDouble) -> DoubleDouble:
-    """Return the square root, by one Newton step from the float64 root."""
+    """Return the square root, computed by one Newton step from the float64 root."""
     root = np.sqrt(x.hi)
     square, error = two_product(root, root)
     rest = (x.hi - square) - error + x.lo
@@ -346,7 +360,7 @@ def sqrt(x: DoubleDouble) -> DoubleDouble:
 
 
 def absolute(x: DoubleDouble) -> DoubleDouble:
-    """Return |x|, real or complex."""
+    """Return the absolute value |x|, real or complex."""
     if x.dtype.kind == "c":
         return sqrt(square(x))
     sign = np.copysign(1.0, x.hi)
@@ -354,7 +368,10 @@ def absolute(x: DoubleDouble) -> DoubleDouble:
 
 
 def power(x: Any, n: Any) -> DoubleDouble:
-    """Return x**n: to 31 digits for small integer n and n = 0.5, otherwise to float64 accuracy."""
+    """Return x**n.
+
+    The result has 31 digits if n is an integer with |n| <= LARGEST_POWER or n = 0.5, otherwise float64 accuracy.
+    """
     x, number = to_double_double(x), float(n)
     if number == 0.5:
         return sqrt(x)
@@ -371,7 +388,7 @@ def floor(x: DoubleDouble) -> DoubleDouble:
 
 
 def remainder(x: Any, y: Any) -> DoubleDouble:
-    """Return x - floor(x / y) y."""
+    """Return the remainder x - y floor(x / y), as np.remainder does."""
     return subtract(x, multiply(floor(divide(x, y)), y))
 
 
@@ -384,7 +401,7 @@ POWERS, PRECISE = 9, 5  # number of terms of the series; those from PRECISE on a
 
 
 def exp_i(x: DoubleDouble) -> DoubleDouble:
-    """Return e^(i x), from the nearest of PARTS tabulated directions by a power series."""
+    """Return e^(i x): the nearest of PARTS tabulated directions, rotated by a power series of the remaining angle."""
     if x.turn is None:
         steps, directions, series = _trigonometric_tables()
         number = np.round(x.hi * (PARTS / (2 * np.pi)))
@@ -407,8 +424,9 @@ def exp_i(x: DoubleDouble) -> DoubleDouble:
 
 
 def arctan2(y: Any, x: Any) -> DoubleDouble:
-    """Return the angle of (x, y), by one correction of the float64 value: the sine of the remaining angle is that
-    angle.
+    """Return the angle of the vector (x, y), rad.
+
+    The float64 angle is corrected once: the correction is so small that it equals its sine.
     """
     y, x = DoubleDouble(*high_and_low(y)), DoubleDouble(*high_and_low(x))
     near = DoubleDouble(np.arctan2(y.hi, x.hi))
@@ -426,7 +444,11 @@ def angle(z: DoubleDouble) -> DoubleDouble:
 
 @cache
 def _trigonometric_tables() -> tuple[list[float], DoubleDouble, DoubleDouble]:
-    """Return 2 pi / PARTS as two doubles, the tabulated directions, and the series coefficients of cosine and sine."""
+    """Compute the tables of `exp_i`.
+
+    Returns:
+        2 pi / PARTS as two doubles, the tabulated directions, and the series coefficients of cosine and sine.
+    """
     with localcontext(EXACT):
         step = 2 * Decimal(PI) / PARTS
         steps, rest = [], step

@@ -1,9 +1,9 @@
 """Tabulated functions: linear, stepwise, or a cubic spline; constant before the first and after the last row.
 
 The slopes of the spline follow from continuous second derivatives, which are zero at the ends unless the spline is
-periodic. C. de Boor, A Practical Guide to Splines (2001), ch. 4. Numbers may be of any precision, or arrays
-(variants, 1). Two rows with the same argument are a jump: the value of the first row holds up to the argument, that of
-the second from it on.
+periodic (C. de Boor, A Practical Guide to Splines, 2001, ch. 4). The numbers of a table may be float64, longdouble or
+double-double, or arrays (variants, 1). Two rows with the same argument are a jump: up to this argument the value of the
+first row holds, from the argument on that of the second.
 """
 
 from __future__ import annotations
@@ -25,11 +25,15 @@ SAMPLES_BETWEEN = 17  # samples between two rows
 
 @dataclass(frozen=True)
 class InterpolationTable:
-    """Rows by increasing arguments. between: "linear"; "step": each value holds up to the next row; "smooth": cubic
-    spline.
+    """A function given by a table, e.g. of a load against the driver angle. Call it with an argument to interpolate.
 
-    closed: the spline is periodic; its first and last rows have the same value. If the table has jumps, the rows
-    between two jumps have a spline of their own, and `closed` has no effect.
+    Attributes:
+        arguments: arguments of the rows, in increasing order; a repeated argument is a jump.
+        values: value of each row.
+        between: "linear"; "step" (each value holds up to the next row); or "smooth" (cubic spline).
+        closed: True if the spline is periodic; its first and last rows then have the same value. If the table has
+            jumps,
+            the rows between two jumps have a separate spline, and `closed` has no effect.
     """
 
     arguments: tuple[Any, ...]
@@ -48,15 +52,16 @@ class InterpolationTable:
         return interpolated
 
     def slope(self, argument: Real) -> Real:
-        """Return the derivative; at a jump, the one after it."""
+        """Return the derivative with respect to the argument; at a jump, the derivative after it."""
         from_row, (_, first, second, third) = self._from_row(self._as_precise(argument))
         derivative: Real = first + from_row * (2 * second + 3 * from_row * third)
         return derivative
 
     @property
     def overshoot(self) -> tuple[int, float]:
-        """Row (from 0) after which a spline overshoots the range of the tabulated values most, and the overshoot as a
-        fraction of that range.
+        """Row (from 0) after which the spline leaves the range of the tabulated values most, and by how much.
+
+        The overshoot is a fraction of the range of the values. (0, 0.0) if the table is not a spline.
         """
         if self.between != "smooth":
             return 0, 0.0
@@ -69,11 +74,11 @@ class InterpolationTable:
 
     @cached_property
     def jumps(self) -> tuple[int, ...]:
-        """Rows (from 0) with the same argument as the row before."""
+        """Indices (from 0) of the rows that have the same argument as the row before."""
         return tuple(k + 1 for k, (a, b) in enumerate(pairwise(self.arguments)) if np.all(a == b))
 
     def _as_precise(self, argument: Real) -> Real:
-        """Convert the argument to the precision of the rows: NumPy does not recognise double-doubles in a list."""
+        """Convert the argument to the precision of the table. NumPy does not recognise double-doubles in a list."""
         first = self.arguments[0]
         return argument if isinstance(first, int | float | np.ndarray) else argument + 0 * first
 
@@ -82,7 +87,7 @@ class InterpolationTable:
         return not any(isinstance(x, np.ndarray) and x.ndim for x in (*self.arguments, *self.values))
 
     def _from_row(self, argument: Real) -> tuple[Real, tuple[Real, ...]]:
-        """Return the distance of each argument from the row before it, and the polynomial coefficients of its piece."""
+        """Return the distance of each argument from the row before it, and the cubic coefficients that hold there."""
         within = np.minimum(np.maximum(argument, self.arguments[0]), self.arguments[-1])
         # rounding must not move an argument at a row to the piece before it
         at = argument + SEAM * (1 + np.abs(argument))
@@ -92,7 +97,7 @@ class InterpolationTable:
         return within - row, tuple(pieces)
 
     def _held(self, at: Real, starts: Sequence[Any], values: Sequence[Any]) -> Real:
-        """Return the value that belongs to the last start at or before each argument."""
+        """Return the value of the last row at or before each argument; starts: arguments of the rows."""
         latest: Real
         if self._plain:
             twice = [start for start in starts for _ in range(2)][1:]
@@ -105,7 +110,7 @@ class InterpolationTable:
 
     @cached_property
     def _pieces(self) -> list[tuple[Any, ...]]:
-        """Coefficients of each piece, by powers of the distance from its first row."""
+        """Cubic coefficients of each piece between two rows, in powers of the distance from its first row."""
         if self.between == "step":
             return [(value, 0.0, 0.0, 0.0) for value in self.values]
         borders = [0, *self.jumps, len(self.arguments)]
@@ -116,7 +121,7 @@ class InterpolationTable:
         return pieces if len(self.arguments) - 1 in self.jumps else pieces[:-1]
 
     def _smooth_or_linear(self, arguments: Sequence[Any], values: Sequence[Any]) -> list[tuple[Any, ...]]:
-        """Return the coefficients of the pieces between rows without a jump; empty for a single row."""
+        """Return the cubic coefficients of the pieces between rows without a jump; empty for a single row."""
         if len(arguments) < 2:
             return []
         steps = [end - start for start, end in pairwise(arguments)]
@@ -132,23 +137,22 @@ class InterpolationTable:
 
 
 def _slope_of_step(change: Any, step: Any) -> Any:
-    """Return change / step for each variant; zero where a variant has a jump (step 0)."""
+    """Return the quotient change / step for each variant; zero where a variant has a jump (step 0)."""
     if not np.any(step == 0):
         return change / step
     return np.where(step == 0, 0.0, change) / np.where(step == 0, 1.0, step)
 
 
 def _natural_spline_slopes(steps: list[Any], rises: list[Any]) -> list[Any]:
-    """Return the slopes at the rows of a natural spline (zero second derivative at both ends)."""
+    """Solve for the slopes at the rows of a natural spline (second derivative zero at both ends)."""
     lower, middle, upper, right = _inner_equations(steps, rises)
     return _solve_tridiagonal([*lower, 1.0], [2.0, *middle, 2.0], [1.0, *upper], [3 * rises[0], *right, 3 * rises[-1]])
 
 
 def _periodic_spline_slopes(steps: list[Any], rises: list[Any]) -> list[Any]:
-    """Return the slopes at the rows of a periodic spline.
+    """Solve for the slopes at the rows of a periodic spline.
 
-    All other slopes are linear functions of the slope m of the first and last row, which follows from the last
-    equation.
+    The inner slopes are linear functions of the slope m of the first and last rows; m follows from the last equation.
     """
     lower, middle, upper, right = _inner_equations(steps, rises)
     fixed = _solve_tridiagonal(lower[1:], middle, upper[:-1], right)
@@ -161,8 +165,10 @@ def _periodic_spline_slopes(steps: list[Any], rises: list[Any]) -> list[Any]:
 
 
 def _inner_equations(steps: list[Any], rises: list[Any]) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
-    """Return the equations of the inner rows: coefficients of the previous, own and next slope, and right-hand
-    sides.
+    """Return the equations of continuous second derivatives at the inner rows of a spline.
+
+    Returns:
+        Coefficients of the slopes at the previous, the same and the next row, and the right-hand sides.
     """
     both = list(zip(pairwise(steps), pairwise(rises), strict=True))
     return (

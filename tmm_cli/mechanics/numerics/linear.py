@@ -1,4 +1,4 @@
-"""Small linear systems, one for each position, solved together; also in double-doubles. Never raises an exception."""
+"""Small linear systems, one for each position, solved together, also in double-doubles. Singular systems give nan."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ REFINEMENTS = 5  # each adds the digits of float64 less those that the matrix lo
 
 
 def solve(matrix: Real, right: Real) -> Real:
-    """Solve matrix x = right; nan where a matrix is singular.
+    """Solve the linear systems matrix x = right; nan where a square matrix is singular. Never raises an exception.
 
     Args:
-        matrix: shape (..., m, n); for m != n the least-squares solution of least norm is returned.
-        right: shape (..., m).
+        matrix: shape (..., m, n). If m != n, the least-squares solution of smallest norm is returned.
+        right: right-hand sides, shape (..., m).
 
     Returns:
-        x, shape (..., n).
+        The solutions x, shape (..., n).
     """
     if not (isinstance(matrix, np.ndarray) and isinstance(right, np.ndarray)):
         return _solve_refined(matrix, right)
@@ -40,7 +40,7 @@ def solve(matrix: Real, right: Real) -> Real:
 
 
 def _solve_refined(matrix: Real, right: Real) -> Real:
-    """Solve in double-doubles by iterative refinement of the float64 solution."""
+    """Solve in double-doubles, by iterative refinement of the float64 solution."""
     near = to_float(matrix)
     solution: Real = to_double_double(solve(near, to_float(right)))
     for _ in range(REFINEMENTS):
@@ -62,7 +62,7 @@ def _least_squares(matrix: Real, right: Real) -> Real:
 
 
 def singular_value_ratio(matrix: Real) -> Real:
-    """Return the least singular value divided by the largest; nan where the matrix is not finite."""
+    """Return the smallest singular value divided by the largest; nan where the matrix is not finite."""
     sound = np.all(np.isfinite(matrix), axis=(-1, -2))
     clean = np.where(sound[..., None, None], to_float(matrix), 0.0)
     values = np.linalg.svd(clean, compute_uv=False)
@@ -71,7 +71,7 @@ def singular_value_ratio(matrix: Real) -> Real:
 
 
 def determinant_sign(matrix: Real) -> Real:
-    """Return the sign of the determinant; 1 for a matrix that is not square."""
+    """Return the sign of the determinant of each matrix; 1 for matrices that are not square."""
     if matrix.shape[-1] != matrix.shape[-2]:
         return np.ones(matrix.shape[:-2])
     sign: Real = np.linalg.slogdet(to_float(matrix))[0]
@@ -79,14 +79,15 @@ def determinant_sign(matrix: Real) -> Real:
 
 
 def singular_margin(rows: Sequence[Mapping[int, Any]], lengths: Sequence[bool], size: Any) -> Any:
-    """Return the ratio of the least to the largest singular value of a square system in dimensionless form.
+    """Return the ratio of the smallest to the largest singular value of a square system in dimensionless form.
+
+    If operations are being traced, the whole calculation is recorded as one operation.
 
     Args:
-        rows: coefficients {unknown: coefficient}, as many rows as unknowns; unknowns x, y, angle of each link in turn.
-        lengths: for each row, True if it is in metres.
+        rows: coefficients {unknown: coefficient}, as many rows as unknowns; the unknowns are x, y and angle of each
+            link.
+        lengths: for each row, True if the equation is in metres.
         size: length (m) by which lengths are divided.
-
-    When operations are traced, it is recorded as a single operation.
     """
     scale = [1 / size if length else 1.0 for length in lengths]
     columns = [1.0 if k % 3 == 2 else size for k in range(len(rows))]
@@ -119,7 +120,13 @@ EquationRow = Mapping[int, Any]
 
 @dataclass(frozen=True)
 class EliminationOrder:
-    """Order of elimination: explicit (row, column) in turn; closing: remaining rows; free: remaining columns."""
+    """Order in which the unknowns of a linear system are eliminated.
+
+    Attributes:
+        explicit: pairs (row, column), in turn: the row gives this unknown explicitly.
+        closing: the remaining rows.
+        free: the remaining columns; their unknowns are solved for simultaneously from the closing rows.
+    """
 
     explicit: tuple[tuple[int, int], ...]
     closing: tuple[int, ...]
@@ -127,10 +134,10 @@ class EliminationOrder:
 
 
 class EliminatedSystem:
-    """A linear system in triangular form, which is solved for several right-hand sides, with the matrix or its
-    transpose.
+    """A linear system reduced to triangular form, to be solved for several right-hand sides.
 
-    scales: factors of the rows and units of the columns, used if both lengths and angles occur in the free unknowns.
+    It is solved with its matrix or with the transpose. `scales` are the factors of the rows and the units of the
+    columns; None unless both lengths and angles occur among the free unknowns.
     """
 
     def __init__(
@@ -147,7 +154,7 @@ class EliminatedSystem:
         self._triangular([self._by_free(row) for row in order.closing])
 
     def _by_free(self, row: int, skip: int = -1) -> dict[int, Any]:
-        """Return a row in terms of the free unknowns alone."""
+        """Express a row by the free unknowns alone."""
         coefficients: dict[int, Any] = {}
         for column, value in self.rows[row].items():
             if column in self.following:
@@ -186,11 +193,11 @@ class EliminatedSystem:
 
     @property
     def diagonal(self) -> list[Any]:
-        """Diagonal of the triangular matrix; its product is the determinant up to a constant factor."""
+        """Diagonal of the triangular matrix. Its product is the determinant up to a constant factor."""
         return [self.left[row][column] for row, column in self.pivots]
 
     def solve(self, right: Sequence[Any]) -> list[Any]:
-        """Return x of matrix x = right."""
+        """Solve matrix x = right for x."""
         solution: dict[int, Any] = {}
         for row, column in self.order.explicit:
             solution[column] = self._rest(row, right[row], solution, column) / self.rows[row][column]
@@ -207,8 +214,10 @@ class EliminatedSystem:
         return right
 
     def free(self, right: Sequence[Any]) -> dict[int, Any]:
-        """Return the free unknowns for the right-hand sides of the closing rows, those of the explicit rows being
-        zero.
+        """Solve the closing rows for the free unknowns, with zero right-hand sides in the explicit rows.
+
+        Args:
+            right: right-hand sides of the closing rows.
         """
         down, across = self.scales or ((), ())
         turned = list(right)
@@ -227,7 +236,7 @@ class EliminatedSystem:
         return solution if self.scales is None else {k: value * across[k] for k, value in solution.items()}
 
     def transposed(self, right: Sequence[Any]) -> list[Any]:
-        """Return y of y matrix = right."""
+        """Solve y matrix = right for y."""
         down, across = self.scales or ((), ())
         whole = {k: right[k] for k in self.order.free}
         for _, column in self.order.explicit:
@@ -257,7 +266,7 @@ class EliminatedSystem:
 
 
 def _combine(c: Any, a: Any, s: Any, b: Any) -> Any:
-    """Return c one + s other, where None stands for zero."""
+    """Return c a + s b, where None stands for zero."""
     if a is None:
         return s * b
     return c * a if b is None else c * a + s * b

@@ -1,4 +1,4 @@
-"""Roots, minima and peaks of functions that are evaluated at many arguments at once."""
+"""Roots, minima and maxima of functions that are evaluated at many arguments at once."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FLAT = 1e-12  # fraction of the largest value: a lower rise above the neighbours
 
 
 def find_roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:
-    """Find a root in each interval, to the last bit, in all intervals at once.
+    """Find one root in each of many intervals, to the last bit.
 
     Inverse quadratic interpolation where it is safe, otherwise bisection: T. R. Chandrupatla, A new hybrid
     quadratic/bisection algorithm for finding the zero of a nonlinear function, Advances in Engineering Software 28
@@ -27,7 +27,7 @@ def find_roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:
 
     Args:
         function: takes and returns arrays of the shape of `low`; it has different signs at `low` and `high`.
-        low, high: ends of the intervals; the root has their precision, float64 at least.
+        low, high: ends of the intervals. The roots have their precision, but at least float64.
     """
     kind = np.result_type(np.asarray(low), np.asarray(high), float)
     b, a = np.asarray(low, kind), np.asarray(high, kind)
@@ -58,11 +58,15 @@ def find_roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:
 def bisect(
     holds: Callable[[Real], Real], inside: Real, outside: Real, halvings: int | None = None
 ) -> tuple[Real, Real]:
-    """Return the last argument at which a condition holds and the first at which it does not, in each interval.
+    """Bisect each interval for the point where a condition ceases to hold.
 
     Args:
         holds: the condition; True at `inside`, False at `outside`.
-        halvings: number of bisections; by default until the two arguments are neighbouring floating-point numbers.
+        inside, outside: ends of the intervals, in any order.
+        halvings: number of bisections; by default until the interval is two neighbouring floating-point numbers.
+
+    Returns:
+        The last argument at which the condition holds and the first at which it does not.
     """
     for _ in range(count_halvings(inside) if halvings is None else halvings):
         middle = (inside + outside) / 2
@@ -72,22 +76,24 @@ def bisect(
 
 
 def count_halvings(ends: Real) -> int:
-    """Return the number of bisections that reduce an interval to the precision of its ends."""
+    """Return the number of bisections that shrink an interval to the precision of its ends."""
     return int(np.finfo(np.result_type(ends, float)).nmant) + SPARE
 
 
 def _bisect_sign_changes(function: Callable[[Real], Real], low: Real, high: Real, at_low: Real) -> Real:
-    """Bisect for the end of the sign that the function has at `low`: beside an interval of zeros (a dwell), its
-    edge.
+    """Find by bisection where the function loses the sign that it has at `low`.
+
+    If it is zero over an interval (a dwell), the edge of that interval nearest to `low` is returned.
     """
     same, other = bisect(lambda place: np.sign(function(place)) == np.sign(at_low), low, high)
     return (same + other) / 2
 
 
 def find_minima(function: Callable[[Real], Real], low: Real | float, high: Real | float) -> tuple[Any, Any]:
-    """Return the position and value of the minimum in each interval, each of which has only one.
+    """Find the minimum in each of many intervals, each with a single minimum, by sampling ever smaller intervals.
 
-    Nine samples of each interval, of which the best third is kept.
+    Returns:
+        Argument and value of the minimum in each interval.
     """
     ends = np.array([low, high])
     if not ends.size:
@@ -101,16 +107,16 @@ def find_minima(function: Callable[[Real], Real], low: Real | float, high: Real 
 
 
 def greatest_values(curves: Callable[[Real, Real], Real], q: Real, values: Real, *, turns: bool = False) -> Real:
-    """Return the largest value of each curve, shape (curves,); nan for curves without any value. Curves may jump or
-    bend.
+    """Return the largest value of each curve, shape (curves,); nan for a curve without values.
 
-    About each peak of a scan that may reach the largest value between samples, finer and finer grids are evaluated.
-    Between samples a curve is expected to rise by at most twice its rise to the next sample.
+    The curves are sampled already. Around each peak that may exceed the largest sample, ever finer grids are evaluated.
+    Between two samples a curve is assumed to rise by at most twice the difference of the samples. Curves may have jumps
+    and kinks.
 
     Args:
         curves: function of the curve numbers (k,) and arguments (k, n); returns values (k, n).
         q: arguments at equal steps from one end of the range or cycle to the other, shape (points,).
-        values: values of all curves at q, shape (curves, points), nan where there is none.
+        values: values of all curves at q, shape (curves, points), nan where a curve is undefined.
         turns: True if the values are angles (rad), unwrapped.
     """
     y = np.where(np.isfinite(values), values, -np.inf)
@@ -140,10 +146,10 @@ def greatest_values(curves: Callable[[Real, Real], Real], q: Real, values: Real,
 
 
 def locate_extreme(function: Callable[[Real], Real], place: float, half: float) -> float:
-    """Return the position of a smooth extreme near `place`, to nearly all digits, from the slope of a fitted
-    polynomial.
+    """Find the argument of a smooth extreme near `place`, to nearly all digits, from the slope of a fitted polynomial.
 
-    Comparing values would give half the digits only. Returns `place` if the function is not smooth within `half` of it.
+    A comparison of values would give only half the digits. If the function is not smooth within `half` of `place`,
+    `place` is returned unchanged.
     """
     nodes = np.cos(np.pi * np.arange(DEGREE + 5) / (DEGREE + 4))
     values = function(place + half * nodes)
@@ -188,12 +194,18 @@ def _fit_windows(y: Real, k: Real) -> tuple[Real, Real]:
 
 
 def polynomial_value(c: Real, u: Real, order: int = 0) -> Real:
-    """Return a derivative of the polynomials with coefficients c (..., 7) at u steps from their centres."""
+    """Return a derivative of fitted polynomials.
+
+    Args:
+        c: coefficients of the polynomials, shape (..., 7).
+        u: distance from the centre of each polynomial, in sampling steps.
+        order: order of the derivative, 0 to 2.
+    """
     return _horner(_derivative_coefficients(c, order), u)
 
 
 def _derivative_coefficients(c: Real, order: int) -> list[Real]:
-    """Return the coefficients of a derivative, highest power first."""
+    """Return the coefficients of a derivative of the fitted polynomials, highest power first."""
     return [FACTORS[order][power] * c[..., power] for power in range(2 * WINDOW_SIDE, order - 1, -1)]
 
 
@@ -205,7 +217,7 @@ def _horner(coefficients: list[Real], u: Real) -> Real:
 
 
 def window_peak(y: Real) -> Real:
-    """Return the largest value within a window of samples, shape (variants,)."""
+    """Return the maximum of a quantity, interpolated between its samples (variants, samples); shape (variants,)."""
     top, most = np.argmax(y, axis=1), np.max(y, axis=1)
     c, middle = _fit_windows(y, top)
     slopes, bends = _derivative_coefficients(c, 1), _derivative_coefficients(c, 2)
@@ -223,7 +235,11 @@ def window_peak(y: Real) -> Real:
 
 
 def locate_zero(y: Real) -> Real:
-    """Return where in a window a quantity changes sign, in steps from the first sample, shape (variants,)."""
+    """Return where a sampled quantity changes sign, in steps from the first sample, shape (variants,).
+
+    Args:
+        y: samples at equal steps about the change of sign, shape (variants, samples).
+    """
     c, middle = _fit_windows(y, np.argmin(np.abs(y), axis=1))
     u = np.zeros(len(y))
     with np.errstate(all="ignore"):
@@ -234,10 +250,11 @@ def locate_zero(y: Real) -> Real:
 
 
 def highest_value(curve: Callable[[Real], Real], scan: Real, *, closed: bool) -> float:
-    """Return the largest value of a curve that may jump or bend sharply, by refinement about its highest peaks.
+    """Return the largest value of a curve that may have jumps or kinks, by refinement around its highest peaks.
 
     Args:
-        scan: arguments as fractions of the range, 0 to 1, at equal steps.
+        curve: function of arguments, fractions of the range.
+        scan: arguments of the first samples, 0 to 1 at equal steps.
         closed: True if the curve is periodic.
     """
     y = curve(scan)
@@ -249,8 +266,9 @@ def highest_value(curve: Callable[[Real], Real], scan: Real, *, closed: bool) ->
 
 
 def highest_peaks(y: Real, most: int, closed: bool) -> list[int]:
-    """Return the indices of the `most` highest peaks of a sampled curve; closed: it is periodic, else its ends may be
-    peaks.
+    """Return the indices of the highest peaks of a sampled curve, at most `most` of them.
+
+    closed: True if the curve is periodic; otherwise its ends may be peaks too.
     """
     before, after = np.roll(y, 1), np.roll(y, -1)
     if not closed:

@@ -1,8 +1,8 @@
 """Tolerances: thresholds for dead, nearly dead, converged, equal, parallel, redundant, at rest.
 
-Each has a unit and a reason; step sizes and counts of a search are in the module of the search. Two thresholds with the
-same meaning are one constant; two with the same value for different reasons are two. Margins are dimensionless: the
-sine of a transmission angle, or the least singular value of a scaled Jacobian divided by the largest.
+Each has a unit and a reason; step sizes and iteration counts are in the module that searches. Two thresholds with the
+same meaning are one constant; two with the same value for different reasons are two. A margin is dimensionless: the
+sine of a transmission angle, or the smallest singular value of a scaled Jacobian divided by the largest.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Planar vectors as complex numbers x + iy (m), rotated by multiplication; and records that contain arrays of them."""
+"""Planar vectors as complex numbers x + iy (m), rotated by multiplication; and nested records of arrays."""
 
 from __future__ import annotations
 
@@ -18,54 +18,54 @@ Record = TypeVar("Record")
 
 
 def pi(values: Any) -> Any:
-    """Return pi in the precision of an array."""
+    """Return pi in the precision of an array (float64, longdouble or double-double)."""
     if isinstance(values, DoubleDouble):
         return DoubleDouble.decimal(PI)
     return np.finfo(getattr(values, "dtype", float)).dtype.type(PI)
 
 
 def largest_magnitude(values: Any) -> float:
-    """Return the largest absolute value; zero for an empty array."""
+    """Return the largest absolute value, ignoring nan; zero for an empty array."""
     return float(np.nanmax(np.abs(values), initial=0.0))
 
 
 def without_rounding(values: Any, beside: float) -> Real:
-    """Replace values by zero that are only rounding errors beside the value `beside`."""
+    """Replace values that are only rounding errors, compared with the magnitude `beside`, by zero."""
     return np.where(np.abs(values) <= NO_VECTOR * beside, 0.0, values)
 
 
 def roundoff(values: Any) -> float:
-    """Return the unit roundoff of the precision of an array."""
+    """Return the unit roundoff of the number type of an array (2^-53 for float64)."""
     return EPS if isinstance(values, DoubleDouble) else float(np.finfo(values.real.dtype).eps) / 2
 
 
 def dot(a: Any, b: Any) -> Any:
-    """Return the scalar product a.b."""
+    """Return the scalar product of the vectors a and b."""
     return a.real * b.real + a.imag * b.imag
 
 
 def cross(a: Any, b: Any) -> Any:
-    """Return the z component of a x b: positive if b points to the left of a."""
+    """Return the z component of the vector product a x b: positive if b points to the left of a."""
     return a.real * b.imag - a.imag * b.real
 
 
 def squared_length(a: Any) -> Any:
-    """Return the squared length |a|^2."""
+    """Return the squared length |a|^2 of a vector."""
     return a.real * a.real + a.imag * a.imag
 
 
 def scaled(a: Any, amount: Any) -> Any:
-    """Return the vector a times a real factor (without the rounding of a complex product)."""
+    """Multiply the vector a by a real factor, without the rounding of a complex product."""
     return a * amount
 
 
 def unit(angle: Any) -> Any:
-    """Return e^(i angle)."""
+    """Return the unit vector in the direction of an angle (rad), e^(i angle)."""
     return np.cos(angle) + 1j * np.sin(angle)
 
 
 def zero_within_rounding(values: Any, size: Any) -> Any:
-    """Replace by zero the components that are within the rounding of a construction from values of this size."""
+    """Replace components by zero that rounding alone may have caused, in a construction from values of this size."""
     values = values if isinstance(values, DoubleDouble) else np.asarray(values)
     if np.iscomplexobj(values):
         return (zero_within_rounding(values.real, size) + 1j * zero_within_rounding(values.imag, size))[()]
@@ -73,19 +73,20 @@ def zero_within_rounding(values: Any, size: Any) -> Any:
 
 
 def rotated_left(a: Any) -> Any:
-    """Return the vector a rotated by +90 degrees."""
+    """Return the vector a rotated by 90 degrees counterclockwise."""
     return 1j * a
 
 
 def map_record(
     change: Callable[..., Any], record: Record, *others: Any, skip: Collection[str] = (), path: str = ""
 ) -> Record:
-    """Return a copy of a record with each leaf replaced by change(path, leaf, *leaves of the others).
+    """Return a copy of a nested record in which `change` has replaced each leaf.
 
-    A record is a dataclass, mapping, tuple or list of records; anything else is a leaf. A path reads links.2.points.A
-    or loads[0].force.
+    A record is a dataclass, mapping, tuple or list of records; anything else is a leaf. The path of a leaf reads
+    links.2.points.A or loads[0].force.
 
     Args:
+        change: called as change(path, leaf, *leaves of the other records at the same path); returns the new leaf.
         others: records of the same structure.
         skip: names of fields that are left unchanged.
         path: path of the record itself.
@@ -111,7 +112,7 @@ def map_record(
 
 
 def record_leaves(record: Any, skip: Collection[str] = (), path: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield path and value of each leaf of a record, as `map_record` defines them."""
+    """Yield the path and the value of each leaf of a nested record; see `map_record`."""
     if is_dataclass(record) and not isinstance(record, type):
         for f in fields(record):
             if f.name not in skip:

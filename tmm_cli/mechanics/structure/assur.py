@@ -1,7 +1,8 @@
-"""Mobility, pairs (also of compound hinges) and Assur groups of a linkage, from the connections of its links alone.
+"""Mobility, kinematic pairs and Assur groups of a linkage, from the connections of its links alone.
 
-The order of a group is the number of its external pairs; for its class see `group_class`. The structural report lists
-the groups of the linkage without its redundant links and pairs (see Reduction); kinematics solves groups of all links.
+A compound hinge of n links counts as n - 1 pairs. The order of a group is the number of its external pairs; its class
+is explained in `group_class`. The structural report lists the groups that remain without redundant links and pairs (see
+Reduction); kinematics solves groups of all links.
 """
 
 from __future__ import annotations
@@ -33,13 +34,18 @@ class Structure:
     """Structure of a linkage.
 
     Attributes:
-        mobility: by Chebyshev's formula, 3n - 2 p1 - p2.
-        freedom: freedoms left by the count on all sub-chains; equal to the mobility unless a part is overconstrained.
+        links: names of the moving links.
+        pairs: all kinematic pairs.
+        drivers: the drivers.
         groups: Assur groups of the structural report, in solving order.
-        all_groups: groups of all links, in solving order.
-        reduction: what the structural report leaves out.
-        under_constrained, redundant_pairs: what is wrong if the mobility differs from the number of drivers.
-        passive: redundant constraints found by numerical rank; the true mobility is greater by their number.
+        mobility: W = 3n - 2 p1 - p2 (Chebyshev).
+        freedom: freedoms counted on every part of the linkage; they equal the mobility unless a part is
+            overconstrained.
+        under_constrained: links that can still move when the drivers are fixed.
+        redundant_pairs: pairs with a redundant condition, each with the links that are rigid to one another without it.
+        passive: redundant constraints found by numerical rank; the true mobility is greater than W by their number.
+        all_groups: Assur groups of all links, in solving order.
+        reduction: links and pairs that the structural report leaves out.
     """
 
     links: tuple[str, ...]
@@ -56,17 +62,17 @@ class Structure:
 
     @property
     def redundant(self) -> int:
-        """Number of redundant constraints in the plane."""
+        """Number of redundant constraints of the planar linkage."""
         return sum(passive.constraints for passive in self.passive)
 
     @property
     def higher(self) -> int:
-        """Number of higher pairs, p2."""
+        """Number p2 of higher pairs."""
         return sum(not pair.lower for pair in self.pairs)
 
     @property
     def sound(self) -> bool:
-        """True if every freedom is driven and no constraint is redundant, apart from those in `passive`."""
+        """True if every freedom is driven and the only redundant constraints are those in `passive`."""
         drivers = len(self.drivers)
         return (
             self.freedom == drivers == self.mobility + self.redundant
@@ -75,25 +81,28 @@ class Structure:
         )
 
     def rebind(self, linkage: Linkage) -> Structure:
-        """Return the same structure with the dimensions of another linkage."""
+        """Return a copy of the structure whose pairs refer to another linkage, which differs in dimensions only."""
         groups, all_groups = (tuple(g.rebind(linkage) for g in some) for some in (self.groups, self.all_groups))
         pairs = tuple(pair.rebind(linkage) for pair in self.pairs)
         return replace(self, pairs=pairs, groups=groups, all_groups=all_groups)
 
     def driving_pair(self, driver: Driver) -> Pair:
-        """Return the pair of a driver; a new one if in a compound hinge both its links are attached to a third link."""
+        """Return the pair that a driver drives.
+
+        In a compound hinge both links of the driver may be attached to a third link; the pair is then a new one.
+        """
         ends, apart = {driver.base, driver.link}, Pair(driver.joint, "R", driver.base, driver.link, driver.joint)
         pairs = (p for p in self.pairs if p.lower and {p.i, p.j} == ends and driver.joint in (p.point, p.name))
         return next(pairs, apart)
 
     @property
     def contours(self) -> int:
-        """Number of independent closed contours, K = p - n."""
+        """Number of independent closed contours, K = p - n (pairs less moving links)."""
         return len(self.pairs) - len(self.links)
 
     @property
     def formula(self) -> str:
-        """Structural formula, e.g. I(0,1) -> II(2,3) -> II(4,5); branches as in `structural_formula`."""
+        """Structural formula, e.g. I(0,1) -> II(2,3) -> II(4,5); see `structural_formula`."""
         titles = {driver.link: self.driver_title(driver) for driver in self.drivers}
         parts: dict[str, Collection[str]] = dict.fromkeys(titles.values(), ())
         title_of = {
@@ -109,24 +118,24 @@ class Structure:
         return structural_formula(parts)
 
     def rigid_with(self, link: str) -> tuple[str, ...]:
-        """Return the rigid set of links that contains this link; the link alone if there is none."""
+        """Return the links that are rigid to this link, including it."""
         return next((rigid.links for rigid in self.reduction.rigid if link in rigid.links), (link,))
 
     def driver_title(self, driver: Driver) -> str:
-        """Return a driver as written in the structural formula, e.g. I(0,1)."""
+        """Return the primary mechanism of a driver as the structural formula shows it, e.g. I(0,1)."""
         base, link = ("+".join(self.rigid_with(n)) if n != FRAME else n for n in (driver.base, driver.link))
         return f"I({printed(base)},{link})"
 
     @property
     def count(self) -> tuple[int, int, int]:
-        """Numbers n, p1, p2 without what the structural report leaves out; their 3n - 2p1 - p2 is the mobility."""
+        """Numbers n, p1 and p2 of the structural report, for the mobility 3n - 2 p1 - p2."""
         counts = [group.count for group in self.groups]
         n, lower, higher = (sum(column) for column in zip((0, 0, 0), *counts, strict=True))
         return n + len(self.drivers), lower + len(self.drivers), higher
 
     @property
     def mechanism_class(self) -> int:
-        """Class of the mechanism: the highest class of its groups."""
+        """Class of the mechanism, which is the highest class of its groups."""
         return max((g.group_class for g in self.groups), default=1)
 
     @property
@@ -136,10 +145,10 @@ class Structure:
 
     @property
     def solved(self) -> tuple[Group, ...]:
-        """Groups as they are solved: groups that share redundant constraints are united, with all groups between them.
+        """Groups in the order in which kinematics solves them.
 
-        Together they can pass a position in which one of them alone is dead; redundant constraints often serve this
-        purpose.
+        Groups that share redundant constraints are united into one, with all groups between them. The united group can
+        pass positions in which one of its groups alone is dead; redundant constraints often serve this purpose.
         """
         among = {link for passive in self.passive for link in passive.among}
         held = [group for group in self.all_groups if among & set(group.links)]
@@ -162,7 +171,6 @@ class Structure:
         )
 
     def _united(self, groups: Sequence[Group]) -> Group:
-        """Unite several groups into one."""
         links = {link for group in groups for link in group.links}
         names = {pair.name for group in groups for pair in (*group.inner, *group.outer)}
         pairs = [pair for pair in self.pairs if pair.name in names]
@@ -180,14 +188,13 @@ class Structure:
 
 
 def structural_formula(parts: Mapping[str, Collection[str]]) -> str:
-    """Write the formula of a structure whose parts are attached to one another.
+    """Write a structural formula.
 
-    A chain is broken where it branches: I(0,1) -> II(2,3), I(0,1) -> II(4,5). A part attached to several parts, none of
-    which is attached to another of them, follows their sum: I(0,1) + I(0,4) -> II(2,3).
+    A chain is broken where it branches: I(0,1) -> II(2,3), I(0,1) -> II(4,5). A part that is attached to several parts
+    follows their sum: I(0,1) + I(0,4) -> II(2,3); of parts attached to one another only the last is named in the sum.
 
     Args:
-        parts: title of each part (a driver or a group), in solving order, with the titles of the parts it is attached
-            to.
+        parts: for each driver or group, by its title and in solving order: titles of the parts to which it is attached.
     """
     before: dict[str, set[str]] = {}
     chains: list[list[tuple[str, ...]]] = []
@@ -206,11 +213,14 @@ def structural_formula(parts: Mapping[str, Collection[str]]) -> str:
 
 
 def analyse_structure(linkage: Linkage, dropped: Mapping[int, int] | None = None) -> Structure:
-    """Analyse the structure of a linkage. Never raises an error: what is wrong is in the returned Structure.
+    """Analyse the structure of a linkage.
+
+    Never raises an error: faults of the linkage are described in the returned Structure.
 
     Args:
-        dropped: number of conditions of each tie (by its index) that are left out of the count; the groups of the
-            report are then those of all links.
+        linkage: the linkage.
+        dropped: number of conditions to be left out of the count for each tie, by its index in `list_ties`. If given,
+            the report is not reduced: its groups are those of all links.
     """
     less = dropped or {}
     ties = [replace(tie, constraints=tie.constraints - less.get(k, 0)) for k, tie in enumerate(list_ties(linkage))]
@@ -253,9 +263,12 @@ def analyse_structure(linkage: Linkage, dropped: Mapping[int, int] | None = None
 
 
 def reduce_structure(linkage: Linkage, structure: Structure, reduction: Reduction) -> Structure | None:
-    """Return the structure with the groups that a reduction leaves; None if these are not Assur groups.
+    """Leave redundant links and pairs out of the structural report.
 
-    Groups of all links get the class of the groups of the report that they contain.
+    Groups of all links get the highest class of the reduced groups that share a link with them.
+
+    Returns:
+        The structure with the reduced groups; None if the remaining links do not form Assur groups.
     """
     all_ties = list(list_ties(linkage))
     ties = list(reduction.ties(all_ties))
@@ -302,13 +315,13 @@ def reduce_structure(linkage: Linkage, structure: Structure, reduction: Reductio
 def _play_pebble_games(
     bodies: tuple[str, ...], ties: Sequence[Tie], pins: tuple[str, ...], drivers: Iterable[tuple[str, str]]
 ) -> tuple[PebbleCount, PebbleCount]:
-    """Return the results of the pebble game without and with the drivers."""
+    """Play the pebble game twice, without and with the drivers."""
     driving = [Tie("driver", base, link, 1) for base, link in drivers]
     return count_freedoms(bodies, FRAME, ties, pins), count_freedoms(bodies, FRAME, [*ties, *driving], pins)
 
 
 def _list_group_bodies(driven: PebbleCount, bodies: Sequence[str]) -> list[tuple[str, ...]]:
-    """Return the bodies of each group in solving order, without pins and the frame."""
+    """List the links of each group in solving order. Pins of compound hinges and the frame are left out."""
     parts = [
         tuple(body for body in component if body in bodies and body != FRAME)
         for component in dependence_components(driven.depends)
@@ -331,7 +344,10 @@ def _pin_name(hinge: Hinge) -> str:
 
 
 def list_ties(linkage: Linkage) -> Iterable[Tie]:
-    """Yield the ties between links: of a compound hinge through its pin, or as the file attaches its links."""
+    """Yield the ties (connections with a number of conditions) between links.
+
+    The links of a compound hinge are tied to its pin, or to the link that the file names.
+    """
     for hinge in linkage.hinges:
         if len(hinge.links) == 2:
             yield Tie(hinge.point, *hinge.links, 2)
@@ -344,14 +360,14 @@ def list_ties(linkage: Linkage) -> Iterable[Tie]:
 
 
 def list_pairs(linkage: Linkage) -> tuple[Pair, ...]:
-    """Return the pairs of a linkage whose solving order is not known."""
+    """List the kinematic pairs of a linkage before its solving order is known."""
     return tuple(_iterate_pairs(linkage, dict.fromkeys(linkage.links, 0)))
 
 
 def _iterate_pairs(linkage: Linkage, rank: Mapping[str, int]) -> Iterable[Pair]:
-    """Yield the pairs of a linkage; in a compound hinge all links are attached to one of them.
+    """Yield the kinematic pairs of a linkage. In a compound hinge one link is paired with each of the other links.
 
-    rank: index of the group of each link in solving order.
+    rank: index of the group of each link, in solving order.
     """
     order = {name: k for k, name in enumerate(linkage.links)}
     for hinge in linkage.hinges:
@@ -367,10 +383,10 @@ def _iterate_pairs(linkage: Linkage, rank: Mapping[str, int]) -> Iterable[Pair]:
 
 
 def _common_link(links: list[str], rank: Mapping[str, int], linkage: Linkage) -> str:
-    """Return the link to which the other links of a hinge are attached, unless the file names it.
+    """Choose the link of a compound hinge with which each of its other links forms a pair, unless the file names it.
 
-    The frame; otherwise the driver; otherwise, in the group that is solved first, a link connected to the frame, or
-    else the first link. `links` are in solving order.
+    It is the frame; otherwise the driver; otherwise a link of the group solved first, preferably one connected to the
+    frame. `links` are in solving order.
     """
     first = [link for link in links if rank[link] == rank[links[0]]]
     driven = [driver.link for driver in linkage.drivers if driver.link in first]
@@ -386,7 +402,10 @@ def _make_group(
     reduction: Reduction = NO_REDUCTION,
     as_higher: Collection[str] = (),
 ) -> Group:
-    """Make the group of these bodies. rank: index of the group of each link; as_higher: see Group."""
+    """Make the Assur group of these bodies (links, or sets of links rigid to one another).
+
+    rank: index of the group of each link, in solving order. as_higher: names of lower pairs that count as higher ones.
+    """
     group_rank, member = rank[bodies[0]], {body: reduction.members(body) for body in bodies}
     links = tuple(link for body in bodies for link in member[body])
     rigid = tuple(links for links in member.values() if len(links) > 1)

@@ -1,4 +1,4 @@
-"""Number of driver turns after which the whole mechanism repeats, with gears and several drivers."""
+"""Length of the cycle of a mechanism in revolutions of its driver, with gears and several drivers."""
 
 from __future__ import annotations
 
@@ -15,10 +15,14 @@ LARGEST_DENOMINATOR = 500  # of gear ratios that count as fractions
 
 
 def turns_of_cycle(linkage: Linkage, rounds: Mapping[str, int] | None = None) -> int | None:
-    """Return the turns of the first driver in a cycle; None if the motion never repeats, or only after MOST_TURNS or
-    more.
+    """Return the number of revolutions of the first driver after which the motion of the mechanism repeats.
 
-    rounds: turns of links in one turn of the driver, as far as known (a rocker makes none).
+    Args:
+        linkage: the linkage.
+        rounds: revolutions of links per revolution of the driver, as far as they are known (0 for a rocker).
+
+    Returns:
+        The number; None if the motion never repeats, or only after more than MOST_TURNS revolutions.
     """
     turns = 1
     for share in _gear_turns(linkage, rounds or {}).values():
@@ -66,10 +70,9 @@ def _gear_turns(linkage: Linkage, rounds: Mapping[str, int]) -> dict[str, Fracti
 
 
 def _solve_gear_turns(gears: list[Mesh], turns_of: Mapping[str, Fraction | None]) -> dict[str, Fraction]:
-    """Solve for turns that follow from several gear pairs together, e.g. of a carrier between its sun and a fixed ring
-    gear.
+    """Solve for revolutions that follow only from several gear pairs together, as in a planetary gear train.
 
-    Each pair gives turns of j = ratio (turns of i) + (1 - ratio) (turns of its carrier); solved by elimination.
+    Each pair gives the equation (turns of j) = ratio (turns of i) + (1 - ratio) (turns of the carrier).
     """
     solved: dict[str, dict[str, Fraction]] = {}  # turns of a link in terms of those of others; "" is the constant term
     for mesh in gears:
@@ -94,7 +97,7 @@ def _solve_gear_turns(gears: list[Mesh], turns_of: Mapping[str, Fraction | None]
 
 
 def _add_multiple(row: dict[str, Fraction], other: Mapping[str, Fraction], factor: Fraction) -> None:
-    """Add a multiple of another linear combination in place; zero terms are dropped."""
+    """Add a multiple of a linear combination to another one, in place. Terms that become zero are removed."""
     for link, share in other.items():
         row[link] = row.get(link, Fraction(0)) + factor * share
         if not row[link]:
@@ -102,8 +105,9 @@ def _add_multiple(row: dict[str, Fraction], other: Mapping[str, Fraction], facto
 
 
 def _mate_turns(share: Fraction | None, carrier: Fraction | None, step: Fraction | None) -> Fraction | None:
-    """Return the turns of a gear from those of its mating gear; equal to the carrier's if the mating gear rests on
-    it.
+    """Return the revolutions of a gear from those of its mating gear and of their carrier; None if unknown.
+
+    If the mating gear does not move relative to the carrier, neither does the gear.
     """
     if share is None or carrier is None:
         return None
@@ -113,6 +117,6 @@ def _mate_turns(share: Fraction | None, carrier: Fraction | None, step: Fraction
 
 
 def _fraction(ratio: float) -> Fraction | None:
-    """Return the ratio as a fraction with a small denominator, or None if it is not one."""
+    """Return a ratio as a fraction with a small denominator; None if it is not such a fraction."""
     near = Fraction(ratio).limit_denominator(LARGEST_DENOMINATOR)
     return near if abs(float(near) - ratio) <= SAME_RATIO * max(1.0, abs(ratio)) else None

@@ -1,11 +1,11 @@
-"""Freedoms of a linkage by the pebble game on its bodies; solving order, contours and classification.
+"""Degrees of freedom of a linkage by the pebble game; solving order, contours and classification.
 
-Each link is a body with three freedoms (pebbles), a pair takes two of them, the driver one more. A compound hinge is a
-point with two freedoms, the pin, joined to each of its links. The orientation that the game leaves is a directed graph
-of dependence: its strongly connected components are the Assur groups, in solving order.
-Source: A. Sljoka, O. Shai, W. Whiteley, Checking mobility and decomposition of linkages via pebble game algorithm,
-ASME DETC 2011, sections 3 and 4; the count 3n - 2p for all sub-chains is the (3, 3) game of A. Lee and I. Streinu,
-Pebble game algorithms and sparse graphs, Discrete Mathematics 308 (2008).
+Each link is a body with three freedoms (pebbles); a pair takes two of them, a driver one more. A compound hinge is a
+point with two freedoms, the pin, which is joined to each of its links. The game ends with a directed graph of which
+body depends on which. Its strongly connected components are the Assur groups, in solving order. Source: A. Sljoka, O.
+Shai, W. Whiteley, Checking mobility and decomposition of linkages via pebble game algorithm, ASME DETC 2011, sections 3
+and 4. The count 3n - 2p for every sub-chain is the (3, 3) game of A. Lee and I. Streinu, Pebble game algorithms and
+sparse graphs, Discrete Mathematics 308 (2008).
 """
 
 from __future__ import annotations
@@ -29,7 +29,13 @@ PIN_FREEDOMS = 2
 
 @dataclass(frozen=True)
 class Tie:
-    """Connection of two bodies by `constraints` scalar conditions of the pair `name`."""
+    """A connection of two bodies.
+
+    Attributes:
+        name: name of the kinematic pair.
+        a, b: names of the bodies (links, or pins of compound hinges).
+        constraints: number of scalar conditions, 1 to 3.
+    """
 
     name: str
     a: str
@@ -42,10 +48,10 @@ class PebbleCount:
     """Result of the pebble game.
 
     Attributes:
-        free: freedoms left to all bodies together, without the three of the root.
+        free: degrees of freedom of all bodies together, relative to the root.
         depends: for each body, the bodies on whose positions its position directly depends.
-        redundant_pairs: ties with a redundant condition, each with the bodies that were already rigid.
-        under_constrained: bodies that still have a freedom.
+        redundant_pairs: ties with a redundant condition, each with the bodies that are rigid to one another without it.
+        under_constrained: bodies that can still move.
     """
 
     free: int
@@ -55,7 +61,10 @@ class PebbleCount:
 
 
 def reachable_nodes(out: Mapping[Node, Iterable[Node]], *starts: Node) -> dict[Node, None]:
-    """Return all nodes that can be reached from the given ones, these included, in the order of the search."""
+    """Return all nodes of a directed graph that can be reached from `starts`, these included, in the order of the search.
+
+    out: successors of each node.
+    """
     seen = dict.fromkeys(starts)
     todo = list(starts)
     while todo:
@@ -66,7 +75,7 @@ def reachable_nodes(out: Mapping[Node, Iterable[Node]], *starts: Node) -> dict[N
 
 
 class PebbleGame:
-    """The (3, 3) pebble game with a root that never moves, and with pins that have two pebbles."""
+    """The (3, 3) pebble game with a body that never moves, the root, and with pins, which have two pebbles."""
 
     def __init__(self, bodies: Iterable[str], root: str, pins: Iterable[str]) -> None:
         self.pebbles = dict.fromkeys(bodies, FREEDOMS) | dict.fromkeys(pins, PIN_FREEDOMS)
@@ -74,8 +83,9 @@ class PebbleGame:
         self.root = root
 
     def bring(self, to: str, reserved: Mapping[str, int]) -> bool:
-        """Move a free pebble to a body along a path of dependence; True if one was found. `reserved` pebbles are not
-        moved.
+        """Move a free pebble to a body along a path of dependence. Returns True if there was one.
+
+        reserved: number of pebbles of each body that must not be moved.
         """
         path = self.path(to, reserved, {to})
         if path is None:
@@ -88,7 +98,7 @@ class PebbleGame:
         return True
 
     def path(self, start: str, reserved: Mapping[str, int], seen: set[str]) -> list[str] | None:
-        """Return a path of bodies from `start` to one with a free pebble, or None."""
+        """Find a path of dependence from `start` to a body with a free pebble; None if there is no such path."""
         for target in self.out[start]:
             if target not in seen:
                 seen.add(target)
@@ -98,7 +108,7 @@ class PebbleGame:
         return None
 
     def rigid(self, a: str, b: str) -> bool:
-        """Return True if the conditions added so far make two bodies rigid to each other."""
+        """Return True if the conditions added so far make bodies a and b rigid to each other."""
         while self.pebbles[a] + self.pebbles[b] <= FREEDOMS:
             keep = {a: FREEDOMS, b: FREEDOMS}  # their own pebbles stay
             if not ((self.pebbles[a] < FREEDOMS and self.bring(a, keep)) or self.bring(b, keep)):
@@ -106,7 +116,7 @@ class PebbleGame:
         return False
 
     def add(self, a: str, b: str) -> bool:
-        """Add one condition between a and b; return False if it is redundant."""
+        """Add one scalar condition between bodies a and b. Returns False if it is redundant and was not added."""
         if self.rigid(a, b):
             return False
         tail, head = (a, b) if self.pebbles[a] > 0 and a != self.root else (b, a)
@@ -115,13 +125,16 @@ class PebbleGame:
         return True
 
     def settle(self) -> None:
-        """Return its three pebbles to the root, which depends on nothing."""
+        """Move three pebbles to the root, which then depends on no other body."""
         while self.pebbles[self.root] < FREEDOMS and self.bring(self.root, {}):
             pass
 
 
 def count_freedoms(bodies: Iterable[str], root: str, ties: Iterable[Tie], pins: Iterable[str] = ()) -> PebbleCount:
-    """Play the pebble game over all ties of the bodies and pins; names of pins must differ from names of bodies."""
+    """Count the degrees of freedom of bodies and pins joined by ties, by the pebble game.
+
+    Names of pins must differ from names of bodies.
+    """
     bodies, pins = tuple(bodies), frozenset(pins)
     game = PebbleGame(bodies, root, pins)
     redundant_pairs = []
@@ -141,9 +154,9 @@ def count_freedoms(bodies: Iterable[str], root: str, ties: Iterable[Tie], pins: 
 
 
 def rigid_sets(bodies: Iterable[str], ties: Iterable[Tie], pins: Iterable[str] = ()) -> tuple[tuple[str, ...], ...]:
-    """Return sets of two or more bodies that the count shows to be rigid to one another.
+    """Find sets of two or more bodies that are rigid to one another by the count of their conditions.
 
-    The bodies of such a set are connected within it, so only bodies that share a tie or a pin are compared.
+    Every such set is connected within itself, so only bodies that share a tie or a pin are compared.
     """
     bodies, pins, ties = tuple(bodies), frozenset(pins), tuple(ties)
     game = PebbleGame(bodies, "", pins)
@@ -162,7 +175,7 @@ def rigid_sets(bodies: Iterable[str], ties: Iterable[Tie], pins: Iterable[str] =
 
 
 def dependence_components(depends: dict[str, tuple[str, ...]]) -> Iterator[tuple[str, ...]]:
-    """Yield sets of bodies that depend on one another, each after all sets that it depends on."""
+    """Yield sets of bodies that depend on one another (strongly connected components), in solving order."""
     seen: set[str] = set()
 
     def visit(body: str) -> Iterator[tuple[str, ...]]:
@@ -189,7 +202,7 @@ def dependence_components(depends: dict[str, tuple[str, ...]]) -> Iterator[tuple
 
 
 class AnyPair(Protocol):
-    """A pair of two links, planar or spatial."""
+    """A kinematic pair, planar or spatial, with the names of the pair and of its two links."""
 
     @property
     def name(self) -> str: ...
@@ -201,19 +214,27 @@ class AnyPair(Protocol):
 
 @dataclass(frozen=True)
 class Contour:
-    """A closed contour: its links in order, from the one nearest the frame, and the pairs between them."""
+    """A closed contour of a kinematic chain.
+
+    Attributes:
+        links: names of its links in order, from the one nearest the frame.
+        pairs: names of the pairs between successive links; the last pair closes the contour.
+    """
 
     links: tuple[str, ...]
     pairs: tuple[str, ...]
 
     @property
     def title(self) -> str:
-        """Links of the contour, e.g. 0-1-2-3-0."""
+        """Links of the contour in order, e.g. 0-1-2-3-0."""
         return "-".join(map(printed, (*self.links, self.links[0])))
 
 
 def find_contours(pairs: Sequence[AnyPair], links: Iterable[str]) -> tuple[Contour, ...]:
-    """Return the independent contours of the links that the pairs join to the frame, in the order of `links`."""
+    """Find the independent closed contours of the part of the chain that is connected to the frame.
+
+    They are sorted by their links, in the order of `links`.
+    """
     ways = _shortest_paths(pairs)
     rank = {link: number for number, link in enumerate((FRAME, *links))}
     independent = []
@@ -237,10 +258,13 @@ def find_contours(pairs: Sequence[AnyPair], links: Iterable[str]) -> tuple[Conto
 
 
 def classify_linkage(structure: Structure) -> tuple[str, ...]:
-    """Classify a linkage: closed or open; elementary, simple or complex; groups of one type or of several.
+    """Classify a linkage as open or closed, and by the number and types of its Assur groups.
 
-    Elementary: the driver alone; simple: with one group; complex: with two or more groups. Combined: some groups are of
-    the same type, others are not.
+    Elementary: only the driver. Simple: one group. Complex: two or more groups; these are of the same type, of several
+    types, or combined (some of the same type, others not).
+
+    Returns:
+        The words that apply, e.g. ("closed", "complex", "same type").
     """
     chain = "closed" if structure.contours > 0 else "open"
     if not structure.groups:
@@ -254,13 +278,13 @@ def classify_linkage(structure: Structure) -> tuple[str, ...]:
 
 
 def is_dependent(contour: Contour, structure: Structure) -> bool:
-    """Return True if the contour is redundant: it contains a redundant link or pair."""
+    """Return True if a contour contains a redundant link or pair; its closure is then not an independent condition."""
     pairs = {redundant.pair for redundant in structure.reduction.pairs if not redundant.left}
     return not structure.reduction.removed.isdisjoint(contour.links) or not pairs.isdisjoint(contour.pairs)
 
 
 def links_joined_to_frame(pairs: Sequence[AnyPair]) -> set[str]:
-    """Return the links that a path of pairs joins to the frame, including the frame."""
+    """Return the links that are connected to the frame, directly or through other links; the frame is included."""
     return set(_shortest_paths(pairs))
 
 
@@ -268,7 +292,7 @@ PathToFrame = list[tuple[str, AnyPair | None]]  # links on the path to the frame
 
 
 def _shortest_paths(pairs: Sequence[AnyPair]) -> dict[str, PathToFrame]:
-    """Return the shortest path to the frame for every link that has one."""
+    """Find the shortest path to the frame from every link that is connected to it."""
     ways: dict[str, PathToFrame] = {FRAME: [(FRAME, None)]}
     todo = [FRAME]
     for link in todo:  # the list grows during the loop: nearest links first
@@ -282,5 +306,8 @@ def _shortest_paths(pairs: Sequence[AnyPair]) -> dict[str, PathToFrame]:
 
 
 def _second_link(path: PathToFrame, other: PathToFrame) -> str:
-    """Return the link after the common one, down `path` and then up `other`."""
+    """Return the link that follows the common link of two paths to the frame, along the first path.
+
+    If the first path consists of the common link alone, it is the first link of the other path.
+    """
     return path[-2][0] if len(path) > 1 else other[0][0]

@@ -1,8 +1,8 @@
-"""Pairs and Assur groups, the class of a group, and the reduction of redundant links and pairs.
+"""Kinematic pairs and Assur groups, the class of a group, and the reduction of redundant links and pairs.
 
-Class after I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 3: a group of two links is of class II; otherwise
-the class is the number of sides of its largest closed contour of internal pairs, or, if it has no contour, the largest
-number of internal pairs on one link.
+Class after I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 3: a group of two links is of class II. The class
+of any other group is the number of sides of its largest closed contour of internal pairs, or, if it has no contour, the
+largest number of internal pairs on one link.
 """
 
 from __future__ import annotations
@@ -23,12 +23,15 @@ def group_class(
     drivers: Iterable[Driver],
     as_higher: Collection[str] = (),
 ) -> int:
-    """Return the class of a group; a higher pair counts as a link with two hinges, a driven pair as one rigid link.
+    """Return the class of an Assur group (2 or more) after I. I. Artobolevsky.
+
+    A higher pair counts as a link with two hinges. The two links of a driven pair count as one link.
 
     Args:
-        bodies: sets of links that are rigid to one another.
+        bodies: links of the group; links that are rigid to one another are in one tuple.
         inner, outer: internal and external pairs.
-        as_higher: names of lower pairs that count as higher ones.
+        drivers: drivers between two links of the group.
+        as_higher: names of lower pairs that count as higher pairs.
     """
     representative = {name: links[0] for links in bodies for name in links}
     for driver in drivers:
@@ -50,7 +53,7 @@ def group_class(
 
 
 def _largest_contour(links: list[str], inner: list[tuple[str, str]]) -> int:
-    """Return the number of sides of the largest closed contour of internal pairs, by a search of all simple cycles."""
+    """Return the number of sides of the largest closed contour of internal pairs, by a search of simple cycles."""
     joined: dict[str, list[str]] = {link: [] for link in links}
     for i, j in inner:
         joined[i].append(j)
@@ -77,8 +80,11 @@ def _largest_contour(links: list[str], inner: list[tuple[str, str]]) -> int:
 
 @dataclass(frozen=True)
 class RigidSet:
-    """Links that are rigid to one another, the frame possibly included; constraints: redundant constraints within the
-    set.
+    """Links that are rigid to one another and count as one link; the frame may be among them.
+
+    Attributes:
+        links: names of the links.
+        constraints: number of redundant constraints within the set.
     """
 
     links: tuple[str, ...]
@@ -87,7 +93,12 @@ class RigidSet:
 
 @dataclass(frozen=True)
 class RedundantLink:
-    """A redundant link (or links rigid to one another), with the number of redundant constraints that it adds."""
+    """A redundant link, or several redundant links that are rigid to one another.
+
+    Attributes:
+        links: names of the links.
+        constraints: number of redundant constraints that they add.
+    """
 
     links: tuple[str, ...]
     constraints: int
@@ -95,7 +106,14 @@ class RedundantLink:
 
 @dataclass(frozen=True)
 class RedundantPair:
-    """A pair with redundant constraints; with one constraint left it counts as a higher pair."""
+    """A pair with redundant constraints.
+
+    Attributes:
+        pair: name of the pair.
+        constraints: number of its redundant constraints.
+        left: number of constraints that are not redundant. A lower pair with one such constraint counts as a higher
+            pair.
+    """
 
     pair: str
     constraints: int
@@ -104,9 +122,15 @@ class RedundantPair:
 
 @dataclass(frozen=True)
 class Reduction:
-    """Parts that the structural report leaves out: rigid sets, which count as one link, redundant links and conditions.
+    """Links, pairs and conditions that the structural report leaves out.
 
-    conditions: number of redundant conditions of each tie, by its index in list_ties. pairs: the pairs of those ties.
+    Below, a body is a link, or a set of links that are rigid to one another.
+
+    Attributes:
+        rigid: sets of links that are rigid to one another; each set counts as one link.
+        links: redundant links.
+        conditions: number of redundant conditions of a tie, by the index of the tie in `list_ties`.
+        pairs: pairs with these redundant conditions.
     """
 
     rigid: tuple[RigidSet, ...] = ()
@@ -128,29 +152,31 @@ class Reduction:
         return {link: first[rigid] for rigid in self.rigid for link in rigid.links}
 
     def body(self, link: str) -> str:
-        """Return the body of a link, by the name of its first link; other names (pins) are returned unchanged."""
+        """Return the name of the body to which a link belongs. Other names (of pins) are returned unchanged."""
         return self._representative.get(link, link)
 
     def members(self, body: str) -> tuple[str, ...]:
-        """Return the links of a body."""
+        """Return the names of the links of a body."""
         return next((rigid.links for rigid in self.rigid if self.body(rigid.links[0]) == body), (body,))
 
     def bodies(self, links: Iterable[str]) -> tuple[str, ...]:
-        """Return the remaining bodies of these links."""
+        """Return the bodies of these links, without redundant links."""
         return tuple(dict.fromkeys(self.body(link) for link in links if link not in self.removed))
 
     def within(self, ties: Sequence[Tie]) -> frozenset[int]:
-        """Return the indices of the ties within rigid sets; in a compound hinge those of several links of one set."""
+        """Return the indices of ties within a rigid set, and of ties that join several links of one set to the same
+        pin.
+        """
         ends = [(tie.name, self.body(tie.a), self.body(tie.b)) for tie in ties]
         return frozenset(k for k, (name, a, b) in enumerate(ends) if a == b or ends.count((name, a, b)) > 1)
 
     def touched(self, ties: Sequence[Tie]) -> frozenset[int]:
-        """Return the indices of the ties within rigid sets and of redundant links."""
+        """Return the indices of the ties that lie within rigid sets or belong to redundant links."""
         removed = (k for k, tie in enumerate(ties) if not self.removed.isdisjoint((tie.a, tie.b)))
         return self.within(ties) | {*removed}
 
     def ties(self, ties: Iterable[Tie]) -> Iterator[Tie]:
-        """Yield the ties between the remaining bodies, with their remaining conditions."""
+        """Yield the ties between the bodies of the structural report, without redundant conditions."""
         joined = set()
         for number, tie in enumerate(ties):
             a, b, left = self.body(tie.a), self.body(tie.b), tie.constraints - self.conditions.get(number, 0)
@@ -161,10 +187,14 @@ class Reduction:
     def reduced_pairs(
         self, linkage: Linkage, pairs: Sequence[Pair], rank: Mapping[str, int], ties: Sequence[Tie]
     ) -> Iterator[Pair]:
-        """Yield the pairs between the remaining bodies; those of `pairs` where they join the same bodies.
+        """Yield the kinematic pairs between the bodies of the structural report.
+
+        An existing pair is used wherever it joins two of these bodies.
 
         Args:
-            rank: index of the group of each remaining link in solving order.
+            linkage: the linkage.
+            pairs: pairs of all links.
+            rank: index of the group of each remaining link, in solving order.
             ties: the remaining ties, from `ties()`.
         """
         tied = {(tie.name, end) for tie in ties for end in (tie.a, tie.b)}
@@ -191,7 +221,7 @@ class Reduction:
                 yield pair
 
     def pair_of(self, tie: Tie, pairs: Iterable[Pair]) -> Pair | None:
-        """Return the pair of a tie, or None; in a compound hinge the pair that attaches its link."""
+        """Return the kinematic pair of a tie, or None; in a compound hinge, the pair that attaches the link of the tie."""
         ends = {self.body(tie.a), self.body(tie.b)}
         candidates = (pair for pair in pairs if tie.name == (pair.name if pair.slide or pair.mesh else pair.point))
         return next((pair for pair in candidates if ends & {self.body(pair.i), self.body(pair.j)}), None)
@@ -216,9 +246,15 @@ LOWER_PAIR_KINDS = (
 
 @dataclass(frozen=True)
 class Pair:
-    """A kinematic pair of two links; `i` is the frame, the carrier, or the link that is solved earlier.
+    """A kinematic pair of two links.
 
-    kind: R revolute, P prismatic; higher pairs: G gears, K gear and rack, C cam and follower.
+    Attributes:
+        name: name of the pair, e.g. A, or A' for the second pair of a compound hinge.
+        kind: R revolute or P prismatic; higher pairs: G two gears, K gear and rack, C cam and follower.
+        i, j: names of its links; i is the frame, the carrier of the guide, or the link that is solved first.
+        point: name of the hinge point or sliding point; empty for a higher pair.
+        slide: data of a prismatic pair, otherwise None.
+        mesh: data of a higher pair, otherwise None.
     """
 
     name: str
@@ -231,30 +267,30 @@ class Pair:
 
     @property
     def lower(self) -> bool:
-        """True for a lower pair (one freedom)."""
+        """True for a lower pair, which has one freedom."""
         return self.kind in LOWER_PAIR_KINDS
 
     @property
     def freedoms(self) -> int:
-        """Relative freedoms in the plane: 1 of a lower pair, 2 of a higher one."""
+        """Degrees of freedom in the plane: 1 for a lower pair, 2 for a higher one."""
         return 1 if self.lower else 2
 
     @property
     def pair_class(self) -> int:
-        """Class of the pair in space: 5 for a lower pair, 4 for a higher one."""
+        """Class of the pair, the number of its constraints in space: 5 for a lower pair, 4 for a higher one."""
         return 6 - self.freedoms
 
     @property
     def code(self) -> str:
-        """Code of the pair: 1в for a revolute pair, 1п for a prismatic one; empty for a higher pair."""
+        """Code of the pair after K. S. Alyushin: 1в (revolute) or 1п (prismatic); empty for a higher pair."""
         return PAIR_CODES.get(self.kind, "")
 
     def other(self, link: str) -> str:
-        """Return the other link of the pair."""
+        """Return the link that forms this pair with `link`."""
         return self.j if link == self.i else self.i
 
     def rebind(self, linkage: Linkage) -> Pair:
-        """Return the same pair with the dimensions of another linkage."""
+        """Return a copy of the pair that refers to another linkage, which differs in dimensions only."""
         slide = None if self.slide is None else linkage.slide(self.slide.name)
         mesh = None if self.mesh is None else next(m for m in linkage.meshes if m.name == self.mesh.name)
         return self if slide is None and mesh is None else replace(self, slide=slide, mesh=mesh)
@@ -262,12 +298,18 @@ class Pair:
 
 @dataclass(frozen=True)
 class Group:
-    """An Assur group: links, internal and external pairs (the latter in the order of its links), class and type.
+    """An Assur group.
 
     Attributes:
-        drivers: drivers between two of its links (a swinging cylinder), which add equations as the pairs do.
-        rigid: sets of its links that are rigid to one another and count as one.
-        as_higher: names of lower pairs that count as higher ones, because one of their two conditions is redundant.
+        links: names of its links.
+        inner: internal pairs.
+        outer: external pairs, in the order of the links.
+        group_class: class of the group, 2 or more.
+        type: type of a dyad, e.g. RRP; for other groups the kinds of all pairs; may be empty.
+        drivers: drivers between two links of the group (as in a swinging cylinder). Their equations are solved with
+            those of the pairs.
+        rigid: sets of links that are rigid to one another; each set counts as one link.
+        as_higher: names of lower pairs that count as higher pairs, because one of their two conditions is redundant.
     """
 
     links: tuple[str, ...]
@@ -280,34 +322,34 @@ class Group:
     as_higher: tuple[str, ...] = ()
 
     def own(self, pair: Pair) -> str:
-        """Return the group's own link in one of its external pairs."""
+        """Return the link of the group that belongs to this external pair."""
         return pair.i if pair.i in self.links else pair.j
 
     @property
     def known(self) -> tuple[str, ...]:
-        """Links to which the external pairs attach the group, pair by pair."""
+        """Links outside the group to which its external pairs attach it, one for each external pair."""
         return tuple(pair.other(self.own(pair)) for pair in self.outer)
 
     @property
     def depends_on(self) -> set[str]:
-        """All links that must be solved before the group: links of its external pairs, and carriers of its gears."""
+        """Links that must be solved before the group: outer links of its external pairs, carriers of its gears."""
         meshes = [pair.mesh for pair in (*self.inner, *self.outer) if pair.mesh is not None]
         others = {*self.known, *(mesh.carrier for mesh in meshes), *(driver.base for driver in self.drivers)}
         return others.difference(self.links)
 
     @property
     def order(self) -> int:
-        """Number of its external pairs."""
+        """Order of the group, the number of its external pairs."""
         return len(self.outer)
 
     @property
     def bodies(self) -> tuple[tuple[str, ...], ...]:
-        """Its links, with links that are rigid to one another together."""
+        """Links of the group, each in a tuple; links that are rigid to one another are in one tuple."""
         return tuple(dict.fromkeys(next((r for r in self.rigid if link in r), (link,)) for link in self.links))
 
     @property
     def count(self) -> tuple[int, int, int]:
-        """Numbers n, p1, p2 with 3n - 2p1 - p2 = 0; the two links of a driven pair count as one."""
+        """Numbers n, p1 and p2, with 3n - 2 p1 - p2 = 0. The two links of a driven pair count as one."""
         pairs = (*self.inner, *self.outer)
         lower = sum(pair.lower and pair.name not in self.as_higher for pair in pairs)
         driven = len(self.drivers)
@@ -315,19 +357,19 @@ class Group:
 
     @property
     def mobility(self) -> int:
-        """Mobility 3n - 2p1 - p2: zero for an Assur group."""
+        """Mobility 3n - 2 p1 - p2, which is zero for an Assur group."""
         n, lower, higher = self.count
         return 3 * n - 2 * lower - higher
 
     def rebind(self, linkage: Linkage) -> Group:
-        """Return the same group with the dimensions of another linkage."""
+        """Return a copy of the group that refers to another linkage, which differs in dimensions only."""
         inner, outer = (tuple(pair.rebind(linkage) for pair in pairs) for pairs in (self.inner, self.outer))
         drivers = tuple(d for driver in self.drivers for d in linkage.drivers if d.link == driver.link)
         return replace(self, inner=inner, outer=outer, drivers=drivers)
 
     @property
     def type_number(self) -> int | None:
-        """Number 1 to 5 of the type of a dyad; None for any other group."""
+        """Number (1 to 5) of the type of a dyad; None for any other group."""
         return DYAD_NUMBERS.get(self.type)
 
     @property
@@ -337,22 +379,23 @@ class Group:
 
     @property
     def roman(self) -> str:
-        """Class in Roman numerals (at most X)."""
+        """Class of the group in Roman numerals, at most X."""
         return ROMAN[min(self.group_class, 10)]
 
     @property
     def title(self) -> str:
-        """Class and links as in the structural formula, e.g. II(2,3)."""
+        """Class and links of the group as the structural formula shows them, e.g. II(2,3)."""
         return f"{self.roman}({','.join(map('+'.join, self.bodies))})"
 
 
 @dataclass(frozen=True)
 class PairRedundancy:
-    """Redundant constraints of a pair, which repeat others because of special dimensions.
+    """Redundant constraints of a pair: because of special dimensions they repeat constraints of other pairs.
 
     Attributes:
+        pair: name of the pair.
         constraints: number of redundant constraints.
-        links: the two links of the pair; the redundant one (whose position is determined without it) last.
+        links: the two links of the pair; last the redundant one, whose position follows without the pair.
         among: all links that take part in the redundancy.
     """
 

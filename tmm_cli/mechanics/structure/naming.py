@@ -1,7 +1,7 @@
-"""Names of links and basic schemes, from the pairs and from which links rotate fully; the default output link.
+"""Names of links (crank, rocker, ...), names of basic mechanisms and six-bar chains, and the default output link.
 
-Six-bar chains: R. L. Norton, Design of Machinery, ch. 2; basic schemes: I. I. Artobolevsky, Theory of Mechanisms and
-Machines, ch. 2.
+Names follow from the pairs and from which links make full turns. Six-bar chains: R. L. Norton, Design of Machinery, ch.
+2. Basic mechanisms: I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 2.
 """
 
 from __future__ import annotations
@@ -19,8 +19,9 @@ from tmm_cli.mechanics.structure.group import Group, Pair
 
 
 def link_roles(linkage: Linkage, turns: Callable[[str], bool]) -> dict[str, str]:
-    """Return the role of each moving link; `turns(link)` is True if it makes a full turn, and is called only where it
-    matters.
+    """Return the role of each moving link, e.g. "crank", "coupler" or "slider".
+
+    turns: returns True for a link that makes full turns; called only where the role depends on it.
     """
     return {name: _link_role(linkage, name, turns) for name in linkage.moving}
 
@@ -49,7 +50,10 @@ def _link_role(linkage: Linkage, name: str, turns: Callable[[str], bool]) -> str
 
 
 def _higher_pair_role(linkage: Linkage, name: str) -> str | None:
-    """Return the role of a gear, rack, cam, follower or carrier, or None; a gear whose axis moves is a planet."""
+    """Return the role of a gear, rack, cam, follower or carrier; None for other links.
+
+    A gear whose axis moves is a planet.
+    """
     for mesh in linkage.meshes:
         if mesh.kind == "cam" and name in (mesh.i, mesh.j):
             return "cam" if name == mesh.i else "follower"
@@ -61,7 +65,7 @@ def _higher_pair_role(linkage: Linkage, name: str) -> str | None:
 
 
 def _cylinder_role(linkage: Linkage, name: str) -> str | None:
-    """Return "cylinder" or "piston" for the links of a driven swinging cylinder, or None."""
+    """Return "cylinder" or "piston" for the links of a driven swinging cylinder; None for other links."""
     driven = {d.joint for d in linkage.drivers if d.kind == "slide" and d.base != FRAME}
     for slide in linkage.slides:
         if slide.name in driven and name in (slide.carrier, slide.runner):
@@ -70,9 +74,11 @@ def _cylinder_role(linkage: Linkage, name: str) -> str | None:
 
 
 def output_link(linkage: Linkage, groups: tuple[Group, ...]) -> str | None:
-    """Return the output link: as named in the file, or the last link connected to the frame that is not driven.
+    """Return the output link: the one that the file names, otherwise the last undriven link connected to the frame.
 
-    If constraints are redundant, the groups are not yet known; then links are taken in the order of the file.
+    Args:
+        linkage: the linkage.
+        groups: groups in solving order. If empty (constraints are redundant), links are taken in the order of the file.
     """
     if linkage.output is not None:
         return linkage.output.link
@@ -86,11 +92,11 @@ def output_link(linkage: Linkage, groups: tuple[Group, ...]) -> str | None:
 
 
 def link_motion(linkage: Linkage, name: str) -> str:
-    """Return the motion of a link relative to the frame, as far as its pairs determine it.
+    """Return the type of motion of a link relative to the frame, as far as its pairs determine it.
 
     Returns:
-        "rotation" (it has a revolute pair with the frame), "translation" (prismatic pairs alone connect it to the
-        frame, directly or through other links, so it keeps its direction) or "plane motion".
+        "rotation" if a revolute pair joins the link to the frame; "translation" if prismatic pairs alone connect it to
+            the frame, directly or through other links, so that it does not rotate; otherwise "plane motion".
     """
     if linkage.hinged_to_frame(name):
         return "rotation"
@@ -101,11 +107,10 @@ def link_motion(linkage: Linkage, name: str) -> str:
 
 
 def is_parallelogram_coupler(linkage: Linkage, name: str) -> bool:
-    """Return True if a link may be the coupler of a parallelogram, judged by lengths; also true for an
-    antiparallelogram.
+    """Return True if a link is the coupler of a parallelogram or antiparallelogram, judged by lengths.
 
-    Two of its points are hinged to links pivoted on the frame, with equal arms and at the same distance as their
-    pivots.
+    Two of its points are hinged to links pivoted on the frame; the arms are equal, and the two points are as far apart
+    as the two pivots.
     """
     arms = []
     for hinge in linkage.hinges:
@@ -124,9 +129,13 @@ def is_parallelogram_coupler(linkage: Linkage, name: str) -> bool:
 
 
 def four_link_scheme(kinds: str) -> str | None:
-    """Return the basic scheme of a four-link contour, from its pairs in order, those with the frame at both ends.
+    """Return the name of a basic four-link mechanism (e.g. "crank-slider"), whichever link is the driver.
 
-    It does not depend on which link is the driver. None for a contour without a name.
+    Args:
+        kinds: kinds of its pairs in order round the contour, e.g. RRRP; the first and the last are those on the frame.
+
+    Returns:
+        The name; None if such a contour has no name.
     """
     schemes = {
         "RRRR": "hinged four-bar",
@@ -141,7 +150,7 @@ def four_link_scheme(kinds: str) -> str | None:
 
 
 def contour_scheme(contour: Contour, structure: Structure) -> str | None:
-    """Return the basic scheme of a four-link contour with the frame; None for any other contour."""
+    """Return the name of the basic mechanism that a four-link contour with the frame forms; None for other contours."""
     if len(contour.links) != 4 or contour.links[0] != FRAME:
         return None
     kind = {pair.name: pair.kind for pair in structure.pairs}
@@ -149,7 +158,10 @@ def contour_scheme(contour: Contour, structure: Structure) -> str | None:
 
 
 def basic_schemes(structure: Structure) -> dict[str, str]:
-    """Return the basic schemes of all four-link contours with the frame, by title: {"0-1-2-3-0": "crank-slider"}."""
+    """Return the names of the basic mechanisms formed by four-link contours with the frame, by title of the contour.
+
+    For example {"0-1-2-3-0": "crank-slider"}.
+    """
     named = (
         (contour.title, contour_scheme(contour, structure))
         for contour in find_contours(structure.pairs, structure.links)
@@ -158,10 +170,10 @@ def basic_schemes(structure: Structure) -> dict[str, str]:
 
 
 def six_bar_schemes(structure: Structure) -> tuple[str, ...]:
-    """Return the names of a six-link mechanism with seven lower pairs: Watt I or II, Stephenson I, II or III.
+    """Return the possible names of a six-link mechanism with seven lower pairs: Watt I, II or Stephenson I, II, III.
 
-    A compound hinge of three links can be drawn in three ways, which may have different names; all of them are
-    returned. Empty for any other mechanism, and for one with redundant links or pairs.
+    A compound hinge of three links can be drawn as two hinges in three ways, which may give different names; all of
+    them are returned. Empty for any other mechanism, and for one with redundant links or pairs.
     """
     if len(structure.links) != 5 or len(structure.pairs) != 7 or structure.higher or structure.reduction:
         return ()
@@ -170,9 +182,7 @@ def six_bar_schemes(structure: Structure) -> tuple[str, ...]:
 
 
 def _attachments(pairs: Sequence[Pair]) -> Iterator[tuple[tuple[str, str], ...]]:
-    """Yield the links of all pairs, for each choice of the link to which the others of a compound hinge are
-    attached.
-    """
+    """Yield the pairs (as pairs of links) for every choice of the common link of each compound hinge."""
     by_place: dict[str, list[tuple[str, str]]] = {}
     for pair in pairs:
         by_place.setdefault(pair.point if pair.kind == "R" else f"slide {pair.name}", []).append((pair.i, pair.j))
@@ -186,7 +196,7 @@ def _attachments(pairs: Sequence[Pair]) -> Iterator[tuple[tuple[str, str], ...]]
 
 
 def _six_bar_name(pairs: tuple[tuple[str, str], ...]) -> str | None:
-    """Return the name of a six-link chain with two ternary links; None for other chains."""
+    """Return the name of a six-link chain with two ternary links, given by the links of its pairs; otherwise None."""
     degree = {link: sum(link in pair for pair in pairs) for pair in pairs for link in pair}
     ternary = {link for link in degree if degree[link] == 3}
     if sorted(degree.values()) != [2, 2, 2, 2, 3, 3]:

@@ -1,8 +1,8 @@
-"""Redundant constraints of a planar linkage as a spatial one, and a proposal of pairs that removes them.
+"""Redundant constraints of a planar linkage regarded as a spatial one, and a proposal of pairs that removes them.
 
 With all axes perpendicular to the plane, the constraints separate into two independent parts: motion in the plane, and
-motion out of it. Out of the plane a link can translate and tilt, so it is described by the height
-h(x, y) = a + b x + c y over its own axes. Each pair requires equal heights:
+motion out of it. Out of the plane a link can translate and tilt, so it is described by the height h(x, y) = a + b x + c
+y in its own axes. A pair requires equal heights or slopes of its two links:
 
     turning, sliding       height and both slopes      3 conditions
     cylindrical for R      both slopes                 2   (free along its axis)
@@ -12,10 +12,11 @@ h(x, y) = a + b x + c y over its own axes. Each pair requires equal heights:
     teeth, cams            slope along the normal      1   (line contact parallel to the axes)
     the same, crowned      none                        0   (point contact)
 
-A linkage with W = 1 has 3K redundant conditions, K the number of its contours. None of these replacements affects the
-motion in the plane. A proposal is accepted if its conditions are independent (by rank) and the freedoms that remain are
-local freedoms of single links. Points of links enter with their coordinates, links with arbitrary angles, so no
-position has to be solved. Such replacements are the subject of L. N. Reshetov, Self-aligning mechanisms (Mir, 1982).
+A linkage with W = 1 and K contours has 3K redundant conditions. None of the replacements affects the motion in the
+plane. A proposal is accepted if its conditions are independent (by rank) and the remaining freedoms are local freedoms
+of single links. The conditions need the coordinates of points on their links, but the angles of the links may be
+arbitrary, so no position has to be solved. Such replacements are the subject of L. N. Reshetov, Self-aligning
+mechanisms (Mir, 1982).
 """
 
 from __future__ import annotations
@@ -51,7 +52,13 @@ MOST_TRIES = 12
 
 @dataclass(frozen=True)
 class PairReplacement:
-    """A pair that is replaced by one with more freedoms."""
+    """A pair that is to be replaced by one with more freedoms.
+
+    Attributes:
+        pair: the pair.
+        was: kind of the pair as designed, e.g. "turning".
+        kind: proposed kind, e.g. "spherical".
+    """
 
     pair: Pair
     was: str
@@ -64,7 +71,13 @@ class PairReplacement:
 
 @dataclass(frozen=True)
 class OutOfPlaneRank:
-    """Numbers of redundant conditions out of the plane, of remaining freedoms, and of local ones among these."""
+    """Result of the rank analysis of motion out of the plane.
+
+    Attributes:
+        redundant: number of redundant conditions.
+        free: number of remaining freedoms.
+        local: number of these that are local freedoms of single links.
+    """
 
     redundant: int
     free: int
@@ -73,9 +86,14 @@ class OutOfPlaneRank:
 
 @dataclass(frozen=True)
 class SpatialCount:
-    """Mobility count of a planar linkage in space, as designed and as proposed.
+    """Mobility count of a planar linkage in space, as designed and with the proposed pairs.
 
-    wanted: its mobility Wo. replacements: None if no proposal was found. rank: of the proposal.
+    Attributes:
+        chain: the chain as designed.
+        wanted: intended mobility Wo.
+        replacements: pairs to be replaced; None if no proposal was found.
+        proposed: the chain with the proposed pairs.
+        rank: ranks of the proposed chain out of the plane.
     """
 
     chain: SpatialChain
@@ -86,22 +104,25 @@ class SpatialCount:
 
     @property
     def local(self) -> int:
-        """Local freedoms Wm as designed: revolute and prismatic pairs leave none."""
+        """Local freedoms Wm as designed: zero, as revolute and prismatic pairs leave none."""
         return 0
 
     @property
     def redundant(self) -> int:
-        """Redundant constraints q = Wo + Wm - W as designed."""
+        """Number of redundant constraints as designed, q = Wo + Wm - W."""
         return self.wanted + self.local - self.chain.mobility
 
     @property
     def redundant_then(self) -> int:
-        """Redundant constraints q = Wo + Wm - W as proposed."""
+        """Number of redundant constraints with the proposed pairs, q = Wo + Wm - W."""
         return self.wanted + self.rank.local - self.proposed.mobility
 
 
 def count_in_space(linkage: Linkage, structure: Structure) -> SpatialCount:
-    """Count the mobility of the linkage in space (one freedom for each driver) and propose pairs without redundancy."""
+    """Count the mobility of a planar linkage in space, and propose pairs that leave no redundant constraints.
+
+    The intended mobility is the number of drivers.
+    """
     chain, mobility = spatial_chain(structure, {}), len(structure.drivers)
     heights = OutOfPlaneConditions(linkage)
     for pins_first in (True, False):
@@ -119,7 +140,10 @@ def count_in_space(linkage: Linkage, structure: Structure) -> SpatialCount:
 
 
 def spatial_chain(structure: Structure, kinds: Mapping[str, str]) -> SpatialChain:
-    """Return the linkage as a spatial chain; kinds: of the replaced pairs, by name."""
+    """Describe a planar linkage as a spatial chain.
+
+    kinds: new kinds of replaced pairs, by name of the pair; other pairs are as designed.
+    """
     named = ((p, kinds.get(p.name, PAIR_CHOICES[p.kind][0])) for p in structure.pairs)
     return SpatialChain(
         structure.links, tuple(SpatialPair(p.name, p.i, p.j, PAIR_FREEDOMS[kind], kind) for p, kind in named)
@@ -127,7 +151,10 @@ def spatial_chain(structure: Structure, kinds: Mapping[str, str]) -> SpatialChai
 
 
 def out_of_plane_rank(linkage: Linkage, structure: Structure, kinds: Mapping[str, str]) -> OutOfPlaneRank:
-    """Count the conditions out of the plane by rank; kinds: of the replaced pairs, by name."""
+    """Count redundant conditions and freedoms of motion out of the plane, from the rank of the conditions.
+
+    kinds: new kinds of replaced pairs, by name of the pair; other pairs are as designed.
+    """
     heights = OutOfPlaneConditions(linkage)
     rows = {
         p.name: heights.rows(p, kinds.get(p.name, PAIR_CHOICES[p.kind][0]), structure.links) for p in structure.pairs
@@ -138,8 +165,9 @@ def out_of_plane_rank(linkage: Linkage, structure: Structure, kinds: Mapping[str
 
 
 class OutOfPlaneConditions:
-    """Conditions of pairs on the heights (a, b, c) of links, each in the axes of its link, lengths divided by the
-    size.
+    """Linear conditions of pairs on the heights h = a + b x + c y of links out of the plane.
+
+    The unknowns are a, b, c of each link, in the axes of the link. Lengths are divided by the size of the linkage.
     """
 
     def __init__(self, linkage: Linkage) -> None:
@@ -150,9 +178,7 @@ class OutOfPlaneConditions:
         self.angle = _generic_angles(linkage)
 
     def rows(self, pair: Pair, kind: str, links: Sequence[str]) -> Real:
-        """Return the conditions of a pair of this kind on the given links, shape (conditions, 3 links); other links are
-        fixed.
-        """
+        """Return the conditions of a pair of this kind, shape (conditions, 3 links). Links not in `links` are fixed."""
         slide = pair.slide
         if pair.mesh is not None:  # the normal of the teeth may have any direction in the plane
             points = dict.fromkeys((pair.i, pair.j), 0j)
@@ -187,14 +213,12 @@ class OutOfPlaneConditions:
 
 
 def _first_value(number: Any) -> complex:
-    """Return a length as one number: that of the first variant."""
+    """Return a length or vector as one number; of several variants, that of the first."""
     return complex(np.ravel(number)[0])
 
 
 def _generic_angles(linkage: Linkage) -> dict[str, float]:
-    """Return the angles of the links in a generic configuration; links joined by prismatic pairs keep their relative
-    angle.
-    """
+    """Choose arbitrary angles for the links. Links joined by prismatic pairs keep their relative angle."""
     angle = {link: GOLDEN * number for number, link in enumerate(linkage.links)}
     fixed = {FRAME}
     for seed in linkage.links:
@@ -211,9 +235,9 @@ def _generic_angles(linkage: Linkage) -> dict[str, float]:
 
 
 def _choose_kinds(heights: OutOfPlaneConditions, structure: Structure, pins_first: bool) -> dict[str, str] | None:
-    """Choose kinds for the pairs of all groups, by name; None if one group has no proposal.
+    """Choose kinds for the pairs of all groups, by name of the pair; None if one of the groups has no proposal.
 
-    pins_first: pairs of a compound hinge become cylindrical first, as they share one pin.
+    pins_first: True if pairs of a compound hinge, which share a pin, are the first to become cylindrical.
     """
     pins = [p.point for p in structure.pairs if p.kind == "R"]
     shared = {p.name for p in structure.pairs if p.kind == "R" and pins.count(p.point) > 1} if pins_first else set()
@@ -229,12 +253,12 @@ def _choose_kinds(heights: OutOfPlaneConditions, structure: Structure, pins_firs
 def _choose_kinds_of_group(
     heights: OutOfPlaneConditions, links: tuple[str, ...], group_pairs: tuple[Pair, ...], pins: set[str]
 ) -> dict[str, str] | None:
-    """Choose kinds for the pairs of one group, earlier links being fixed: fewest changes, then fewest freedoms; or
-    None.
+    """Choose kinds for the pairs of one group, with the links solved before it fixed; None if there is no proposal.
 
-    Each group is treated separately, because a pair that constrained two groups could become singular in some position.
-    Pairs with the frame locate shafts and guides and are not changed. Each pair starts with the kind of most freedoms;
-    then as many as possible get their original kind again, and the freedoms still left are taken by cylindrical pairs.
+    The choice has the fewest changes, and of these the fewest freedoms. Each group is treated separately, because a
+    pair that constrained two groups could become singular in some position. Pairs with the frame locate shafts and
+    guides and are not changed. Each pair starts with the kind that has most freedoms. Then as many pairs as possible
+    get their original kind again, and cylindrical pairs take the freedoms that are still left.
     """
     on_frame = {p.other(FRAME) for p in group_pairs if p.lower and FRAME in (p.i, p.j)}
     floating = tuple(link for link in links if link not in on_frame)
@@ -245,9 +269,7 @@ def _choose_kinds_of_group(
         return _stack((blocks[item] for item in kinds.items()), CONDITIONS * len(floating))
 
     def held(kinds: dict[str, str], order: Iterable[Pair], choice: int) -> dict[str, str]:
-        """Give pairs of most freedoms the kind number `choice`, in this order, as long as the conditions stay
-        independent.
-        """
+        """Change pairs that have most freedoms to the kind number `choice`, while the conditions stay independent."""
         for pair in order:
             trial = kinds | {pair.name: PAIR_CHOICES[pair.kind][choice]}
             if kinds[pair.name] == PAIR_CHOICES[pair.kind][2] and _independent(matrix(trial)):
@@ -283,6 +305,6 @@ def _independent(matrix: Real) -> bool:
 
 
 def _count_local_freedoms(matrix: Real) -> int:
-    """Count the freedoms of each link with all other links fixed."""
+    """Count the freedoms that remain to each link when all other links are fixed, and add them up."""
     columns = matrix.shape[1]
     return sum(CONDITIONS - _rank(matrix[:, at : at + CONDITIONS]) for at in range(0, columns, CONDITIONS))

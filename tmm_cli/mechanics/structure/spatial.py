@@ -1,8 +1,8 @@
 """Spatial chains given by their pairs alone: mobility, contours, local freedoms, manoeuvrability.
 
-Mobility after P. I. Somov and A. P. Malyshev, W = 6n - 5 p1 - 4 p2 - 3 p3 - 2 p4 - p5, with n moving links and pi pairs
-of i freedoms. It is a count: special dimensions (parallel axes, axes through one point) appear as redundant
-constraints, q = Wo + Wm - W.
+Mobility after P. I. Somov and A. P. Malyshev: W = 6n - 5 p1 - 4 p2 - 3 p3 - 2 p4 - p5, with n moving links and pi pairs
+of i freedoms. This is only a count: special dimensions (parallel axes, axes through one point) appear as redundant
+constraints, q = Wo + Wm - W, with the intended mobility Wo and the local freedoms Wm.
 """
 
 from __future__ import annotations
@@ -42,7 +42,14 @@ CONTACT_PAIRS = {"sphere in cylinder", "cylinder on plane", "sphere on plane"}  
 
 @dataclass(frozen=True)
 class SpatialPair:
-    """A pair of two links in space with 1 to 5 freedoms; kind: a key of PAIR_FREEDOMS, or empty if unknown."""
+    """A kinematic pair of two links in space.
+
+    Attributes:
+        name: name of the pair.
+        i, j: names of its links.
+        freedoms: degrees of freedom, 1 to 5.
+        kind: a key of PAIR_FREEDOMS, e.g. "spherical"; empty if unknown.
+    """
 
     name: str
     i: str
@@ -52,49 +59,54 @@ class SpatialPair:
 
     @property
     def pair_class(self) -> int:
-        """Class of the pair after I. I. Artobolevsky: the number of its constraints."""
+        """Class of the pair after I. I. Artobolevsky, the number of its constraints."""
         return SPACE - self.freedoms
 
     def other(self, link: str) -> str:
-        """Return the other link of the pair."""
+        """Return the link that forms this pair with `link`."""
         return self.j if link == self.i else self.i
 
 
 @dataclass(frozen=True)
 class SpatialChain:
-    """Moving links, and the pairs that join them to one another and to the frame, link "0"."""
+    """A spatial kinematic chain.
+
+    Attributes:
+        links: names of the moving links.
+        pairs: pairs that join the links to one another and to the frame, link "0".
+    """
 
     links: tuple[str, ...]
     pairs: tuple[SpatialPair, ...]
 
     def p(self, freedoms: int) -> int:
-        """Return the number of pairs with this number of freedoms."""
+        """Return the number of pairs that have this many freedoms."""
         return sum(pair.freedoms == freedoms for pair in self.pairs)
 
     @property
     def mobility(self) -> int:
-        """Mobility W by the Somov-Malyshev formula."""
+        """Mobility W by the formula of Somov and Malyshev."""
         return SPACE * len(self.links) - sum(pair.pair_class for pair in self.pairs)
 
     @property
     def count(self) -> str:
-        """Mobility formula with its numbers, e.g. 6*5 - 5*7 = -5."""
+        """The mobility formula with numbers inserted, e.g. 6*5 - 5*7 = -5."""
         terms = [(SPACE - i, self.p(i)) for i in range(1, SPACE)]
         parts = "".join(f" - {f'{weight}*' if weight > 1 else ''}{many}" for weight, many in terms if many)
         return f"{SPACE}*{len(self.links)}{parts} = {self.mobility}"
 
     def around(self, link: str) -> tuple[SpatialPair, ...]:
-        """Return the pairs of a link."""
+        """Return all pairs that a link belongs to."""
         return tuple(pair for pair in self.pairs if link in (pair.i, pair.j))
 
     def only(self, links: Iterable[str]) -> SpatialChain:
-        """Return the sub-chain of these links."""
+        """Return the sub-chain of these links, with their pairs among themselves and with the frame."""
         kept = tuple(links)
         ends = {FRAME, *kept}
         return SpatialChain(kept, tuple(pair for pair in self.pairs if {pair.i, pair.j} <= ends))
 
     def held(self, link: str) -> SpatialChain:
-        """Return the chain with this link fixed to the frame; its pairs with the frame are omitted."""
+        """Return the chain with one link fixed to the frame. Pairs between this link and the frame are omitted."""
         pairs = (
             SpatialPair(p.name, FRAME if p.i == link else p.i, FRAME if p.j == link else p.j, p.freedoms, p.kind)
             for p in self.pairs
@@ -104,9 +116,12 @@ class SpatialChain:
 
 @dataclass(frozen=True)
 class LocalFreedom:
-    """Local freedoms of a link, or of parts that slide in one another, whose motion moves no other link.
+    """Local freedoms: possible motions of a link, or of a strut of several links, that move no other link.
 
-    ends: the pairs that connect them to other links.
+    Attributes:
+        links: the link, or the links that slide in one another and form a strut.
+        freedoms: number of local freedoms.
+        ends: pairs that connect these links to other links.
     """
 
     links: tuple[str, ...]
@@ -115,7 +130,7 @@ class LocalFreedom:
 
     @property
     def kinds(self) -> set[str]:
-        """Kinds of these pairs."""
+        """Kinds of the pairs that connect these links to other links."""
         return {pair.kind for pair in self.ends}
 
 
@@ -124,10 +139,12 @@ class ChainCount:
     """Mobility count of a spatial chain.
 
     Attributes:
+        chain: the chain.
+        contours: independent closed contours.
         local: local freedoms that follow from the kinds of the pairs.
-        given_local: number of local freedoms given in the file, which replaces them.
-        wanted: intended mobility.
-        output: link to be fixed for the manoeuvrability.
+        given_local: number of local freedoms that the file gives, used instead of `local`; None if not given.
+        wanted: intended mobility Wo, or None.
+        output: link that is fixed to count the manoeuvrability, or None.
     """
 
     chain: SpatialChain
@@ -143,24 +160,25 @@ class ChainCount:
 
     @property
     def local_mobility(self) -> int:
-        """Local freedoms Wm: as given, or as found."""
+        """Number of local freedoms Wm: as the file gives it, otherwise as follows from the kinds of the pairs."""
         return sum(freedom.freedoms for freedom in self.local) if self.given_local is None else self.given_local
 
     @property
     def redundant(self) -> int | None:
-        """Redundant constraints q = Wo + Wm - W; None unless the intended mobility Wo is given."""
+        """Number of redundant constraints q = Wo + Wm - W; None if the intended mobility Wo is not given."""
         return None if self.wanted is None else self.wanted + self.local_mobility - self.mobility
 
     @property
     def effective(self) -> int:
-        """Mobility without the local freedoms."""
+        """Mobility without the local freedoms, W - Wm."""
         return self.mobility - self.local_mobility
 
     @property
     def immobile(self) -> tuple[str, ...]:
-        """Links that by the count cannot move: all links, or those in contours if only the open branches move.
+        """Links that cannot move by the count.
 
-        Empty if an intended mobility is given: the dimensions then make constraints redundant.
+        These are all links, or, if only open branches can move, the links of the contours. Empty if an intended
+        mobility is given, because special dimensions then make constraints redundant.
         """
         if self.wanted is not None or not self.contours:
             return ()
@@ -172,7 +190,7 @@ class ChainCount:
 
     @property
     def manoeuvrability(self) -> int | None:
-        """Mobility with the output fixed; None if no output is given."""
+        """Manoeuvrability: mobility of the chain with the output link fixed; None if no output link is given."""
         return None if self.output is None else self.chain.held(self.output).mobility
 
     @property
@@ -190,7 +208,7 @@ class ChainCount:
 
     @property
     def form(self) -> str:
-        """Form of the chain: open, closed, or mixed (contours with open branches)."""
+        """Form of the chain: "open", "closed", or "mixed" (contours with open branches)."""
         if not self.contours:
             return "open"
         return "mixed" if self.branches else "closed"
@@ -199,7 +217,14 @@ class ChainCount:
 def count_chain(
     chain: SpatialChain, output: str | None = None, given_local: int | None = None, wanted: int | None = None
 ) -> ChainCount:
-    """Count mobility, contours and local freedoms of a spatial chain; arguments as in ChainCount."""
+    """Count mobility, contours and local freedoms of a spatial chain.
+
+    Args:
+        chain: the chain.
+        output: link that is fixed to count the manoeuvrability.
+        given_local: number of local freedoms, if it is known; by default it follows from the kinds of the pairs.
+        wanted: intended mobility.
+    """
     chain_contours = find_contours(chain.pairs, chain.links)
     closed = {link for contour in chain_contours for link in contour.links}
     certain = local_freedoms(chain)
@@ -215,10 +240,10 @@ def _shares_links(freedom: LocalFreedom, others: Iterable[LocalFreedom]) -> bool
 
 
 def pistons_on_balls(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
-    """Return the links between a cylindrical and a spherical pair, which may rotate about the axis of the former.
+    """Return the links between a cylindrical and a spherical pair, which may be free to rotate about the cylinder axis.
 
-    They do so only if the centre of the sphere lies on the axis, which the kinds of pairs do not show. So these count
-    as local freedoms only if the chain has freedoms to spare.
+    They are free only if the centre of the sphere lies on the axis, which cannot be known from the kinds of pairs. They
+    are therefore counted as local freedoms only as far as the mobility of the chain exceeds the intended one.
     """
     return tuple(
         LocalFreedom((link,), 1, ends)
@@ -230,10 +255,10 @@ def pistons_on_balls(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
 def local_freedoms(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
     """Return the local freedoms that follow from the kinds of pairs, whatever the dimensions.
 
-    A link between two spherical pairs rotates about the line of their centres; between a spherical and a planar pair,
-    about the normal through the centre; between two planar pairs it slides parallel to both. The same holds for a strut
-    of parts that slide in one another. A roller rotates about its axle on a moving link. Other links have at least the
-    freedoms that remain with their neighbours fixed.
+    A link between two spherical pairs can rotate about the line of their centres. A link between a spherical and a
+    planar pair can rotate about the normal through the centre. A link between two planar pairs can slide parallel to
+    both planes. The same holds for a strut of links that slide in one another. A roller can rotate about its axle on a
+    moving link. Any other link has at least the freedoms that remain when its neighbours are fixed.
     """
     around: dict[str, list[SpatialPair]] = {link: [] for link in (FRAME, *chain.links)}
     for pair in chain.pairs:
@@ -252,8 +277,9 @@ def local_freedoms(chain: SpatialChain) -> tuple[LocalFreedom, ...]:
 
 
 def _rollers(chain: SpatialChain) -> Iterable[LocalFreedom]:
-    """Return links that touch another link and have their axle on a moving one; of two in mutual contact, the later
-    one.
+    """Return the rollers: links that touch another link and have their axle on a moving one.
+
+    Of two rollers that touch each other, only the later one is returned.
     """
     contacts: dict[str, LocalFreedom] = {}
     for link in chain.links:
@@ -266,7 +292,7 @@ def _rollers(chain: SpatialChain) -> Iterable[LocalFreedom]:
 
 
 def _certain_freedoms(inner: list[SpatialPair], ends: list[SpatialPair]) -> int:
-    """Return the freedoms of a link, or of parts in series, with all neighbours fixed."""
+    """Return the freedoms that a link, or a strut of links in series, has when all neighbours are fixed."""
     if len(ends) < 2:
         return 0  # an open end of a chain has no local freedom
     turns = len(ends) == 2 and {p.kind for p in ends} <= BALL_OR_PLATE
@@ -274,7 +300,7 @@ def _certain_freedoms(inner: list[SpatialPair], ends: list[SpatialPair]) -> int:
 
 
 def _struts(chain: SpatialChain, around: dict[str, list[SpatialPair]]) -> Iterable[tuple[str, ...]]:
-    """Yield the links one by one, or together if they are parts of a strut; in the order of the chain."""
+    """Yield the links, each alone or together with the other links of its strut, in the order of the chain."""
     part_of = {link: [link] for link in chain.links}
     for pair in chain.pairs:
         simple = FRAME not in (pair.i, pair.j) and len(around[pair.i]) == len(around[pair.j]) == 2
@@ -296,7 +322,12 @@ def _struts(chain: SpatialChain, around: dict[str, list[SpatialPair]]) -> Iterab
 
 @dataclass(frozen=True)
 class ChainResults:
-    """Results for a chain given by its pairs: the count only, as it has no dimensions. problem: as in Results."""
+    """Results for a chain that is given by its pairs alone: only the mobility count, as it has no dimensions.
+
+    Attributes:
+        problem: the problem, as in Results.
+        chain: the mobility count.
+    """
 
     problem: Any
     chain: ChainCount
