@@ -1,7 +1,8 @@
-"""Assembly of all groups as sketched, and change points of groups in closed form that are passed smoothly.
+"""Assembly of all groups as the sketch shows them, and change points that groups in closed form pass smoothly.
 
-A parallelogram has two change points. There the determinant is zero, and only its sign distinguishes the two branches;
-along the smooth branch, on which velocities are continuous, the sign changes.
+At a change point two branches of assemblies meet (a parallelogram has two such points). The determinant is zero there,
+and only its sign distinguishes the branches. Along the smooth branch, on which velocities are continuous, the sign
+changes.
 """
 
 from __future__ import annotations
@@ -52,7 +53,15 @@ SIMPLE = 3.0  # ratio at twice the distance: 2 for a simple zero, 4 for a double
 def find_change_points(
     linkage: Linkage, before: tuple[GroupSolver, ...], kernel: ClosedFormSolver
 ) -> ChangePoints | None:
-    """Find the change points that a group passes smoothly; None if it has none, or only touches zero.
+    """Find the change points that a group passes smoothly.
+
+    Args:
+        linkage: the linkage.
+        before: solvers of the groups before it, in solving order.
+        kernel: solver of the group.
+
+    Returns:
+        The change points; None if the determinant never changes sign.
 
     Raises:
         ChangePointSearchError: the groups before it repeat only after too many turns of the driver.
@@ -88,7 +97,7 @@ def find_change_points(
 
 
 def _change_points_before(upto: tuple[GroupSolver, ...], low: float, high: float) -> Real:
-    """Return the change points (points,), increasing, of the groups on which the last one depends."""
+    """Return the change points of the groups on which the last group depends, between low and high, increasing."""
     ways = [kernel.way for kernel in upto[:-1] if isinstance(kernel, ClosedFormSolver) and kernel.way is not None]
     return np.sort(np.concatenate([np.zeros(0), *(change_points.within(low, high) for change_points in ways)]))
 
@@ -96,12 +105,17 @@ def _change_points_before(upto: tuple[GroupSolver, ...], low: float, high: float
 def _refine_change_points(
     linkage: Linkage, upto: tuple[GroupSolver, ...], candidates: Real, step: float, earlier: Real
 ) -> Real:
-    """Refine the change points near `candidates` (candidates,) to the last bit; points that the group cannot pass are
-    dropped.
+    """Refine estimates of change points to the last bit, and drop those that the group cannot pass.
 
-    Beside a change point of its own, an earlier group (`earlier`, increasing) is accurate to half the digits only. A
-    result next to such a point is that point itself: otherwise, in a chain of parallelograms, the points would drift
-    apart.
+    Next to its own change point an earlier group is accurate to half the digits only. A result next to such a point is
+    therefore replaced by the point itself; otherwise the points of a chain of parallelograms would drift apart.
+
+    Args:
+        linkage: the linkage.
+        upto: solvers of the group (last) and of the groups on which it depends.
+        candidates: estimates of the change points (driver coordinates).
+        step: step of the scan that gave the estimates.
+        earlier: change points of the earlier groups, increasing.
     """
     if not candidates.size:
         return candidates
@@ -132,21 +146,30 @@ def _refine_change_points(
 
 
 def _values_at_steps(function: Callable[[Real], Real], centres: Real, steps: Real) -> Real:
-    """Return the values of a function at steps from each centre, shape (centres, steps)."""
+    """Evaluate a function at the same distances from each centre, shape (centres, steps)."""
     q = centres[:, None] + steps
     return np.broadcast_to(function(q.ravel()), q.size).reshape(q.shape)
 
 
 def assembly_reserve(linkage: Linkage, kernels: tuple[GroupSolver, ...], q: Real) -> Real:
-    """Return the reserve (m) of the last group before it can no longer be assembled."""
+    """Return the distance (m) by which the last group is still assembled at driver coordinates q.
+
+    It is negative where the group cannot be assembled.
+    """
     return -link_states(linkage, kernels, q, 0).placements[-1].residual
 
 
 def refine_dead_positions(linkage: Linkage, kernels: tuple[GroupSolver, ...], positions: Real, step: float) -> Real:
-    """Refine dead positions (positions,) inside the range to the last bit: there the residual of the last group is
-    stationary.
+    """Refine dead positions of the last group, inside the range of the driver, to the last bit.
 
-    The maximum of a quantity is known to half the digits only, the root of its rate to all of them.
+    The residual of the group has an extreme there. An extreme can be located to half the digits only, but the root of
+    the derivative to all of them.
+
+    Args:
+        linkage: the linkage.
+        kernels: solvers of the group (last) and of the groups on which it depends.
+        positions: estimates of the dead positions (driver coordinates).
+        step: distance on both sides in which each of them lies.
     """
     last = kernels[-1]
     if not isinstance(last, ClosedFormSolver):
@@ -176,14 +199,20 @@ ANGLES_PER_TURN = 720  # samples per turn for the accumulation of angles
 def assemble(
     linkage: Linkage, structure: Structure, groups: tuple[Group, ...] | None = None, like: tuple[GroupSolver, ...] = ()
 ) -> tuple[GroupSolver, ...]:
-    """Return the solvers of the groups in the assemblies of the sketch, in solving order.
+    """Return the solvers of the groups in the assemblies that the sketch shows, in solving order.
 
     Args:
-        groups: groups to solve; all groups of the structure if None.
-        like: solvers of a linkage with other lengths, whose traces are corrected instead of computed anew.
+        linkage: the linkage.
+        structure: its structure.
+        groups: groups to assemble; all groups of the structure if None.
+        like: solvers of a linkage with other lengths; their traces are corrected instead of being computed anew.
 
     Raises:
-        GroupTooLargeError, ChangePointSearchError, AssemblyError, AmbiguousSketchError, SketchMismatchError.
+        GroupTooLargeError: a group has too many links for iteration.
+        ChangePointSearchError: a search for change points would be too long.
+        AssemblyError: a group cannot be assembled.
+        AmbiguousSketchError: the sketch does not determine the assembly of a group.
+        SketchMismatchError: the sketch does not fit the dimensions.
     """
     groups = structure.solved if groups is None else groups
     for group in groups:
@@ -231,12 +260,15 @@ def _assemble_group(
 
 
 def closed_form_solver(group: Group, linkage: Linkage) -> ClosedFormSolver | None:
-    """Return the solver of a group in closed form, not yet assembled; None if there is no closed form."""
+    """Return the solver of a group in closed form, not yet assembled; None if the group has no closed form."""
     return next((kind.of(group, linkage) for kind in CLOSED_FORM_SOLVERS if kind.fits(group)), None)
 
 
 def _accumulate_angles(linkage: Linkage, kernels: tuple[GroupSolver, ...], links: tuple[str, ...]) -> AccumulatedAngles:
-    """Accumulate the angles of links of the last group over a cycle about the sketch, as far as the driver can move."""
+    """Tabulate accumulated angles of links of the last group over a cycle about the sketch.
+
+    The table ends where the links can no longer be assembled.
+    """
     turns, at = turns_of_cycle(linkage) or 1, linkage.sketch.at
     half = turns * np.pi if linkage.driver.kind == "turn" else slider_search_range(linkage)
     q = at + half * np.linspace(-1, 1, ANGLES_PER_TURN * turns + 1)
@@ -273,9 +305,9 @@ def _choose_assembly(
 
 
 def _sketch_shift(kernel: ClosedFormSolver, linkage: Linkage, poses: dict[str, Pose]) -> complex:
-    """Return the mean shift (m) of the known hinges of the group in the sketch from their computed positions.
+    """Return the mean displacement (m) of the known hinges in the sketch from their computed positions.
 
-    The sketch shows on which side of these hinges the group lies, so the group is compared relative to them.
+    The sketch shows on which side of these hinges the group lies, so assemblies are compared with it relative to them.
     """
     shifts = []
     for pair, end in kernel.outer_pairs:

@@ -1,8 +1,8 @@
-"""Continuation of a group from the sketch along the driver coordinate; only here a position depends on the one before.
+"""Continuation of a group from the sketch along the driver coordinate.
 
-Steps are predicted with first and second derivatives and corrected by Newton's method; a step with too large a
-correction, or with a change of sign of the determinant, is halved. E. L. Allgower, K. Georg, Introduction to Numerical
-Continuation Methods, ch. 2 and 6.
+This is the only place where a position depends on the one before. Steps are predicted with first and second derivatives
+and corrected by Newton's method. A step is halved if its correction is too large or if the determinant changes sign. E.
+L. Allgower, K. Georg, Introduction to Numerical Continuation Methods, ch. 2 and 6.
 """
 
 from __future__ import annotations
@@ -40,10 +40,11 @@ TraceEnd = Literal["reached", "limit", "lost", "boundary"]
 
 
 class BranchFollower:
-    """Follows one group along the driver coordinate.
+    """Follows the branch of assemblies of one group along the driver coordinate.
 
     Args:
-        source: gives the states of the links on which the group depends.
+        kernel: solver of the group.
+        source: function that returns the states of the links on which the group depends.
         scale: unit of the driver coordinate.
     """
 
@@ -54,10 +55,11 @@ class BranchFollower:
         self.crossings = CrossingFinder(kernel, source, self.corrector.node, scale)
 
     def trace(self, start: BranchNode, end: float) -> tuple[list[BranchNode], TraceEnd]:
-        """Follow the group from `start` to the driver coordinate `end`; return the nodes and why it stopped.
+        """Follow the group from the node `start` to the driver coordinate `end`.
 
-        "reached": at `end`; "limit": the last node is a limit of the driver; "boundary": `end` is a dead position;
-        "lost": the group cannot be followed any further.
+        Returns:
+            The nodes, and the reason for stopping: "reached" (at `end`); "limit" (the last node is a limit of the
+                driver); "boundary" (`end` is a dead position); "lost" (the group cannot be followed any further).
         """
         nodes: list[BranchNode] = []
         node, failures, largest = start, 0, 0.0
@@ -105,13 +107,13 @@ class BranchFollower:
         return nodes, "reached"
 
     def spins(self, node: BranchNode) -> bool:
-        """Return True if the links rotate so much faster than the driver that they cannot be followed."""
+        """Return True if links rotate so much faster than the driver that they cannot be followed."""
         return self.corrector.gone(node.state)[1] > SPUN * (1 + abs(node.q - self.at) / self.scale)
 
     def beyond(self, last: BranchNode) -> list[BranchNode]:
-        """Return a node where a group that recedes reaches infinity; empty if it does not recede.
+        """Return a node at which links that recede or spin reach infinity; empty if they do neither.
 
-        At a distance c/(q* - q) its speed is c/(q* - q)^2.
+        Near a driver coordinate q* a link at the distance c/(q* - q) has the speed c/(q* - q)^2, from which q* follows.
         """
         home = self.corrector.home or last.state
         if self.corrector.gone(last.state)[0] > FAR:
@@ -128,8 +130,9 @@ class BranchFollower:
         return []
 
     def leads_to(self, node: BranchNode, limit: BranchNode) -> bool:
-        """Return True if the branch leads to a limit; another branch may lie beyond it, across a gap narrower than a
-        step.
+        """Return True if the branch really leads from a node to a limit.
+
+        The limit may belong to another branch, beyond a gap that is narrower than a step.
         """
         near = self.corrector.apart(node.state, limit.state) / 2
         share = np.sqrt(LEFT)[:, None]  # near a limit states vary as the square root of the distance
@@ -148,10 +151,12 @@ class BranchFollower:
         )
 
     def limit(self, last: BranchNode, sense: float) -> BranchNode | None:
-        """Return the limit of the driver to the last bit: along the group's own motion q has an extreme there.
+        """Find the limit position of the driver ahead of a node, to the last bit; None if there is no limit nearby.
 
-        With the direction l of the motion of the group, F(X, q) = 0 and l (X - X0) = s give q(s), and the root of q' is
-        found.
+        Along the motion of the group itself q has an extreme there. With the direction l of this motion, the equations
+        F(X, q) = 0 and l (X - X0) = s give q(s); the limit is the root of its derivative.
+
+        sense: +1 to search at greater driver coordinates, -1 at smaller ones.
         """
         kernel = self.kernel
         if kernel.passive:
@@ -236,10 +241,17 @@ class BranchFollower:
         return matrix
 
     def follow(self, at: float, state: GroupState, half: float, turns: bool) -> BranchTrace | None:
-        """Trace the group about the driver coordinate `at`: by `half` a range to both sides, or round and round.
+        """Trace the group from a state at the driver coordinate `at`, in both senses.
 
-        If the group returns to its first state after some turns, the trace is closed. None if the group cannot be
-        started.
+        Args:
+            at: driver coordinate of the sketch.
+            state: state of the group there.
+            half: half the range, or half a cycle, of the driver.
+            turns: True if the driver rotates. The group is then traced for several cycles, unless it returns to its
+                first state before; the trace is then closed.
+
+        Returns:
+            The trace; None if the equations have no solution at `at`.
         """
         self.corrector.home, self.at = state, at
         start = self.corrector.node(at, state)
@@ -271,12 +283,15 @@ class BranchFollower:
 
 
 def _unknowns_of(state: GroupState, size: float) -> Real:
-    """Return a state as the unknowns of the equations of the group."""
+    """Convert a state to the vector of the unknowns (x, y and angle of each link; lengths divided by `size`)."""
     return np.stack([state.x[0].real / size, state.x[0].imag / size, state.unwrapped[0]], axis=-1).ravel()
 
 
 def _make_trace(nodes: list[BranchNode], ends: tuple[TraceEnd, TraceEnd] | None = None) -> BranchTrace:
-    """Make the trace of increasing nodes; ends: why it ended below and above, None if it is closed."""
+    """Make a trace of nodes with increasing driver coordinates.
+
+    ends: reasons why it ended at the lower and at the upper end; None if it is closed.
+    """
 
     def ended(*ways: TraceEnd) -> tuple[bool, bool]:
         return (ends[0] in ways, ends[1] in ways) if ends else (False, False)

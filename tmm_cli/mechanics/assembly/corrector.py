@@ -1,4 +1,4 @@
-"""Nodes of a branch of a group, states between them, and their correction by Newton's method."""
+"""Nodes of a branch of assemblies, prediction of states between them, and correction by Newton's method."""
 
 from __future__ import annotations
 
@@ -17,10 +17,16 @@ Source = Callable[
 
 @dataclass(frozen=True)
 class BranchNode:
-    """State of a group at the driver coordinate q, its derivatives with respect to q, and its determinant.
+    """State of a group at one driver coordinate.
 
-    side: sign of the determinant; in a dead position, the sign beyond it. dead: True in a dead position; flips: True if
-    the determinant changes sign there.
+    Attributes:
+        q: driver coordinate (rad or m).
+        state: state of the group.
+        first, second: first and second derivatives of the state with respect to q.
+        det: determinant of the equations of the group.
+        side: sign of the determinant; in a dead position, the sign beyond it.
+        dead: True in a dead position.
+        flips: True if the determinant changes sign in this dead position.
     """
 
     q: float
@@ -34,18 +40,18 @@ class BranchNode:
 
 
 def join_states(states: Iterable[GroupState]) -> GroupState:
-    """Concatenate states."""
+    """Concatenate states along the first axis."""
     states = list(states)
     return GroupState(np.concatenate([s.x for s in states]), np.concatenate([s.unwrapped for s in states]))
 
 
 def predict_state(node: BranchNode, q: Real | float) -> GroupState:
-    """Return the states at q extrapolated from a node."""
+    """Predict the states at driver coordinates q from the derivatives at a node."""
     return taylor_step(node.state, node.first, node.second, (np.atleast_1d(q) - node.q)[:, None])
 
 
 def taylor_step(state: GroupState, first: GroupState, second: GroupState, step: Real) -> GroupState:
-    """Return the states after a step (rad or m) of the driver, from first and second derivatives."""
+    """Predict states after a step of the driver (rad or m) from first and second derivatives."""
     return GroupState(
         state.x + step * (first.x + step / 2 * second.x),
         state.unwrapped + step * (first.unwrapped + step / 2 * second.unwrapped),
@@ -53,8 +59,9 @@ def taylor_step(state: GroupState, first: GroupState, second: GroupState, step: 
 
 
 def extrapolate_states(nodes: list[BranchNode], q: Real) -> GroupState:
-    """Return the states at q on the polynomial through the states and the first and second derivatives of some
-    nodes.
+    """Predict the states at driver coordinates q by a polynomial through several nodes.
+
+    The polynomial has the states and the first and second derivatives of all these nodes.
     """
     span, most = q[-1] - nodes[0].q, 3 * len(nodes)
     slope = np.diag(np.arange(1.0, most), 1)  # differentiates powers of t
@@ -72,12 +79,12 @@ def extrapolate_states(nodes: list[BranchNode], q: Real) -> GroupState:
 
 
 def state_components(state: GroupState) -> Real:
-    """Return the components of one state: x, y and angle of each link."""
+    """Convert one state to a vector of x, y and angle of all links."""
     return np.concatenate([state.x[0].real, state.x[0].imag, state.unwrapped[0]])
 
 
 def states_from_components(parts: Real) -> GroupState:
-    """Return states from their components, shape (states, components)."""
+    """Convert components, shape (states, 3 links), back to states."""
     x, y, unwrapped = np.split(parts, 3, axis=-1)
     return GroupState(x + 1j * y, unwrapped)
 
@@ -96,9 +103,14 @@ NODES = 4  # of an extrapolating polynomial
 
 
 class Corrector:
-    """Corrects states of one group at one or many driver coordinates.
+    """Corrects predicted states of one group, at one or many driver coordinates, by Newton's method.
 
-    source: gives the states of the links on which the group depends. home: first state of the branch.
+    Attributes:
+        kernel: solver of the group.
+        source: function that returns the states of the links on which the group depends.
+        home: first state of the branch.
+        near: nodes found by single steps, by (driver coordinate before, driver coordinate after).
+        far: nodes predicted by a polynomial, by driver coordinate.
     """
 
     def __init__(self, kernel: NewtonSolver, source: Source) -> None:
@@ -110,14 +122,20 @@ class Corrector:
         self.far: dict[float, BranchNode | None] = {}  # found by a polynomial
 
     def node(self, q: float, start: GroupState) -> tuple[BranchNode, float] | None:
-        """Return the group at q, from an initial guess, and its distance from the guess; None if there is no
-        solution.
+        """Solve the group at q from an initial guess.
+
+        Returns:
+            The node and its distance from the guess; None if there is no solution.
         """
         corrected = self.nodes(np.array([q]), start)[0]
         return None if corrected is None else (corrected, self.apart(corrected.state, start))
 
     def nodes(self, q: Real, start: GroupState) -> list[BranchNode | None]:
-        """Return the group at many driver coordinates at once, each from an initial guess of its own."""
+        """Solve the group at many driver coordinates at once, each from its own initial guess.
+
+        Returns:
+            One node for each driver coordinate; None where there is no solution.
+        """
         corrected = self.motion(q, start)
         if corrected is None:
             return [None] * len(q)
@@ -130,8 +148,11 @@ class Corrector:
         return [one(k) if sound[k] else None for k in range(len(q))]
 
     def motion(self, q: Real, start: GroupState) -> tuple[GroupState, GroupState, GroupState, Real, Real] | None:
-        """Return corrected states, first and second derivatives, determinants, and where all these are valid; None if
-        nowhere.
+        """Solve the group at many driver coordinates at once, with derivatives.
+
+        Returns:
+            States, first and second derivatives, determinants, and True where all these are valid; None if they are
+                valid nowhere.
         """
         before = self.source(q, 2)
         if not np.any(before.placed):
@@ -155,11 +176,20 @@ class Corrector:
         return state, first, second, det, sound
 
     def step(self, smooth: list[BranchNode], targets: list[float]) -> tuple[BranchNode, float] | None:
-        """Return the group at the first of `targets`, as `node` finds it from the last of the nodes on a smooth branch.
+        """Solve the group at the next driver coordinate of a branch.
 
-        Many coordinates are solved at once: those of halved steps and, from a polynomial through the smooth nodes, as
-        many of the others as it has predicted correctly so far. Results are kept for the next steps; one from the
-        polynomial counts only if a single step leads to the same state; otherwise `smooth` is restarted.
+        Many coordinates are solved at once, because that costs little more than one: those of halved steps and,
+        predicted by a polynomial through the smooth nodes, some of those further ahead. Their number grows as long as
+        predictions are correct. Results are kept for the next steps. A result predicted by the polynomial is used only
+        if a single step leads to the same state; otherwise `smooth` is cut to its last node.
+
+        Args:
+            smooth: last nodes on a smooth branch.
+            targets: the next driver coordinate, and those that may follow it.
+
+        Returns:
+            The node at targets[0], and the distance of its state from the one predicted by the last node; None if there
+                is no solution.
         """
         node, q = smooth[-1], targets[0]
         start = predict_state(node, q)
@@ -183,7 +213,10 @@ class Corrector:
         return None if predicted is None else (predicted, self.apart(predicted.state, start))
 
     def apart(self, state: GroupState, other: GroupState) -> float:
-        """Return the distance of two states: lengths divided by the size of the group, angles in rad."""
+        """Return the greatest difference between two states: lengths divided by the size of the group, angles in rad.
+
+        Where the group is far from its first state, differences are divided by this distance.
+        """
         away, wound = self.gone(state)
         return float(
             max(
@@ -193,16 +226,18 @@ class Corrector:
         )
 
     def returned(self, state: GroupState, other: GroupState) -> bool:
-        """Return True if two states are equal up to full turns."""
+        """Return True if two states differ by full turns of links at most."""
         around = (other.unwrapped - state.unwrapped) / (2 * np.pi)
         same = GroupState(other.x, state.unwrapped + (around - np.round(around)) * 2 * np.pi)
         return self.apart(state, same) < SAME_STATE
 
     def gone(self, state: GroupState) -> tuple[float, float]:
-        """Return the distance of the group from its first state: of the farthest link (sizes of the group), largest
-        rotation (rad).
+        """Return how far the group is from its first state.
 
-        As guides become parallel, links recede and gears on them rotate without limit; then the steps grow with them.
+        As guides become parallel, links recede and gears on them rotate without limit; larger steps are then accepted.
+
+        Returns:
+            Distance of the farthest link (sizes of the group) and the largest rotation (rad).
         """
         home = self.home or state
         return (
@@ -212,7 +247,15 @@ class Corrector:
 
 
 def places_ahead(q: float, end: float, step: float, growth: float, largest: float) -> list[float]:
-    """Return driver coordinates up to `end` in growing steps."""
+    """Return the driver coordinates of the next steps up to `end`, at most MOST_AHEAD of them.
+
+    Args:
+        q: present driver coordinate.
+        end: driver coordinate at which the steps end.
+        step: first step.
+        growth: ratio of each step to the one before.
+        largest: largest step.
+    """
     coordinates: list[float] = []
     while q != end and len(coordinates) < MOST_AHEAD:
         step = np.sign(step) * min(abs(step), largest)
@@ -234,12 +277,17 @@ NEARLY_DEAD = 0.05  # fraction of the largest determinant: below it nodes would 
 def correct_trace(
     kernel: NewtonSolver, source: Source, trace: BranchTrace, at: float, state: GroupState
 ) -> BranchTrace | None:
-    """Return the trace of a group from that of a linkage with slightly different lengths; None if it cannot be derived.
+    """Correct the trace of a linkage for another linkage with slightly different lengths.
 
     Args:
-        source: gives the states of the links on which the group depends.
+        kernel: solver of the group with the new lengths.
+        source: function that returns the states of the links on which the group depends.
+        trace: trace of the group with the old lengths.
         at: driver coordinate of the sketch.
-        state: the group at `at`, in the required assembly.
+        state: state of the group there, in the required assembly.
+
+    Returns:
+        The corrected trace; None if the group has to be traced anew.
     """
     sketch_node = np.flatnonzero(trace.q == at)
     if not trace.closed or trace.dead.size or not sketch_node.size or kernel.passive:

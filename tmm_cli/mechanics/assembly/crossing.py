@@ -1,9 +1,9 @@
 """Dead positions that a group passes smoothly: change points, where two branches of assemblies cross.
 
-At a distance h from one, Newton's method determines a state to roundoff/h only, and at the point itself it has no next
-step. So the smooth branch is sampled at some distance on both sides, and polynomials through the samples give the state
-and the point, a root of the determinant. E. L. Allgower, K. Georg, Introduction to Numerical Continuation Methods,
-ch. 8.
+At a distance h from such a point Newton's method determines a state only to roundoff/h, and at the point itself it
+fails. The smooth branch is therefore sampled at some distance on both sides. Polynomials through the samples give the
+state and the point, which is a root of the determinant. E. L. Allgower, K. Georg, Introduction to Numerical
+Continuation Methods, ch. 8.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ Finest = Callable[[list[BranchNode]], list[BranchNode]]
 
 @dataclass(frozen=True)
 class _Fit:
-    """Polynomials of the components of the states and of the determinant in t = (q - middle)/radius."""
+    """Polynomials in t = (q - middle)/radius, fitted to the states of a branch and to its determinant."""
 
     middle: float
     radius: float
@@ -68,7 +68,7 @@ class _Fit:
     det: Chebyshev
 
     def state(self, q: float, order: int = 0) -> GroupState:
-        """Return the state at q, or its derivative of this order with respect to q."""
+        """Return the fitted state at q, or its derivative of this order with respect to q."""
         t = (q - self.middle) / self.radius
         components = (
             np.array([(polynomial.deriv(order) if order else polynomial)(t) for polynomial in self.parts])
@@ -78,9 +78,13 @@ class _Fit:
 
 
 class CrossingFinder:
-    """Finds the crossings on the branch of one group.
+    """Finds the dead positions that one group passes smoothly, while its branch is followed.
 
-    source: gives the states of the known links; correct: solves the group at q; scale: unit of the driver coordinate.
+    Args:
+        kernel: solver of the group.
+        source: function that returns the states of the known links.
+        correct: function that solves the group at a driver coordinate from an initial guess.
+        scale: unit of the driver coordinate.
     """
 
     def __init__(self, kernel: NewtonSolver, source: Source, correct: Correct, scale: float) -> None:
@@ -88,9 +92,12 @@ class CrossingFinder:
         self.refused: list[tuple[float, float]] = []
 
     def between(self, nodes: list[BranchNode], beyond: BranchNode, largest: float) -> BranchNode | None:
-        """Return a dead position between the last node and the next one that the group passes smoothly, or None.
+        """Find a dead position that the group passes smoothly between the last of `nodes` and the node `beyond`.
 
-        largest: largest determinant so far.
+        largest: largest determinant met so far.
+
+        Returns:
+            The dead position, or None.
         """
         node = nodes[-1]
         if self.kernel.passive or node.dead:
@@ -107,7 +114,7 @@ class CrossingFinder:
         return crossing
 
     def _finest(self, nodes: list[BranchNode]) -> list[BranchNode]:
-        """Return the nodes solved in double-doubles and rounded."""
+        """Solve the nodes again in double-doubles, and round the results to float64."""
         kernel = self.kernel
         before = self.source(to_double_double([n.q for n in nodes]), 0)
         states = join_states(n.state for n in nodes)
@@ -123,10 +130,10 @@ class CrossingFinder:
         ]
 
     def _touches(self, node: BranchNode, beyond: BranchNode, largest: float) -> bool:
-        """Return True if a determinant of constant sign seems to touch zero between two nodes, like the square of the
-        distance.
+        """Return True if the determinant seems to touch zero between two nodes without changing sign.
 
-        From both nodes the zero is then at twice the distance to which the tangent leads.
+        It then falls as the square of the distance: its zero is at twice the distance at which the tangent is zero,
+        seen from either node.
         """
         if max(abs(node.det), abs(beyond.det)) > SMALL * largest:
             return False
@@ -136,7 +143,7 @@ class CrossingFinder:
         return all(abs(end - middle) < abs(distance) for end in ends)
 
     def _slope(self, node: BranchNode) -> np.float64:
-        """Return the approximate derivative of the determinant with respect to q."""
+        """Return the approximate derivative of the determinant with respect to q at a node."""
         step = AHEAD * self.scale
         before, state = self.source(np.array([node.q + step]), 0), predict_state(node, node.q + step)
         moved = np.linalg.det(self.kernel.matrix({**before.poses, **self.kernel.poses_of(state)}))
@@ -144,20 +151,25 @@ class CrossingFinder:
 
 
 def is_far_from_dead(end: BranchNode, nodes: list[BranchNode]) -> bool:
-    """Return True if a node is not close to a dead position."""
+    """Return True if a node is not close to a dead position, judged by the determinants of all nodes."""
     return abs(end.det) > 2 * EDGE * max(abs(n.det) for n in nodes)
 
 
 def find_crossing(
     correct: Correct, finest: Finest, nodes: list[BranchNode], beyond: BranchNode, scale: float
 ) -> BranchNode | None:
-    """Return the dead position between the last node and the one beyond it; None if the branch does not pass it
-    smoothly.
+    """Find the dead position between the last node and the node beyond it.
 
     Args:
-        correct: solves the group at q from an initial guess; returns the node and its distance from the guess.
-        finest: solves nodes in extended precision.
+        correct: function that solves the group at q from an initial guess and returns the node and its distance from
+            the guess.
+        finest: function that solves nodes in extended precision.
+        nodes: nodes before the dead position.
+        beyond: the next node.
         scale: unit of the driver coordinate.
+
+    Returns:
+        The dead position; None if the branch does not pass it smoothly.
     """
     flips = beyond.side != nodes[-1].side
     about = _bracket_crossing(correct, nodes[-1], beyond) if flips else (nodes[-1].q + beyond.q) / 2
@@ -179,7 +191,7 @@ def find_crossing(
 
 
 def _bracket_crossing(correct: Correct, low: BranchNode, high: BranchNode) -> float:
-    """Return approximately where the determinant is zero, by false position as far as Newton's method converges."""
+    """Estimate the root of the determinant between two nodes, by false position as far as Newton's method converges."""
     for _ in range(ROUNDS):
         q = low.q + (high.q - low.q) * low.det / (low.det - high.det)
         near = low if abs(q - low.q) < abs(high.q - q) else high
@@ -196,8 +208,10 @@ def _bracket_crossing(correct: Correct, low: BranchNode, high: BranchNode) -> fl
 def _fit_crossing(
     correct: Correct, finest: Finest, nodes: list[BranchNode], about: float, radius: float, flips: bool
 ) -> tuple[BranchNode, float, _Fit] | None:
-    """Return a dead position fitted to samples within `radius` of an estimate, its uncertainty, and the fit; or
-    None.
+    """Locate a dead position from samples within `radius` of an estimate.
+
+    Returns:
+        The dead position, its uncertainty and the fit; None if the samples do not determine it.
     """
     for _ in range(3):
         samples = _sample_branch(correct, nodes, about, radius, flips)
@@ -225,8 +239,9 @@ def _fit_crossing(
 def _sample_branch(
     correct: Correct, nodes: list[BranchNode], about: float, radius: float, flips: bool
 ) -> list[BranchNode] | None:
-    """Return nodes on both sides of a point; the first ones beyond it start from an extrapolation of those before
-    it.
+    """Solve the group at driver coordinates on both sides of a point; None if it cannot be solved at one of them.
+
+    The first sample beyond the point starts from an extrapolation of those before it.
     """
     sense = np.sign(about - nodes[-1].q)
     nodes_t = np.cos(np.pi * (np.arange(SAMPLES) + 0.5) / SAMPLES)
@@ -274,7 +289,7 @@ def _fit_samples(samples: list[BranchNode], about: float, radius: float, degree:
 
 
 def _root(fit: _Fit, flips: bool) -> float:
-    """Return the zero of the determinant, or its extreme if it does not change sign."""
+    """Return the root of the fitted determinant, or its extreme if it does not change sign."""
     function = fit.det if flips else fit.det.deriv()
     slope = function.deriv()
     t = 0.0
@@ -286,9 +301,9 @@ def _root(fit: _Fit, flips: bool) -> float:
 
 
 def _is_passed_smoothly(correct: Correct, dead: BranchNode, fit: _Fit, scale: float) -> bool:
-    """Return True if, ever closer to the point, the group is where the polynomials predict.
+    """Return True if the group is where the polynomials predict, ever closer to the dead position.
 
-    If the branch turns back before a gap, however narrow (w), it deviates by w^2/h at the distance h.
+    If the branch turned back before a gap of any small width w, it would deviate by w^2/h at the distance h.
     """
     for h in PROBES if dead.flips else PROBES[:2]:
         probes = (dead.q - h * scale, dead.q + h * scale)

@@ -1,9 +1,11 @@
-"""All real assemblies of each group at one driver coordinate, with the links before it as sketched.
+"""All real assemblies of each group at one driver coordinate, with the links before the group as sketched.
 
-Groups of class II have one or two assemblies in closed form; triads those of a polynomial (see triad); groups whose
-angles follow from linear equations of angles (gear trains) have one. For all other groups Newton's method from many
-initial guesses finds assemblies, with bounded work and without proof of completeness. If there is more than one, real
-assemblies come in pairs, except in dead positions, in which two of them coincide.
+- Groups of class II have one or two assemblies, in closed form. - The assemblies of triads are the roots of a
+polynomial (see triad). - Groups whose angles follow from linear equations between angles (gear trains) have one
+assembly. - For all other groups assemblies are searched by Newton's method from many initial guesses. The work is
+bounded, and there is no proof that none is missing.
+
+Assemblies come in pairs if there is more than one, except in dead positions, in which two of them coincide.
 """
 
 from __future__ import annotations
@@ -42,9 +44,14 @@ BACK = 40  # iterations that would return it
 
 @dataclass(frozen=True)
 class Assembly:
-    """One assembly: poses and angles (rad) of the links, its own points (m), distance from a dead position (margin).
+    """One assembly of a group.
 
-    of_sketch: True for the assembly of the sketch.
+    Attributes:
+        poses: pose of each link, by name.
+        angles: angle of each link (rad), by name.
+        points: positions of the points that no earlier link has (m), by name.
+        margin: distance from a dead position; see Placement.
+        of_sketch: True if the sketch shows this assembly.
     """
 
     poses: Mapping[str, Pose]
@@ -56,10 +63,15 @@ class Assembly:
 
 @dataclass(frozen=True)
 class GroupAssemblies:
-    """The assemblies of a group.
+    """The assemblies of a group at one driver coordinate.
 
-    most: largest possible number, if known. moves: the group is movable with the driver fixed, so that its assemblies
-    are infinite in number; one of them is listed.
+    Attributes:
+        group: the group.
+        assemblies: the assemblies.
+        method: how they were found.
+        most: largest possible number of assemblies; None if unknown.
+        moves: True if the group can move while the driver is fixed. It then has infinitely many assemblies, of which
+            one is listed.
     """
 
     group: Group
@@ -70,24 +82,26 @@ class GroupAssemblies:
 
     @property
     def complete(self) -> bool:
-        """True if it is proved that there are no other assemblies."""
+        """True if it is certain that there are no other assemblies."""
         return self.method != "many starts" and not self.moves
 
     @property
     def dead(self) -> bool:
-        """True if two assemblies coincide here."""
+        """True if the position is dead: two assemblies coincide."""
         return any(assembly.margin < DEAD for assembly in self.assemblies)
 
 
 @dataclass(frozen=True)
 class Assemblies:
-    """Assemblies of all groups at the driver coordinate q (rad or m), in solving order.
+    """Assemblies of all groups at one driver coordinate.
 
     Attributes:
-        number: number of the position, if it is one.
-        poses: poses of all links in the assembly of the sketch.
-        undecided: group whose assembly the sketch does not determine; later groups are not listed.
-        lost: groups attached to links that have no position here.
+        q: driver coordinate (rad or m).
+        number: number of the position of the table, if it is one.
+        poses: poses of all links in the assembly of the sketch, by name.
+        groups: assemblies of each group, in solving order.
+        undecided: group whose assembly the sketch does not determine, or None; later groups are not listed.
+        lost: groups attached to links that cannot be assembled here.
     """
 
     q: float
@@ -99,7 +113,13 @@ class Assemblies:
 
 
 def name_assembly_files(positions: Sequence[Assemblies]) -> list[tuple[str, Assemblies, GroupAssemblies]]:
-    """Return the groups with their file names: assemblies-III-2-3-4-5, with the position if there are several."""
+    """Choose a file name for the assemblies of each group, e.g. assemblies-III-2-3-4-5.
+
+    If there are several positions, the number of the position is appended.
+
+    Returns:
+        File name without ending, position and group, for each group.
+    """
     files: dict[str, tuple[str, Assemblies, GroupAssemblies]] = {}
     for position in positions:
         for group in position.groups:
@@ -114,11 +134,16 @@ def name_assembly_files(positions: Sequence[Assemblies]) -> list[tuple[str, Asse
 def find_assemblies(
     linkage: Linkage, structure: Structure, kernels: tuple[GroupSolver, ...], q: float, number: int | None = None
 ) -> Assemblies:
-    """Find all assemblies of each group at q, and of the first group without a solver.
+    """Find all assemblies of each group at the driver coordinate q.
+
+    If the sketch does not determine the assemblies of all groups, the first undetermined group is listed too.
 
     Args:
-        kernels: solvers of the groups in the assemblies of the sketch; incomplete if the sketch is ambiguous.
-        number: number of the position, if it is one.
+        linkage: the linkage.
+        structure: its structure.
+        kernels: solvers of the groups whose assemblies the sketch determines, in solving order.
+        q: driver coordinate (rad or m).
+        number: number of the position of the table, if it is one.
     """
     motion = link_states(linkage, kernels, np.array([q]), 0)
     decided = {kernel.group.links for kernel in kernels}
@@ -150,14 +175,17 @@ def _list_assemblies(group: Group, linkage: Linkage, motion: LinkStates, placed:
 
 
 def _sketched_poses(group: Group, motion: LinkStates) -> dict[str, Pose] | None:
-    """Return the poses of the group in the assembly of the sketch, if it is determined and can be assembled here."""
+    """Return the poses of a group in the assembly of the sketch; None if it is unknown or cannot be assembled here."""
     poses = {link: motion.poses[link] for link in group.links if link in motion.poses}
     sound = len(poses) == len(group.links) and all(np.isfinite(p.x[0] + p.z[0]) for p in poses.values())
     return poses if sound else None
 
 
 def _pose_distance(poses: Mapping[str, Pose], other_poses: Mapping[str, Pose], size: float) -> float:
-    """Return the distance of two sets of poses of the same links; infinite where a pose is undefined."""
+    """Return the distance between two sets of poses of the same links; infinite if a pose is undefined.
+
+    Lengths are divided by `size`.
+    """
     off = max(
         abs(complex(p.x[0] - other_poses[n].x[0])) / size + abs(complex(p.z[0] - other_poses[n].z[0]))
         for n, p in poses.items()
@@ -180,7 +208,7 @@ def _make_assembly(linkage: Linkage, placed: Iterable[str], poses: Mapping[str, 
 def _closed_form_assemblies(
     kernel: ClosedFormSolver, linkage: Linkage, placed: Mapping[str, Pose], drives: DriverStates
 ) -> Iterable[Assembly]:
-    """Yield one assembly for each sign, one in a dead position, none out of reach."""
+    """Yield the assemblies of a group in closed form: two, one in a dead position, none if it cannot be assembled."""
     for sign in (1, -1)[: kernel.assemblies]:
         with np.errstate(invalid="ignore", divide="ignore"):
             at = replace(kernel, sign=sign).closed(placed, drives)
@@ -194,7 +222,7 @@ def _closed_form_assemblies(
 def _iterated_assemblies(
     group: Group, linkage: Linkage, placed: Mapping[str, Pose], motion: LinkStates
 ) -> GroupAssemblies:
-    """List the assemblies of a group of class III or higher, or with higher pairs or drivers."""
+    """Find the assemblies of a group of class III or higher, or of one with higher pairs or drivers."""
     kernel = NewtonSolver.of(group, linkage)
     with np.errstate(all="ignore"):
         states, method, most = _search_states(kernel, linkage, placed, motion)
@@ -216,7 +244,11 @@ def _iterated_assemblies(
 def _search_states(
     kernel: NewtonSolver, linkage: Linkage, placed: Mapping[str, Pose], motion: LinkStates
 ) -> tuple[list[GroupState], Method, int | None]:
-    """Return the states of all assemblies (possibly repeated), the method, and the largest possible number."""
+    """Find the states of all assemblies of a group by the method that suits it.
+
+    Returns:
+        The states (some may be repeated), the method, and the largest possible number of assemblies or None.
+    """
     drives = motion.drives
     triad = Triad.of(kernel.group, linkage, kernel.size)
     guesses = None if triad is None else triad_starts(triad, placed)
@@ -237,10 +269,10 @@ def _search_states(
 
 
 def _by_many_starts(kernel: NewtonSolver, placed: Mapping[str, Pose], motion: LinkStates) -> list[GroupState]:
-    """Return the states found from many initial guesses, and that of the sketch.
+    """Find states of a group from many initial guesses; the state of the sketch is added.
 
-    With revolute pairs alone the curve of a group with one external pair released is closed, so that the pair closes an
-    even number of times: an odd number shows that one is missing.
+    If all pairs are revolute, the number of assemblies is even: with one external pair released, the group moves along
+    a closed curve, on which the pair closes an even number of times. An odd number shows that an assembly is missing.
     """
     sketched = _sketched_poses(kernel.group, motion)
     states: list[GroupState] = []
@@ -262,13 +294,19 @@ def _by_many_starts(kernel: NewtonSolver, placed: Mapping[str, Pose], motion: Li
 
 
 def _is_listed(size: float, poses: Mapping[str, Pose], margin: float, other: Assembly) -> bool:
-    """Return True if an assembly is already listed; in a dead position both are accurate to half the digits only."""
+    """Return True if these poses are an assembly that is already listed.
+
+    In a dead position both are accurate to half the digits only.
+    """
     apart = _pose_distance(poses, other.poses, size)
     return apart < SAME_ASSEMBLY or (apart < ASSEMBLIES_MEET and max(margin, other.margin) < DEAD)
 
 
 def _moves_by_itself(kernel: NewtonSolver, state: GroupState, placed: Mapping[str, Pose], drives: DriverStates) -> bool:
-    """Return True if a dead group is movable: closed again after a step along its free motion, it does not return."""
+    """Return True if a dead group can move while the driver is fixed.
+
+    The group is displaced along its free motion and closed again. If it can move, it does not return.
+    """
     free = np.linalg.svd(kernel.matrix({**placed, **kernel.poses_of(state)})[0])[2][-1]
     moved = state.moved(STEP * free / np.max(np.abs(free)), kernel.size)
     residual = np.inf

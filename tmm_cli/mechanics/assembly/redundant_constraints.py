@@ -1,9 +1,10 @@
 """Redundant links and pairs, which the structural report leaves out, and mobility by numerical rank.
 
-Redundancy is decided by the rank of the equations at one position: the mobility is the same without what is left out.
-Links that are rigid to one another count as one. Links between moving links are left out first, then pairs, then links
-connected to the frame; later ones in the file before earlier ones, loaded links last. Drivers, outputs and links to
-which the file attaches others are kept. If nothing more can be left out as a whole, pairs lose single conditions.
+A link or pair is redundant if the mobility is the same without it, by the rank of the equations at one position. Links
+that are rigid to one another count as one. Parts are left out in this order: links between moving links, then pairs,
+then links connected to the frame; later ones of the file before earlier ones, loaded links last. Drivers, output links
+and links to which the file attaches others are kept. If no whole link or pair can be left out any more, single
+conditions of pairs are.
 """
 
 from __future__ import annotations
@@ -39,7 +40,14 @@ MOST_TRIES = 3000
 
 @dataclass(frozen=True)
 class RemainingLinkage:
-    """A linkage without some links and ties, in known poses of all links."""
+    """A linkage without some of its links and ties, in one position.
+
+    Attributes:
+        linkage: the complete linkage.
+        poses: poses of all links, by name.
+        links: names of the remaining links.
+        ties: indices of the ties that are left out.
+    """
 
     linkage: Linkage
     poses: Mapping[str, Pose]
@@ -73,12 +81,12 @@ class RemainingLinkage:
 
     @property
     def moving(self) -> tuple[str, ...]:
-        """The remaining moving links."""
+        """Names of the remaining moving links."""
         return tuple(link for link in self.links if link != FRAME)
 
     @cached_property
     def equations(self) -> Real:
-        """Dimensionless Jacobian, shape (rows, unknowns), the rows of the drivers last."""
+        """Dimensionless Jacobian of the pairs and drivers, shape (rows, unknowns); rows of the drivers are last."""
         if self._kernel is None:
             return np.zeros((0, 3 * len(self.moving)))
         matrix: Real = self._kernel.matrix(self.poses)[0]
@@ -86,7 +94,7 @@ class RemainingLinkage:
 
     @cached_property
     def undriven(self) -> Real:
-        """Jacobian without the rows of the drivers."""
+        """Jacobian of the pairs, without the rows of the drivers."""
         drivers = 0 if self._kernel is None else len(self._kernel.group.drivers)
         return self.equations[: len(self.equations) - drivers]
 
@@ -97,22 +105,22 @@ class RemainingLinkage:
 
     @property
     def redundant(self) -> int:
-        """Number of redundant constraints."""
+        """Number of redundant constraints of the pairs."""
         return len(self.undriven) - self.rank
 
     @property
     def moves(self) -> bool:
-        """True if the drivers move all links, and no link moves without them."""
+        """True if the drivers determine the motion of all remaining links."""
         columns, drivers = self.undriven.shape[1], len(self.linkage.drivers)
         return bool(columns - self.rank == drivers and equation_rank(self.equations) == columns)
 
     def without(self, links: Iterable[str] = (), ties: Iterable[int] = ()) -> RemainingLinkage:
-        """Return the linkage without further links and ties."""
+        """Leave out further links (by name) and ties (by index)."""
         gone = {*links}
         return replace(self, links=tuple(n for n in self.links if n not in gone), ties=self.ties | {*ties})
 
     def rigid_sets(self) -> list[tuple[str, ...]]:
-        """Return sets of links that are rigid to one another by the pairs among them alone."""
+        """Find sets of links that the pairs among them alone make rigid to one another."""
         free = np.linalg.svd(self.undriven)[2][self.rank :]
         fields = {link: np.zeros(2 * len(free), complex) for link in self.links}
         size = 1.0 if self._kernel is None else float(np.ravel(self._kernel.size)[0])
@@ -127,12 +135,16 @@ class RemainingLinkage:
 
 
 def equation_rank(matrix: Real) -> int:
-    """Return the rank of the constraint equations, which are scaled to be dimensionless."""
+    """Return the rank of dimensionless constraint equations."""
     return int(np.linalg.matrix_rank(matrix, rtol=REDUNDANT)) if matrix.size else 0
 
 
 def _group_by_velocity(fields: Mapping[str, Vector]) -> list[tuple[str, ...]]:
-    """Return sets of two or more links that have the same velocities in all motions."""
+    """Find sets of two or more links that have the same velocities in all possible motions.
+
+    fields: velocity of each link in these motions, as the velocity at the origin of the drawing and the angular
+    velocity.
+    """
     sets: list[list[str]] = []
     for link, field in fields.items():
         like = next((s for s in sets if np.max(np.abs(fields[s[0]] - field), initial=0.0) < SHARED), None)
@@ -144,7 +156,7 @@ def _group_by_velocity(fields: Mapping[str, Vector]) -> list[tuple[str, ...]]:
 
 
 class _Selection:
-    """The remaining linkage while redundant links and pairs are left out one by one."""
+    """The linkage that remains while redundant links and pairs are left out one by one."""
 
     def __init__(self, linkage: Linkage, poses: Mapping[str, Pose]) -> None:
         self.left = RemainingLinkage(linkage, poses, tuple(linkage.links))
@@ -154,7 +166,7 @@ class _Selection:
         self.links: list[RedundantLink] = []
 
     def excess(self, left: RemainingLinkage) -> int:
-        """Return the number of redundant constraints outside the rigid sets."""
+        """Return the number of redundant constraints that are not within rigid sets."""
         remaining_links = {*left.links}
         return left.redundant - sum(
             number for links, number in self.among_rigid.items() if remaining_links.issuperset(links)
@@ -162,12 +174,12 @@ class _Selection:
 
     @property
     def ties(self) -> list[int]:
-        """Ties between the remaining bodies, the last of the file first."""
+        """Indices of the ties between the remaining bodies, the last of the file first."""
         gone = replace(self.reduction, links=tuple(self.links)).touched(self.every) | self.left.ties
         return [k for k in reversed(range(len(self.every))) if k not in gone]
 
     def leave_links(self, bodies: Iterable[str]) -> None:
-        """Leave out each of these bodies that is redundant."""
+        """Leave out those of these bodies that are redundant."""
         for body in bodies:
             members = self.reduction.members(body)
             trial = self.left.without(members)
@@ -177,7 +189,7 @@ class _Selection:
                 self.left = trial
 
     def leave_pairs(self) -> None:
-        """Leave out each pair whose constraints are all redundant."""
+        """Leave out the pairs whose constraints are all redundant."""
         stay = _pairs_to_keep(self.left.linkage)
         for k in self.ties:
             constraints = self.every[k].constraints
@@ -189,7 +201,11 @@ class _Selection:
 
 
 def find_reduction(linkage: Linkage, poses: Mapping[str, Pose], structure: Structure) -> Reduction | None:
-    """Return a reduction after which all groups are Assur groups; None if there is none."""
+    """Find redundant links and pairs without which all groups of the linkage are Assur groups.
+
+    Returns:
+        What the structural report leaves out; None if no such choice was found.
+    """
     selection = _Selection(linkage, poses)
     between, on_frame = _removable_bodies(linkage, selection.reduction)
     selection.leave_links(between)
@@ -208,15 +224,19 @@ def find_reduction(linkage: Linkage, poses: Mapping[str, Pose], structure: Struc
 
 
 def _pairs_to_keep(linkage: Linkage) -> set[str]:
-    """Return the names of the pairs of drivers, and of gears, cams and followers with their carrier."""
+    """Return the names of pairs that must not be left out.
+
+    They are those of drivers, and those that join gears, cams and followers to their carriers.
+    """
     on_carrier = {linkage.shared(link, mesh.carrier) for mesh in linkage.meshes for link in (mesh.i, mesh.j)}
     slides = {mesh.slide for mesh in linkage.meshes}
     return {driver.joint for driver in linkage.drivers} | {name for name in on_carrier | slides if name}
 
 
 def _removable_bodies(linkage: Linkage, reduction: Reduction) -> tuple[Sequence[str], Sequence[str]]:
-    """Return the bodies that may be left out, in order: those between moving links, and those connected to the
-    frame.
+    """Return the bodies that may be left out: those between moving links, and those connected to the frame.
+
+    Both lists are in the order in which the bodies are tried.
     """
     on_frame = [n for n in linkage.moving if linkage.hinged_to_frame(n) or linkage.slides_on_frame(n)]
     driving = {link for driver in linkage.drivers for link in (driver.base, driver.link)}
@@ -245,7 +265,11 @@ STARTS = 200
 
 
 def analyse_mobile_structure(linkage: Linkage) -> Structure:
-    """Return the structure of a linkage whose drivers move all of it, by counting or by rank. Raises MobilityError."""
+    """Analyse the structure of a linkage that its drivers can move, by counting or by rank.
+
+    Raises:
+        MobilityError: the drivers do not move the linkage, or do not move all of it.
+    """
     structure = analyse_structure(linkage)
     moving = structure if structure.sound else analyse_by_rank(linkage, structure)
     if moving is None:
@@ -254,7 +278,7 @@ def analyse_mobile_structure(linkage: Linkage) -> Structure:
 
 
 def analyse_by_rank(linkage: Linkage, structure: Structure) -> Structure | None:
-    """Return the structure without redundant constraints; None if the linkage is locked by rank as well."""
+    """Analyse the structure of a linkage without its redundant constraints; None if it is locked by rank as well."""
     drivers = len(linkage.drivers)
     if structure.under_constrained or structure.mobility >= drivers:
         return None
@@ -273,7 +297,7 @@ def analyse_by_rank(linkage: Linkage, structure: Structure) -> Structure | None:
 
 
 def _whole_linkage_solver(linkage: Linkage, structure: Structure) -> NewtonSolver:
-    """Return a solver of the linkage as one group on the frame."""
+    """Make a solver of the whole linkage as one group on the frame."""
     inner = tuple(p for p in structure.pairs if FRAME not in (p.i, p.j))
     outer = tuple(p for p in structure.pairs if FRAME in (p.i, p.j))
     return NewtonSolver.of(Group(linkage.moving, inner, outer, 0, "", linkage.drivers), linkage)
@@ -294,7 +318,10 @@ def _close_at_sketch(kernel: NewtonSolver, linkage: Linkage) -> tuple[GroupState
 
 
 def _can_move(kernel: NewtonSolver, linkage: Linkage, state: GroupState) -> bool:
-    """Return True if the linkage closes beside the sketch too: a truss may have a mobility in a single position."""
+    """Return True if the linkage can be closed beside the sketch too.
+
+    Even a truss may have a mobility by rank in a single position.
+    """
     step = STEP if linkage.driver.kind == "turn" else STEP * kernel.size
     ways = []
     for sense in (1, -1):
@@ -310,8 +337,10 @@ def _can_move(kernel: NewtonSolver, linkage: Linkage, state: GroupState) -> bool
 def _leave_out_redundant(
     linkage: Linkage, structure: Structure, kernel: NewtonSolver, undriven: Real, poses: Mapping[str, Pose], number: int
 ) -> Structure | None:
-    """Leave out `number` conditions so that the count is right: first those the report leaves out, then the last
-    ones.
+    """Leave out `number` redundant conditions, so that the count agrees with the rank.
+
+    Conditions that the report leaves out are tried first, then the last ones of the file. None if no choice is
+    possible.
     """
     left = np.linalg.svd(undriven.T)[2][len(undriven) - number :]  # null space: combinations of rows that are redundant
     rows = [c for c in kernel.constraints for _ in c.lengths][: len(undriven)]

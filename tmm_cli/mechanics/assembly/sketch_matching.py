@@ -1,9 +1,9 @@
 """Comparison of assemblies with the sketch, and assembly of groups of class III and higher.
 
-For given angles the origins of the links follow from linear equations; so the initial guesses of Newton's method are
-made from angles, those of the sketch or many others, the same in every run. A triad of revolute pairs has up to six
-assemblies: C. Innocenti, Direct kinematics in analytical form of the planar (Assur) structure, ASME J. Mech. Design
-(1992-1995).
+For given angles the origins of the links follow from linear equations. Initial guesses of Newton's method are therefore
+made from angles: those of the sketch, or many pseudo-random ones, the same in every run. A triad of revolute pairs has
+up to six assemblies: C. Innocenti, Direct kinematics in analytical form of the planar (Assur) structure, ASME J. Mech.
+Design (1992-1995).
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ SketchableValues = dict[str, complex | float]  # points (m) and angles of links 
 
 
 def sketchable_values(linkage: Linkage, poses: Mapping[str, Pose]) -> SketchableValues:
-    """Return the points (m) and angles (rad) of some links that a sketch may contain, by name."""
+    """Return the values that a sketch may contain for these links: points (m) and angles (rad), by name."""
     values: SketchableValues = {}
     for name, pose in poses.items():
         values |= {point: complex(pose.at(local)[0]) for point, local in linkage.links[name].points.items()}
@@ -60,8 +60,9 @@ def sketchable_values(linkage: Linkage, poses: Mapping[str, Pose]) -> Sketchable
 
 
 def sketch_distance(sketched: Mapping[str, complex | float], computed: SketchableValues, size: float) -> float:
-    """Return the largest deviation of the sketch from an assembly: points relative to the size of the group, angles in
-    rad.
+    """Return the largest deviation of the sketch from an assembly.
+
+    Deviations of points are divided by `size` (m); those of angles are in rad.
     """
     worst = 0.0
     for name, value in sketched.items():
@@ -78,7 +79,10 @@ def nearest_to_sketch(
     """Return the index of the assembly that the sketch shows.
 
     Args:
-        shift: shift (m) of the known links in the sketch from their computed positions.
+        kernel: solver of the group.
+        linkage: the linkage.
+        assemblies: poses of the links in each assembly.
+        shift: displacement (m) of the known links in the sketch from their computed positions.
 
     Raises:
         AmbiguousSketchError: the sketch does not distinguish the assemblies.
@@ -106,9 +110,7 @@ def nearest_to_sketch(
 
 
 def sketch_deviations(linkage: Linkage, poses: Mapping[str, Pose]) -> dict[str, float]:
-    """Return the distance of each sketched point from its computed position, as a fraction of the size of the
-    linkage.
-    """
+    """Return the distance of each sketched point from its computed position, divided by the size of the linkage."""
     points = [complex(pose.at(p)[0]) for name, pose in poses.items() for p in linkage.links[name].points.values()]
     size = max(abs(p - q) for p in points for q in points) or 1.0
     deviations = {}
@@ -120,8 +122,12 @@ def sketch_deviations(linkage: Linkage, poses: Mapping[str, Pose]) -> dict[str, 
 
 
 def check_fit(linkage: Linkage, poses: Mapping[str, Pose], fits: float = SKETCH_FITS) -> None:
-    """Check that each sketched point and angle, decisive or not, is near its computed value. Raises
-    SketchMismatchError.
+    """Check that every sketched point and angle is near its computed value.
+
+    fits: allowed deviation of points, as a fraction of the size of the linkage; for angles it is doubled, in rad.
+
+    Raises:
+        SketchMismatchError: a point or an angle is too far off.
     """
     for point, off in sketch_deviations(linkage, poses).items():
         if off > fits:
@@ -148,7 +154,7 @@ SKETCH_CLOSE = 0.25  # sizes of the group, rad: an assembly this near to a compl
 
 
 def refuse_large_group(group: Group) -> None:
-    """Raise GroupTooLargeError for a group with more links than iteration accepts."""
+    """Raise GroupTooLargeError if a group has more than MOST_LINKS links."""
     if len(group.links) > MOST_LINKS:
         raise GroupTooLargeError(group, MOST_LINKS)
 
@@ -161,15 +167,22 @@ def assemble_by_iteration(
     before: tuple[GroupSolver, ...],
     like: GroupSolver | None = None,
 ) -> tuple[NewtonSolver, Placement]:
-    """Return the solver of a group in the assembly of the sketch, traced along the driver range, and its placement.
+    """Assemble a group as the sketch shows it, by Newton's method, and trace it along the range of the driver.
 
     Args:
-        poses, drives: states of the known links and drivers in the sketch.
+        group: the group.
+        linkage: the linkage.
+        poses: poses of the known links in the sketch.
+        drives: coordinates of the drivers in the sketch.
         before: solvers of the earlier groups.
-        like: solver of the same group with other lengths, whose trace is corrected.
+        like: solver of the same group with other lengths; its trace is corrected instead of being computed anew.
+
+    Returns:
+        The solver of the group, and its placement in the sketch.
 
     Raises:
-        AssemblyError, AmbiguousSketchError.
+        AssemblyError: the group cannot be assembled.
+        AmbiguousSketchError: the sketch does not determine the assembly.
     """
     kernel = NewtonSolver.of(group, linkage)
     q = np.array([linkage.sketch.at])
@@ -204,7 +217,10 @@ def _trace_branch(
 def placed_by_angles(
     kernel: NewtonSolver, poses: Mapping[str, Pose], drives: DriverStates, unwrapped: Real
 ) -> GroupState:
-    """Return the state with the given angles (..., links) and the origins that close the group best."""
+    """Find the origins of the links that close a group best for given angles.
+
+    unwrapped: angles of the links (rad), shape (..., links).
+    """
     shape, links = unwrapped.shape[:-1], len(kernel.group.links)
     still = GroupState(np.zeros((*shape, links), complex), unwrapped)
     known_poses = {name: pose.spread(shape) for name, pose in poses.items()}
@@ -218,7 +234,11 @@ def placed_by_angles(
 def close_from_afar(
     kernel: NewtonSolver, poses: Mapping[str, Pose], drives: DriverStates, state: GroupState
 ) -> tuple[GroupState, Real]:
-    """Apply damped steps, then Newton's method; return the states and where they have closed."""
+    """Close a group from arbitrary initial guesses: damped steps first, then Newton's method.
+
+    Returns:
+        The states, and True where the group has closed.
+    """
     known_poses = {name: pose.spread(state.x.shape[:-1]) for name, pose in poses.items()}
     with np.errstate(all="ignore"):
         for _ in range(ROUNDS):
@@ -238,8 +258,16 @@ def close_from_afar(
 def all_assemblies(
     kernel: NewtonSolver, poses: Mapping[str, Pose], drives: DriverStates, seed: int = 1, starts: int = STARTS
 ) -> list[GroupState]:
-    """Return the real assemblies of a group at one driver coordinate, from many initial guesses; of a movable group,
-    some.
+    """Search for the real assemblies of a group at one driver coordinate, from many initial guesses.
+
+    Of a movable group, which has infinitely many assemblies, some are returned.
+
+    Args:
+        kernel: solver of the group.
+        poses: poses of the known links.
+        drives: coordinates of the drivers.
+        seed: seed of the pseudo-random angles.
+        starts: number of initial guesses in each round.
     """
     random = np.random.default_rng(seed)
     assemblies: list[GroupState] = []
@@ -273,7 +301,10 @@ def _is_same_state(kernel: NewtonSolver, state: GroupState, other_state: GroupSt
 def _close_from_sketch(
     kernel: NewtonSolver, linkage: Linkage, poses: Mapping[str, Pose], drives: DriverStates
 ) -> GroupState | None:
-    """Return the assembly near a complete sketch; None if there is none near it."""
+    """Return the state of the assembly near a complete sketch.
+
+    None if the sketch is incomplete or no assembly is near it.
+    """
     unwrapped = sketched_angles(kernel, linkage, poses, drives)
     if unwrapped is None:
         return None
@@ -290,8 +321,9 @@ def _close_from_sketch(
 def sketched_angles(
     kernel: NewtonSolver, linkage: Linkage, poses: Mapping[str, Pose], drives: DriverStates
 ) -> Real | None:
-    """Return the angles of the links of the group in the sketch, shape (..., links); None if it does not show all of
-    them.
+    """Return the angles of the links of a group in the sketch, shape (..., links).
+
+    None if the sketch does not determine all of them.
     """
     angles: dict[str, Any] = {name: np.angle(pose.z) for name, pose in poses.items()}
     angles |= {name: angle for name, angle in linkage.sketch.angles.items() if name in kernel.order}

@@ -1,18 +1,17 @@
 """All assemblies of a triad as the roots of one polynomial of degree six at most, so that none can be missed.
 
-A triad has a middle link that is connected by three legs to links of known position. For the middle link at x with the
-direction z = e^(i phi), every leg is one condition:
+A triad has a middle link that is connected by three legs to links of known position. If the middle link has the origin
+x and the direction z = e^(i phi), every leg is one condition:
 
-- revolute pairs at both ends: a circle, |x + p z - C| = r;
-- a guide on the known link: the inner hinge stays on a line, Re(conj(n) x) = e with a constant n;
-- a guide on the middle link: the outer hinge stays on a line that rotates with it, the same with n rotating with z;
-- guides at both ends: z itself is known.
+- revolute pairs at both ends: a circle, |x + p z - C| = r; - a guide on the known link: the inner hinge stays on a
+line, Re(conj(n) x) = e with a constant n; - a guide on the middle link: the outer hinge stays on a line that rotates
+with the link, the same with n rotating with z; - guides at both ends: z itself is known.
 
-Circles are reduced to lines by subtracting one of them; x follows from two lines, and the third condition is a
-trigonometric polynomial in phi of the third degree at most, sampled on the unit circle. K. H. Hunt, Structural
-kinematics of in-parallel-actuated robot arms, ASME J. Mech. Transm. Autom. Des. 105 (1983); C. Gosselin, J. Sefrioui,
-M. Richard, Solutions polynomiales au probleme de la cinematique directe des manipulateurs paralleles plans, Mech. Mach.
-Theory 27 (1992).
+Subtracting one circle from another gives a line. Two lines determine x, and the third condition is then a trigonometric
+polynomial in phi of degree three at most, which is sampled on the unit circle. K. H. Hunt, Structural kinematics of
+in-parallel-actuated robot arms, ASME J. Mech. Transm. Autom. Des. 105 (1983); C. Gosselin, J. Sefrioui, M. Richard,
+Solutions polynomiales au probleme de la cinematique directe des manipulateurs paralleles plans, Mech. Mach. Theory 27
+(1992).
 """
 
 from __future__ import annotations
@@ -37,8 +36,12 @@ NEAR = 0.03  # sizes of the group: largest violation of the third condition befo
 
 @dataclass(frozen=True)
 class LegJoint:
-    """One end of a leg: position of the hinge on the other link and on the leg, or the prismatic pair as seen from the
-    leg.
+    """Joint at one end of a leg of a triad.
+
+    Attributes:
+        there: position of the hinge on the other link, in its axes (m).
+        here: position of the hinge on the leg, in its axes (m).
+        run: the prismatic pair as seen from the leg; None if the joint is a hinge.
     """
 
     there: complex = 0j
@@ -48,7 +51,14 @@ class LegJoint:
 
 @dataclass(frozen=True)
 class Leg:
-    """A leg of a triad: its link, the known link to which it is attached, its outer and inner joints."""
+    """A leg of a triad.
+
+    Attributes:
+        link: name of the leg.
+        known: name of the known link to which it is attached.
+        outer: joint with the known link.
+        inner: joint with the middle link.
+    """
 
     link: str
     known: str
@@ -58,7 +68,14 @@ class Leg:
 
 @dataclass(frozen=True)
 class Triad:
-    """A triad: middle link, legs, order of the links in the group, and size (m), the unit of lengths."""
+    """A triad: a group of a middle link and three legs.
+
+    Attributes:
+        middle: name of the middle link.
+        legs: the legs.
+        order: names of the links in the order of the group.
+        size: unit of lengths (m).
+    """
 
     middle: str
     legs: tuple[Leg, Leg, Leg]
@@ -67,7 +84,7 @@ class Triad:
 
     @classmethod
     def of(cls, group: Group, linkage: Linkage, size: float) -> Triad | None:
-        """Recognise a triad; None if the group is another one."""
+        """Recognise a triad and its legs; None if the group is not a triad."""
         pairs = (*group.inner, *group.outer)
         if len(group.links) != 4 or len(pairs) != 6 or group.drivers or any(p.kind not in ("R", "P") for p in pairs):
             return None
@@ -80,7 +97,7 @@ class Triad:
 
 
 def _make_leg(link: str, middle: str, group: Group, linkage: Linkage) -> Leg | None:
-    """Return the link as a leg of the triad about the middle link; None if it is not one."""
+    """Describe a link as a leg of a triad with this middle link; None if it is not a leg."""
     # links of later groups may be attached to a leg too: they do not constrain it
     outer = _find_joint(link, group.known, group.outer, linkage)
     inner = _find_joint(link, (middle,), group.inner, linkage)
@@ -95,7 +112,13 @@ def _make_leg(link: str, middle: str, group: Group, linkage: Linkage) -> Leg | N
 def _find_joint(
     link: str, others: Sequence[str], pairs: Iterable[Pair], linkage: Linkage
 ) -> tuple[str, LegJoint] | None:
-    """Return the only joint of a link with any of the others, or None; a compound hinge joins each two of its links."""
+    """Find the only joint of a link with one of `others`; None if there is none, or more than one.
+
+    In a compound hinge any two links are joined.
+
+    Returns:
+        The name of the other link, and the joint.
+    """
     joints: dict[str, tuple[str, LegJoint]] = {}
     for hinge in linkage.hinges:
         other = next((n for n in hinge.links if n in others), None)
@@ -110,9 +133,14 @@ def _find_joint(
 
 @dataclass(frozen=True)
 class LegCondition:
-    """Condition of a leg for the middle link at directions z: lines Re(conj(n) x) = e, or circles |x + g| = r.
+    """Condition that a leg imposes on the origin x of the middle link, for directions z of the middle link.
 
-    Dimensionless. z: the only direction that the leg allows, if it allows only one.
+    The condition is a line Re(conj(n) x) = e or a circle |x + g| = r. Lengths are divided by the size of the triad.
+
+    Attributes:
+        n, e: the line, or None.
+        g, r: the circle, or None and 0.
+        z: the only direction that the leg allows, if it allows only one; otherwise None.
     """
 
     n: Vector | None = None
@@ -122,7 +150,7 @@ class LegCondition:
     z: complex | None = None
 
     def residual(self, x: Vector) -> Real:
-        """Return the distance by which x violates the condition."""
+        """Return the distance of x from the line or circle."""
         if self.g is not None:
             distance: Real = np.abs(x + self.g) - self.r
             return distance
@@ -132,10 +160,11 @@ class LegCondition:
 
 
 def triad_starts(triad: Triad, poses: Mapping[str, Pose]) -> tuple[GroupState, int] | None:
-    """Return initial guesses (guesses, links), at least one for each assembly, and the largest number of assemblies.
+    """Return initial guesses for all assemblies of a triad, from the real and nearly real roots of the polynomial.
 
-    They follow from all roots of the polynomial that are real or nearly so. None if the polynomial vanishes
-    identically.
+    Returns:
+        States (guesses, links), at least one for each assembly, and the largest number of assemblies; None if the
+            polynomial is zero everywhere.
     """
     known_poses = {name: Pose(np.ravel(pose.x)[0], np.ravel(pose.z)[0]) for name, pose in poses.items()}
     fixed = next((c.z for c in leg_conditions(triad, known_poses, np.ones(1, complex)) if c.z is not None), None)
@@ -159,8 +188,9 @@ def triad_starts(triad: Triad, poses: Mapping[str, Pose]) -> tuple[GroupState, i
 
 
 def triad_polynomial(triad: Triad, poses: Mapping[str, Pose]) -> Vector:
-    """Return the coefficients of z^-3 ... z^3 of the polynomial that is zero where the triad closes (real for |z| =
-    1).
+    """Return the coefficients of z^-3 ... z^3 of the polynomial that is zero where the triad closes.
+
+    The polynomial is real for |z| = 1.
     """
     z = unit(2 * np.pi * np.arange(SAMPLES) / SAMPLES)
     values = np.broadcast_to(closing_value(leg_conditions(triad, poses, z)), z.shape)
@@ -169,7 +199,7 @@ def triad_polynomial(triad: Triad, poses: Mapping[str, Pose]) -> Vector:
 
 
 def closing_value(three: Sequence[LegCondition]) -> Real:
-    """Return the expression that is zero where three conditions hold at the same x."""
+    """Return an expression that is zero where the conditions of all three legs hold at the same x."""
     circles = [c for c in three if c.g is not None]
     lines = [c for c in three if c.g is None]
     if not circles:
@@ -183,7 +213,7 @@ def closing_value(three: Sequence[LegCondition]) -> Real:
 
 
 def _as_line(condition: LegCondition, circle: LegCondition) -> tuple[Vector, Real]:
-    """Return a condition as a line for w = x + g, the inner hinge relative to the centre of a circle |w| = r."""
+    """Convert a condition to a line for w = x + g, given that w lies on the circle |w| = r."""
     assert circle.g is not None
     if condition.g is None:
         assert condition.n is not None
@@ -193,7 +223,7 @@ def _as_line(condition: LegCondition, circle: LegCondition) -> tuple[Vector, Rea
 
 
 def leg_conditions(triad: Triad, poses: Mapping[str, Pose], z: Vector) -> list[LegCondition]:
-    """Return the condition of each leg at the directions z of the middle link; lengths in units of the size."""
+    """Return the condition of each leg for directions z of the middle link."""
     return [_leg_condition(leg, poses, z, triad.size) for leg in triad.legs]
 
 
@@ -223,7 +253,10 @@ def _leg_direction(leg: Leg, poses: Mapping[str, Pose]) -> Any:
 
 
 def _middle_link_origins(three: Sequence[LegCondition]) -> list[complex]:
-    """Return the origins x (in sizes) at one direction where two conditions hold and the third nearly holds."""
+    """Return the origins of the middle link at which two conditions hold and the third nearly holds.
+
+    Lengths are in units of the size of the triad.
+    """
     binding = [c for c in three if c.z is None]
     origins = []
     for first, second in combinations(binding, 2):
@@ -235,7 +268,7 @@ def _middle_link_origins(three: Sequence[LegCondition]) -> list[complex]:
 
 
 def _meeting_points(first: LegCondition, second: LegCondition) -> list[Vector]:
-    """Return the points where two conditions hold, or are nearest to each other if they just miss."""
+    """Return the points at which two conditions hold; if they just miss each other, the points nearest to both."""
     if first.g is None:
         first, second = second, first
     if first.g is None:  # two lines
@@ -253,7 +286,7 @@ def _meeting_points(first: LegCondition, second: LegCondition) -> list[Vector]:
 
 
 def _make_state(triad: Triad, poses: Mapping[str, Pose], starts: Sequence[tuple[complex, complex]]) -> GroupState:
-    """Return the states of all links for origins x (m) and directions z of the middle one."""
+    """Compute the states of all links of a triad from origins x (m) and directions z of its middle link."""
     x, z = (np.array([start[k] for start in starts], complex) for k in (0, 1))
     link_states = {triad.middle: (x, z)}
     for leg in triad.legs:

@@ -1,4 +1,4 @@
-"""Assemblies along the range of the driver: change points, traces of iterated groups, accumulated angles."""
+"""A group along the range of the driver: change points, traces of groups solved by iteration, accumulated angles."""
 
 from __future__ import annotations
 
@@ -14,14 +14,13 @@ from tmm_cli.mechanics.numerics import Real, Vector, pi, to_float
 
 @dataclass(frozen=True)
 class ChangePoints:
-    """Change points of a group that it passes smoothly: driver coordinates at which the sign of its determinant
-    changes.
+    """Change points of a group that it passes smoothly; the sign of its determinant changes at each of them.
 
     Attributes:
-        places: driver coordinates, increasing, within a cycle.
-        start: beginning of the cycle.
-        at: driver coordinate of the sketch, at which the sign is that of the sketch.
-        cycle: length of the cycle; None if the driver has none.
+        places: driver coordinates of the change points within a cycle, in increasing order.
+        start: driver coordinate at the beginning of the cycle.
+        at: driver coordinate of the sketch, where the sign is that of the sketch.
+        cycle: length of the cycle; None if the motion does not repeat.
     """
 
     places: Real
@@ -30,15 +29,15 @@ class ChangePoints:
     cycle: float | None
 
     def side(self, q: Real) -> Real:
-        """Return 1, or -1 after an odd number of change points from the sketch."""
+        """Return 1, or -1 where an odd number of change points lies between the sketch and the driver coordinates q."""
         return 1.0 - 2.0 * ((self._passed(q) - self._passed(np.array(self.at))) % 2)
 
     def within(self, low: float, high: float) -> Real:
-        """Return the change points from low to high, increasing."""
+        """Return the driver coordinates of the change points between low and high, in increasing order."""
         return repeat_in_cycles(self.places, self.start, self.cycle, low, high)
 
     def _passed(self, q: Real) -> Real:
-        """Return the number of change points between the start and q."""
+        """Return the number of change points between the beginning of the cycle and the driver coordinates q."""
         within = to_float(q)
         whole = np.zeros(np.shape(q)) if self.cycle is None else np.floor((within - self.start) / self.cycle)
         inside = within - whole * (self.cycle or 0.0)
@@ -47,7 +46,14 @@ class ChangePoints:
 
 
 def repeat_in_cycles(coordinates: Real, start: float, cycle: float | None, low: float, high: float) -> Real:
-    """Repeat values of a cycle from `start` throughout the interval from low to high; cycle None: they occur once."""
+    """Repeat driver coordinates of one cycle in all cycles between low and high, in increasing order.
+
+    Args:
+        coordinates: driver coordinates within one cycle.
+        start: beginning of that cycle.
+        cycle: length of a cycle; None if the coordinates do not repeat.
+        low, high: ends of the interval; high is excluded.
+    """
     turns = np.zeros(1)
     if cycle is not None:
         turns = np.arange(np.floor((low - start) / cycle) - 1, np.ceil((high - start) / cycle) + 1)
@@ -60,17 +66,21 @@ def repeat_in_cycles(coordinates: Real, start: float, cycle: float | None, low: 
 
 @dataclass(frozen=True)
 class BranchTrace:
-    """States of a group at increasing driver coordinates q, with first and second derivatives with respect to q.
+    """States of a group at increasing driver coordinates (nodes), for estimates at the coordinates between them.
 
     Attributes:
-        closed: the last node is the first one, a cycle later. Otherwise the trace ends where the group cannot continue,
-            or where tracing was stopped.
-        open_ends: (below, above), True where tracing was stopped.
-        limits: (first, last), True where the node is a limit of the driver; derivatives are infinite there.
-        lost: (first, last), True where the trace ends for another reason: the known links go no further, or links of
-            the group go to infinity.
+        q: driver coordinates of the nodes, increasing.
+        states: states of the group at the nodes.
+        first, second: first and second derivatives of the states with respect to q.
+        closed: True if the last node is the first one, a cycle later. Otherwise the trace ends where the group cannot
+            continue, or where tracing was stopped.
+        open_ends: for the lower and the upper end, True if tracing was stopped there.
+        limits: for the first and the last node, True if it is a limit position of the driver; derivatives are infinite
+            there.
+        lost: for the first and the last node, True if the trace ends for another reason: the known links move no
+            further, or links of the group go to infinity.
         unit: unit of residuals: 1 rad for a rotating driver, the size of the group (m) for a sliding one.
-        dead: driver coordinates of dead positions that are passed smoothly.
+        dead: driver coordinates of dead positions that the group passes smoothly.
         flips: for each of these, True if the determinant changes sign.
     """
 
@@ -93,16 +103,19 @@ class BranchTrace:
         return bend
 
     def within(self, q: Real) -> Real:
-        """Return q reduced to the cycle of a closed trace."""
+        """Reduce driver coordinates q to the traced cycle. Unchanged if the trace is not closed."""
         cycle = self.q[-1] - self.q[0]
         return q - np.floor((q - self.q[0]) / cycle) * cycle if self.closed else q
 
     def in_dead(self, q: Real, rounding: float) -> Real:
-        """Return True where q cannot be distinguished from a dead position that is passed; rounding: relative error of
-        the data.
+        """Return True where q cannot be distinguished from a dead position that the group passes.
 
-        At a distance h, errors of the data move the group by error/h, or error/h^2 where the determinant only touches
-        zero, and that must be less than h.
+        At a distance h from it, errors of the data move the group by error/h, or error/h^2 if the determinant touches
+        zero without changing sign. This must be less than h.
+
+        Args:
+            q: driver coordinates.
+            rounding: relative error of the data.
         """
         if not self.dead.size:
             return np.zeros(np.shape(q), dtype=bool)
@@ -111,20 +124,21 @@ class BranchTrace:
         return near
 
     def side(self, q: Real) -> Real:
-        """Return 1, or -1 where the sign of the determinant differs from that at the beginning of the trace."""
+        """Return 1, or -1 where the determinant has not the sign that it has at the beginning of the trace."""
         passed = np.searchsorted(self.dead[self.flips], self.within(q))
         return 1.0 - 2.0 * (passed % 2)
 
     def dead_within(self, low: float, high: float) -> Real:
-        """Return the dead positions that are passed between low and high, increasing."""
+        """Return the driver coordinates between low and high at which the group passes dead positions, increasing."""
         cycle = self.q[-1] - self.q[0]
         return repeat_in_cycles(self.dead, float(self.q[0]), float(cycle) if self.closed else None, low, high)
 
     def start(self, q: Real) -> tuple[GroupState, Real]:
-        """Return approximate states at q, extrapolated from the nearest nodes, and the residuals.
+        """Estimate the states of the group at driver coordinates q by extrapolation from the nearest nodes.
 
-        The residual is the distance of q beyond the ends of the trace, in its units; negative inside, down to -1; -1 on
-        a closed trace.
+        Returns:
+            The states, and a residual for each q: its distance beyond the ends of the trace in units of `unit`. The
+                residual is negative inside the trace, but not below -1; it is -1 for a closed trace.
         """
         low, high = self.q[0], self.q[-1]
         cycle = high - low
@@ -176,8 +190,12 @@ TAU = 2 * np.pi
 
 @dataclass(frozen=True)
 class AccumulatedAngles:
-    """Accumulated angles of links (rad, unwrapped) at increasing driver coordinates q; closed: q covers a full
-    cycle.
+    """Table of accumulated angles of links against the driver coordinate.
+
+    Attributes:
+        q: driver coordinates, increasing.
+        angles: angles (rad, unwrapped) of each link at q, by name of the link.
+        closed: True if q covers a full cycle.
     """
 
     q: Real
@@ -185,7 +203,10 @@ class AccumulatedAngles:
     closed: bool
 
     def followed(self, links: tuple[str, ...], poses: tuple[Pose, ...], q: Real) -> tuple[Pose, ...]:
-        """Return the poses with their angles accumulated through full turns."""
+        """Add to the poses of links the full turns that the links have made up to driver coordinates q.
+
+        links: names of the links, one for each pose.
+        """
         accumulated = []
         for link, pose in zip(links, poses, strict=True):
             if link not in self.angles:
@@ -197,7 +218,7 @@ class AccumulatedAngles:
         return tuple(accumulated)
 
     def sure(self, links: tuple[str, ...], poses: tuple[Pose, ...], q: Real) -> Real:
-        """Return True where the table determines the full turns: it is less than a quarter of a turn off."""
+        """Return True where the number of full turns is certain: the angles are within 90 degrees of the table."""
         off = [
             np.abs(pose.turned - self._about(n, q)) for n, pose in zip(links, poses, strict=True) if n in self.angles
         ]
@@ -205,7 +226,7 @@ class AccumulatedAngles:
         return sure
 
     def _about(self, link: str, q: Real) -> Real:
-        """Return the angle of a link at q, interpolated in the table."""
+        """Interpolate the accumulated angle of a link in the table."""
         cycle = self.q[-1] - self.q[0]
         whole = np.floor((q - self.q[0]) / cycle) if self.closed else np.zeros(np.shape(q))
         table = self.angles[link]

@@ -1,9 +1,9 @@
-"""Interface of group solvers, and the common parts of the dyads (Assur groups of two links).
+"""Interface of group solvers, and what is common to the solvers of dyads (Assur groups of two links).
 
-A group solver takes the states of the links on which the group depends and returns those of its own links: first
-positions, then velocities, then accelerations; and in the reverse order the reactions. Arrays broadcast against
-(variants, positions). The formulas of each dyad, with links a and b, are in its own module; they follow from the loop
-closure in complex numbers, by scalar and vector products until one unknown is left.
+A group solver takes the states of the links on which the group depends and returns the states of its own links: first
+positions, then velocities, then accelerations. Afterwards, from the last group to the first, it returns reactions.
+Arrays broadcast against (variants, positions). The formulas of each dyad, with links a and b, are in its own module.
+They follow from the loop closure in complex numbers: scalar and vector products eliminate all unknowns but one.
 """
 
 from __future__ import annotations
@@ -38,7 +38,13 @@ __all__ = ["Accels", "ClosedFormSolver", "Dyad", "GroupSolver", "Poses", "Rates"
 
 @dataclass(frozen=True)
 class HingeEnd:
-    """An external hinge: its position on the known link (`there`) and on the group's own link (`here`), m."""
+    """An external hinge of a group.
+
+    Attributes:
+        known: the link outside the group, whose motion is known.
+        there: position of the hinge on this link, in its axes (m).
+        here: position of the hinge on the link of the group, in its axes (m).
+    """
 
     known: str
     there: complex
@@ -59,11 +65,17 @@ class HingeEnd:
 
 @dataclass(frozen=True)
 class SliderEnd:
-    """A prismatic pair seen from one link: the point `here` (own axes) stays on the line through `there` along
-    `direction`.
+    """A prismatic pair as seen from one of its links: the point `here` stays on a line through the point `there`.
 
-    there and direction (rad) are in the axes of the other link; own angle - angle of the other link = turned. The form
-    is the same whichever link carries the guide. runs_here: True if `here` is the sliding point, False if `there` is.
+    The form is the same whichever link carries the guide.
+
+    Attributes:
+        known: the other link.
+        there: a point of the line, in the axes of the other link (m).
+        here: the point on the line, in the axes of the first link (m).
+        direction: direction of the line, in the axes of the other link (rad).
+        turned: angle of the first link relative to the other link, constant (rad).
+        runs_here: True if `here` is the sliding point; False if `there` is.
     """
 
     known: str
@@ -74,14 +86,12 @@ class SliderEnd:
     runs_here: bool
 
     def runner_arm(self, own_pose: Pose, poses: Poses) -> Vector:
-        """Return the vector from the origin of the own link to the sliding point, at which the couple is given (m, axes
-        of the drawing).
-        """
+        """Return the vector (m) from the origin of the first link to the sliding point; couples are taken about it."""
         return self.here * own_pose.z if self.runs_here else poses[self.known].at(self.there) - own_pose.x
 
 
 def slider_end(pair: Pair, link: str) -> SliderEnd:
-    """Return a prismatic pair as seen from one of its links."""
+    """Describe a prismatic pair as seen from one of its links."""
     slide = pair.slide
     assert slide is not None
     if link == slide.runner:
@@ -90,7 +100,7 @@ def slider_end(pair: Pair, link: str) -> SliderEnd:
 
 
 def pair_end(pair: Pair, link: str, linkage: Linkage) -> HingeEnd | SliderEnd:
-    """Return a lower pair as seen from one of its links."""
+    """Describe a lower pair as seen from one of its links."""
     if pair.kind == "P":
         return slider_end(pair, link)
     known = pair.other(link)
@@ -99,23 +109,30 @@ def pair_end(pair: Pair, link: str, linkage: Linkage) -> HingeEnd | SliderEnd:
 
 @dataclass(frozen=True)
 class GroupSolver(ABC):
-    """Solver of an Assur group in one assembly."""
+    """Solver of an Assur group in one assembly.
+
+    Attributes:
+        group: the group.
+        size: greatest extent of its links and of the links to which it is attached (m); the unit of distances.
+        near: margin below which a position is reported as near a dead position.
+    """
 
     group: Group
     size: float  # m, greatest extent of its links and known links: the unit of distances
 
     @property
     def followed(self) -> BranchTrace | None:
-        """Trace of the group along the range of the driver; None if the group did not have to be traced."""
+        """States of the group traced along the range of the driver; None if the group needs no trace."""
         return None
 
     @abstractmethod
     def rebind(self, linkage: Linkage) -> GroupSolver:
-        """Return the solver of the same assembly with the dimensions of another linkage (of another precision)."""
+        """Return the solver of the same assembly for another linkage, with other dimensions or another precision."""
 
     def side(self, q: Real) -> Real:
-        """Return the sign of the determinant relative to the sketch: -1 after an odd number of change points that are
-        passed.
+        """Return the sign of the determinant relative to the sketch at driver coordinates q.
+
+        It is -1 where the group has passed an odd number of change points on the way from the sketch.
         """
         return np.ones(np.shape(q))
 
@@ -123,36 +140,47 @@ class GroupSolver(ABC):
 
     @property
     def blurred(self) -> float:
-        """Margin below which double-doubles are required."""
+        """Margin below which the group must be solved in double-doubles."""
         return self.near
 
     @abstractmethod
     def place(self, poses: Poses, q: Real, drives: DriverStates) -> Placement:
-        """Return the positions of the links at the driver coordinates q, or the closest approach to assembly (see
-        `residual`).
+        """Compute the positions of the links of the group.
+
+        Where the group cannot be assembled, the positions are those in which its links come closest (see
+        `Placement.residual`).
 
         Args:
             poses: poses of the links on which the group depends.
             q: coordinates of the first driver (rad or m).
-            drives: coordinates of all drivers, by the driven link.
+            drives: coordinates of all drivers, by name of the driven link.
         """
 
     @abstractmethod
     def rates(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> tuple[Rate, ...]:
-        """Return the velocities of the links, in their order."""
+        """Compute the velocities of the links of the group, in their order.
+
+        rates: velocities of the links on which the group depends.
+        """
 
     @abstractmethod
     def accelerations(
         self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
-        """Return the accelerations of the links, in their order; `rates` contains their velocities too."""
+        """Compute the accelerations of the links of the group, in their order.
+
+        rates: velocities of these links too. accels: accelerations of the links on which the group depends.
+        """
 
     @abstractmethod
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
-        """Return the reactions of the pairs under the applied forces (one wrench for each link, in their order)."""
+        """Compute the reactions in the pairs of the group.
+
+        applied: forces on each link of the group, in their order, reduced to the origin of the link.
+        """
 
     def inner_on(self, pair: Pair) -> str:
-        """Return the link on which the reaction of an internal pair is given."""
+        """Return the name of the link on which `reactions` gives the reaction of an internal pair."""
         return pair.j
 
 
@@ -162,8 +190,8 @@ class ClosedFormSolver(GroupSolver):
 
     Attributes:
         sign: +1 or -1, selects one of the two assemblies.
-        winding: accumulated angles of the links, where others depend on their full turns.
-        way: change points that the group passes smoothly, where the sign changes.
+        winding: accumulated angles of links whose full turns matter to other links (gears), or None.
+        way: change points that the group passes smoothly and where `sign` changes, or None.
     """
 
     sign: Any = field(default=1, kw_only=True)
@@ -176,12 +204,12 @@ class ClosedFormSolver(GroupSolver):
     @classmethod
     @abstractmethod
     def fits(cls, group: Group) -> bool:
-        """Return True if the group is of this type."""
+        """Return True if this solver can solve the group."""
 
     @classmethod
     @abstractmethod
     def of(cls, group: Group, linkage: Linkage) -> Self:
-        """Return the solver of a group with the dimensions of the linkage, in its first assembly."""
+        """Make the solver of a group of this linkage, in the first of its assemblies."""
 
     def rebind(self, linkage: Linkage) -> Self:
         new = type(self).of(self.group.rebind(linkage), linkage)
@@ -189,18 +217,18 @@ class ClosedFormSolver(GroupSolver):
 
     @property
     def plain(self) -> bool:
-        """True if the same formulas hold at every driver coordinate."""
+        """True if the same formulas hold at every driver coordinate: no change points, no accumulated angles."""
         return self.winding is None and self.way is None
 
     @property
     @abstractmethod
     def assemblies(self) -> int:
-        """Largest number of assemblies, 1 or 2."""
+        """Largest possible number of assemblies, 1 or 2."""
 
     @property
     @abstractmethod
     def outer_pairs(self) -> tuple[tuple[Pair, HingeEnd | SliderEnd], ...]:
-        """External pairs, each as seen from the group's own link."""
+        """External pairs, each with its geometry as seen from the link of the group."""
 
     def place(self, poses: Poses, q: Real, drives: DriverStates) -> Placement:
         at = (self if self.way is None else replace(self, sign=self.sign * self.way.side(q))).closed(poses, drives)
@@ -208,11 +236,11 @@ class ClosedFormSolver(GroupSolver):
 
     @abstractmethod
     def closed(self, poses: Poses, drives: DriverStates) -> Placement:
-        """Return the positions of the links in the assembly of this solver."""
+        """Compute the positions of the links of the group in the assembly selected by `sign`."""
 
     @abstractmethod
     def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> Real:
-        """Return the rate of the residual, from the motion of the known links and of the group's drivers alone."""
+        """Return the derivative of the residual, from the motion of the known links and of the drivers alone."""
 
 
 EndA = TypeVar("EndA", bound=HingeEnd | SliderEnd)
@@ -222,7 +250,13 @@ Inner = TypeVar("Inner", bound=HingeEnd | SliderEnd)
 
 @dataclass(frozen=True)
 class Dyad(ClosedFormSolver, Generic[EndA, EndB, Inner]):
-    """Assur group of class II: two links, one internal and two external pairs."""
+    """Solver of an Assur group of class II: two links a and b, one internal and two external pairs.
+
+    Attributes:
+        ends: external pairs as seen from a and from b.
+        inner: internal pair as seen from b.
+        type: type of the dyad, e.g. RRP.
+    """
 
     ends: tuple[EndA, EndB]
     inner: Inner
@@ -236,7 +270,7 @@ class Dyad(ClosedFormSolver, Generic[EndA, EndB, Inner]):
 
     @classmethod
     def of(cls, group: Group, linkage: Linkage) -> Self:
-        """Return the solver of a dyad; the internal pair is seen from link b."""
+        """Make the solver of a dyad of this linkage, in the first of its assemblies."""
         a, b = group.links
         ends: Any = (pair_end(group.outer[0], a, linkage), pair_end(group.outer[1], b, linkage))
         size = reduce(np.maximum, [link_extent(linkage, link) for link in (a, b, *(end.known for end in ends))])
@@ -245,7 +279,7 @@ class Dyad(ClosedFormSolver, Generic[EndA, EndB, Inner]):
 
     @property
     def parts(self) -> tuple[EndA, EndB, Inner]:
-        """External pairs of a and of b, and the internal pair."""
+        """The external pair of a, the external pair of b, and the internal pair."""
         return *self.ends, self.inner
 
     @property
@@ -257,20 +291,21 @@ class Dyad(ClosedFormSolver, Generic[EndA, EndB, Inner]):
 
 
 def link_extent(linkage: Linkage, link: str) -> Any:
-    """Return the greatest distance of a point of a link from its first point, m."""
+    """Return the greatest distance of a point of the link from its first point, m."""
     points = list(linkage.links[link].points.values()) or [0j]
     return reduce(np.maximum, [np.abs(point - points[0]) for point in points])
 
 
 def slider_search_range(linkage: Linkage) -> float:
-    """Return the distance (m) to both sides of the sketch over which a sliding driver is examined: greater than any
-    link.
+    """Return the distance (m) to either side of the sketch over which a sliding driver is examined.
+
+    It is four times the extent of the largest link.
     """
     return 4 * (max(link_extent(linkage, link) for link in linkage.links) or 1.0)
 
 
 def guide_line(run: SliderEnd, poses: Poses) -> tuple[Vector, Vector]:
-    """Return a point of the guide and its direction, in the axes of the drawing."""
+    """Return a point of the guide (m) and the unit vector along it, in the axes of the drawing."""
     pose = poses[run.known]
     return pose.at(run.there), pose.z * unit(run.direction)
 
@@ -279,37 +314,51 @@ def guide_line(run: SliderEnd, poses: Poses) -> tuple[Vector, Vector]:
 
 
 def intersect_lines(P: Vector, u: Vector, Q: Vector, v: Vector) -> tuple[Vector, Real]:
-    """Return the intersection of the lines through P along u and through Q along v, and u x v (0 if parallel)."""
+    """Intersect the line through P along u with the line through Q along v.
+
+    Returns:
+        The intersection, and u x v, which is zero for parallel lines.
+    """
     det = cross(u, v)
     with np.errstate(divide="ignore", invalid="ignore"):
         return P + u * (cross(Q - P, v) / det), det
 
 
 def parallel_residual(det: Real) -> tuple[Real, Real]:
-    """Return residual and slack of two guides with u x v = det; they lose their intersection when parallel within
-    rounding.
+    """Return residual and slack of a placement whose two guides have det = u x v; see Placement.
+
+    The group cannot be assembled where the guides are parallel within rounding.
     """
     return -np.abs(det), np.full(np.shape(det), ROUNDINGS * roundoff(det))
 
 
 def parallel_residual_rate(u: Vector, v: Vector, wu: Real, wv: Real) -> Real:
-    """Return the rate of the residual -|u x v| for guides with angular velocities wu and wv."""
+    """Return the derivative of the residual -|u x v| for guides with angular velocities wu and wv."""
     rate: Real = -np.sign(cross(u, v)) * (wv - wu) * dot(u, v)
     return rate
 
 
 def common_point_rate(v1: Vector, u1: Vector, v2: Vector, u2: Vector, det: Real) -> Vector:
-    """Return the velocity of the intersection of two guides whose own points there have the velocities v1 and v2.
+    """Return the velocity of the intersection of two moving guides.
 
-    u1 and u2 are the directions of the guides, det = u1 x u2. The same formula holds for accelerations.
+    The same formula gives its acceleration from accelerations.
+
+    Args:
+        v1, v2: velocity of the point of each guide that is at the intersection.
+        u1, u2: unit vectors along the guides.
+        det: u1 x u2.
     """
     velocity: Vector = v1 + u1 * (cross(v2 - v1, u2) / det)
     return velocity
 
 
 def guide_acceleration(point: Vector, vP: Vector, guide: tuple[Vector, Vector, Rate, Accel]) -> Vector:
-    """Return the acceleration of a point on a moving guide, with the Coriolis part and without the part along the
-    guide.
+    """Return the acceleration of a point that slides on a moving guide, without its unknown component along the guide.
+
+    Args:
+        point: position of the point.
+        vP: velocity of the point.
+        guide: origin of the link with the guide, direction of the guide, velocity and acceleration of the link.
     """
     origin, u, rate, accel = guide
     arm = point - origin
@@ -319,7 +368,7 @@ def guide_acceleration(point: Vector, vP: Vector, guide: tuple[Vector, Vector, R
 
 
 def split_across_guides(rest: Vector, u1: Vector, u2: Vector, det: Real) -> tuple[Vector, Vector]:
-    """Return the two forces perpendicular to u1 and u2 that balance the force `rest`."""
+    """Return two forces, one perpendicular to u1 and one to u2, that balance the force `rest`; det = u1 x u2."""
     return 1j * u1 * (-dot(rest, u2) / det), 1j * u2 * (dot(rest, u1) / det)
 
 
@@ -331,17 +380,20 @@ Step = TypeVar("Step")
 
 @dataclass(frozen=True)
 class WrappedSolver(GroupSolver):
-    """A solver that passes its work to an inner one; subclasses override single steps, or `passed` for all of them."""
+    """A solver that passes its work to the solver `inner`.
+
+    Subclasses override single methods, or `passed` for all of them.
+    """
 
     inner: GroupSolver
 
     @classmethod
     def around(cls, inner: GroupSolver, *own: Any) -> Self:
-        """Wrap a solver; own: the further fields of the subclass."""
+        """Wrap a solver. own: values of the fields that the subclass adds."""
         return cls(inner.group, inner.size, inner, *own)
 
     def passed(self, work: Callable[..., Step], *arguments: Any) -> Step:
-        """Call one step of the inner solver."""
+        """Call one method of the inner solver with these arguments."""
         return work(*arguments)
 
     def rebind(self, linkage: Linkage) -> Self:

@@ -1,9 +1,9 @@
-"""Groups of any class: Newton's method on the constraint equations of the pairs, at all positions at once.
+"""Solver of groups of any class: Newton's method on the constraint equations of the pairs, at all positions at once.
 
-Unknowns are the origins and angles of the links, lengths divided by the size of the group. One matrix serves positions,
-velocities, accelerations and, transposed, reactions. E. J. Haug, Computer Aided Kinematics and Dynamics of Mechanical
-Systems, ch. 3 and 4. A group with more equations than unknowns (redundant constraints) is solved by least squares,
-which is exact as long as the equations are consistent.
+Unknowns are the origins and angles of the links; lengths are divided by the size of the group. One matrix serves
+positions, velocities and accelerations, and its transpose serves reactions: E. J. Haug, Computer Aided Kinematics and
+Dynamics of Mechanical Systems, ch. 3 and 4. A group with more equations than unknowns (redundant constraints) is solved
+by least squares, which is exact as long as the equations are consistent.
 """
 
 from __future__ import annotations
@@ -61,8 +61,14 @@ MOST_ITERATIONS = 12  # of Newton's method
 
 @dataclass(frozen=True)
 class NewtonSolver(GroupSolver):
-    """A group with its pairs and drivers as constraints: external pairs, internal pairs, drivers, in the order of the
-    group.
+    """Solver of a group of any class by Newton's method.
+
+    Attributes:
+        constraints: constraint equations of external pairs, internal pairs and drivers, in the order of the group.
+        start: state of the group in the sketch, the initial guess if there is no trace; None if not yet assembled.
+        trace: states traced along the range of the driver, which give initial guesses, or None.
+        passive: True if the group has redundant constraints.
+        order: index of each link of the group, by name.
     """
 
     constraints: tuple[PairConstraint, ...]
@@ -75,16 +81,16 @@ class NewtonSolver(GroupSolver):
 
     @property
     def blurred(self) -> float:
-        """Margin below which double-doubles are required; greater with redundant constraints.
+        """Margin below which the group must be solved in double-doubles; greater if it has redundant constraints.
 
-        There the motion follows from equations that are consistent to the last bit of float64 only; angles lose
-        1/margin of it, accelerations its square.
+        With redundant constraints, equations in float64 are consistent only to rounding. Angles lose a factor 1/margin
+        of their accuracy, accelerations its square.
         """
         return BLURRED_PASSIVE if self.passive else self.near
 
     @classmethod
     def of(cls, group: Group, linkage: Linkage) -> NewtonSolver:
-        """Return the solver of a group with the dimensions of the linkage, which may be arrays; not yet assembled."""
+        """Make the solver of a group of this linkage, not yet assembled. Dimensions may be arrays."""
         pairs = tuple(PAIR_CONSTRAINTS[pair.kind](pair, linkage) for pair in (*group.outer, *group.inner))
         drives = tuple(DriverConstraint.of(driver, linkage) for driver in group.drivers)
         size = reduce(np.maximum, [link_extent(linkage, link) for link in sorted({*group.links, *group.known})])
@@ -102,9 +108,7 @@ class NewtonSolver(GroupSolver):
 
     @cached_property
     def by_angle(self) -> bool:
-        """True if the angles follow from linear equations of angles alone: then there is one assembly, from any initial
-        guess.
-        """
+        """True if linear equations between angles determine all angles. There is then only one assembly."""
         still = {name: Pose(np.zeros(1, complex), np.ones(1, complex), np.zeros(1)) for name in self._all}
         rows = []
         for constraint in self.constraints:
@@ -130,11 +134,11 @@ class NewtonSolver(GroupSolver):
 
     @property
     def unit(self) -> Real:
-        """Size of the group with an additional last axis."""
+        """Size of the group (m) with a last axis of length 1."""
         return _stack([self.size])
 
     def _fill(self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]], like: Real) -> Real:
-        """Assemble the rows of all pairs into a dimensionless matrix (..., rows, unknowns)."""
+        """Assemble the Jacobian rows of all pairs into one dimensionless matrix (..., rows, unknowns)."""
         matrix: Real = np.zeros_like(like, shape=(*np.shape(like), self._scale.shape[-1], 3 * len(self.group.links)))
         row = 0
         for constraint, of_links in zip(self.constraints, parts, strict=True):
@@ -153,7 +157,7 @@ class NewtonSolver(GroupSolver):
         return matrix  # noqa: RET504  typed
 
     def matrix(self, poses: Poses) -> Real:
-        """Return the dimensionless Jacobian, shape (..., rows, unknowns)."""
+        """Return the dimensionless Jacobian of the constraint equations, shape (..., rows, unknowns)."""
         x = poses[self.group.links[0]].x
         return self._fill(self._rows(poses), x.real + 0 * self.size)
 
@@ -161,13 +165,13 @@ class NewtonSolver(GroupSolver):
         return [c.jacobian_rows(poses) for c in self.constraints]
 
     def residuals(self, poses: Poses, drives: DriverStates) -> Real:
-        """Return the dimensionless residuals of the equations, shape (..., rows)."""
+        """Return the dimensionless residuals of the constraint equations, shape (..., rows)."""
         return _stack([residual for c in self.constraints for residual in c.residuals(poses, drives)]) * self._scale
 
     def known(self, poses: Poses, motion: Mapping[str, tuple[object, Real]]) -> Real:
-        """Return the contribution of the motion of the known links to each row, dimensionless.
+        """Return the dimensionless terms of the differentiated equations that come from the known links, (..., rows).
 
-        motion: velocities (or accelerations) of origin and angle, by link.
+        motion: velocities (or accelerations) of origin and angle of each known link, by name.
         """
         shape = np.shape(poses[self.group.links[0]].x)
         rows: list[Real] = []
@@ -187,22 +191,30 @@ class NewtonSolver(GroupSolver):
         return _stack(rows) * self._scale
 
     def asked(self, drives: DriverStates, order: int, shape: tuple[int, ...]) -> Real:
-        """Return the derivative of each row that the drivers prescribe, dimensionless; order: 1 or 2."""
+        """Return the time derivative of each equation that the drivers prescribe, dimensionless; order: 1 or 2."""
         if not self.group.drivers:
             return np.zeros((*shape, self._scale.shape[-1]))
         rows = [value for c in self.constraints for value in c.asked(drives, order)]
         return _stack([np.zeros(shape), *rows])[..., 1:] * self._scale
 
     def poses_of(self, state: GroupState) -> dict[str, Pose]:
-        """Convert a state to poses, by link."""
+        """Convert a state of the group to poses of its links, by name."""
         x, z, unwrapped = state.x, unit(state.unwrapped), state.unwrapped
         return {link: Pose(x[..., k], z[..., k], unwrapped[..., k]) for link, k in self.order.items()}
 
     def close(
         self, start: GroupState, poses: Poses, drives: DriverStates, rounds: int = MOST_ITERATIONS
     ) -> tuple[GroupState, Real]:
-        """Apply Newton's method; return the state and the size of the last step, which is small where it has
-        converged.
+        """Solve the constraint equations by Newton's method.
+
+        Args:
+            start: initial guess.
+            poses: poses of the known links.
+            drives: coordinates of the drivers.
+            rounds: largest number of iterations.
+
+        Returns:
+            The last state and the size of the last step, which is small where the iteration has converged.
         """
         state = start
         if isinstance(self.size, DoubleDouble) or any(isinstance(pose.x, DoubleDouble) for pose in poses.values()):
@@ -219,9 +231,7 @@ class NewtonSolver(GroupSolver):
         return state, step_size
 
     def begun(self, poses: Poses, q: Real, drives: DriverStates) -> tuple[GroupState, Real]:
-        """Return initial guesses for Newton's method, and the residual of q relative to the range of the group (see
-        BranchTrace).
-        """
+        """Return initial guesses at driver coordinates q, with their residuals as in `BranchTrace.start`."""
         if self.trace is not None:
             start, residual = self.trace.start(q)
             nothing = (residual > 0)[..., None]  # no solution there
@@ -269,7 +279,7 @@ class NewtonSolver(GroupSolver):
     def rates_at(
         self, everything: Poses, matrix: Real, det: Real, rates: Rates, drives: DriverStates
     ) -> tuple[Rate, ...]:
-        """Return the velocities of the links from all poses and their matrix; nan where det is nan."""
+        """Compute the velocities of the links from all poses and the matrix; nan where det is nan."""
         known = self.known(everything, {name: (rate.v, rate.w) for name, rate in rates.items()})
         solution = solve(matrix, self.asked(drives, 1, np.shape(det)) - known)
         return tuple(Rate(v, w) for v, w in self._by_link(solution, det))
@@ -283,24 +293,27 @@ class NewtonSolver(GroupSolver):
     def accelerations_at(
         self, everything: Poses, matrix: Real, det: Real, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
-        """Return the accelerations likewise; `rates` contains the velocities of the group's own links too."""
+        """Compute the accelerations of the links from all poses and the matrix; nan where det is nan.
+
+        rates: velocities of all links, also of the links of the group.
+        """
         known = self.known(everything, {name: (accel.a, accel.e) for name, accel in accels.items()})
         bend = _stack(self.velocity_terms(everything, rates)) * self._scale
         solution = solve(matrix, self.asked(drives, 2, np.shape(det)) - known - bend)
         return tuple(Accel(a, e) for a, e in self._by_link(solution, det))
 
     def velocity_terms(self, poses: Poses, rates: Rates) -> list[Real]:
-        """Return the second derivative of each row with all link accelerations zero."""
+        """Return the second derivative of each constraint equation that would remain if all accelerations were zero."""
         return [term for constraint in self.constraints for term in constraint.velocity_terms(poses, rates)]
 
     def _by_link(self, solution: Real, det: Real) -> Iterator[tuple[Vector, Real]]:
-        """Yield the unknowns of each link with their dimensions; nan where det is nan."""
+        """Split a solution into complex origin and angle of each link, with their dimensions; nan where det is nan."""
         solution = np.where(np.isfinite(det)[..., None], solution * self._columns, np.nan)
         for k in range(0, solution.shape[-1], 3):
             yield solution[..., k] + 1j * solution[..., k + 1], solution[..., k + 2]
 
     def _by_constraint(self, multipliers: Sequence[Real]) -> list[tuple[PairConstraint, list[Real]]]:
-        """Split the multipliers of all rows by pair and driver."""
+        """Group the Lagrange multipliers of all equations by pair and driver."""
         each, row = [], 0
         for constraint in self.constraints:
             each.append((constraint, list(multipliers[row : row + len(constraint.lengths)])))
@@ -308,7 +321,10 @@ class NewtonSolver(GroupSolver):
         return each
 
     def _apart(self, everything: Poses, multipliers: Sequence[Real]) -> dict[str, Wrench]:
-        """Return the separating forces of teeth on the links, which follow from the tangential ones and do no work."""
+        """Return the radial (separating) forces of teeth on each link.
+
+        They follow from the tangential forces and do no work.
+        """
         total: dict[str, Wrench] = {}
         for constraint, constraint_multipliers in self._by_constraint(multipliers):
             apart = constraint.apart(everything, constraint_multipliers)
@@ -322,7 +338,10 @@ class NewtonSolver(GroupSolver):
         return total
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
-        """Solve the transposed equations; then again with the separating forces of teeth, which only hinges carry."""
+        """Solve the transposed equations for the reactions.
+
+        They are solved again with the radial forces of teeth, which are carried by the hinges only.
+        """
         everything = self._all_poses(at, poses)
         under = self._transposed(at, everything)
         multipliers = under(applied)
@@ -333,7 +352,7 @@ class NewtonSolver(GroupSolver):
         return self.given_by(everything, self._by_constraint(multipliers))
 
     def _transposed(self, at: Placement, everything: Poses) -> Callable[[Sequence[Wrench]], Sequence[Real]]:
-        """Return a function from wrenches on the links to the multipliers of all rows."""
+        """Return a function that computes the multipliers of all equations from the forces on the links."""
         pushes = self._fill([c.pushes(everything) for c in self.constraints], at.poses[0].x.real + 0 * self.size)
         turned = np.swapaxes(pushes, -1, -2)
 
@@ -348,7 +367,7 @@ class NewtonSolver(GroupSolver):
         return under
 
     def given_by(self, everything: Poses, multipliers: Sequence[tuple[PairConstraint, list[Real]]]) -> GroupReactions:
-        """Return the reactions from the multipliers of each pair and driver."""
+        """Convert the multipliers of each pair and driver to reactions."""
         reaction = [
             constraint.reaction(everything, constraint_multipliers)
             for constraint, constraint_multipliers in multipliers
@@ -367,7 +386,7 @@ class NewtonSolver(GroupSolver):
 
 
 def _stack(values: Sequence[Any]) -> Real:
-    """Stack numbers, or arrays of them, on a new last axis."""
+    """Stack numbers or arrays along a new last axis, after broadcasting them to one shape."""
     if len({np.shape(value) for value in values}) > 1:
         values = np.broadcast_arrays(*values)
     return np.stack(values, axis=-1)

@@ -1,6 +1,6 @@
-"""PRP dyad: both links slide along guides of known links and are hinged to each other at C.
+"""PRP dyad: two links slide along guides of known links and are hinged to each other at C.
 
-C is the intersection of two lines: every result is divided by det = u1 x u2, the sine of the angle between the guides.
+C is the intersection of two lines. Every result is divided by det = u1 x u2, the sine of the angle between the guides.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from tmm_cli.mechanics.numerics import Real, Vector, cross, unit
 
 @dataclass(frozen=True)
 class PRP(Dyad[SliderEnd, SliderEnd, HingeEnd]):
-    """Solver of a PRP dyad: the intersection of two lines; there is one assembly only."""
+    """Solver of a PRP dyad by intersection of two lines. It has one assembly only."""
 
     type = "PRP"
     assemblies = 1
@@ -53,7 +53,7 @@ class PRP(Dyad[SliderEnd, SliderEnd, HingeEnd]):
         return Placement((Pose(C - c.there * za, za), Pose(C - c.here * zb, zb)), det, np.abs(det), residual, slack)
 
     def _frame(self, at: Placement, poses: Poses) -> tuple[Vector, Vector, Vector]:
-        """Return C and the directions of both guides."""
+        """Return the position of C and the unit vectors along both guides."""
         a, b, c = self.parts
         return at.a.at(c.there), guide_line(a, poses)[1], guide_line(b, poses)[1]
 
@@ -82,7 +82,7 @@ class PRP(Dyad[SliderEnd, SliderEnd, HingeEnd]):
         return Accel.through(aC, ea, wa, c.there * at.a.z), Accel.through(aC, eb, wb, c.here * at.b.z)
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
-        """The force polygon gives the forces of both guides, the moments of each link about C their couples."""
+        """Compute the guide forces from the force polygon, and their couples from the moments of each link about C."""
         on_a, on_b = applied
         a, b, c = self.parts
         _, u, v = self._frame(at, poses)

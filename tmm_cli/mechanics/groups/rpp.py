@@ -1,7 +1,7 @@
-"""RPP dyad: link a is hinged at A; b slides along a guide of a known link and along a.
+"""RPP dyad: link a is hinged at A; link b slides along a guide of a known link and along a.
 
-Both angles follow from the known link, the position of a from A; b is at the intersection of the two guides: every
-result is divided by det, the sine of the angle between them.
+Both angles follow from the angle of the known link, and the position of a then follows from A. Link b is at the
+intersection of the two guides, so every result is divided by det, the sine of the angle between them.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from tmm_cli.mechanics.numerics import Real, Vector, cross, unit
 
 @dataclass(frozen=True)
 class RPP(Dyad[HingeEnd, SliderEnd, SliderEnd]):
-    """Solver of an RPP dyad: the intersection of two lines, with one assembly only."""
+    """Solver of an RPP dyad by intersection of two lines. It has one assembly only."""
 
     type = "RPP"
     assemblies = 1
@@ -58,7 +58,7 @@ class RPP(Dyad[HingeEnd, SliderEnd, SliderEnd]):
         return Placement((pose_a, Pose(origin, zb)), det, np.abs(det), residual, slack)
 
     def _frame(self, at: Placement, poses: Poses) -> tuple[Vector, Vector]:
-        """Return the directions of the guides on a and on the known link."""
+        """Return the unit vectors along the guide on link a and along the guide on the known link."""
         _, b, run = self.parts
         return at.a.z * unit(run.direction), guide_line(b, poses)[1]
 
@@ -89,8 +89,10 @@ class RPP(Dyad[HingeEnd, SliderEnd, SliderEnd]):
         return accel_a, Accel(common_point_rate(by_a, u, by_g, v, at.det), e)
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
-        """The force polygon of b gives the forces of both guides, that of a the hinge reaction; moments of a about A,
-        then of b, give the couples.
+        """Compute the reactions link by link.
+
+        The force polygon of b gives both guide forces, the force polygon of a then gives the reaction at A. Moments of
+        a about A, then moments of b, give the couples.
         """
         on_a, on_b = applied
         a, b, run = self.parts

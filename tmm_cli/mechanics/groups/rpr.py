@@ -1,7 +1,8 @@
 """RPR dyad: link a is hinged at A, link b at B, and they slide along each other.
 
-Both rotate together. With u along the guide and B - A = (x + i h) u, h is constant and x is the length of the slide:
-every result is divided by det = x. The group is dead when the sliding block reaches the pivot of its slotted link.
+Both links rotate together. With the unit vector u along the guide and B - A = (x + i h) u, the offset h is constant and
+x varies. Every result is divided by det = x. The dyad is dead when the sliding block reaches the pivot of its slotted
+link (x = 0).
 """
 
 from __future__ import annotations
@@ -29,12 +30,12 @@ from tmm_cli.mechanics.numerics import ROUNDINGS, Real, Vector, cross, dot, roun
 
 @dataclass(frozen=True)
 class RPR(Dyad[HingeEnd, HingeEnd, SliderEnd]):
-    """Solver of an RPR dyad: a right triangle on AB; the sign selects the direction from a to b along the guide."""
+    """Solver of an RPR dyad: a right triangle on AB. The sign of x selects the assembly."""
 
     type = "RPR"
 
     def _offset(self) -> Real:
-        """Return h, the distance of B to the left of the line through A along the guide, m."""
+        """Return the offset h (m): distance of B from the line through A along the guide, positive to the left."""
         a, b, run = self.parts
         turned = unit(run.turned)
         # In a's axes, B - A = (there - a.here) + s e^(i direction) - (run.here - b.here) e^(i turned).
@@ -91,7 +92,7 @@ class RPR(Dyad[HingeEnd, HingeEnd, SliderEnd]):
         return Accel.through(aA, e, w, a.here * at.a.z), Accel.through(aB, e, w, b.here * at.b.z)
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
-        """Forces on b along the guide, moments of the whole group about A, then the force polygon of each link."""
+        """Compute the reactions from forces on b along the guide, moments of the dyad about A, and force polygons."""
         on_a, on_b = applied
         a, b, run = self.parts
         u, h = self._frame(at)

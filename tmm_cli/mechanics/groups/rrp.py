@@ -1,6 +1,6 @@
-"""RRP dyad: link a is hinged at A and to b at C; b slides along a guide of a known link.
+"""RRP dyad: link a is hinged at A, and to link b at C; b slides along a guide of a known link.
 
-With ra = C - A and u along the guide every result is divided by det = u . ra.
+With ra = C - A and the unit vector u along the guide, every result is divided by det = u . ra.
 """
 
 from __future__ import annotations
@@ -28,8 +28,9 @@ from tmm_cli.mechanics.numerics import ROUNDINGS, Real, Vector, cross, dot, roun
 
 @dataclass(frozen=True)
 class RRP(Dyad[HingeEnd, SliderEnd, HingeEnd]):
-    """Solver of an RRP dyad: a circle and a line; the sign selects the side of the foot of A on the guide on which C
-    lies.
+    """Solver of an RRP dyad: C is an intersection of a circle about A and a line parallel to the guide.
+
+    The sign selects on which side of the perpendicular from A to that line C lies.
     """
 
     type = "RRP"
@@ -55,7 +56,7 @@ class RRP(Dyad[HingeEnd, SliderEnd, HingeEnd]):
         )
 
     def _arms(self, at: Placement, poses: Poses) -> tuple[Vector, Vector, Vector]:
-        """Return ra, u, and the vector to C from the origin of the link with the guide."""
+        """Return the vector ra, the unit vector u, and the vector to C from the origin of the link with the guide."""
         a, b, c = self.parts
         _, u = guide_line(b, poses)
         return (c.there - a.here) * at.a.z, u, at.b.at(c.here) - poses[b.known].x
@@ -97,7 +98,7 @@ class RRP(Dyad[HingeEnd, SliderEnd, HingeEnd]):
         return Accel.through(aA, ea, wa, a.here * at.a.z), Accel.through(aC, eb, wb, c.here * at.b.z)
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
-        """Moments of a about C, then the force polygon, then moments of b about C for the couple of the guide."""
+        """Compute the reactions from moments of a about C, the force polygon of the dyad, and moments of b about C."""
         on_a, on_b = applied
         a, b, c = self.parts
         ra, u, _ = self._arms(at, poses)

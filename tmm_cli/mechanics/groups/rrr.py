@@ -1,6 +1,6 @@
-"""RRR dyad: links a and b, hinged to each other at C; a is hinged at A, b at B, both known.
+"""RRR dyad: links a and b are hinged to each other at C; a is hinged to a known link at A, b at B.
 
-With ra = C - A, rb = C - B every result is divided by det = ra x rb = (distance AB) (half-chord).
+With ra = C - A and rb = C - B, every result is divided by det = ra x rb, the distance AB times the half-chord.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ from tmm_cli.mechanics.numerics import ROUNDINGS, Real, Vector, dot, roundoff, s
 
 @dataclass(frozen=True)
 class RRR(Dyad[HingeEnd, HingeEnd, HingeEnd]):
-    """Solver of an RRR dyad: two circles; the sign selects the side of AB on which C lies.
+    """Solver of an RRR dyad by intersection of two circles. The sign selects on which side of AB C lies.
 
-    Half-chord from the factored (Heron) product: W. Kahan, Miscalculating area and angles of a needle-like triangle,
-    2014.
+    The half-chord is computed from a factored product (Heron): W. Kahan, Miscalculating area and angles of a
+    needle-like triangle, 2014.
     """
 
     type = "RRR"
@@ -98,10 +98,10 @@ class RRR(Dyad[HingeEnd, HingeEnd, HingeEnd]):
         return Accel.through(aA, ea, wa, a.here * at.a.z), Accel.through(aB, eb, wb, b.here * at.b.z)
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
-        """Moments of each link about its external hinge give the reaction at C, the force polygon of each link the
-        external ones.
+        """Compute the reactions from moments of each link about its external hinge, and from force polygons.
 
-        Tangential components follow from the moments about C alone; normal ones are the remainder.
+        The moments give the reaction at C, the force polygon of each link its external reaction. The tangential
+        component of the latter follows from moments about C alone; the normal component is the remainder.
         """
         on_a, on_b = applied
         a, b, c = self.parts
@@ -121,7 +121,7 @@ class RRR(Dyad[HingeEnd, HingeEnd, HingeEnd]):
 
 
 def _slacks(d: Real, r: Real, R: Real) -> tuple[Real, Real]:
-    """Return R + r - d and d - (R - r), evaluated with the nearest numbers subtracted first."""
+    """Return R + r - d and d - (R - r) with little rounding: nearly equal numbers are subtracted first."""
     with_base = 2 * r <= R
     t = d - R
     return np.where(with_base, r - t, (R + r) - d), np.where(with_base, r + t, d - (R - r))

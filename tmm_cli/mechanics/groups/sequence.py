@@ -1,7 +1,7 @@
-"""Solution of the groups in turn: positions of all links, and their derivatives with respect to the driver coordinate.
+"""Positions of all links, group by group, and their derivatives with respect to the driver coordinate.
 
 Every position is solved independently. First and second derivatives are the transfer functions (kinematic
-coefficients); with the speed of the driver kinematics/motion.py converts them to velocities and accelerations.
+coefficients); kinematics/motion.py converts them to velocities and accelerations with the speed of the driver.
 """
 
 from __future__ import annotations
@@ -20,7 +20,14 @@ from tmm_cli.mechanics.numerics import Real, Vector, dot, unit
 
 @dataclass(frozen=True)
 class DriverMotion:
-    """Motion of the driver with constant acceleration: from `start` at t = 0; rate and acceleration in its sense."""
+    """Motion of a driver with constant acceleration.
+
+    Attributes:
+        start: driver coordinate at t = 0 (rad or m).
+        rate: speed at t = 0, in the sense of motion (rad/s or m/s).
+        acceleration: acceleration, in the sense of motion (rad/s2 or m/s2).
+        sense: sense of motion, +1 or -1.
+    """
 
     start: float
     rate: float
@@ -28,18 +35,18 @@ class DriverMotion:
     sense: int
 
     def time(self, q: Real) -> Real:
-        """Return the time (s) at which the driver reaches q; nan if it stops before."""
+        """Return the time (s) at which the driver reaches q; nan if it stops before that."""
         gone = self.sense * (q - self.start)
         with np.errstate(invalid="ignore", divide="ignore"):
             root = np.sqrt(self.rate * self.rate + 2 * self.acceleration * gone)
             return np.where(gone == 0, 0.0, 2 * gone / (self.rate + root))
 
     def accelerated(self, q: Real) -> Real:
-        """Return d2q/dt2 at q, signed."""
+        """Return the acceleration d2q/dt2 at driver coordinates q, with its sign."""
         return np.zeros(np.shape(q)) + self.sense * self.acceleration
 
     def speed(self, q: Real) -> Real:
-        """Return dq/dt at q, signed; nan if the driver stops before."""
+        """Return the velocity dq/dt at driver coordinates q, with its sign; nan if the driver stops before that."""
         if self.acceleration == 0:
             return np.zeros(np.shape(q)) + self.sense * self.rate
         with np.errstate(invalid="ignore"):
@@ -48,7 +55,7 @@ class DriverMotion:
 
 
 class LawOfMotion(Protocol):
-    """Speed, acceleration (both signed) and time of a driver as functions of its coordinate."""
+    """Velocity, acceleration (both with sign) and time of a driver as functions of its coordinate."""
 
     def speed(self, q: Real) -> Real: ...
     def accelerated(self, q: Real) -> Real: ...
@@ -57,18 +64,24 @@ class LawOfMotion(Protocol):
 
 @dataclass(frozen=True)
 class LinkStates:
-    """States of the links at the coordinates q of the first driver; arrays (positions,), nan unless `placed` and
-    `moving`.
+    """States of the links at the coordinates q of the first driver.
+
+    Arrays have shape (positions,); values are nan where a link is not assembled or its group is dead.
 
     Attributes:
+        linkage: the linkage.
+        kernels: solvers of its groups, in solving order.
+        q: coordinates of the first driver (rad or m).
         poses: pose of each link, by name.
-        first, second: first and second derivatives of the poses with respect to q, by link name.
+        first, second: first and second derivatives of the poses with respect to q, by name of the link.
         placements: placement of each group.
         placed: True where all groups are assembled.
-        moving: True where, besides, none of them is dead.
-        dead, missing: by the title of a group, positions in which it is the first to be dead, or not to assemble.
-        drives: coordinates of all drivers, by the driven link.
-        order: 0 positions only, 1 with first derivatives, 2 with second ones; access to others raises NotComputed.
+        moving: True where all groups are assembled and none is dead.
+        dead: positions in which this group is the first to be dead, by title of the group.
+        missing: positions in which this group is the first that cannot be assembled, by title of the group.
+        drives: coordinates of all drivers, by name of the driven link.
+        order: 0 positions only, 1 with first derivatives, 2 also with second ones. Access to missing ones raises
+            NotComputed.
     """
 
     linkage: Linkage
@@ -86,23 +99,23 @@ class LinkStates:
     order: int = 2
 
     def spot(self, point: str) -> Vector:
-        """Return the position of a named point, m."""
+        """Return the position of a named point (m)."""
         link = self.linkage.owner(point)
         return self.poses[link].at(self.linkage.local(link, point))
 
     def angle(self, name: str) -> Real:
-        """Return the angle of a link, rad: in -pi..pi, or the driver coordinate of a driven crank."""
+        """Return the angle of a link (rad): the driver coordinate for a driven crank, otherwise in -pi..pi."""
         is_driven = any(d.link == name and d.kind == "turn" for d in self.linkage.cranks)
         return self.drives[name].value if is_driven else np.angle(self.poses[name].z)
 
     def run(self, slide: Slide) -> Real:
-        """Return the run in a prismatic pair, m."""
+        """Return the displacement in a prismatic pair (m)."""
         carrier, runner = self.poses[slide.carrier], self.poses[slide.runner]
         run: Real = dot(carrier.z * unit(slide.direction), runner.at(slide.at) - carrier.at(slide.through))
         return run
 
     def slope(self, slide: Slide) -> Real:
-        """Return the first transfer function of the run in a prismatic pair."""
+        """Return the derivative of the displacement in a prismatic pair with respect to q."""
         carrier, runner = self.poses[slide.carrier], self.poses[slide.runner]
         arm = runner.at(slide.at) - carrier.x
         relative = self.first[slide.runner].at(slide.at * runner.z) - self.first[slide.carrier].at(arm)
@@ -111,11 +124,11 @@ class LinkStates:
 
 
 class NotComputed(LookupError):  # noqa: N818  the name is the message
-    """Velocities or accelerations are requested of a motion that was computed without them."""
+    """Velocities or accelerations were requested, but the motion was computed without them."""
 
 
 class MissingRates(dict[str, Any]):
-    """Placeholder for rates that were not computed; any access raises NotComputed."""
+    """Placeholder for velocities or accelerations that were not computed. Access to any link raises NotComputed."""
 
     def __init__(self, quantity: str) -> None:
         super().__init__()
@@ -126,7 +139,7 @@ class MissingRates(dict[str, Any]):
 
 
 def solvers_towards(kernels: Iterable[GroupSolver], links: Iterable[str]) -> tuple[GroupSolver, ...]:
-    """Return the solvers of the groups between the drivers and the given links, in solving order."""
+    """Select the solvers that are needed to solve these links, in solving order."""
     required, kept = set(links), []
     for kernel in reversed(tuple(kernels)):
         group = kernel.group
@@ -140,13 +153,13 @@ def solvers_towards(kernels: Iterable[GroupSolver], links: Iterable[str]) -> tup
 
 
 def frame_state(q: Real) -> tuple[Pose, Rate, Accel]:
-    """Return pose, velocity and acceleration of the frame at the positions of q."""
+    """Return the pose of the frame and its zero velocity and acceleration, with the shape of q."""
     zero, one = np.zeros(np.shape(q), dtype=complex), np.ones(np.shape(q), dtype=complex)
     return Pose(zero, one, zero.real), Rate(zero, zero.real), Accel(zero, zero.real)
 
 
 def driven_state(linkage: Linkage, driver: Driver, drive: DriverState) -> tuple[Pose, Rate, Accel]:
-    """Return pose and transfer functions of a link that is driven from the frame."""
+    """Return the pose of a link driven from the frame, with its first and second derivatives with respect to q."""
     q = drive.value
     zero = np.zeros(np.shape(q))
     if driver.kind == "turn":
@@ -170,9 +183,9 @@ def driven_state(linkage: Linkage, driver: Driver, drive: DriverState) -> tuple[
 
 
 def drives_at(linkage: Linkage, q: Real) -> dict[str, DriverState]:
-    """Return the coordinates of all drivers with the first one at q, by the driven link.
+    """Return the coordinates of all drivers when the first one is at q, by name of the driven link.
 
-    Several drivers move at their own speeds and are in the position of the sketch at the same time.
+    Each driver moves at its own speed. All drivers are in the position of the sketch at the same time.
     """
     zero = np.zeros(np.shape(q))
     states = {linkage.driver.link: DriverState(q, zero + 1, zero)}
@@ -199,15 +212,16 @@ def link_states(
 ) -> LinkStates:
     """Compute the states of all links at the coordinates q of the first driver, each position independently.
 
-    A position that a group cannot reach, or in which it is dead, is marked for that group and for all that depend on
-    it.
+    A position in which a group is dead or cannot be assembled is marked for this group and for all groups that depend
+    on it.
 
     Args:
-        kernels: solvers of the groups; with each group, all groups on which it depends (see solvers_towards).
-        q: driver coordinates, rad or m.
-        order: 0 positions only, 1 with velocities, 2 with accelerations.
-        blank: replace values in such positions by nan; otherwise they are what the formulas give.
-        drives: coordinates of the drivers, if the parameter is not that of the first driver.
+        linkage: the linkage.
+        kernels: solvers of the groups. They must include all groups on which these groups depend (see solvers_towards).
+        q: driver coordinates (rad or m).
+        order: 0 positions only, 1 with velocities, 2 also with accelerations.
+        blank: True to replace values in marked positions by nan; otherwise they are what the formulas give.
+        drives: coordinates of the drivers, if the parameter is not the coordinate of the first driver.
     """
     kernels = tuple(kernels)
     q = np.atleast_1d(q)
@@ -255,6 +269,6 @@ def link_states(
 
 
 def _blank_pose(pose: Pose, lost: Real) -> Pose:
-    """Return the pose with nan where `lost`."""
+    """Replace the pose by nan where `lost` is True."""
     unwrapped = None if pose.unwrapped is None else np.where(lost, np.nan, pose.unwrapped)
     return Pose(np.where(lost, np.nan, pose.x), np.where(lost, np.nan, pose.z), unwrapped)

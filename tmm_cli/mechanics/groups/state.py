@@ -1,4 +1,4 @@
-"""Records of group solvers: poses and motions of links, forces on them, and results.
+"""Records of group solvers: poses and motions of links, forces on links, and results.
 
 Arrays broadcast against (variants, positions).
 """
@@ -16,9 +16,12 @@ from tmm_cli.mechanics.numerics import Real, Vector, cross
 
 @dataclass(frozen=True)
 class Pose:
-    """Pose of a link: origin x (m) and direction z = e^(i angle) of its x axis.
+    """Pose of a link.
 
-    unwrapped: the angle accumulated through full turns (rad), where something depends on it (gears).
+    Attributes:
+        x: position of its origin (m).
+        z: unit vector along its x axis, e^(i angle).
+        unwrapped: angle accumulated through full turns (rad); None unless other links (gears) depend on the full turns.
     """
 
     x: Vector
@@ -27,55 +30,70 @@ class Pose:
 
     @property
     def turned(self) -> Real:
-        """Angle (rad): accumulated where available, otherwise in -pi..pi."""
+        """Angle of the link (rad): accumulated through full turns if available, otherwise in -pi..pi."""
         return np.arctan2(self.z.imag, self.z.real) if self.unwrapped is None else self.unwrapped
 
     def spread(self, shape: tuple[int, ...]) -> Pose:
-        """Return the pose broadcast to many positions."""
+        """Broadcast the pose to arrays of this shape."""
         unwrapped = None if self.unwrapped is None else np.broadcast_to(self.unwrapped, shape)
         return Pose(np.broadcast_to(self.x, shape), np.broadcast_to(self.z, shape), unwrapped)
 
     def at(self, local: Any) -> Vector:
-        """Return a point of the link, given in its own axes, in the axes of the drawing, m."""
+        """Convert a point from the axes of the link to the axes of the drawing, m."""
         place: Vector = self.x + local * self.z
         return place
 
 
 @dataclass(frozen=True)
 class Rate:
-    """Velocity of a link: v of its origin (m/s), and angular velocity w (rad/s)."""
+    """Velocity of a link.
+
+    Attributes:
+        v: velocity of its origin (m/s).
+        w: angular velocity (rad/s).
+    """
 
     v: Vector
     w: Real
 
     @classmethod
     def through(cls, v: Vector, w: Real, arm: Vector) -> Rate:
-        """Return the velocity of a link with angular velocity w whose point at `arm` from the origin has the velocity
-        v.
+        """Make the velocity of a link from its angular velocity w and the velocity v of one of its points.
+
+        arm: vector from the origin of the link to this point.
         """
         return cls(v - 1j * w * arm, w)
 
     def at(self, arm: Vector) -> Vector:
-        """Return the velocity of the point at `arm` from the origin (axes of the drawing), m/s."""
+        """Return the velocity of a point of the link, m/s; arm: vector from the origin of the link to the point."""
         return self.v + 1j * self.w * arm
 
 
 @dataclass(frozen=True)
 class Accel:
-    """Acceleration of a link: a of its origin (m/s2), and angular acceleration e (rad/s2)."""
+    """Acceleration of a link.
+
+    Attributes:
+        a: acceleration of its origin (m/s2).
+        e: angular acceleration (rad/s2).
+    """
 
     a: Vector
     e: Real
 
     @classmethod
     def through(cls, a: Vector, e: Real, w: Real, arm: Vector) -> Accel:
-        """Return the acceleration of a link with angular rates w and e whose point at `arm` from the origin has
-        acceleration a.
+        """Make the acceleration of a link from its angular acceleration e and the acceleration a of one of its points.
+
+        w: angular velocity. arm: vector from the origin of the link to the point.
         """
         return cls(a - (1j * e - w * w) * arm, e)
 
     def at(self, arm: Vector, w: Real) -> Vector:
-        """Return the acceleration of the point at `arm` from the origin of a link with angular velocity w, m/s2."""
+        """Return the acceleration of a point of the link, m/s2.
+
+        arm: vector from the origin of the link to the point. w: angular velocity.
+        """
         acceleration: Vector = self.a + (1j * self.e - w * w) * arm
         return acceleration
 
@@ -87,7 +105,12 @@ Accels = Mapping[str, Accel]
 
 @dataclass(frozen=True)
 class Wrench:
-    """Forces on a link reduced to its origin: force (N) and moment about the origin (N m)."""
+    """Forces on a link, reduced to its origin.
+
+    Attributes:
+        force: resultant force (N).
+        moment: resultant moment about the origin (N m).
+    """
 
     force: Vector
     moment: Real
@@ -96,21 +119,22 @@ class Wrench:
         return Wrench(self.force + other.force, self.moment + other.moment)
 
     def about(self, arm: Vector) -> Real:
-        """Return the moment of the same forces about the point at `arm` from the origin, N m."""
+        """Return the moment of these forces about another point, N m; arm: vector from the origin to the point."""
         moment: Real = self.moment - cross(arm, self.force)
         return moment
 
 
 @dataclass(frozen=True)
 class Placement:
-    """Poses of the links of a group, in its order, and its distance from a dead position.
+    """Positions of the links of a group, and how near the group is to a dead position.
 
     Attributes:
+        poses: pose of each link, in the order of the group.
         det: determinant (or root) by which velocities, accelerations and reactions are divided.
-        margin: its dimensionless magnitude, 1 at best and 0 in a dead position (the sine of the transmission angle
-            where there is one).
-        residual: negative by the distance (m; dimensionless for two guides) to the loss of the assembly, positive by
-            the distance by which the group fails to assemble.
+        margin: dimensionless magnitude of det, 1 at best and 0 in a dead position. It is the sine of the transmission
+            angle where there is one.
+        residual: distance by which the group fails to assemble (m; dimensionless for two guides). If negative, the
+            group is assembled, with this distance to spare.
         slack: rounding error of the residual.
     """
 
@@ -141,14 +165,16 @@ class Placement:
 
 @dataclass(frozen=True)
 class PairReaction:
-    """Reaction on one link at one point: force (N), and for a prismatic pair a couple (N m).
+    """Reaction in a pair on one of its links.
 
     Attributes:
-        tangential, normal: components of the reaction of an external hinge across and along its link, in the order in
-            which the force plan determines them.
-        at: point of action (m), if the pair has none of its own (teeth).
-        back: couple on the other link (N m), if it is not the opposite of this one (a cam defined by its law of
-            motion).
+        force: force (N).
+        couple: couple in a prismatic pair (N m), otherwise None.
+        tangential, normal: components of the reaction of an external hinge, perpendicular to its link and along it, as
+            the force plan determines them; otherwise None.
+        at: point of action (m); None if it is the point of the pair. Teeth have no such point.
+        back: couple on the other link (N m); None if it is the opposite of `couple`. It differs for a cam that is
+            defined by its law of motion.
     """
 
     force: Vector
@@ -160,7 +186,7 @@ class PairReaction:
 
     @property
     def opposite(self) -> PairReaction:
-        """Reaction on the other link of the pair."""
+        """The reaction on the other link of the pair."""
         if self.back is not None:
             return PairReaction(-self.force, self.back, at=self.at, back=self.couple)
         return PairReaction(-self.force, None if self.couple is None else -self.couple, at=self.at)
@@ -168,10 +194,13 @@ class PairReaction:
 
 @dataclass(frozen=True)
 class GroupReactions:
-    """Reactions of a group: of external pairs on its own links, of internal pairs on their second links (in a dyad: b).
+    """Reactions in the pairs of a group. Couples of prismatic pairs are taken about their sliding points.
 
-    Both are in the order of the pairs of the group. The couple of a prismatic pair is taken about its sliding point.
-    drives: force (N) or moment (N m) of each driver between links of the group, by the driven link.
+    Attributes:
+        outer: reactions of the external pairs on the links of the group, in the order of the pairs.
+        inner: reactions of the internal pairs on the second link of each pair (in a dyad: on b), in the order of the
+            pairs.
+        drives: force (N) or moment (N m) of each driver between links of the group, by name of the driven link.
     """
 
     outer: tuple[PairReaction, ...]
@@ -181,8 +210,11 @@ class GroupReactions:
 
 @dataclass(frozen=True)
 class DriverState:
-    """Coordinate of a driver (rad or m), with its first and second derivatives with respect to the parameter of the
-    motion.
+    """Coordinate of a driver and its derivatives with respect to the parameter of the motion.
+
+    Attributes:
+        value: coordinate (rad or m).
+        first, second: first and second derivatives.
     """
 
     value: Real
@@ -195,18 +227,26 @@ DriverStates = Mapping[str, DriverState]
 
 @dataclass(frozen=True)
 class GroupState:
-    """Origins (m) and accumulated angles (rad) of the links of a group, on the last axis."""
+    """State of a group. The last axis of the arrays is the link.
+
+    Attributes:
+        x: positions of the origins (m).
+        unwrapped: angles accumulated through full turns (rad).
+    """
 
     x: Vector
     unwrapped: Real
 
     def moved(self, step: Real, size: Real | float) -> GroupState:
-        """Return the state after a step (..., 3 links) of x, y and angle of each link; lengths of the step in units of
-        `size` (m).
+        """Return the state after a step.
+
+        Args:
+            step: changes of x, y and angle of each link, shape (..., 3 links); lengths are in units of `size`.
+            size: unit of these lengths (m).
         """
         parts = step.reshape(*np.shape(step)[:-1], np.shape(step)[-1] // 3, 3)
         return GroupState(self.x + size * (parts[..., 0] + 1j * parts[..., 1]), self.unwrapped + parts[..., 2])
 
     def part(self, chosen: slice) -> GroupState:
-        """Return a slice of many states."""
+        """Select some of many states (a slice of the first axis)."""
         return GroupState(self.x[chosen], self.unwrapped[chosen])

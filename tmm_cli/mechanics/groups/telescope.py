@@ -1,9 +1,9 @@
-"""Telescope and arm: a group of three links, two of which slide in each other as a driver between them prescribes.
+"""Telescope and arm: a group of three links, two of which slide in each other, driven by a driver between them.
 
-With the run of the driver given, these two are one body. So the group is solved as a dyad of the arm and of the outer
-part m of the telescope, in whose axes the pin of the inner part n, which holds the arm, has moved. A point of n moves
-as if n were attached to a link that moves like that of m and, besides, along the guide: so velocities and accelerations
-follow from the dyad too, and reactions as if both parts were one body.
+When the driver coordinate is given, the two sliding parts are one body. The group is therefore solved as a dyad of the
+arm and the outer part m, with the pin of the inner part n, which carries the arm, displaced in the axes of m. For
+velocities and accelerations the motion of n along the guide is added to the motion of the link that supports m, so they
+follow from the dyad too. Reactions follow as if m and n were one body.
 """
 
 from __future__ import annotations
@@ -39,10 +39,15 @@ UNDER = "\0under m"  # the link to which m is attached, as seen from n; no link 
 
 @dataclass(frozen=True)
 class TelescopeParts:
-    """Links of the group: arm, n and m, and the dyad that they form when n does not slide on m; its internal pair is
-    n's.
+    """Links of a telescope, and the dyad that they form when the driver is fixed.
 
-    The links of the dyad are the arm and m, in the order of their external pairs, revolute pairs first.
+    Attributes:
+        arm: the arm, paired with n.
+        n: inner part of the telescope.
+        m: outer part of the telescope.
+        slide: prismatic pair of m and n.
+        dyad: dyad of arm and m. Its links are in the order of their external pairs, revolute pairs first; its internal
+            pair is the pair of n and the arm.
     """
 
     arm: str
@@ -53,7 +58,7 @@ class TelescopeParts:
 
     @classmethod
     def of(cls, group: Group) -> TelescopeParts | None:
-        """Recognise a telescope; None if the group is another one."""
+        """Recognise a telescope and its links; None if the group is not a telescope."""
         if (len(group.links), len(group.inner), len(group.outer), len(group.drivers)) != (3, 2, 2, 1):
             return None
         driven = [pair for pair in group.inner if pair.slide and pair.name == group.drivers[0].joint]
@@ -82,8 +87,13 @@ class TelescopeParts:
 
 @dataclass(frozen=True)
 class Telescope(ClosedFormSolver):
-    """Solver of a telescope. dyad: its dyad with the joint of n in n's own axes; hung: the link to which m is
-    attached.
+    """Solver of a telescope.
+
+    Attributes:
+        chain: links of the telescope.
+        dyad: solver of its dyad, with the pair of n and the arm in the axes of n.
+        hung: link to which m is attached.
+        pin: hinge of n and the arm in the axes of n (m).
     """
 
     chain: TelescopeParts
@@ -121,12 +131,12 @@ class Telescope(ClosedFormSolver):
 
     @property
     def driver(self) -> Driver:
-        """Driver of the telescope."""
+        """The driver of the telescope."""
         return self.group.drivers[0]
 
     @property
     def _along(self) -> Vector:
-        """Direction of n along m for an increasing run, in the axes of m."""
+        """Direction in which n moves along m when the driver coordinate increases, in the axes of m."""
         slide = self.chain.slide
         direction: Vector = (
             unit(slide.direction) if slide.carrier == self.chain.m else -unit(slide.direction - slide.turned)
@@ -134,7 +144,7 @@ class Telescope(ClosedFormSolver):
         return direction
 
     def _of_n(self, run: Real) -> tuple[Vector, float]:
-        """Return origin (m) and angle (rad) of n in the axes of m, at a run of the driver."""
+        """Return origin (m) and angle (rad) of n in the axes of m; run: driver coordinate (m)."""
         slide = self.chain.slide
         if slide.carrier == self.chain.m:
             return slide.through + run * unit(slide.direction) - slide.at * unit(slide.turned), slide.turned
@@ -142,7 +152,7 @@ class Telescope(ClosedFormSolver):
         return slide.at - guide_point * unit(-slide.turned), -slide.turned
 
     def _locked(self, run: Real) -> AnyDyad:
-        """Return the dyad with the driver fixed at a run."""
+        """Return the solver of the dyad with the driver fixed at the coordinate `run` (m)."""
         origin, angle = self._of_n(run)
         of_m, inner = self.chain.m == self.dyad.group.links[0], self.dyad.inner
         other_link = self.chain.m if of_m else self.chain.arm
@@ -157,7 +167,7 @@ class Telescope(ClosedFormSolver):
         return replace(self.dyad, inner=moved, sign=self.sign)
 
     def _two(self, at: Placement) -> Placement:
-        """Return the placement of the two links of the dyad."""
+        """Reduce a placement of the telescope to the two links of the dyad."""
         pose_of = dict(zip(self.group.links, at.poses, strict=True))
         return replace(at, poses=tuple(pose_of[link] for link in self.chain.dyad.links))
 
@@ -165,7 +175,7 @@ class Telescope(ClosedFormSolver):
         return {**poses, UNDER: poses[self.hung]}
 
     def _ordered(self, arm: Any, n: Any, m: Any) -> Any:
-        """Return the values of the three links in the order of the group."""
+        """Arrange values of the three links in the order of the links of the group."""
         value_of = {self.chain.arm: arm, self.chain.n: n, self.chain.m: m}
         return tuple(value_of[link] for link in self.group.links)
 
@@ -190,7 +200,10 @@ class Telescope(ClosedFormSolver):
         return dyad.residual_rate(flat, known, self._rates(rates, slid), drives)
 
     def _rates(self, rates: Rates, slid: Vector) -> dict[str, Rate]:
-        """Return the rates of the known links, with that of the link to which n appears attached."""
+        """Add the velocity of the imaginary link to which m seems to be attached, as seen from n.
+
+        slid: velocity of n along the guide.
+        """
         hung = rates[self.hung]
         return {**rates, UNDER: Rate(hung.v + slid, hung.w)}
 
@@ -209,7 +222,7 @@ class Telescope(ClosedFormSolver):
         return ordered
 
     def _m(self, at: Placement) -> tuple[Pose, Vector]:
-        """Return the pose of m, and the vector from its origin to that of n."""
+        """Return the pose of m, and the vector from the origin of m to that of n."""
         pose_of = dict(zip(self.group.links, at.poses, strict=True))
         m = pose_of[self.chain.m]
         return m, pose_of[self.chain.n].x - m.x
@@ -235,7 +248,7 @@ class Telescope(ClosedFormSolver):
         return ordered
 
     def reactions(self, at: Placement, poses: Poses, applied: tuple[Wrench, ...]) -> GroupReactions:
-        """Reactions of the dyad; then the equilibrium of n gives the forces of the guide and of the driver."""
+        """Compute the reactions of the dyad, then those of the guide and the driver from the equilibrium of n."""
         chain, slide = self.chain, self.chain.slide
         pose = dict(zip(self.group.links, at.poses, strict=True))
         borne = dict(zip(self.group.links, applied, strict=True))

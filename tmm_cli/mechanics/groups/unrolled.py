@@ -1,9 +1,9 @@
-"""Newton's method as straight-line arithmetic, for traced operations and many positions at once.
+"""Newton's method as a fixed sequence of array operations, so that it can be traced and run for many positions at once.
 
-The equations are those of newton.py, with every coefficient an array of its own. Angles that a pair determines from
-other angles, and origins that a hinge determines from angles, are explicit, so that few unknowns remain (two, after
-elimination, for a group of class III); these get a fixed number of steps from given initial guesses. The residual
-tells where that was enough; the other positions have to be solved by newton.py.
+The equations are those of newton.py, with a separate array for every coefficient. Angles that a pair determines from
+other angles, and origins that a hinge determines from angles, are explicit. Few unknowns therefore remain: two, after
+elimination, for a group of class III. A fixed number of steps is made from given initial guesses. The residual shows
+where that was enough; the other positions have to be solved by newton.py.
 """
 
 from __future__ import annotations
@@ -36,13 +36,17 @@ GIVE_ANGLES = "PGD"  # kinds of constraints whose first row may determine an ang
 
 @dataclass(frozen=True)
 class ExplicitOrder:
-    """Explicit angles and origins as (index of the constraint, link), in their order, and the order of elimination.
+    """Which unknowns of a group are explicit, and the order of elimination.
 
-    The index of an unknown is three times that of its link, plus 0, 1 or 2 for x, y and the angle.
+    An unknown is numbered three times the index of its link, plus 0, 1 or 2 for x, y and the angle.
 
     Attributes:
-        shifts: full turns (rad) of the angle of a link beyond the value that its constraint gives.
-        pushing: order of elimination of the force equations, if some constraint has other coefficients for forces.
+        angles: explicit angles in turn, as (index of the constraint that gives the angle, link).
+        origins: explicit origins in turn, as (index of the constraint that gives the origin, link).
+        order: order of elimination.
+        pushing: order of elimination of the force equations; differs from `order` if a constraint has other
+            coefficients for forces than for motion.
+        shifts: full turns (rad) to be added to the angle that the constraint gives, by name of the link.
     """
 
     angles: tuple[tuple[int, str], ...]
@@ -53,7 +57,12 @@ class ExplicitOrder:
 
 
 def find_explicit_order(constraints: Sequence[PairConstraint], links: Sequence[str]) -> ExplicitOrder:
-    """Find the order for the constraints on these links that makes as many unknowns as possible explicit."""
+    """Find an order of the unknowns of a group in which as many as possible are explicit.
+
+    Args:
+        constraints: constraint equations of the group.
+        links: links of the group.
+    """
     alike = {n for n, c in enumerate(constraints) if type(c).pushes is PairConstraint.pushes}
     angle_links = {n: [link for link in _links_with_angles(c) if link in links] for n, c in enumerate(constraints)}
     angles, origins, order = _order_unknowns(constraints, links, angle_links)
@@ -69,7 +78,10 @@ Explicit = tuple[tuple[int, str], ...]
 def _order_unknowns(
     constraints: Sequence[PairConstraint], links: Sequence[str], turning: dict[int, list[str]]
 ) -> tuple[Explicit, Explicit, EliminationOrder]:
-    """Return explicit angles (from the constraints in `turning`), explicit origins, and the order of elimination."""
+    """Find explicit angles, explicit origins and the order of elimination.
+
+    turning: constraints that may give an angle explicitly, by index, with the links whose angles they contain.
+    """
     order = {link: k for k, link in enumerate(links)}
     first = [sum(len(c.lengths) for c in constraints[:n]) for n in range(len(constraints))]
     busy = {link: sum(link in c.links for c in constraints) for link in links}
@@ -93,7 +105,7 @@ def _order_unknowns(
 
 
 def _links_with_angles(constraint: PairConstraint) -> tuple[str, ...]:
-    """Return the links whose angles are in the first row of a constraint that can determine one of them."""
+    """Return the links whose angles the first row of a constraint relates; empty if it relates other quantities."""
     if constraint.kind not in GIVE_ANGLES or constraint.lengths[0]:
         return ()
     return constraint.links
@@ -102,9 +114,12 @@ def _links_with_angles(constraint: PairConstraint) -> tuple[str, ...]:
 def _assign_rows(
     rows: dict[int, list[str]], links: Sequence[str], busy: Mapping[str, int]
 ) -> tuple[list[tuple[int, str]], list[str]]:
-    """Assign each link to a row that determines it, in order; return these, and the links that remain free.
+    """Assign each link to a row that determines it, in turn.
 
-    If no row has a single undetermined link, the link with most constraints is left free.
+    Where no row has only one undetermined link left, the link with most constraints is left free.
+
+    Returns:
+        The assignments (row, link), and the links that are left free.
     """
     assigned: list[tuple[int, str]] = []
     free: list[str] = []
@@ -131,17 +146,21 @@ STEPS = 1  # from tabulated initial guesses
 
 
 class NotUnrolledError(ValueError):
-    """The group has no such form: more equations than unknowns, or no trace for initial guesses."""
+    """The group cannot be solved by UnrolledNewton.
+
+    It has more equations than unknowns, or no trace that gives initial guesses.
+    """
 
 
 @dataclass(frozen=True)
 class UnrolledNewton(NewtonSolver):
-    """Newton's method on the free unknowns of a group.
+    """Newton's method on the unknowns of a group that are not explicit.
 
     Attributes:
+        closure: explicit unknowns and order of elimination.
         starts: initial guesses of the free unknowns (m, rad), arrays over positions.
-        steps: number of steps.
-        enough: size of the last step below which the group is closed (sizes of the group, rad).
+        steps: number of Newton steps.
+        enough: largest last step with which the group counts as solved (sizes of the group, rad).
     """
 
     closure: ExplicitOrder | None = None
@@ -153,8 +172,16 @@ class UnrolledNewton(NewtonSolver):
     def from_newton(
         cls, kernel: NewtonSolver, poses: Poses, drives: DriverStates, geared: Container[str] = ()
     ) -> UnrolledNewton:
-        """Convert a solver; poses and drives: in the sketch; geared: links whose full turns count. Raises
-        NotUnrolledError.
+        """Convert a solver by Newton's method.
+
+        Args:
+            kernel: the solver.
+            poses: poses of the known links in the sketch.
+            drives: coordinates of the drivers in the sketch.
+            geared: links whose full turns matter to gears.
+
+        Raises:
+            NotUnrolledError: the solver cannot be converted.
         """
         rows = sum(len(c.lengths) for c in kernel.constraints)
         if kernel.passive or kernel.start is None or rows != 3 * len(kernel.group.links):
@@ -190,7 +217,7 @@ class UnrolledNewton(NewtonSolver):
 
     @property
     def free(self) -> tuple[int, ...]:
-        """Indices of the free unknowns: three times that of the link, plus 0, 1 or 2 for x, y or the angle."""
+        """Numbers of the free unknowns: three times the index of the link, plus 0, 1 or 2 for x, y or the angle."""
         return self.closed_by.order.free
 
     @cached_property
@@ -200,11 +227,11 @@ class UnrolledNewton(NewtonSolver):
 
     @cached_property
     def lengths(self) -> list[bool]:
-        """For each row, True if it is in metres."""
+        """For each constraint equation, True if it is in metres."""
         return [length for c in self.constraints for length in c.lengths]
 
     def values(self, states: Sequence[Any]) -> list[Any]:
-        """Select the free unknowns from x, y and angle of all links in turn."""
+        """Select the free unknowns from the list of x, y and angle of each link."""
         return [states[column] for column in self.free]
 
     def _shifts(self, poses: Poses, drives: DriverStates) -> dict[str, float]:
@@ -219,7 +246,7 @@ class UnrolledNewton(NewtonSolver):
         return shifts
 
     def posed(self, free: Mapping[int, Any], poses: Poses, drives: DriverStates) -> dict[str, Pose]:
-        """Return the poses of all links for values of the free unknowns; the explicit equations hold."""
+        """Compute the poses of all links from values of the free unknowns and the explicit equations."""
         angles: dict[str, Any] = _AnglesOfLinks(poses)
         names = self.group.links
         angles.update({names[k // 3]: value for k, value in free.items() if k % 3 == 2})
@@ -241,7 +268,7 @@ class UnrolledNewton(NewtonSolver):
         return link_poses
 
     def rows(self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]]) -> list[EquationRow]:
-        """Return the rows of all constraints; lengths are not scaled."""
+        """Assemble the rows of all constraints. Lengths are not scaled."""
         all_rows: list[dict[int, Any]] = []
         for constraint, of_links in zip(self.constraints, parts, strict=True):
             pair_rows: list[dict[int, Any]] = [{} for _ in constraint.lengths]
@@ -258,7 +285,7 @@ class UnrolledNewton(NewtonSolver):
     def eliminated(
         self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]], order: EliminationOrder
     ) -> EliminatedSystem:
-        """Eliminate the explicit unknowns from the rows and make the rest triangular."""
+        """Eliminate the explicit unknowns and make the remaining equations triangular."""
         mixed = len({self.lengths[row] for row in order.closing}) > 1 or len({k % 3 == 2 for k in order.free}) > 1
         scales = None
         if mixed:
@@ -267,7 +294,7 @@ class UnrolledNewton(NewtonSolver):
         return EliminatedSystem(self.rows(parts), order, scales)
 
     def _moved(self, free: Mapping[int, Any], poses: Poses, drives: DriverStates) -> dict[int, Any]:
-        """Return one step of Newton's method."""
+        """Compute one Newton step of the free unknowns."""
         everything = self.posed(free, poses, drives)
         short = [value for c in self.constraints for value in c.residuals(everything, drives)]
         by = self.eliminated(self._rows(everything), self.closed_by.order)
@@ -317,8 +344,9 @@ class UnrolledNewton(NewtonSolver):
     def _right(
         self, poses: Poses, motion: Mapping[str, tuple[Any, Any]], drives: DriverStates, order: int
     ) -> list[Any]:
-        """Return the right-hand sides: derivatives prescribed by drivers less the contributions of the known links, in
-        SI.
+        """Return the right-hand sides of the velocity (order 1) or acceleration (order 2) equations, in SI units.
+
+        They are the derivatives that drivers prescribe less the contributions of the known links.
         """
         right_sides = []
         for constraint in self.constraints:
@@ -344,7 +372,7 @@ class UnrolledNewton(NewtonSolver):
 
 
 class _AnglesOfLinks(dict[str, Any]):
-    """Angles of the links of a group, and on first access those of the known links."""
+    """Angles of links by name. The angle of a known link is taken from its pose on first access."""
 
     def __init__(self, poses: Poses) -> None:
         super().__init__()
@@ -356,6 +384,6 @@ class _AnglesOfLinks(dict[str, Any]):
 
 
 def _split_by_link(unknowns: Sequence[Any]) -> Iterator[tuple[Any, Any]]:
-    """Yield origin and angle of each link from the list of unknowns."""
+    """Split a list of unknowns into complex origin and angle of each link."""
     for k in range(0, len(unknowns), 3):
         yield unknowns[k] + 1j * unknowns[k + 1], unknowns[k + 2]

@@ -1,4 +1,4 @@
-"""Range of the driver, dead positions within it, and travel of sliding blocks beyond their guides."""
+"""Range of the driver, dead positions within it, and travel of sliding blocks beyond the ends of their guides."""
 
 from __future__ import annotations
 
@@ -31,9 +31,13 @@ ALMOST = 1e-5  # fraction of the range of the trace: so near to infinity a group
 
 @dataclass(frozen=True)
 class DriverLimit:
-    """A limit of the driver coordinate, and the group that stops the driver.
+    """A limit of the driver coordinate.
 
-    driver: with several drivers, whose coordinates follow from time, the first driver if it stops by itself.
+    Attributes:
+        place: the limit (rad or m).
+        group: title of the group that stops the driver; empty if the driver stops by itself.
+        driver: name of the first driver if it decelerates to rest (possible with several drivers only); otherwise
+            empty.
     """
 
     place: float
@@ -43,12 +47,15 @@ class DriverLimit:
 
 @dataclass(frozen=True)
 class DriverRange:
-    """Range of the driver from the sketch on: full turns, or between two limits (rad, or m for a slider).
+    """Range of the driver about the position of the sketch (rad, or m for a slider).
 
     Attributes:
-        turns: turns of the driver after which the mechanism repeats; the range covers that many.
+        start, end: ends of the range.
+        full: True if the driver can make full turns. The range is then one cycle.
+        limits: limits that stop the driver.
+        turns: number of turns after which the mechanism repeats.
         repeats: False if no such number was found.
-        inclusive: both ends are those of the stroke of the driver, and not dead positions.
+        inclusive: True if both ends are the ends of the stroke of the driver, and not dead positions.
     """
 
     start: float
@@ -62,9 +69,13 @@ class DriverRange:
 
 @dataclass(frozen=True)
 class DeadPosition:
-    """Driver coordinate at which a group has no determinate velocities, and its margin there.
+    """A dead position: velocities of a group are indeterminate.
 
-    passed: the group passes it smoothly; its determinant may change sign.
+    Attributes:
+        place: driver coordinate (rad or m).
+        group: title of the group.
+        margin: margin of the group there; see Placement.
+        passed: True if the group passes the position smoothly. The sign of its determinant may change there.
     """
 
     place: float
@@ -74,8 +85,9 @@ class DeadPosition:
 
 
 def find_range(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> DriverRange:
-    """Find the range of the driver about the sketch, with limits to the last bit; no greater than its stroke, if
-    given.
+    """Find the range of the driver about the sketch; its limits are accurate to the last bit.
+
+    If the file gives the stroke of the driver, the range does not exceed the stroke.
     """
     driver_range = _range_about_sketch(linkage, kernels)
     stroke = linkage.driver.stroke
@@ -146,7 +158,7 @@ def _range_about_sketch(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> D
 
 
 def _stops_before(linkage: Linkage, q: Real) -> Real:
-    """Return True where the first of several drivers decelerates to rest before it reaches q."""
+    """Return True where the first of several drivers comes to rest before it reaches the driver coordinate q."""
     lead = linkage.driver
     if not linkage.others:
         return np.zeros(np.shape(q), dtype=bool)
@@ -155,7 +167,7 @@ def _stops_before(linkage: Linkage, q: Real) -> Real:
 
 
 def _returns_after_cycle(linkage: Linkage, kernels: tuple[GroupSolver, ...], at: float, half: float) -> bool:
-    """Return True if all links return after a cycle; a rack driven by a rotating gear does not."""
+    """Return True if all links are in the same position after a cycle. A rack driven by a rotating gear is not."""
     motion = link_states(linkage, kernels, np.array([at, at + 2 * half]), 0)
     size = max((kernel.size for kernel in kernels), default=1.0)
     moved = [max(abs(np.diff(pose.x)[0]) / size, abs(np.diff(pose.z)[0])) for pose in motion.poses.values()]
@@ -163,7 +175,10 @@ def _returns_after_cycle(linkage: Linkage, kernels: tuple[GroupSolver, ...], at:
 
 
 def _at_infinity(kernel: GroupSolver, place: float, towards: int) -> float:
-    """Return the limit where links of a traced group go to infinity: positions just before it cannot be solved."""
+    """Return the driver coordinate at which links of a traced group reach infinity, if it is close to `place`.
+
+    Positions just before it cannot be solved. Otherwise `place` is returned.
+    """
     trace = kernel.followed
     end = (0, -1)[towards > 0]
     if trace is None or not trace.lost[end]:
@@ -174,7 +189,7 @@ def _at_infinity(kernel: GroupSolver, place: float, towards: int) -> float:
 
 
 def _search_interval(kernels: tuple[GroupSolver, ...], at: float, half: float) -> tuple[float, float]:
-    """Return the interval about the sketch to examine: a cycle, or to the ends of a trace beyond that."""
+    """Return the interval to examine, relative to the sketch: a cycle, or more if the trace of a group extends further."""
     low, high = -half, half
     for kernel in kernels:
         trace = kernel.followed
@@ -184,7 +199,7 @@ def _search_interval(kernels: tuple[GroupSolver, ...], at: float, half: float) -
 
 
 def _trace_limits(kernel: GroupSolver) -> tuple[float, ...]:
-    """Return the driver coordinates at which a traced group reaches a limit."""
+    """Return the driver coordinates at which the trace of a group ends in a limit."""
     trace = kernel.followed
     if trace is None or trace.closed:
         return ()
@@ -192,9 +207,7 @@ def _trace_limits(kernel: GroupSolver) -> tuple[float, ...]:
 
 
 def link_rotations(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> dict[str, int]:
-    """Return the turns in one turn of the driver of the links on which gears depend, where their angles were
-    accumulated.
-    """
+    """Return the revolutions per revolution of the driver of links with accumulated angles (gears and their carriers)."""
     rotations = {}
     for kernel in kernels:
         winding = kernel.winding if isinstance(kernel, ClosedFormSolver) else None
@@ -206,9 +219,7 @@ def link_rotations(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> dict[s
 
 
 def cycle_turns(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> int | None:
-    """Return the driver turns in a cycle, from loads, gears, drivers and groups that repeat after several turns; or
-    None.
-    """
+    """Return the number of driver turns after which loads, gears, drivers and groups all repeat; None if they never do."""
     turns = turns_of_cycle(linkage, link_rotations(linkage, kernels))
     for kernel in kernels:
         trace = kernel.followed
@@ -228,8 +239,9 @@ def cycle_turns(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> int | Non
 
 
 def _nearly_lost(linkage: Linkage, kernels: tuple[GroupSolver, ...], scan: LinkStates, number: int) -> Real:
-    """Return the driver coordinates at which a group is closest to losing its assembly, between the samples of a
-    scan.
+    """Find where a group comes closest to losing its assembly between the samples of a scan.
+
+    number: index of the group.
     """
     residual = np.where(np.isfinite(scan.placements[number].residual), scan.placements[number].residual, -np.inf)
     inner = residual[1:-1]
@@ -246,10 +258,11 @@ def _nearly_lost(linkage: Linkage, kernels: tuple[GroupSolver, ...], scan: LinkS
 
 
 def _is_lost(motion: LinkStates, side: list[float]) -> Real:
-    """Return, for each group and driver coordinate, True if the linkage cannot be there: shape (groups, positions).
+    """Return True where the linkage cannot be: shape (groups, positions).
 
-    Either it cannot be assembled, or only beyond a dead position, which shows as another sign of the determinant: two
-    guides became parallel in between, and their intersection went to infinity.
+    A group cannot be assembled there, or it can but lies beyond a dead position, which the opposite sign of the
+    determinant shows. In the latter case two guides have become parallel in between, and their intersection has passed
+    through infinity.
     """
     lost = [
         motion.missing[kernel.group.title] | (np.sign(at.det) * kernel.side(motion.q) == -sign)
@@ -265,9 +278,19 @@ def limit_a_cycle_away(
     about: tuple[float, float],
     limit: Callable[[int, int], DriverLimit],
 ) -> DriverLimit | None:
-    """Return the other limit if all blocked coordinates lie on one side of the sketch: a cycle away.
+    """Find the second limit if all blocked driver coordinates lie on one side of the sketch.
 
-    None if the blocked coordinates extend to the end of the examined interval.
+    The other end of the blocked interval, moved by one cycle, is then the second limit.
+
+    Args:
+        known_limit: the first limit.
+        blocked: indices of the blocked samples.
+        steps: samples of the driver coordinate, relative to the sketch.
+        about: driver coordinate of the sketch, and length of the cycle.
+        limit: function that locates a limit, given the index of a blocked sample and the direction towards it.
+
+    Returns:
+        The limit; None if the blocked coordinates extend to the end of the examined interval.
     """
     at, cycle = about
     sense = -1 if known_limit.place > at else 1
@@ -281,7 +304,10 @@ def limit_a_cycle_away(
 def find_dead_positions(
     linkage: Linkage, kernels: tuple[GroupSolver, ...], driver_range: DriverRange
 ) -> tuple[DeadPosition, ...]:
-    """Find the dead positions inside the range; its limits, which are dead positions too, are not repeated."""
+    """Find the dead positions inside the range of the driver.
+
+    The limits of the range are dead positions too, but are not included.
+    """
     q = np.linspace(driver_range.start, driver_range.end, SCAN * driver_range.turns + 1)
     motion = link_states(linkage, kernels, q, 0)
     dead_positions = []
@@ -314,8 +340,9 @@ def find_dead_positions(
 def _passed_dead_positions(
     linkage: Linkage, upto: tuple[GroupSolver, ...], driver_range: DriverRange
 ) -> list[DeadPosition]:
-    """Return the dead positions inside the range that the last group passes smoothly: from its trace or its change
-    points.
+    """Return the dead positions inside the range that the last group passes smoothly.
+
+    They are known from its trace or from its change points.
     """
     last, title = upto[-1], upto[-1].group.title
     trace, change_points = last.followed, last.way if isinstance(last, ClosedFormSolver) else None
@@ -330,13 +357,13 @@ def _passed_dead_positions(
 
 
 def _driver_distance(q: float, other_q: float, driver_range: DriverRange) -> float:
-    """Return the signed distance of two driver coordinates, the shorter way round a full cycle."""
+    """Return the difference of two driver coordinates, reduced by full cycles if the driver makes full turns."""
     cycle = driver_range.end - driver_range.start
     return q - other_q - cycle * round((q - other_q) / cycle) if driver_range.full else q - other_q
 
 
 def _last_margin(linkage: Linkage, kernels: tuple[GroupSolver, ...], q: Real) -> Real:
-    """Return the margin of the last group."""
+    """Return the margin of the last group; zero where the linkage cannot be assembled."""
     motion = link_states(linkage, kernels, q, 0)
     return np.where(motion.placed, motion.placements[-1].margin, 0.0)
 
@@ -349,12 +376,15 @@ def _last_margin(linkage: Linkage, kernels: tuple[GroupSolver, ...], q: Real) ->
 
 @dataclass(frozen=True)
 class SlotExcess:
-    """Largest travel of a sliding block beyond an end of its guide, or its closest approach to it.
+    """Largest travel of a sliding block beyond one end of its guide, or its closest approach to this end.
 
     Attributes:
-        point: the end of the guide.
-        far: largest distance beyond it (m; negative: distance left before it), at the driver coordinate `place`.
-        ways: intervals of the driver coordinate (rad or m) in which the block is beyond the end.
+        slide: prismatic pair of the block.
+        point: name of the end of the guide.
+        length: length of the guide (m).
+        far: largest distance of the block beyond the end (m); negative if it stays before the end.
+        place: driver coordinate at which this occurs (rad or m).
+        ways: intervals of the driver coordinate in which the block is beyond the end.
     """
 
     slide: Slide
@@ -368,10 +398,14 @@ class SlotExcess:
 def find_slot_excess(
     linkage: Linkage, kernels: tuple[GroupSolver, ...], driver_range: DriverRange, requested: Sequence[float]
 ) -> tuple[SlotExcess, ...]:
-    """Return the result for both ends of every bounded guide, over the range of the driver.
+    """Find how far sliding blocks travel beyond the ends of their guides, for both ends of every guide of limited length.
 
-    requested: individual driver coordinates; if the driver cannot make a full turn, the range is that between
-    the first and the last of them.
+    Args:
+        linkage: the linkage.
+        kernels: solvers of its groups.
+        driver_range: range of the driver.
+        requested: requested driver coordinates. If the driver cannot make full turns, only the range between the first
+            and the last of them is examined.
     """
     driven = {driver.joint for driver in linkage.drivers if driver.kind == "slide"}
     slides = [slide for slide in linkage.slides if slide.ends is not None and slide.name not in driven]
@@ -396,7 +430,7 @@ def find_slot_excess(
 
 @dataclass(frozen=True)
 class _SegmentEnd:
-    """One end of a bounded guide; forward: +1 for its last point, -1 for its first."""
+    """One end of a guide of limited length; forward: +1 for the end at its last point, -1 at its first."""
 
     linkage: Linkage
     kernels: tuple[GroupSolver, ...]
@@ -410,14 +444,20 @@ class _SegmentEnd:
         return abs(last - first)
 
     def beyond(self, run: Real) -> Real:
-        """Return the distance of a run along the guide beyond the end, m."""
+        """Return the distance (m) beyond the end for displacements `run` along the guide."""
         return run - self.length if self.forward > 0 else -run
 
     def at(self, q: Real) -> Real:
         return self.beyond(link_states(self.linkage, self.kernels, q, 0).run(self.slide))
 
     def excess(self, q: Real, run: Real, full: bool) -> SlotExcess:
-        """Return the result over the driver coordinates q; full: they cover the whole cycle."""
+        """Find the largest travel beyond the end.
+
+        Args:
+            q: driver coordinates of samples.
+            run: displacements of the block along the guide (m) at q.
+            full: True if q covers a full cycle.
+        """
         far = self.beyond(run)
         k = int(np.argmax(far))
         low, high = q[max(k - 1, 0)], q[min(k + 1, len(q) - 1)]
@@ -427,7 +467,10 @@ class _SegmentEnd:
         return SlotExcess(self.slide, self.point, self.length, most, place, ways)
 
     def ways(self, q: Real, far: Real, full: bool) -> tuple[tuple[float, float], ...]:
-        """Return the intervals beyond the end; in a cycle the last interval may continue through its end."""
+        """Return the intervals of the driver coordinate in which the block is beyond the end.
+
+        In a full cycle the last interval may extend into the next cycle.
+        """
         out = far > 0
         change = np.flatnonzero(out[:-1] != out[1:])
         crossings = find_roots(self.at, q[change], q[change + 1]) if change.size else np.zeros(0)

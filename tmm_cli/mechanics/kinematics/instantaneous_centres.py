@@ -1,8 +1,8 @@
 """Instantaneous centres of all pairs of links, and their construction by Kennedy's theorem.
 
-The centres are computed from velocities, which works for every linkage; the construction is given besides: the centres
-of three links are collinear, so a centre is the intersection of two such lines. A. B. W. Kennedy, The Mechanics of
-Machinery (1886).
+The centres are computed from velocities, which works for every linkage. Their construction is described too: the three
+centres of three links are collinear, so that a centre is the intersection of two lines through known centres (A. B. W.
+Kennedy, The Mechanics of Machinery, 1886).
 """
 
 from __future__ import annotations
@@ -32,10 +32,11 @@ class InstantCentre:
     """Instantaneous centre of two links in one position.
 
     Attributes:
-        place: its position (m); None at infinity, or if the links have no relative motion.
+        links: names of the two links.
+        place: position of the centre (m); None if it is at infinity, or if the links have no relative motion.
         direction: unit vector towards a centre at infinity, otherwise None.
-        pair: a kinematic pair of the two links that determines it.
-        lines: two lines through known centres that intersect in it.
+        pair: name of a kinematic pair of the two links that determines the centre; otherwise empty.
+        lines: two lines whose intersection is the centre, each through two known centres.
     """
 
     links: LinkPair
@@ -46,7 +47,11 @@ class InstantCentre:
 
 
 def find_centres(states: LinkStates, structure: Structure, k: int) -> list[InstantCentre]:
-    """Return all centres in position k: those of pairs, then the others in the order of the construction."""
+    """Find all instantaneous centres in position k.
+
+    Returns:
+        The centres determined by pairs, then the other centres in the order of their construction.
+    """
     names = (FRAME, *states.linkage.moving)
     size = _linkage_size(states, k)
     motion = {name: _velocity_about_origin(states, name, k) for name in names}
@@ -73,7 +78,10 @@ def find_centres(states: LinkStates, structure: Structure, k: int) -> list[Insta
 
 
 def _pair_centre(states: LinkStates, pair: Pair, k: int) -> CentrePlace | None:
-    """Return the centre of a hinge or guide, which exists even without relative motion; None for a higher pair."""
+    """Return the centre of a hinge or guide; None for a higher pair.
+
+    It exists even if the links have no relative motion.
+    """
     if pair.slide is not None:
         guide = complex(states.poses[pair.slide.carrier].z[k]) * complex(unit(pair.slide.direction))
         return None, 1j * guide
@@ -93,8 +101,12 @@ def _linkage_size(states: LinkStates, k: int) -> float:
 def _relative_centre(
     motion: tuple[complex, float], other_motion: tuple[complex, float], size: float, least: float
 ) -> CentrePlace:
-    """Return the centre of two links, or its direction at infinity, from their motions; least: velocity of a link at
-    rest.
+    """Compute the centre of two links, or its direction at infinity, from their motions.
+
+    Args:
+        motion, other_motion: for each link, velocity of its point at the origin of the drawing, and angular velocity.
+        size: size of the mechanism (m).
+        least: velocity below which there is no relative motion.
     """
     slip, turn = motion[0] - other_motion[0], motion[1] - other_motion[1]
     if abs(turn) * size <= max(least, abs(slip) / FAR):
@@ -103,7 +115,10 @@ def _relative_centre(
 
 
 def _velocity_about_origin(states: LinkStates, name: str, k: int) -> tuple[complex, float]:
-    """Return the velocity of the point of a link at the origin, and its angular velocity, per unit of the driver's."""
+    """Return the velocity of the point of a link at the origin of the drawing, and the angular velocity of the link.
+
+    Both are per unit velocity of the driver.
+    """
     if name == FRAME:
         return 0j, 0.0
     pose, rate = states.poses[name], states.first[name]
@@ -118,7 +133,10 @@ def _crossing_lines(
     known: set[LinkPair],
     size: float,
 ) -> tuple[CentreLine, ...]:
-    """Return two lines through known centres that intersect in this one; one line if its centres coincide in it."""
+    """Find two lines, each through two known centres, whose intersection is the centre of these links.
+
+    If the two centres of a line coincide, this line alone is returned: the required centre coincides with them.
+    """
     i, j = links
     candidates: list[tuple[CentreLine, complex]] = []
     for k in names:

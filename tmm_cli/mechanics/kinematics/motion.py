@@ -33,7 +33,14 @@ FIELDS_WITHOUT_POSITIONS = frozenset(
 
 @dataclass(frozen=True)
 class PointMotion:
-    """Motion of a point: position x (m), v (m/s), a (m/s2), and first and second transfer functions."""
+    """Motion of a point.
+
+    Attributes:
+        x: position (m).
+        v: velocity (m/s).
+        a: acceleration (m/s2).
+        first, second: first and second derivatives of the position with respect to the driver coordinate.
+    """
 
     x: Vector
     v: Vector
@@ -44,7 +51,14 @@ class PointMotion:
 
 @dataclass(frozen=True)
 class LinkMotion:
-    """Rotation of a link: angle (rad, in -pi..pi), omega (rad/s), epsilon (rad/s2), and transfer functions."""
+    """Rotation of a link.
+
+    Attributes:
+        angle: angle (rad, in -pi..pi).
+        omega: angular velocity (rad/s).
+        epsilon: angular acceleration (rad/s2).
+        first, second: first and second derivatives of the angle with respect to the driver coordinate.
+    """
 
     angle: Real
     omega: Real
@@ -55,8 +69,15 @@ class LinkMotion:
 
 @dataclass(frozen=True)
 class SlidingMotion:
-    """Relative motion in a prismatic pair: run (m) along the guide u, v (m/s), a (m/s2), Coriolis acceleration
-    (m/s2).
+    """Relative motion in a prismatic pair: of the sliding point along the guide.
+
+    Attributes:
+        run: displacement along the guide (m).
+        v: relative velocity (m/s).
+        a: relative acceleration (m/s2).
+        coriolis: Coriolis acceleration, a vector (m/s2).
+        u: unit vector along the guide.
+        first, second: first and second derivatives of the displacement with respect to the driver coordinate.
     """
 
     run: Real
@@ -70,13 +91,17 @@ class SlidingMotion:
 
 @dataclass(frozen=True, kw_only=True)
 class Motion(LinkStates):
-    """States of links in time: time (s), speed (rad/s or m/s) and acceleration of the driver; nan where it never
-    arrives.
+    """States of the links in time; values are nan where the driver never arrives.
 
     Attributes:
-        finer: positions of the mask `where` in extended precision.
-        limits: mask of change points in which velocities and accelerations are limits (see fill_in_limits).
-        bare: the motion without these limits.
+        time: time (s) at which the driver reaches each position.
+        rate: velocity of the driver (rad/s or m/s).
+        acceleration: acceleration of the driver (rad/s2 or m/s2).
+        finer: motion in extended precision, at the positions of the mask `where`; or None.
+        where: mask of positions that are also computed in extended precision, or None.
+        limits: mask of change points in which velocities and accelerations are limit values (see fill_in_limits), or
+            None.
+        bare: the same motion without these limit values, or None.
     """
 
     time: Real
@@ -88,14 +113,14 @@ class Motion(LinkStates):
     bare: Motion | None = None
 
     def point(self, link: str, local: complex) -> PointMotion:
-        """Return the motion of a point given in the axes of a link (m)."""
+        """Return the motion of a point of a link; local: its position in the axes of the link (m)."""
         if local is self.linkage.links[link].centre:  # point of action of weight and inertia force
             return self.centre(link)
         return self._finest(lambda motion: motion._point(link, local))
 
     @cached_property
     def _known(self) -> dict[tuple[str, ...], Any]:
-        """Cache of motions requested by name: tables, result.json, forces and energy request the same ones."""
+        """Cache of motions by name. Tables, result.json, forces and energy request the same ones."""
         return {}
 
     def _once(self, kind: str, name: str, compute: Callable[[], Record]) -> Record:
@@ -106,11 +131,11 @@ class Motion(LinkStates):
 
     @cached_property
     def largest(self) -> LargestRates:
-        """Largest rates of the links at every position."""
+        """Largest velocities and accelerations in the mechanism at every position."""
         return LargestRates.of(self)
 
     def _finest(self, evaluate: Callable[[Motion], Record]) -> Record:
-        """Evaluate a function of the motion, taking values from the finer one where available."""
+        """Evaluate a function of the motion, in extended precision where this is available."""
         values = evaluate(self)
         return (
             values
@@ -125,20 +150,24 @@ class Motion(LinkStates):
         return PointMotion(pose.x + arm, v1 * self.rate, a1 * self.rate**2 + v1 * self.acceleration, v1, a1)
 
     def named(self, point: str) -> PointMotion:
-        """Return the motion of a named point, from the link with the smallest motion, which loses the fewest digits."""
+        """Return the motion of a named point.
+
+        If several links have the point, it is computed from the link with the smallest motion, which loses the fewest
+        digits.
+        """
         owners = [link for link in self.linkage.carriers(point) if link in self.poses]
         return self._once(
             "point", point, lambda: self.named_on(min(owners, key=lambda link: self._sway(link, point)), point)
         )
 
     def _sway(self, link: str, point: str) -> float:
-        """Return the magnitude of the terms that sum to the acceleration of a point."""
+        """Return the largest magnitude of the terms that add up to the acceleration of a point of a link."""
         first, second, arm = self.first[link], self.second[link], abs(self.linkage.local(link, point))
         terms = np.abs(to_float(second.a)) + (np.abs(to_float(second.e)) + to_float(first.w) ** 2) * to_float(arm)
         return float(np.max(np.where(np.isfinite(terms), terms, 0.0), initial=0.0))
 
     def named_on(self, link: str, point: str) -> PointMotion:
-        """Return the motion of a named point as a point of the given link."""
+        """Return the motion of a named point, computed as a point of this link."""
         return self._finest(lambda motion: motion._point(link, motion.linkage.local(link, point)))
 
     def centre(self, link: str) -> PointMotion:
@@ -150,7 +179,7 @@ class Motion(LinkStates):
         )
 
     def link(self, name: str) -> LinkMotion:
-        """Return the rotation of a link."""
+        """Return the angle, angular velocity and angular acceleration of a link."""
 
         def turning() -> LinkMotion:
             w1, e1 = self.first[name].w, self.second[name].e
@@ -159,7 +188,7 @@ class Motion(LinkStates):
         return self._once("link", name, turning)
 
     def slide(self, slide: Slide) -> SlidingMotion:
-        """Return the relative motion in a prismatic pair: of the sliding point along the guide."""
+        """Return the relative motion in a prismatic pair."""
         return self._once(
             "slide", slide.name, lambda: self._finest(lambda motion: motion._slide(motion.linkage.slide(slide.name)))
         )
@@ -178,11 +207,11 @@ class Motion(LinkStates):
         return SlidingMotion(run, v, second * self.rate**2 + first * self.acceleration, coriolis, u, first, second)
 
     def run(self, slide: Slide) -> Real:
-        """Return the run in a prismatic pair, m."""
+        """Return the displacement in a prismatic pair (m)."""
         return self._finest(lambda motion: LinkStates.run(motion, motion.linkage.slide(slide.name)))
 
     def slope(self, slide: Slide) -> Real:
-        """Return the first transfer function of the run in a prismatic pair."""
+        """Return the derivative of the displacement in a prismatic pair with respect to the driver coordinate."""
         return self._finest(lambda motion: LinkStates.slope(motion, motion.linkage.slide(slide.name)))
 
 
@@ -196,11 +225,14 @@ def compute_motion(
     blank: bool = True,
     drives: DriverStates | None = None,
 ) -> Motion:
-    """Compute the kinematics at the coordinates q of the first driver (rad or m).
+    """Compute the motion of all links at the coordinates q of the first driver (rad or m).
 
     Args:
-        kernels, order, blank, drives: as in link_states.
-        law: speed and acceleration of the driver; of the parameter, if `drives` use another one than q.
+        linkage: the linkage.
+        kernels: solvers of its groups, as in link_states.
+        q: driver coordinates, shape (positions,).
+        law: law of motion of the driver; if `drives` have another parameter than q, the law of this parameter.
+        order, blank, drives: as in link_states.
     """
     states = link_states(linkage, kernels, q, order, blank=blank, drives=drives)
     rate = law.speed(states.q)
@@ -210,10 +242,14 @@ def compute_motion(
 
 @dataclass(frozen=True)
 class LargestRates:
-    """Largest rates in a mechanism at every position, by comparison with which a link is at rest.
+    """Largest velocities and accelerations in a mechanism at every position, with which a link at rest is recognised.
 
-    Compared with its own largest value, a link that never moves would seem to move, because of rounding. size: m; speed
-    and acceleration of points, m per unit of the driver coordinate and per its square, including rotation times size.
+    A link that never moves would seem to move if it were compared with its own largest value, because of rounding.
+
+    Attributes:
+        size: size of the mechanism (m).
+        speed: largest speed of a point (m per unit of the driver coordinate), or angular speed times size.
+        acceleration: largest acceleration likewise (m per unit of the driver coordinate squared).
     """
 
     size: Real | float
@@ -222,7 +258,10 @@ class LargestRates:
 
     @classmethod
     def of(cls, states: LinkStates) -> LargestRates:
-        """Return the largest rates of all links; accelerations are estimated from speeds if they were not computed."""
+        """Find the largest velocities and accelerations of all links.
+
+        Accelerations are estimated from velocities if they were not computed.
+        """
         linkage = states.linkage
         size: Any = reduce(np.maximum, [kernel.size for kernel in states.kernels], 0.0)
         size = np.where(size > 0, size, 1.0)  # all links have a single point and only slide
@@ -238,13 +277,17 @@ class LargestRates:
 
 
 def zero_at_rest(rates: Real | Vector, largest: Real) -> Real | Vector:
-    """Return the rates, with zeros at rest; largest: the largest rate of the kind in the mechanism."""
+    """Replace rates that are negligible by zero; largest: largest rate of the same kind in the mechanism."""
     return np.where(np.abs(rates) > AT_REST * largest, rates, 0.0)
 
 
 def splice_positions(full: Record, finer_record: Record, where: Real) -> Record:
-    """Return a record whose arrays take the positions of the mask `where` from another record, rounded to their
-    precision.
+    """Replace some positions of all arrays of a record by those of a record computed in higher precision.
+
+    Args:
+        full: the record with all positions.
+        finer_record: the record in higher precision; it has only the positions of the mask.
+        where: the mask, shape (positions,).
     """
 
     def joined(path: str, leaf: Any, finer: Any) -> Any:
@@ -285,11 +328,10 @@ WEIGHTS: Real = chebyshev.chebvander(np.zeros(1), NODES - 1)[0] @ np.linalg.inv(
 
 
 def fill_in_limits(motion: Motion) -> Motion:
-    """Replace undefined values in change points that are passed smoothly by the limits of positions, velocities,
-    accelerations.
+    """Fill in limit values of positions, velocities and accelerations in change points that are passed smoothly.
 
-    `moving` stays False in these positions, as forces in general have no limit there; `limits` of the result is their
-    mask, and `bare` the motion without the limits.
+    `moving` stays False in these positions, because forces in general have no limit there. In the result `limits` is
+    the mask of these positions, and `bare` the motion without the limit values.
     """
     if motion.order < 2 or not motion.dead:
         return motion
@@ -317,7 +359,11 @@ def fill_in_limits(motion: Motion) -> Motion:
 
 
 def _interpolate_limits(motion: Motion, q: Real) -> tuple[LinkStates, Real]:
-    """Return the states in the middle of nodes about q, and which of these positions are passed smoothly."""
+    """Interpolate the states at driver coordinates q from positions on either side.
+
+    Returns:
+        The states, and True where the mechanism passes the position smoothly.
+    """
     size = float(np.max([np.max(kernel.size) for kernel in motion.kernels], initial=0.0)) or 1.0
     unit = 1.0 if motion.linkage.driver.kind == "turn" else size
     smooth = np.ones(len(q), dtype=bool)
@@ -340,7 +386,7 @@ def _interpolate_limits(motion: Motion, q: Real) -> tuple[LinkStates, Real]:
 
 
 def _limits_agree(states: LinkStates, other_states: LinkStates, size: float) -> Real:
-    """Return where two states of all links agree; size: of the mechanism (m)."""
+    """Return True where two states of all links agree; size: size of the mechanism (m)."""
     gaps: dict[str, Any] = dict.fromkeys(COMPARED_FIELDS, 0.0)
     largest: dict[str, Any] = dict.fromkeys(COMPARED_FIELDS, 0.0)
 

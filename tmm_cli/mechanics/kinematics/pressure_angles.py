@@ -2,13 +2,13 @@
 
 The pressure angle is the acute angle between the force that drives a link, without gravity and inertia, and the
 velocity of its point of action (I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 5). The force follows from
-statics: the link is resisted by a moment (a force along its guide), the rest of its group is not loaded, and the
-reactions of the group show where the link is driven and in what direction. So the method holds for groups of any class,
-without special formulas.
+statics: a moment (or a force along its guide) resists the motion of the link, and the other links of its group are not
+loaded. The reactions of the group then show where the link is driven and in what direction. The method therefore holds
+for groups of any class, without special formulas.
 
 A link that is driven in several pairs at once (an external link of a class IV contour) has a force and a velocity in
-each. The cosine of its angle is the power of these forces divided by the power that they would have along the
-velocities: for one pair this is the angle above, and it is 90 deg in dead positions only.
+each of them. The cosine of its pressure angle is the power of these forces divided by the power that they would have if
+they acted along the velocities. For one pair this is the angle defined above, and it is 90 deg in dead positions only.
 """
 
 from __future__ import annotations
@@ -42,16 +42,20 @@ from tmm_cli.mechanics.structure import Group, Pair
 
 @dataclass(frozen=True)
 class PressureAngle:
-    """Largest pressure angle (rad) of a driven link, and the driver coordinate there (rad or m).
+    """Largest pressure angle of a driven link.
 
     Attributes:
-        pair: pair in which the link is driven (several names with commas).
+        group: title of the group of the link.
+        link: name of the link.
+        pair: name of the pair in which the link is driven; several names are separated by commas.
         slides: True if the link slides on the frame, False if it rotates.
-        allowed: allowed pressure angle, rad.
-        angles: values at the positions of a motion.
-        other, other_place: extreme of the angle on the other side of the velocity (rad), and the driver coordinate
-            there; in a four-bar the crank is on the line of the frame at both extremes. nan for a link that is driven
-            in several pairs, or at a constant angle.
+        largest: largest pressure angle (rad).
+        place: driver coordinate at which it occurs (rad or m).
+        allowed: allowed pressure angle (rad).
+        angles: pressure angles at the positions of a motion (rad).
+        other: largest angle with the force on the other side of the velocity (rad). In a four-bar the crank lies on the
+            line of the frame at both extremes. nan for a link that is driven in several pairs or at a constant angle.
+        other_place: driver coordinate at which `other` occurs.
     """
 
     group: str
@@ -67,17 +71,17 @@ class PressureAngle:
 
     @property
     def transmission(self) -> float:
-        """Least transmission angle, rad."""
+        """Smallest transmission angle, rad."""
         return np.pi / 2 - self.largest
 
     @property
     def gain(self) -> float:
-        """Force amplification 1/cos of the largest pressure angle; infinite in a dead position."""
+        """Force amplification 1/cos(pressure angle) at the largest pressure angle; infinite in a dead position."""
         return float(1 / np.cos(self.largest)) if self.largest < np.pi / 2 - DEAD else float("inf")
 
     @property
     def holds(self) -> bool:
-        """True if the angle stays within the allowed value."""
+        """True if the pressure angle never exceeds the allowed one."""
         return self.largest <= self.allowed + ALIKE_ANGLES
 
 
@@ -89,15 +93,14 @@ DrivenLink = tuple[
 
 
 def driving_pair_names(lead: DrivenLink) -> str:
-    """Return the names of the pairs in which a link is driven, with commas."""
+    """Return the names of the pairs in which a link is driven, separated by commas."""
     return ", ".join(pair.name for pair in lead[2])
 
 
 def driven_links(group: Group) -> Iterable[DrivenLink]:
-    """Return the links of a group that it drives, each with the pair that supports it and the pairs in which it is
-    driven.
+    """Return the driven links of a group, each with its supporting pair and the pairs in which it is driven.
 
-    These are the links supported by the frame; if there are none, the last link with an external pair.
+    Driven links are those supported by the frame. If there are none, it is the last link with an external pair.
     """
     leads = []
     for outer in group.outer:
@@ -111,14 +114,22 @@ def driven_links(group: Group) -> Iterable[DrivenLink]:
 
 
 def pressure_angle(motion: LinkStates, kernel: GroupSolver, at: Placement, lead: DrivenLink) -> Real:
-    """Return the pressure angle of a driven link at every position, rad; nan where undefined."""
+    """Return the pressure angle of a driven link at every position, rad; nan where it is undefined.
+
+    Args:
+        motion: states of all links.
+        kernel: solver of the group of the link.
+        at: placement of the group.
+        lead: the driven link, from `driven_links`.
+    """
     angles: Real = np.arctan2(*pressure_sine_and_cosine(motion, kernel, at, lead))
     return np.where(angles < NO_PRESSURE, 0.0, angles)
 
 
 def signed_pressure_angle(motion: LinkStates, kernel: GroupSolver, at: Placement, lead: DrivenLink) -> Real:
-    """Return the pressure angle (rad) of a link driven in one pair, signed by the side of the velocity to which it
-    leans.
+    """Return the pressure angle of a link driven in one pair (rad), with a sign.
+
+    The sign shows on which side of the velocity the force lies.
     """
     across, along = _single_pair_components(motion, kernel, at, lead)
     angles: Real = np.arctan2(across * np.sign(along), np.abs(along))
@@ -128,7 +139,7 @@ def signed_pressure_angle(motion: LinkStates, kernel: GroupSolver, at: Placement
 def pressure_sine_and_cosine(
     motion: LinkStates, kernel: GroupSolver, at: Placement, lead: DrivenLink
 ) -> tuple[Real, Real]:
-    """Return two values >= 0 that are proportional to the sine and cosine of the pressure angle."""
+    """Return two numbers, not negative, that are proportional to the sine and the cosine of the pressure angle."""
     parts = list(_force_components(motion, kernel, at, lead))
     if len(parts) == 1:
         ((power, aside),) = parts
@@ -145,7 +156,7 @@ def pressure_sine_and_cosine(
 def _single_pair_components(
     motion: LinkStates, kernel: GroupSolver, at: Placement, lead: DrivenLink
 ) -> tuple[Real, Real]:
-    """Return the components of the driving force across and along the velocity of its point."""
+    """Return the components of the driving force across and along the velocity of its point of action."""
     ((power, aside),) = _force_components(motion, kernel, at, lead)
     return aside, power
 
@@ -153,11 +164,10 @@ def _single_pair_components(
 def _force_components(
     motion: LinkStates, kernel: GroupSolver, at: Placement, lead: DrivenLink
 ) -> Iterable[tuple[Real, Real]]:
-    """Yield, for each pair in which a link is driven, the components of the force along the velocity of its point and
-    across.
+    """Yield the components of the driving force along and across the velocity of its point, for each driving pair.
 
-    The link is resisted by a unit moment, or a unit force along its guide. The components along the velocity have a
-    common sign, opposite to the resistance; those across are positive to the left of the velocity.
+    A unit moment, or a unit force along its guide, resists the motion of the link. The components along the velocity
+    have the same sign in all pairs, opposite to the resistance. Those across are positive to the left of the velocity.
     """
     link, outer, pairs = lead
     group, poses = kernel.group, motion.poses
@@ -189,8 +199,9 @@ def _force_components(
 def find_pressure(
     linkage: Linkage, kernels: tuple[GroupSolver, ...], driver_range: DriverRange, allowed: tuple[float, float]
 ) -> tuple[PressureAngle, ...]:
-    """Find the largest pressure angle of every driven link; allowed: values (rad) for sliding and for rotating
-    links.
+    """Find the largest pressure angle of every driven link over the range of the driver.
+
+    allowed: allowed pressure angles (rad) of sliding and of rotating links.
     """
     ends = (driver_range.end - driver_range.start) * 1e-9 * (not (driver_range.full or driver_range.inclusive))
     q = np.linspace(driver_range.start + ends, driver_range.end - ends, SCAN * driver_range.turns + 1)
@@ -236,8 +247,10 @@ def find_pressure(
 def _other_extreme(
     linkage: Linkage, kernels: tuple[GroupSolver, ...], lead: DrivenLink, scan: LinkStates, number: int, place: float
 ) -> tuple[float, float] | None:
-    """Return the extreme of the pressure angle (rad) on the other side than at `place`, and the driver coordinate
-    there.
+    """Find the largest pressure angle with the force on the other side of the velocity than at `place`.
+
+    Returns:
+        The angle (rad) and the driver coordinate; None if the link is driven in several pairs or at a constant angle.
     """
     if len(lead[2]) > 1:
         return None
@@ -261,7 +274,13 @@ def _other_extreme(
 
 
 def pressure_at(motion: LinkStates, group: str, link: str) -> Real:
-    """Return the pressure angle of a driven link of a group at every position, rad; nan where undefined."""
+    """Return the pressure angle of a driven link at every position, rad; nan where it is undefined.
+
+    Args:
+        motion: states of all links.
+        group: title of the group of the link.
+        link: name of the link.
+    """
     for kernel, at in zip(motion.kernels, motion.placements, strict=True):
         for lead in driven_links(kernel.group) if kernel.group.title == group else ():
             if lead[0] == link:
@@ -271,12 +290,14 @@ def pressure_at(motion: LinkStates, group: str, link: str) -> Real:
 
 
 def _is_constant(angles: Real) -> bool:
-    """Return True if the angle is constant over these samples."""
+    """Return True if the angle is the same in these samples, within rounding."""
     return len(angles) == FLAT and bool(np.ptp(angles) < ALIKE_ANGLES)
 
 
 def _blocked_ends(driver_range: DriverRange) -> tuple[tuple[float, int], ...]:
-    """Return the ends of the range at which a group stops the driver, each with the direction into the range."""
+    """Return the ends of the range at which a group stops the driver, each with the direction into the range (+1 or
+    -1).
+    """
     stops = {limit.place for limit in driver_range.limits}
     return tuple(end for end in ((driver_range.start, 1), (driver_range.end, -1)) if end[0] in stops)
 
@@ -284,16 +305,17 @@ def _blocked_ends(driver_range: DriverRange) -> tuple[tuple[float, int], ...]:
 def _tends_to_right_angle(
     linkage: Linkage, kernels: tuple[GroupSolver, ...], lead: DrivenLink, end: float, inward: float
 ) -> bool:
-    """Return True if the angle of the last group tends to 90 deg at an end of the range.
+    """Return True if the pressure angle of the last group tends to 90 deg at an end of the range.
 
-    It is extrapolated as a polynomial of the square root of the distance, from one, four and sixteen steps inward.
+    It is extrapolated as a polynomial in the square root of the distance from the end, from points one, four and
+    sixteen steps inside the range.
     """
     near = -_negative_angle(linkage, kernels, lead, end + inward * np.array([1, 4, 16]))
     return bool(abs(np.array([8, -6, 1]) @ near / 3 - np.pi / 2) < RIGHT_ANGLE)
 
 
 def _negative_angle(linkage: Linkage, kernels: tuple[GroupSolver, ...], lead: DrivenLink, q: Real) -> Real:
-    """Return minus the pressure angle of the last group; -90 deg where it is dead."""
+    """Return the pressure angle of the last group with a minus sign (for a search of minima); -90 deg where it is dead."""
     motion = link_states(linkage, kernels, q, 0)
     at = motion.placements[-1]
     return np.where(at.dead, -np.pi / 2, -pressure_angle(motion, kernels[-1], at, lead))

@@ -1,4 +1,4 @@
-"""Output of the mechanism: position, transfer functions and strokes, and the driver coordinates of the positions."""
+"""Output of the mechanism: its displacement, transfer functions and strokes; driver coordinates of the positions."""
 
 from __future__ import annotations
 
@@ -30,7 +30,10 @@ PARTS = 64  # of a stroke, over which an angle is accumulated
 
 
 def output_run(motion: Motion, link: str) -> tuple[Real, Real, Real]:
-    """Return the run of the output (m, or its angle in rad) and its first and second transfer functions."""
+    """Return the displacement (m) or angle (rad) of the output, and its first and second derivatives.
+
+    The derivatives are taken with respect to the driver coordinate (transfer functions).
+    """
     slide = motion.linkage.output_guide(link)
     if slide is not None:
         sliding = motion.slide(slide)
@@ -44,7 +47,7 @@ def output_run(motion: Motion, link: str) -> tuple[Real, Real, Real]:
 
 
 def output_coordinate(motion: LinkStates, link: str) -> Real:
-    """Return the run of the output (m, or its angle in rad)."""
+    """Return the displacement (m) or angle (rad) of the output."""
     point = motion.linkage.output_point(link)
     if point is not None:
         return _coordinate(link, motion.spot(point))
@@ -53,7 +56,7 @@ def output_coordinate(motion: LinkStates, link: str) -> Real:
 
 
 def output_slope(motion: LinkStates, link: str) -> Real:
-    """Return the first transfer function of the output."""
+    """Return the derivative of the output displacement or angle with respect to the driver coordinate."""
     linkage = motion.linkage
     point = linkage.output_point(link)
     if point is not None:
@@ -64,9 +67,9 @@ def output_slope(motion: LinkStates, link: str) -> Real:
 
 
 def moving_slope(motion: LinkStates, link: str) -> Real:
-    """Return the first transfer function of the output; zero in all positions of a variant whose output never moves.
+    """Return the derivative of the output as `output_slope` does, but zero for variants whose output never moves.
 
-    The speed of an output at rest, and its sign, are rounding errors.
+    The velocity of an output at rest, and its sign, are rounding errors.
     """
     slope, rates = output_slope(motion, link), LargestRates.of(motion)
     largest = rates.speed / rates.size if motion.linkage.output_swings(link) else rates.speed
@@ -75,12 +78,12 @@ def moving_slope(motion: LinkStates, link: str) -> Real:
 
 
 def _coordinate(output: str, vector: Vector) -> Real:
-    """Return the coordinate of a vector that an output K.x or K.y denotes."""
+    """Return the x or y component of a vector, whichever the name of the output (K.x or K.y) denotes."""
     return vector.real if output.endswith(".x") else vector.imag
 
 
 class StrokeCurve(Protocol):
-    """Interface of an output whose strokes are found, see OutputCurve."""
+    """An output as a function of the driver coordinate, for the search of strokes; see OutputCurve."""
 
     @property
     def link(self) -> str: ...
@@ -93,7 +96,13 @@ class StrokeCurve(Protocol):
 
 @dataclass(frozen=True)
 class OutputCurve:
-    """An output as a function of the driver coordinate; kernels: solvers of the groups on which it depends."""
+    """An output as a function of the driver coordinate.
+
+    Attributes:
+        linkage: the linkage.
+        kernels: solvers of the groups on which the output depends.
+        link: name of the output: a link, or a coordinate of a point (K.x).
+    """
 
     linkage: Linkage
     kernels: tuple[GroupSolver, ...]
@@ -109,28 +118,30 @@ class OutputCurve:
         return "swing" if self.swings else "slide"
 
     def place(self, q: Real) -> Real:
-        """Return the run, m, or the angle in -pi..pi, rad."""
+        """Return the displacement (m) or the angle (rad, in -pi..pi) of the output."""
         return output_coordinate(link_states(self.linkage, self.kernels, q, 0), self.link)
 
     def slope(self, q: Real) -> Real:
-        """Return the first transfer function."""
+        """Return the derivative of the output with respect to the driver coordinate."""
         return output_slope(link_states(self.linkage, self.kernels, q, 1), self.link)
 
     def moving_slope(self, q: Real) -> Real:
-        """Return the first transfer function at many positions of each variant; zero in all of them if the output stays
-        at rest.
-        """
+        """Return the derivative of the output; zero at all positions of a variant whose output stays at rest."""
         return moving_slope(link_states(self.linkage, self.kernels, q, 1), self.link)
 
 
 def measure_runs(curve: StrokeCurve, starts: Real, lengths: Real) -> tuple[Real, Real]:
-    """Return the coordinate of an output at the start of each driver interval, and its change over the interval.
+    """Measure how far an output moves in intervals of the driver coordinate.
 
     Angles are accumulated, so that they may pass 180 degrees.
 
     Args:
-        starts: driver coordinates, shape (..., intervals).
-        lengths: signed lengths of the intervals, same shape.
+        curve: the output.
+        starts: driver coordinates at which the intervals start, shape (..., intervals).
+        lengths: lengths of the intervals with their sign, same shape.
+
+    Returns:
+        Coordinate of the output (m or rad) at the start of each interval, and its change over the interval.
     """
     shares = np.linspace(0, 1, PARTS + 1 if curve.swings else 2)
     samples = starts[..., None] + lengths[..., None] * shares
@@ -141,8 +152,13 @@ def measure_runs(curve: StrokeCurve, starts: Real, lengths: Real) -> tuple[Real,
 
 @dataclass(frozen=True)
 class OutputTravel:
-    """Extreme coordinates (m or rad) of an output between two requested driver coordinates, and the driver coordinates
-    there.
+    """Extreme positions of an output between two requested driver coordinates.
+
+    Attributes:
+        link: name of the output.
+        kind: "slide" (m) or "swing" (rad).
+        low, high: smallest and largest coordinate of the output.
+        low_at, high_at: driver coordinates at which they occur.
     """
 
     link: str
@@ -154,8 +170,9 @@ class OutputTravel:
 
 
 def find_travel(linkage: Linkage, kernels: tuple[GroupSolver, ...], requested: Real, link: str) -> OutputTravel | None:
-    """Find the extremes of an output over the requested driver coordinates, for drivers that cannot make a full
-    turn.
+    """Find the extreme positions of an output, for a driver that cannot make full turns.
+
+    requested: requested driver coordinates; the whole interval between them is examined.
     """
     curve = OutputCurve(linkage, solvers_towards(kernels, [linkage.output_carrier(link)]), link)
     q = np.linspace(np.min(requested), np.max(requested), SCAN + 1)
@@ -183,10 +200,15 @@ def find_travel(linkage: Linkage, kernels: tuple[GroupSolver, ...], requested: R
 
 @dataclass(frozen=True)
 class Stroke:
-    """One stroke of the output: the driver moves from `start` by `length` in its sense, the output from `low` by `run`
-    (signed).
+    """One stroke of the output.
 
-    rest: travel of the driver in the dwell after the stroke (a follower on the circular part of its cam).
+    Attributes:
+        start: driver coordinate at which the stroke starts.
+        length: travel of the driver during the stroke, in its sense of motion.
+        low: coordinate of the output at the start (m or rad).
+        run: displacement of the output, with its sign (m or rad).
+        working: True for a working stroke, False for a return stroke.
+        rest: travel of the driver in the dwell after the stroke (a follower on the circular part of its cam).
     """
 
     start: float
@@ -199,13 +221,14 @@ class Stroke:
 
 @dataclass(frozen=True)
 class Strokes:
-    """Strokes of an output in a cycle of the driver, beginning with a working one; empty if it has none.
+    """Strokes of an output in one cycle of the driver.
 
     Attributes:
         link: name of a link, or coordinate of a point (K.x).
         kind: "slide" (m) or "swing" (rad).
+        strokes: the strokes, beginning with a working one; empty if the output has none.
         rule: why the working stroke is the working one.
-        cycle: travel of the driver until the strokes repeat (rad).
+        cycle: travel of the driver after which the strokes repeat (rad).
         others: strokes of further links, on which loads depend.
     """
 
@@ -217,13 +240,13 @@ class Strokes:
     others: tuple[Strokes, ...] = ()
 
     def of_link(self, link: str) -> Strokes:
-        """Return the strokes of a link on which loads depend; of the main output if `link` is empty."""
+        """Return the strokes of a link on which loads depend; those of the main output if `link` is empty."""
         if link in ("", self.link):
             return self
         return next((other for other in self.others if other.link == link), Strokes(link, self.kind, (), ""))
 
     def changed(self, change: Callable[[Stroke], Stroke]) -> Strokes:
-        """Return a copy with every stroke changed, those of the other links too."""
+        """Return a copy in which the function `change` is applied to every stroke, also of the other links."""
         strokes, others = map(change, self.strokes), (other.changed(change) for other in self.others)
         return replace(self, strokes=tuple(strokes), others=tuple(others))
 
@@ -233,17 +256,20 @@ class Strokes:
 
     @property
     def travel(self) -> float:
-        """Stroke H (m) or swing angle psi (rad)."""
+        """Stroke H (m) or swing angle ψ (rad) of the output."""
         return max((abs(s.run) for s in self.strokes), key=np.max, default=0.0)
 
     @property
     def k(self) -> float:
-        """Time ratio k of working to return strokes at constant driver speed, without dwells between them."""
+        """Time ratio k of working to return strokes at constant driver speed; dwells are not counted. nan if undefined."""
         idle = sum(s.length for s in self.strokes if not s.working)
         return sum(s.length for s in self.working) / idle if idle else float("nan")
 
     def share(self, q: Real, sense: int) -> Real:
-        """Return True where the driver coordinate is in a working stroke, its start included and its end excluded."""
+        """Return True where the driver coordinate q is in a working stroke, including its start but not its end.
+
+        sense: sense of motion of the driver, +1 or -1.
+        """
         inside = np.zeros(np.shape(q), dtype=bool)
         for stroke in self.working:
             gone = np.mod(sense * (q - stroke.start) + SAME_DRIVER_POSITION, self.cycle) - SAME_DRIVER_POSITION
@@ -258,13 +284,20 @@ def find_strokes(
     resists: float = 0.0,
     link: str | None = None,
 ) -> Strokes | None:
-    """Find the strokes of an output over the cycle of the driver; None if there is no output.
+    """Find the strokes of an output over the cycle of the driver.
 
-    The working stroke is the slower one; of equally long ones the one that the load resists; otherwise the forward one.
+    The working stroke is the slower one. If the strokes are equally long, it is the one that the load resists;
+    otherwise the forward one.
 
     Args:
-        resists: sign of the run of the output against which the useful resistance acts, 0 if unknown.
-        link: the output; the main one if None.
+        linkage: the linkage.
+        kernels: solvers of its groups.
+        driver_range: range of the driver.
+        resists: sign of the displacement of the output that the useful resistance opposes; 0 if unknown.
+        link: the output; the main output if None.
+
+    Returns:
+        The strokes; None if the mechanism has no output.
     """
     link = link or output_link(linkage, tuple(d.group for d in kernels))
     if link is None:
@@ -311,11 +344,11 @@ def find_strokes(
 
 
 def _find_reversals(curve: OutputCurve, q: Real, slope: Real, sense: int) -> tuple[Real, Real]:
-    """Return the driver coordinates at which the output reverses, and the dwells before them.
+    """Find the driver coordinates at which the output reverses, and the lengths of the dwells before them.
 
-    slope: first transfer function of the output at increasing q. It is exactly zero in a dwell. It jumps from one sign
-    to the other, with large values on both sides, at a change point, which does not end a stroke, and at a hard impact
-    of a cam, which does.
+    slope: derivative of the output at increasing driver coordinates q. It is exactly zero in a dwell. It may jump from
+    one sign to the other, with large values on both sides: at a change point, which does not end a stroke, and at a
+    hard impact of a cam, which does.
     """
     moves = np.flatnonzero(slope)
     back = slope[moves[:-1]] * slope[moves[1:]] < 0
@@ -340,10 +373,10 @@ def _find_reversals(curve: OutputCurve, q: Real, slope: Real, sense: int) -> tup
 
 
 def _drop_rounding_reversals(curve: OutputCurve, turns: Real, cycle: float, sense: int) -> Real:
-    """Drop the ends of strokes that are due to rounding.
+    """Drop reversals of the output that are due to rounding.
 
-    Where the output almost rests, its rounded speed may change sign repeatedly: such reversals are replaced by one in
-    their middle, or by none if the output continues in the same direction after them.
+    Where the output almost rests, its rounded velocity may change sign repeatedly. Such reversals are replaced by one
+    in their middle, or by none if the output continues in the same direction after them.
     """
     if turns.size < 2:
         return turns
@@ -367,8 +400,9 @@ def _drop_rounding_reversals(curve: OutputCurve, turns: Real, cycle: float, sens
 
 
 def _working_direction(given_direction: str, forward: float, back: float, resists: float) -> tuple[int, str]:
-    """Return the working direction (+1 or -1) and the reason; forward, back: total length (rad) of the strokes of
-    each.
+    """Return the direction of the working stroke (+1 or -1), and the reason.
+
+    forward, back: total lengths (rad of the driver) of the strokes in each direction.
     """
     if given_direction != "auto":
         return (1 if given_direction == "forward" else -1), "as the file says"
@@ -380,9 +414,9 @@ def _working_direction(given_direction: str, forward: float, back: float, resist
 
 
 def resisted_direction(linkage: Linkage, link: str | None) -> Any:
-    """Return the sign of the run of the output that the loads of the working stroke resist; 0 if they do not decide.
+    """Return the direction of motion of the output (+1 or -1) that the loads of the working stroke resist.
 
-    Shape (variants, 1) if the loads vary.
+    It is 0 if these loads do not decide, and has shape (variants, 1) if they vary.
     """
     for slide in linkage.slides:
         if {slide.carrier, slide.runner} == {FRAME, link}:
@@ -404,10 +438,10 @@ def _mean_table_value(load: Load) -> Any:
 
 
 def driver_positions(request: Request, driver_range: DriverRange, strokes: Strokes | None, sense: int) -> Real:
-    """Return the requested driver coordinates (rad or m); the first is position 0.
+    """Return the driver coordinates (rad or m) of the requested positions; the first is position 0.
 
-    In a limited range the positions are the middles of equal parts, since velocities are lost at its ends; over the
-    stroke of a driver they extend from end to end.
+    In a limited range the positions are in the middles of equal parts, since velocities are undefined at its ends. Over
+    the stroke of a driver they extend from end to end.
     """
     if request.places:
         return np.array(request.places)

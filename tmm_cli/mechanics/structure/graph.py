@@ -61,7 +61,7 @@ class PebbleCount:
 
 
 def reachable_nodes(out: Mapping[Node, Iterable[Node]], *starts: Node) -> dict[Node, None]:
-    """Return all nodes of a directed graph that can be reached from `starts`, these included, in the order of the search.
+    """Return all nodes of a directed graph that can be reached from `starts`, these included, in search order.
 
     out: successors of each node.
     """

@@ -164,9 +164,7 @@ class Reduction:
         return tuple(dict.fromkeys(self.body(link) for link in links if link not in self.removed))
 
     def within(self, ties: Sequence[Tie]) -> frozenset[int]:
-        """Return the indices of ties within a rigid set, and of ties that join several links of one set to the same
-        pin.
-        """
+        """Return the indices of ties within a rigid set, and of ties that join several of its links to the same pin."""
         ends = [(tie.name, self.body(tie.a), self.body(tie.b)) for tie in ties]
         return frozenset(k for k, (name, a, b) in enumerate(ends) if a == b or ends.count((name, a, b)) > 1)
 
@@ -221,7 +219,7 @@ class Reduction:
                 yield pair
 
     def pair_of(self, tie: Tie, pairs: Iterable[Pair]) -> Pair | None:
-        """Return the kinematic pair of a tie, or None; in a compound hinge, the pair that attaches the link of the tie."""
+        """Return the kinematic pair of a tie, or None; in a compound hinge, the pair that attaches its link."""
         ends = {self.body(tie.a), self.body(tie.b)}
         candidates = (pair for pair in pairs if tie.name == (pair.name if pair.slide or pair.mesh else pair.point))
         return next((pair for pair in candidates if ends & {self.body(pair.i), self.body(pair.j)}), None)

@@ -1,4 +1,4 @@
-"""Constraint equations by kind of pair. To add a kind, write a class and register it here."""
+"""Constraint equations for each kind of pair. For a new kind, write a class and register it here."""
 
 from collections.abc import Callable
 

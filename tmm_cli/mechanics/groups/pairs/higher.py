@@ -1,4 +1,4 @@
-"""Constraint equations of higher pairs: gears, gear and rack, cam and follower; laws of motion of followers."""
+"""Constraint equations of higher pairs (gears, gear and rack, cam and follower), and laws of motion of followers."""
 
 from __future__ import annotations
 
@@ -26,13 +26,17 @@ from tmm_cli.mechanics.structure import Pair
 class GearConstraint(ToothConstraint):
     """Gear pair on a common carrier, fixed or rotating (planetary), external or internal.
 
-    Row: angle of j from the carrier, less offset and ratio times the angle of i.
+    Its equation: the angle of j relative to the carrier is ratio times the angle of i relative to the carrier, plus an
+    offset.
 
-    The teeth act at the pitch point P = (A - ratio B)/(1 - ratio) of the axes A and B of the gears i and j, where both
-    have the same velocity; the tangential force first, the radial one (`pressure`) afterwards. The latter pushes an
-    external gear towards its own axis; in an internal pair that is the smaller gear. So the radial force on j points
-    from axis i to axis j in an external pair and in the opposite direction in an internal one, whichever gear is
-    smaller.
+    The teeth act at the pitch point P = (A - ratio B)/(1 - ratio), where gears i and j with axes A and B have the same
+    velocity. The tangential force is computed first, the radial one (from the pressure angle) afterwards. The radial
+    force pushes an external gear towards its own axis, and of an internal pair it pushes the smaller gear towards its
+    own axis. The radial force on j therefore points from axis i to axis j in an external pair, and from j to i in an
+    internal one, whichever gear is smaller.
+
+    Attributes:
+        axis_i, axis_j: axes of the gears, in the axes of the carrier (m).
     """
 
     axis_i: complex  # on the carrier, m
@@ -92,11 +96,15 @@ class GearConstraint(ToothConstraint):
 class RackConstraint(ToothConstraint):
     """Gear and rack on a common carrier.
 
-    Row: run of the rack on the carrier, less offset and ratio (m per radian) times the angle of the gear from the
-    carrier.
+    Its equation: the displacement of the rack along the carrier is ratio (m per radian) times the angle of the gear
+    relative to the carrier, plus an offset.
 
-    The rack may be the runner or the carrier of the slide. The teeth act at the pitch point, where gear and rack have
-    the same velocity: at the distance |ratio| from the axis of the gear, perpendicular to the guide.
+    The rack may be the runner or the carrier of the prismatic pair. The teeth act at the pitch point, where gear and
+    rack have the same velocity: at the distance |ratio| from the axis of the gear, perpendicular to the guide.
+
+    Attributes:
+        slide: prismatic pair of the rack.
+        axis: axis of the gear, in the axes of the carrier (m).
     """
 
     slide: Slide
@@ -132,7 +140,7 @@ class RackConstraint(ToothConstraint):
         return (dot(guide.u, guide.bend(self.slide, rates)),)
 
     def contact(self, poses: Poses) -> tuple[Vector, Vector]:
-        """Return the pitch point, and the direction of increasing run of the rack."""
+        """Return the pitch point (m), and the direction in which the rack moves when its displacement increases."""
         guide = GuideGeometry.at(self.slide, poses)
         forward = guide.u if self.slide.runner == self.mesh.j else -guide.u
         return poses[self.mesh.carrier].at(self.axis) - 1j * self.mesh.ratio * forward, forward
@@ -145,13 +153,17 @@ class RackConstraint(ToothConstraint):
 class CamConstraint(HigherPairConstraint):
     """Cam and follower, defined by the law of motion instead of the profile of the cam.
 
-    Row: run (or angle) of the follower on the carrier, less offset and the law at the angle of the cam from the
-    carrier.
+    Its equation: the displacement (or angle) of the follower is the value of the law, at the angle of the cam relative
+    to the carrier, plus an offset.
 
-    The carrier is the frame, or a moving link with the guide of the follower, whose length the cam then changes. The
-    law does not determine the point of contact. A translating follower is taken as flat-faced: it touches the cam at
-    ds/da from the axis of the cam, and the force is parallel to its guide (I. I. Artobolevsky, ch. 26). An oscillating
-    follower is loaded by a couple, and the cam by the couple of equal power.
+    The carrier is the frame, or a moving link with the guide of the follower. The law does not determine the point of
+    contact. A translating follower is assumed to be flat-faced: it touches the cam at the distance ds/da from the axis
+    of the cam, and the force is parallel to its guide (I. I. Artobolevsky, ch. 26). An oscillating follower is loaded
+    by a couple, and the cam by the couple of equal power.
+
+    Attributes:
+        slide: prismatic pair of a translating follower; None for an oscillating one.
+        axis: axis of the cam, in the axes of the carrier (m).
     """
 
     slide: Slide | None
@@ -203,7 +215,7 @@ class CamConstraint(HigherPairConstraint):
         return (dot(guide.u, guide.bend(self.slide, rates)) + bend,)
 
     def contact(self, poses: Poses) -> tuple[Vector, Vector]:
-        """Return the contact point of a flat-faced follower, and the direction of increasing run."""
+        """Return the contact point of a flat-faced follower (m), and the direction of its increasing displacement."""
         assert self.slide is not None
         guide = GuideGeometry.at(self.slide, poses)
         forward = guide.u if self.slide.runner == self.mesh.j else -guide.u
@@ -283,7 +295,13 @@ RISE_LAWS: dict[str, Rise] = {
 
 @dataclass(frozen=True)
 class CamLawPiece:
-    """A piece of the law: rise (m or rad; negative for a return, zero for a dwell) over a cam angle (rad)."""
+    """A piece of the law of motion of a follower: a rise, a return or a dwell.
+
+    Attributes:
+        over: cam angle over which it extends (rad).
+        rise: displacement of the follower (m or rad); negative for a return, zero for a dwell.
+        shape: name of the law, a key of RISE_LAWS.
+    """
 
     over: float
     rise: float
@@ -292,10 +310,14 @@ class CamLawPiece:
 
 @dataclass(frozen=True)
 class CamLaw:
-    """Law of motion of a follower: pieces in turn from the cam angle `start` (rad); they close after a full turn.
+    """Law of motion of a follower. Call it with a cam angle.
 
-    sense: direction of rotation of the cam. At the boundary of two pieces the acceleration is that of the following
-    one.
+    At the boundary of two pieces the acceleration of the following piece holds.
+
+    Attributes:
+        pieces: pieces in turn, which together cover a full turn of the cam.
+        start: cam angle at which the first piece starts (rad).
+        sense: sense of rotation of the cam, +1 or -1.
     """
 
     pieces: tuple[CamLawPiece, ...]
@@ -304,14 +326,14 @@ class CamLaw:
 
     @cached_property
     def _mirrored(self) -> CamLaw:
-        """Law as a function of the clockwise angle: all laws are symmetric about the middle of their piece."""
+        """The same law as a function of the clockwise cam angle. Every piece is symmetric about its middle."""
         return CamLaw(tuple(replace(p, rise=-p.rise) for p in reversed(self.pieces)), -self.start)
 
     @cached_property
     def _table(self) -> tuple[Real, Real, Real, Real]:
-        """For each piece: start (rad, from the start of the law), cam angle, run there, rise.
+        """For each piece: cam angle from the start of the law to the piece, cam angle of the piece, displacement, rise.
 
-        Shape (pieces,), or (pieces, variants) where they vary.
+        The displacement is that at the start of the piece. Shape (pieces,), or (pieces, variants) where values vary.
         """
         both = np.broadcast_arrays(*(p.over for p in self.pieces), *(p.rise for p in self.pieces))
         over, rise = np.stack(both[: len(self.pieces)]), np.stack(both[len(self.pieces) :])
@@ -330,7 +352,7 @@ class CamLaw:
         return tuple(sorted(jump_angles))
 
     def __call__(self, angle: Real) -> tuple[Real, Real, Real]:
-        """Return the run of the follower and its first and second derivatives with respect to the cam angle."""
+        """Return the displacement of the follower and its first two derivatives with respect to the cam angle."""
         if self.sense < 0:
             value, first, second = self._mirrored(-angle)
             return value, -first, second
@@ -356,5 +378,5 @@ class CamLaw:
 
 
 def _select_pieces(column: Real, number: Real) -> Real:
-    """Return the values of the pieces with these numbers."""
+    """Select the values of numbered pieces; column: values of all pieces, (pieces,) or (pieces, variants)."""
     return column[number] if column.ndim == 1 else np.take_along_axis(column, number[None], axis=0)[0]

@@ -1,10 +1,10 @@
-"""Constraint equations of pairs: the common form in which groups of any class are solved; lower pairs and drivers.
+"""Constraint equations of pairs, in the form in which groups of any class are solved; lower pairs and drivers.
 
-A pair has rows; each is a scalar equation residual = 0 in metres or radians. A small motion of a link, dx of its origin
-and dt of its angle, changes a row by c . dx + m dt: (c, m) is the part of the link in that row of the Jacobian. The
-same parts give velocities, accelerations and, transposed, the forces: a multiplier n of the row acts on the link with
-the force n c at its origin and the moment n m.
-Source: J. Garcia de Jalon, E. Bayo, Kinematic and Dynamic Simulation of Multibody Systems, ch. 2 and 3.
+A pair has one or two scalar equations (rows), residual = 0, in metres or radians. A small motion of a link, dx of its
+origin and dt of its angle, changes a residual by c . dx + m dt; (c, m) is the part of the link in that row of the
+Jacobian. The same parts give velocities and accelerations and, transposed, forces: with the multiplier n of the row,
+the pair acts on the link with the force n c at its origin and the moment n m. Source: J. Garcia de Jalon, E. Bayo,
+Kinematic and Dynamic Simulation of Multibody Systems, ch. 2 and 3.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ JacobianRow = tuple[Any, Any]  # c (complex: x and y) and m (real)
 
 @dataclass(frozen=True)
 class PairConstraint(ABC):
-    """Constraint equations of a pair, or of a driver, of a group."""
+    """Constraint equations of a pair of a group, or of a driver between its links."""
 
     name: str
 
@@ -35,53 +35,60 @@ class PairConstraint(ABC):
     @property
     @abstractmethod
     def links(self) -> tuple[str, ...]:
-        """Links in its rows."""
+        """Names of the links that occur in the equations."""
 
     @property
     @abstractmethod
     def lengths(self) -> tuple[bool, ...]:
-        """For each row, True if it is in metres (False: in radians)."""
+        """For each equation, True if it is in metres, False if in radians."""
 
     @abstractmethod
     def residuals(self, poses: Poses, drives: DriverStates) -> Sequence[Real]:
-        """Return the residual of each constraint equation."""
+        """Return the residual of each equation (m or rad)."""
 
     @abstractmethod
     def jacobian_rows(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
-        """Return the parts (c, m) of each link in the Jacobian, row by row."""
+        """Return the parts (c, m) of each link in the Jacobian, for each equation."""
 
     @abstractmethod
     def velocity_terms(self, poses: Poses, rates: Rates) -> Sequence[Real]:
-        """Return the second derivative of each row with all link accelerations zero."""
+        """Return the second derivative of each residual that would remain if all accelerations were zero."""
 
     def turned(self, link: str, angles: Mapping[str, Any], drives: DriverStates) -> Any | None:
-        """Return the angle of a link (rad) that the first row determines from those of the others; None for most
-        kinds.
+        """Compute the angle of a link (rad) from the angles of the other links by the first equation.
+
+        Returns:
+            The angle; None if the equation does not give an angle, as for most kinds of pairs.
         """
         return None
 
     def asked(self, drives: DriverStates, order: int) -> Sequence[Real | float]:
-        """Return the prescribed first or second derivative of each row; zero except for drivers."""
+        """Return the first or second derivative that is prescribed for each equation; zero except for drivers."""
         return [0.0] * len(self.lengths)
 
     def pushes(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
-        """Return the parts (c, m) for the forces, which differ from those of the motion for some kinds."""
+        """Return the parts (c, m) of each link for forces. For most kinds they are those of the motion."""
         return self.jacobian_rows(poses)
 
     @abstractmethod
     def reaction(self, poses: Poses, multipliers: Sequence[Real]) -> PairReaction:
-        """Return the reaction on the second link of the pair."""
+        """Convert the multipliers of the equations to the reaction on the second link of the pair."""
 
     def apart(self, poses: Poses, multipliers: Sequence[Real]) -> tuple[Vector, Vector] | None:
-        """Return point and force (N, on the second link) of a separating force that does no work; None for most
-        kinds.
+        """Return the separating force of teeth, which does no work.
+
+        Returns:
+            Point of action (m) and force on the second link (N); None for other kinds of pairs.
         """
         return None
 
 
 @dataclass(frozen=True)
 class HigherPairConstraint(PairConstraint):
-    """One row for links i and j in contact; their carrier is loaded only through its hinges."""
+    """One equation for links i and j in contact.
+
+    Forces act on i and j only; their carrier is loaded through its hinges.
+    """
 
     mesh: Mesh
 
@@ -91,8 +98,9 @@ class HigherPairConstraint(PairConstraint):
 
     @abstractmethod
     def contact(self, poses: Poses) -> tuple[Vector, Vector]:
-        """Return the contact point (m) at which link i acts on link j, and the direction of the force for a positive
-        multiplier.
+        """Return the contact point (m) and the direction of the force.
+
+        The direction is that of the force of link i on link j for a positive multiplier.
         """
 
     def pushes(self, poses: Poses) -> Mapping[str, Sequence[JacobianRow]]:
@@ -111,9 +119,7 @@ class HigherPairConstraint(PairConstraint):
 
 @dataclass(frozen=True)
 class ToothConstraint(HigherPairConstraint):
-    """Teeth in contact at the pitch point, where both links have the same velocity; with a radial separating force on
-    j.
-    """
+    """Teeth in contact at the pitch point, where both links have the same velocity, with a radial separating force."""
 
     away: ClassVar[complex]  # direction away from the axis of i relative to the contact direction, for a positive ratio
 
@@ -124,7 +130,7 @@ class ToothConstraint(HigherPairConstraint):
 
 
 def carrier_axis(linkage: Linkage, wheel: str, carrier: str) -> complex:
-    """Return the hinge of a gear or cam on its carrier, in the axes of the carrier (m)."""
+    """Return the position of the axis of a gear or cam on its carrier, in the axes of the carrier (m)."""
     point = linkage.shared(carrier, wheel)
     assert point is not None
     return linkage.local(carrier, point)
@@ -135,7 +141,12 @@ def carrier_axis(linkage: Linkage, wheel: str, carrier: str) -> complex:
 
 @dataclass(frozen=True)
 class HingeConstraint(PairConstraint):
-    """Revolute pair. Rows: x and y of the point of j less that of i."""
+    """Revolute pair. Its equations: x and y of the hinge point are the same on link i and on link j.
+
+    Attributes:
+        i, j: names of the links.
+        at_i, at_j: the hinge point in the axes of each link (m).
+    """
 
     i: str
     j: str
@@ -185,7 +196,14 @@ class HingeConstraint(PairConstraint):
 
 @dataclass(frozen=True)
 class GuideGeometry:
-    """Geometry of a prismatic pair at given poses: direction u of the guide, and vectors to the sliding point."""
+    """Geometry of a prismatic pair at given poses of its links.
+
+    Attributes:
+        u: unit vector along the guide.
+        off: vector from the point `through` of the guide to the sliding point (m).
+        on_carrier: vector from the origin of the carrier to the sliding point (m).
+        on_runner: vector from the origin of the runner to the sliding point (m).
+    """
 
     u: Vector
     off: Vector  # from the `through` point of the guide to the sliding point
@@ -200,8 +218,9 @@ class GuideGeometry:
         return cls(carrier.z * unit(slide.direction), on_carrier - slide.through * carrier.z, on_carrier, on_runner)
 
     def jacobian_rows(self, slide: Slide, along: Vector) -> Mapping[str, JacobianRow]:
-        """Return the Jacobian parts of the motion of the sliding point relative to the carrier, along a direction fixed
-        in it.
+        """Return the Jacobian parts of one component of the motion of the sliding point relative to the carrier.
+
+        along: direction of the component, fixed in the carrier.
         """
         return {
             slide.carrier: (-along, -cross(self.on_carrier, along)),
@@ -209,21 +228,25 @@ class GuideGeometry:
         }
 
     def bend(self, slide: Slide, rates: Rates) -> Vector:
-        """Return the acceleration of the sliding point relative to the carrier with all link accelerations zero,
-        without the Coriolis part.
+        """Return the acceleration of the sliding point relative to the carrier if all accelerations of links were zero.
+
+        The Coriolis acceleration is not included.
         """
         bend: Vector = self.on_carrier * rates[slide.carrier].w ** 2 - self.on_runner * rates[slide.runner].w ** 2
         return bend
 
     def sliding(self, slide: Slide, rates: Rates) -> Real:
-        """Return the speed of the sliding point along the guide."""
+        """Return the velocity of the sliding point along the guide, m/s."""
         speed: Real = dot(self.u, rates[slide.runner].at(self.on_runner) - rates[slide.carrier].at(self.on_carrier))
         return speed
 
 
 @dataclass(frozen=True)
 class SlideConstraint(PairConstraint):
-    """Prismatic pair. Rows: angle of the runner from the carrier, distance of the sliding point from the guide."""
+    """Prismatic pair.
+
+    Its equations: the angle of the runner relative to the carrier is constant, and the sliding point lies on the guide.
+    """
 
     slide: Slide
 
@@ -275,7 +298,9 @@ class SlideConstraint(PairConstraint):
 
 @dataclass(frozen=True)
 class DriverConstraint(PairConstraint):
-    """Driver between two moving links. Row: angle of the link from its base, or run in their pair, less the driver
+    """Driver between two moving links.
+
+    Its equation: the angle of the link relative to its base, or the displacement in their prismatic pair, is the driver
     coordinate.
     """
 
@@ -286,7 +311,7 @@ class DriverConstraint(PairConstraint):
 
     @classmethod
     def of(cls, driver: Driver, linkage: Linkage) -> DriverConstraint:
-        """Return the constraint of a driver."""
+        """Make the constraint of a driver of this linkage."""
         return cls(driver.link, driver, linkage.slide(driver.joint) if driver.kind == "slide" else None)
 
     @property
