@@ -1,17 +1,17 @@
-"""The library door of the course-project calculator: `load` a problem file, `solve` it.
+"""Python interface of the course-project calculator: `load` a problem file and `solve` it.
 
     from tmm_cli import load, solve
 
     results = solve(load("problems/shaper.yaml"))
-    results.reactions.balance.moment      # N m, one value a position
-    results.motion.named("E").a           # m/s2, complex: x + iy
+    results.reactions.balance.moment      # balancing moment (N m), one value for each position
+    results.motion.named("E").a           # acceleration of point E (m/s2), complex: x + iy
 
-or, for many places of the driver and many variants at once, `prepare` it:
+For many driver positions and many variants at once, `prepare` the problems:
 
     batch = prepare([load(path) for path in paths])
-    batch(places)["T.1"]                  # N m, (variants, places)
+    batch(q)["T.1"]                       # balancing moment (N m), shape (variants, positions)
 
-Everything is in SI and radians. Bad input raises `tmm_cli.problem.errors.ProblemError`.
+All values are in SI units and radians. Invalid input raises `tmm_cli.problem.errors.ProblemError`.
 """
 
 from __future__ import annotations

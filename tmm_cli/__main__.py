@@ -1,10 +1,10 @@
-"""Entry point of `tmm` and `python -m tmm_cli`. Later imports can be interrupted without a traceback."""
+"""Entry point of `tmm` and `python -m tmm_cli`. An interruption ends it without a traceback, even during imports."""
 
 import sys
 
 
 def main() -> None:
-    """Run the command."""
+    """Run the command `tmm`."""
     try:
         from tmm_cli.cli import main as command
 

@@ -1,10 +1,11 @@
-"""Public interfaces of subpackages, whose names are loaded when they are first asked for.
+"""Public interfaces of subpackages. A name is imported when it is first used.
 
-The names stand in `__init__.pyi` beside `__init__.py`, where editors and mypy read them too (Scientific Python SPEC 1):
+The names are listed in `__init__.pyi` beside `__init__.py`, where editors and mypy read them too (Scientific Python
+SPEC 1):
 
     from .strokes import Stroke as Stroke
 
-A command thereby loads only the modules whose names it uses.
+A command therefore imports only the modules that it uses.
 """
 
 from __future__ import annotations
@@ -18,7 +19,12 @@ LINE = re.compile(r"^from \.(\w[\w.]*)? import (?:\(([^)]*)\)|(.*))$", re.MULTIL
 
 
 def lazy(package: str, file: str) -> tuple[Callable[[str], object], list[str]]:
-    """Return `__getattr__` (PEP 562) and `__all__` of a package from the stub beside its `__init__.py`."""
+    """Make `__getattr__` (PEP 562) and `__all__` of a package from the stub file beside its `__init__.py`.
+
+    Args:
+        package: name of the package.
+        file: path of its `__init__.py`.
+    """
     stub = Path(file).with_suffix(".pyi").read_text(encoding="utf-8")
     modules = {
         name.split()[0]: module

@@ -1,12 +1,11 @@
-"""Languages of messages and notation of courses: messages marked for gettext, and the current language.
+"""Language of messages, and notation of the course (number of the frame, letter of inertia forces).
 
-A message is written in English where it is used, as `_("...")`, and translated into the current language
-there. A message that is needed when a module is imported, or is kept in results, is a phrase,
-`N_("...")`, and translated where it is shown. Translations are in `locale/`.
+A message is written in English where it is used, as `_("...")`, which translates it into the current language. A
+message that is defined at import, or kept in results, is a phrase, `N_("...")`; it is translated when it is shown.
+Translations are in `locale/`.
 
-Files for programs (CSV, result.json) are written in English, `with words_of_files(): ...`. Scripts rely
-on their headings and words, so these stay when a message gets better English: the catalogue `files` keeps
-the words of files.
+Files for programs (CSV, result.json) are written in English, inside `with words_of_files(): ...`. Scripts rely on their
+headings and words, so these stay when a message gets better English: the catalogue `files` keeps the old words.
 """
 
 from __future__ import annotations
@@ -43,7 +42,14 @@ INERTIA: Final = {"U": {"U": "U", "M": "M"}, "Φ": {"U": "Φ", "M": "M_Φ"}}  # 
 
 @dataclass(frozen=True)
 class CourseNotation:
-    """Notation of a course: language, number of the frame, letter of inertia forces ("": that of the language)."""
+    """Language and notation of a course.
+
+    Attributes:
+        language: language of messages, one of LANGUAGES.
+        frame: printed number of the frame.
+        inertia: letter of inertia forces, U or Φ; empty for the usual one of the language.
+        for_programs: True while files for programs are written.
+    """
 
     language: str = ENGLISH
     frame: str = "0"
@@ -56,8 +62,13 @@ _course: ContextVar[CourseNotation] = ContextVar("course", default=USUAL)
 
 
 class Phrase(str):
-    """Message for later translation, with fields; as a str it is English, `translated` gives the current
-    language.
+    """A message with fields that is translated later.
+
+    As a str it is the English text; `translated` gives the text in the current language.
+
+    Attributes:
+        message: the English message with its fields, e.g. "link {name}".
+        fields: values of the fields, by name.
     """
 
     message: str
@@ -76,7 +87,7 @@ N_ = Phrase  # as gettext's mark is called
 
 
 def translated(text: str) -> str:
-    """Translate a Phrase, and the phrases in its fields, into the current language; return other text unchanged."""
+    """Translate a Phrase, and phrases among its fields, into the current language. Other text is returned unchanged."""
     if not isinstance(text, Phrase) or _name_of_catalogue() == ENGLISH:
         return text
     message = _(text.message)
@@ -84,32 +95,40 @@ def translated(text: str) -> str:
 
 
 def _(message: str) -> str:
-    """Translate a message into the current language; untranslated messages stay English."""
+    """Translate a message into the current language. A message without a translation stays English."""
     name = _name_of_catalogue()
     return message if name == ENGLISH or not message else _catalogue(name).gettext(message)
 
 
 def _name_of_catalogue() -> str:
-    """The language, or FILES in files for programs."""
+    """Return the current language, or FILES while files for programs are written."""
     course = _course.get()
     return FILES if course.for_programs else course.language
 
 
 def numeral(value: float, form: str) -> str:
-    """Format a number for people, with a decimal comma where the language has one; input that may be typed keeps
-    its point.
+    """Format a number for readers, with a decimal comma in languages that use one.
+
+    Do not use it for values that may be typed into a file again; those keep the decimal point.
     """
     text = f"{half_up(value):{form}}"
     return text if language() == ENGLISH else text.replace(".", ",")
 
 
 def half_up(value: float) -> float:
-    """Increase a value slightly so that a final five is rounded away from zero, whatever its last bits are."""
+    """Increase the magnitude of a value slightly, so that formatting rounds a final five away from zero.
+
+    Without this the last bits of the value would decide.
+    """
     return value * (1 + TIE)
 
 
 def filled(sentence: str, **parts: Any) -> tuple[Any, ...]:
-    """Split a message at its fields and insert objects such as symbols, or tuples of them."""
+    """Replace the fields of a message by objects such as symbols, or by tuples of objects.
+
+    Returns:
+        The text between the fields, and the objects, in order.
+    """
     found: list[Any] = []
     for before, name, *__ in string.Formatter().parse(sentence):
         found += [before] if before else []
@@ -126,8 +145,8 @@ def signed(text: str) -> str:
 def typeset(text: str) -> str:
     """Replace keyboard characters by printed ones: 3·5 − 2·7 = 1 for 3*5 - 2*7 = 1, → for ->.
 
-    Hyphens become minus signs in formulas, and dashes between the two links of a pair; others stay, so that
-    numbers can be copied.
+    In formulas, hyphens become minus signs; between the two links of a pair, they become dashes. Other hyphens stay, so
+    that numbers can be copied.
     """
     text = text.replace("->", "→")
     if FORMULA.search(text):
@@ -144,13 +163,13 @@ def spelt(unit: str) -> str:
 
 
 def symbol(letter: str) -> str:
-    """Return the letter of a quantity in the current notation: inertia force U in English, Φ in Russian."""
+    """Return the letter of a quantity in the current notation, e.g. U (English) or Φ (Russian) for inertia forces."""
     own = INERTIA.get(_course.get().inertia, {})
     return own[letter] if letter in own else _in_context("symbol", letter)
 
 
 def printed(link: str) -> str:
-    """Return the printed number of a link; only that of the frame, "0", depends on the notation."""
+    """Return the number of a link as it is printed. Only the number of the frame, "0", depends on the notation."""
     return _course.get().frame if link == "0" else link
 
 
@@ -160,7 +179,7 @@ def _in_context(context: str, message: str) -> str:
 
 
 def _catalogue(language: str) -> NullTranslations:
-    """Return the translations of a language, read once."""
+    """Return the translations into a language. They are read from the file once."""
     if language not in CATALOGUES:
         from gettext import GNUTranslations  # English needs none
 
@@ -178,33 +197,36 @@ def language() -> str:
 
 
 def course() -> CourseNotation:
-    """Return the current notation."""
+    """Return the current language and notation."""
     return _course.get()
 
 
 @contextmanager
 def spoken(language: str) -> Iterator[None]:
-    """Use a language inside the block; messages are translated where they are made, so none may be made later."""
+    """Use a language inside the `with` block.
+
+    Messages are translated when they are composed, so they must be composed inside the block.
+    """
     with written_as(replace(_course.get(), language=language, for_programs=False)):
         yield
 
 
 @contextmanager
 def words_of_files() -> Iterator[None]:
-    """Write English inside, with the headings and words on which scripts rely."""
+    """Inside the `with` block, write English with the headings and words on which scripts rely."""
     with written_as(replace(_course.get(), language=ENGLISH, for_programs=True)):
         yield
 
 
 def word_of_files(text: str) -> str:
-    """A phrase as files for programs have it; a name or a title as it is."""
+    """Return a phrase in the words of files for programs. Other text (a name, a title) is returned unchanged."""
     with words_of_files():
         return translated(text)
 
 
 @contextmanager
 def written_as(course: CourseNotation) -> Iterator[None]:
-    """Use the notation of a course inside the block."""
+    """Use a language and notation inside the `with` block."""
     before = _course.set(course)
     try:
         yield
@@ -213,16 +235,16 @@ def written_as(course: CourseNotation) -> Iterator[None]:
 
 
 def speak(language: str) -> None:
-    """Use a language until the end of the enclosing `spoken` block."""
+    """Set the language until the end of the enclosing `spoken` block."""
     _course.set(replace(_course.get(), language=language))
 
 
 def write(frame: str, inertia: str) -> None:
-    """Use a frame number and a letter of inertia forces until the end of the enclosing `spoken` block."""
+    """Set the number of the frame and the letter of inertia forces until the end of the enclosing `spoken` block."""
     _course.set(replace(_course.get(), frame=frame, inertia=inertia))
 
 
 def speaking(course: CourseNotation, work: Callable[[], Found]) -> Found:
-    """Call a function in the notation of a course, for work in another process."""
+    """Call a function in the language and notation of a course, e.g. in another process."""
     with written_as(course):
         return work()

@@ -1,1 +1,1 @@
-"""Mechanics of planar linkages: structure, assembly, motion, forces, dynamics. SI and radians; no files, no screens."""
+"""Mechanics of planar linkages: structure, assembly, motion, forces, dynamics. SI and radians; no input or output."""

@@ -1,7 +1,6 @@
-"""Errors that the stages of the calculation raise.
+"""Errors that the calculation raises.
 
-A stage reports what is wrong in numbers and names; the messages are composed where problem files are known
-(`tmm_cli.problem`).
+They contain numbers and names only. Their messages are composed in `tmm_cli.problem`, where the problem file is known.
 """
 
 from __future__ import annotations
@@ -15,11 +14,14 @@ if TYPE_CHECKING:
 
 
 class LinkageError(Exception):
-    """Base of all errors of a linkage, or of a request that a stage cannot answer."""
+    """Base class of all errors of a linkage, and of requests that cannot be fulfilled."""
 
 
 class MobilityError(LinkageError):
-    """The mobility differs from the number of drivers, or the drivers cannot move the linkage."""
+    """The mobility differs from the number of drivers, or the drivers cannot move the linkage.
+
+    structure: the structure of the linkage.
+    """
 
     def __init__(self, structure: Structure) -> None:
         super().__init__(f"W = {structure.mobility}")
@@ -27,9 +29,9 @@ class MobilityError(LinkageError):
 
 
 class AssemblyError(LinkageError):
-    """The linkage cannot be assembled in the position of the sketch.
+    """A group cannot be assembled in the position of the sketch.
 
-    residual: by how much (m) a group in closed form fails to close there; None for other groups.
+    residual: distance (m) by which a group in closed form fails to close; None for other groups.
     """
 
     def __init__(self, group: Group, residual: float | None = None) -> None:
@@ -40,8 +42,8 @@ class AssemblyError(LinkageError):
 class AmbiguousSketchError(LinkageError):
     """The sketch agrees with more than one assembly of a group.
 
-    choices: points (m) and links (rad) that would decide, by name, each with its values in the two assemblies nearest
-    to the sketch; empty in a dead position. count: number of assemblies.
+    choices: points (m) and angles of links (rad) that would decide, by name, each with its values in the two assemblies
+    nearest to the sketch; empty in a dead position. count: number of assemblies.
     """
 
     def __init__(
@@ -52,7 +54,10 @@ class AmbiguousSketchError(LinkageError):
 
 
 class SketchMismatchError(LinkageError):
-    """A sketched point (m) or angle (rad) is far from its position in the nearest assembly."""
+    """A sketched point (m) or angle (rad) is far from its computed value.
+
+    name: the point or link. sketched: its value in the sketch. found: its value in the nearest assembly.
+    """
 
     def __init__(self, name: str, sketched: complex | float, found: complex | float) -> None:
         super().__init__(name)
@@ -60,7 +65,7 @@ class SketchMismatchError(LinkageError):
 
 
 class GroupTooLargeError(LinkageError):
-    """A group has more links than the iterative solution accepts; most: the largest number accepted."""
+    """A group has more links than can be solved by iteration; most: the largest number of links allowed."""
 
     def __init__(self, group: Group, most: int) -> None:
         super().__init__(group.title)
@@ -68,9 +73,9 @@ class GroupTooLargeError(LinkageError):
 
 
 class ChangePointSearchError(LinkageError):
-    """The change points of a group depend on too many groups over too many turns of the driver.
+    """The search for change points of a group would take too long.
 
-    groups: number of groups to compute; turns: number of turns; most: largest product of the two.
+    groups: number of groups to be computed. turns: number of driver turns. most: largest product of the two allowed.
     """
 
     def __init__(self, group: Group, groups: int, turns: int, most: int) -> None:
@@ -87,7 +92,7 @@ class UnknownPositionError(LinkageError):
 
 
 class UnknownNameError(LinkageError):
-    """A requested name does not exist; allowed: the names that do."""
+    """A requested name does not exist; allowed: the existing names."""
 
     def __init__(self, name: str, allowed: tuple[str, ...]) -> None:
         super().__init__(name)
@@ -95,9 +100,9 @@ class UnknownNameError(LinkageError):
 
 
 class MissingStrokesError(LinkageError):
-    """The key at `path` of the file needs the strokes of an output that has none.
+    """The key at `path` of the file requires strokes of an output, but the output has none.
 
-    limits: range (rad or m) of a driver that cannot make a full turn, or that moves between two ends.
+    link: the output. limits: range (rad or m) of a driver that moves between two ends; otherwise None.
     """
 
     def __init__(self, link: str | None, path: tuple[str, ...], limits: tuple[float, float] | None = None) -> None:
@@ -106,9 +111,9 @@ class MissingStrokesError(LinkageError):
 
 
 class TableBeyondCycleError(LinkageError):
-    """The crank never reaches a row of a load table; path: of the row in the file.
+    """A row of a load table is never reached by the crank.
 
-    argument: crank angle of the row (rad); cycle: largest angle that the table may contain (rad).
+    path: path of the row in the file. argument: crank angle of the row (rad). cycle: largest crank angle allowed (rad).
     """
 
     def __init__(self, path: tuple[str | int, ...], argument: float, cycle: float) -> None:
@@ -117,7 +122,7 @@ class TableBeyondCycleError(LinkageError):
 
 
 class NotOnFrameError(LinkageError):
-    """A link cannot be the driver because it is not connected to the frame; allowed: the links that can."""
+    """A link cannot be the driver because it is not connected to the frame; allowed: the links that are."""
 
     def __init__(self, link: str, allowed: tuple[str, ...]) -> None:
         super().__init__(link)
@@ -125,9 +130,10 @@ class NotOnFrameError(LinkageError):
 
 
 class SpeedTableError(LinkageError):
-    """A table of driver speeds, from `first` to `last` (rad), does not cover a position.
+    """A table of driver speeds does not cover a position, or the whole cycle.
 
-    at: driver coordinate of that position (rad); None if the table merely does not cover the whole cycle.
+    at: driver coordinate of the position (rad); None if only the cycle is not covered. first, last: first and last
+    argument of the table (rad). cycle: length of the cycle (rad).
     """
 
     def __init__(self, at: float | None, first: float, last: float, cycle: float) -> None:
@@ -136,7 +142,7 @@ class SpeedTableError(LinkageError):
 
 
 class NoTurnError(LinkageError):
-    """Loads repeat after several turns, but the crank cannot make a full turn."""
+    """Loads repeat after several turns of the crank, but the crank cannot make a full turn."""
 
     def __init__(self, turns: int) -> None:
         super().__init__(turns)
@@ -144,8 +150,9 @@ class NoTurnError(LinkageError):
 
 
 class NoCycleError(LinkageError):
-    """The block at `path` of the file (law of motion, balancing) needs a cycle, and there is none: the driver slides,
-    cannot make a full turn, or is one of several.
+    """The block at `path` of the file (law of motion, balancing) requires a cycle, but there is none.
+
+    The driver slides, cannot make a full turn, or is one of several.
     """
 
     def __init__(self, path: tuple[str, ...] = ("dynamics",)) -> None:
@@ -154,7 +161,7 @@ class NoCycleError(LinkageError):
 
 
 class OutOfRangeError(LinkageError):
-    """A run goes beyond the range of the driver, from `start` to `end` (rad or m)."""
+    """A single run would leave the range of the driver, from `start` to `end` (rad or m)."""
 
     def __init__(self, start: float, end: float) -> None:
         super().__init__(start, end)
@@ -162,7 +169,10 @@ class OutOfRangeError(LinkageError):
 
 
 class SpeedDependentForceError(LinkageError):
-    """A law of motion is requested, but forces other than inertia depend on the speed; path: of the first such key."""
+    """A law of motion is requested, but forces other than inertia depend on the speed.
+
+    path: path in the file of the first such force.
+    """
 
     def __init__(self, path: tuple[str, ...]) -> None:
         super().__init__(".".join(path))
@@ -170,7 +180,7 @@ class SpeedDependentForceError(LinkageError):
 
 
 class StandstillError(LinkageError):
-    """The machine stops: its kinetic energy is used up at the driver coordinate `place` of the cycle (rad)."""
+    """The machine stops: at the driver coordinate `place` of the cycle (rad) its kinetic energy is used up."""
 
     def __init__(self, place: float) -> None:
         super().__init__(place)
@@ -178,7 +188,7 @@ class StandstillError(LinkageError):
 
 
 class NoInertiaError(LinkageError):
-    """A single run has no law of motion: at the driver coordinate `place` nothing with inertia moves."""
+    """A single run has no law of motion: at the driver coordinate `place` no moving link has inertia."""
 
     def __init__(self, place: float) -> None:
         super().__init__(place)
@@ -186,7 +196,10 @@ class NoInertiaError(LinkageError):
 
 
 class LostDigitsError(LinkageError):
-    """The law of motion is lost in rounding: in a cycle the motor changes the speed by too small a fraction `share`."""
+    """The law of motion is lost in rounding: within a cycle the motor changes the speed too little.
+
+    share: largest relative change of the speed.
+    """
 
     def __init__(self, share: float) -> None:
         super().__init__(share)
@@ -194,9 +207,10 @@ class LostDigitsError(LinkageError):
 
 
 class WeakMotorError(LinkageError):
-    """The largest driving moment or force `most` (N m or N) is less than the mean `wanted` that the loads require.
+    """The driving moment or force never reaches the mean value that the loads require.
 
-    place: driver coordinate (rad) at which they require most.
+    wanted: required mean (N m or N). most: largest driving moment or force. place: driver coordinate (rad) at which the
+    loads require most.
     """
 
     def __init__(self, wanted: float, most: float, place: float) -> None:
@@ -205,7 +219,10 @@ class WeakMotorError(LinkageError):
 
 
 class LongRunError(LinkageError):
-    """Integration of a run does not finish within `count` evaluations; time (s) and way (driver coordinate) reached."""
+    """The integration of a single run did not finish.
+
+    time: time reached (s). way: driver coordinate reached. count: number of evaluations made.
+    """
 
     def __init__(self, time: float, way: float, count: int) -> None:
         super().__init__(f"{time:g} s")
@@ -213,12 +230,15 @@ class LongRunError(LinkageError):
 
 
 class RunawayError(LinkageError):
-    """The loads accelerate the machine beyond control of its motor: mean driving moment or force `pushing` (N m or N)
-    of the loads against the largest braking moment or force `most`.
+    """The loads accelerate the machine, and its motor cannot brake it.
 
-    place: driver coordinate of the cycle (rad) at which the loads drive most, or the machine is fastest, as far as it
-    was computed; speed: the speed there (rad/s or m/s), nan where it was not computed (then `pushing` is at least
-    `most`). idle: speed at which the motor neither drives nor brakes.
+    Attributes:
+        pushing: mean driving moment or force of the loads (N m or N).
+        most: largest braking moment or force of the motor.
+        idle: speed at which the motor neither drives nor brakes.
+        place: driver coordinate of the cycle (rad) at which the loads drive most, or at which the machine is fastest,
+            as far as it was computed.
+        speed: speed there (rad/s or m/s); nan if it was not computed. In that case `pushing` is at least `most`.
     """
 
     def __init__(self, pushing: float, most: float, idle: float, place: float, speed: float = nan) -> None:
@@ -227,8 +247,10 @@ class RunawayError(LinkageError):
 
 
 class NoFlywheelError(LinkageError):
-    """The coefficient of fluctuation without a flywheel, `own`, is already below the required one; nan: no flywheel
-    suffices.
+    """No flywheel is needed, or none is sufficient.
+
+    wanted: required coefficient of fluctuation of speed. own: the coefficient without a flywheel, which is already
+    below `wanted`; nan if no flywheel is sufficient.
     """
 
     def __init__(self, wanted: float, own: float) -> None:
@@ -237,13 +259,17 @@ class NoFlywheelError(LinkageError):
 
 
 class CounterweightError(LinkageError):
-    """Balancing has no solution with counterweights of the given radii: each added mass on a moving pivot requires
-    more.
+    """Balancing with counterweights of these radii has no solution.
+
+    Every mass added on a moving pivot requires further masses.
     """
 
 
 class SettingError(LinkageError):
-    """One of several alternating settings, at `path` of the file, is invalid; error: the reason."""
+    """One of several alternating settings is invalid.
+
+    path: path of the setting in the file. error: the reason.
+    """
 
     def __init__(self, path: tuple[str | int, ...], error: LinkageError) -> None:
         super().__init__(".".join(map(str, path)))

@@ -1,8 +1,8 @@
-"""Data of a linkage: links, hinges, sliding pairs, drivers, loads. SI units and radians; no input or output.
+"""Data of a linkage: links, hinges, prismatic pairs, drivers, loads. SI units and radians; no input or output.
 
-A planar vector is a complex number. Every link has its own coordinate axes, in which `points` and `centre` are given;
-the pose of a link is the position of its origin and the direction of its x axis. The frame is link "0"; its axes are
-the axes of the drawing. Lengths may be numbers or arrays that broadcast against (variants, positions).
+A planar vector is a complex number. Every link has its own axes, in which its `points` and `centre` are given; the pose
+of a link is the position of its origin and the direction of its x axis. The frame is link "0", and its axes are the
+axes of the drawing. Lengths may be numbers, or arrays that broadcast against (variants, positions).
 """
 
 from __future__ import annotations
@@ -22,8 +22,15 @@ FRAME = "0"
 
 @dataclass(frozen=True)
 class Link:
-    """A rigid link: named points in its own axes (m), mass (kg), centre of mass (m), central moment of inertia (kg
-    m2).
+    """A rigid link.
+
+    Attributes:
+        name: name of the link.
+        points: named points in the axes of the link (m).
+        mass: mass (kg).
+        inertia: moment of inertia about the centre of mass (kg m2).
+        centre: centre of mass in the axes of the link (m).
+        label: text for people, e.g. "crank"; may be empty.
     """
 
     name: str
@@ -36,9 +43,13 @@ class Link:
 
 @dataclass(frozen=True)
 class Hinge:
-    """A revolute pair at a common point of two links, or a compound hinge of k links, which counts as k - 1 pairs.
+    """A revolute pair of two links, or a compound hinge of k links, which counts as k - 1 pairs.
 
-    attached_to: the link that forms a pair with each of the others, if the file names it.
+    Attributes:
+        point: name of the common point.
+        links: names of the links.
+        attached_to: in a compound hinge, the link that forms a pair with each of the other links; empty unless the file
+            names it.
     """
 
     point: str
@@ -47,17 +58,25 @@ class Hinge:
 
 
 def common_hinge(hinges: Iterable[Hinge], link: str, other_link: str) -> str | None:
-    """Return the point at which two links are hinged to each other, or None."""
+    """Return the name of the point at which two links are hinged to each other, or None."""
     return next((hinge.point for hinge in hinges if {link, other_link} <= set(hinge.links)), None)
 
 
 @dataclass(frozen=True)
 class Slide:
-    """A prismatic pair: `point` of the runner moves along a straight guide of the carrier.
+    """A prismatic pair: a point of one link, the runner, slides along a straight guide of another link, the carrier.
 
-    The guide passes through the point `through` in the `direction` (rad), both in the axes of the carrier. `turned` is
-    the constant angle of the runner from the carrier (rad); `at` is the sliding point in the axes of the runner. ends:
-    the two points of the carrier that end the guide, the run is zero at the first; None if the guide is unbounded.
+    Attributes:
+        name: name of the pair.
+        carrier: name of the link with the guide.
+        runner: name of the sliding link.
+        through: a point of the guide, in the axes of the carrier (m).
+        direction: direction of the guide, in the axes of the carrier (rad).
+        at: sliding point, in the axes of the runner (m).
+        turned: constant angle of the runner relative to the carrier (rad).
+        point: name of the sliding point.
+        ends: names of the two points of the carrier at which the guide ends; the displacement is zero at the first.
+            None if the guide is unlimited.
     """
 
     name: str
@@ -73,9 +92,11 @@ class Slide:
 
 @dataclass(frozen=True)
 class SpeedTable:
-    """Squared speed of a crank (rad2/s2) against its angle, and the accelerations in its sense (rad/s2), if given.
+    """Speed of a crank given by a table.
 
-    If the table `squares` is closed, it covers the whole cycle.
+    Attributes:
+        squares: squared speed (rad2/s2) against the crank angle (rad); covers the whole cycle if the table is closed.
+        accelerations: acceleration in the sense of rotation (rad/s2) against the crank angle; None if not given.
     """
 
     squares: InterpolationTable
@@ -84,17 +105,25 @@ class SpeedTable:
 
 @dataclass(frozen=True)
 class Driver:
-    """An input link, which rotates about its base or slides on it: q = q0 + rate t + acceleration t^2/2.
+    """An input link, which rotates about its base or slides along it: q = q0 + rate t + acceleration t^2/2.
 
     The base is the frame (a crank, a cylinder on the frame) or a moving link (a swinging cylinder, a drive in the joint
-    of an arm). The driver coordinate q is the angle of the x axis of the link from that of its base (rad), or the run
-    along the guide `joint` from its `through` point (m).
+    of an arm). The driver coordinate q is the angle of the link relative to its base (rad), or the displacement along
+    the guide from its point `through` (m).
 
     Attributes:
-        sense: direction of motion, +1 or -1; `rate` >= 0 and `acceleration` are counted in this direction.
-        at: driver coordinate in the sketch, for all drivers but the first.
-        stroke: limits of the driver coordinate, if it has any.
-        law: speed as a function of the crank angle; `rate` is then its mean.
+        link: name of the link.
+        kind: "turn" or "slide".
+        joint: name of the hinge or of the prismatic pair that is driven.
+        rate: initial speed (rad/s or m/s), not negative.
+        acceleration: acceleration in the sense of motion (rad/s2 or m/s2).
+        sense: sense of motion, +1 or -1.
+        balance: whether a moment or a force on the crank balances the loads.
+        end: name of the point of the crank at which the balancing force acts.
+        base: name of the link relative to which it moves.
+        at: driver coordinate in the sketch; not used for the first driver.
+        stroke: limits of the driver coordinate, or None.
+        law: speed as a function of the crank angle, or None; `rate` is then the mean speed.
     """
 
     link: str
@@ -113,16 +142,22 @@ class Driver:
 
 @dataclass(frozen=True)
 class Mesh:
-    """A higher pair of two links on a common carrier: gear teeth, or a cam and follower defined by the law of motion.
+    """A higher pair of two links on a common carrier: gear teeth, or a cam and follower defined by a law of motion.
 
-    a is the angle of link i relative to the carrier (rad); b is that of link j, or its run in the sliding pair `slide`
-    on the carrier (m). For teeth b = offset + ratio a, for a cam b = offset + law(a). Angles are accumulated through
-    full turns from the sketch on; there, angles of links that are not drivers lie in -pi..pi.
+    Let a be the angle of link i relative to the carrier (rad), and b that of link j, or its displacement in the
+    prismatic pair `slide` on the carrier (m). For teeth b = offset + ratio a, for a cam b = offset + law(a). Angles are
+    accumulated through full turns, starting at the sketch; there, angles of links that are not drivers lie in -pi..pi.
 
     Attributes:
+        name: name of the pair.
+        kind: "gear", "rack" or "cam".
+        i, j: names of the links; i is a gear or the cam, j a gear, the rack or the follower.
+        carrier: name of the link that carries both.
+        ratio, offset, law: constants and law of the equations above (rad, or m for b as a displacement).
+        slide: name of the prismatic pair of j on the carrier; empty if j rotates.
         pressure: angle between the tooth force and the common tangent of the pitch circles (rad).
-        roller: link between cam and follower whose rotation about its own axis moves no other link (a local freedom);
-            it counts in the structure, but its motion is not computed.
+        roller: name of a roller between cam and follower, or empty. Its rotation about its own axis moves no other link
+            (a local freedom). It counts in the structure, but its motion is not computed.
     """
 
     name: str
@@ -142,9 +177,19 @@ class Mesh:
 class Spring:
     """A spring or damper between two links, or a cylinder that exerts a force without prescribing a motion.
 
-    Linear: between two points, pulls with the force preload + rate (length - free) + damping (rate of lengthening), N.
-    Torsional (`turns`): moment of link i on link j = -(preload + rate (angle - free) + damping omega), N m, where the
-    angle is that of j relative to i, within half a turn of `free`.
+    A linear one pulls its two points together with the force preload + rate (length - free) + damping (rate of
+    lengthening), in N. A torsional one exerts on link j the moment -(preload + rate (angle - free) + damping omega), in
+    N m, where the angle is that of j relative to i, within half a turn of `free`.
+
+    Attributes:
+        name: name of the spring.
+        i, j: names of the links.
+        at_i, at_j: its points in the axes of each link (m).
+        turns: True for a torsional spring.
+        rate: stiffness (N/m, or N m/rad).
+        free: length (m) or angle (rad) at which only the preload acts.
+        preload: force (N) or moment (N m) at this length or angle.
+        damping: damping coefficient (N s/m, or N m s/rad).
     """
 
     name: str
@@ -161,7 +206,13 @@ class Spring:
 
 @dataclass(frozen=True)
 class Friction:
-    """Coulomb friction in one pair: coefficient, and for a hinge the journal radius (m)."""
+    """Coulomb friction in one pair.
+
+    Attributes:
+        pair: name of the pair.
+        coefficient: coefficient of friction.
+        radius: radius of the journal of a hinge (m).
+    """
 
     pair: str
     coefficient: float
@@ -170,12 +221,13 @@ class Friction:
 
 @dataclass(frozen=True)
 class LoadTable(InterpolationTable):
-    """Table of the magnitude of a load.
+    """A load given by a table.
 
     Attributes:
-        shares: rows against the stroke are given as fractions of it, 0 to 1, instead of lengths or angles.
-        stroke_link: the link whose stroke is meant; the main output if empty.
-        key: key of the load that contains the table in the file.
+        against: argument of the table: stroke of an output, or crank angle.
+        shares: True if strokes are given as fractions 0 to 1 instead of lengths or angles.
+        stroke_link: output whose stroke is the argument; empty for the main output.
+        key: key of the load under which the file contains the table.
     """
 
     against: Literal["stroke", "crank angle", "crank turn"] = "stroke"
@@ -185,23 +237,29 @@ class LoadTable(InterpolationTable):
 
     @property
     def first_column(self) -> str:
-        """Name of the argument column, in the words of a problem file."""
+        """Name of the column of arguments, in the words of a problem file."""
         return f"share of {self.against}" if self.shares else self.against
 
 
 @dataclass(frozen=True)
 class Load:
-    """A force and a couple on a link, with the opposite force and couple on the link `base` if that moves.
-
-    `force` (N) acts at the point `at` (axes of the link, m) and keeps its direction in the drawing, or in the link if
-    `follows`; `moment` is in N m.
+    """A force and a couple on a link. If `base` is a moving link, the opposite force and couple act on it.
 
     Attributes:
-        table: factor for both; it varies with the stroke or the crank angle.
-        resists: force and moment are magnitudes only: the force opposes the velocity of its point, the moment the
-            rotation of its link, both relative to the base.
-        when: "always" or "working stroke" (of the link `stroke_link`; of the main output if that is empty).
-        window: crank angles between which alone the load acts (rad, counterclockwise).
+        name: name of the load.
+        link: name of the loaded link.
+        at: point at which the force acts, in the axes of the link (m).
+        force: force (N), in the axes of the drawing, or of the link if `follows` is set.
+        moment: moment of the couple (N m).
+        follows: True if the force keeps its direction relative to the link, False if it keeps it in the drawing.
+        when: "always" or "working stroke".
+        table: factor of force and moment that varies with the stroke or the crank angle, or None.
+        point: name of the point at which the force acts; may be empty.
+        window: crank angles between which alone the load acts (rad, counterclockwise), or None.
+        resists: True if only magnitudes are given: the force opposes the velocity of its point, the moment the rotation
+            of its link, both relative to the base.
+        base: name of the link on which the reaction of the load acts.
+        stroke_link: output whose working stroke is meant; empty for the main output.
     """
 
     name: str
@@ -225,7 +283,13 @@ class Load:
 
 @dataclass(frozen=True)
 class Sketch:
-    """Approximate points and angles at one driver coordinate, which select the assembly of each group."""
+    """An approximate position of the linkage, which selects the assembly of each group.
+
+    Attributes:
+        at: driver coordinate (rad or m).
+        points: approximate positions of points (m), by name.
+        angles: approximate angles of links (rad), by name.
+    """
 
     at: float
     points: Mapping[str, complex] = field(default_factory=dict)
@@ -234,7 +298,12 @@ class Sketch:
 
 @dataclass(frozen=True)
 class Output:
-    """The output motion: stroke (m) or swing (rad) of a link, or of a coordinate of a point, e.g. K.x (m)."""
+    """An output of the mechanism.
+
+    Attributes:
+        link: name of a link, or coordinate of a point, e.g. K.x.
+        working: direction of the working stroke; "auto": the slower stroke.
+    """
 
     link: str
     working: Literal["auto", "forward", "backward"] = "auto"
@@ -242,10 +311,24 @@ class Output:
 
 @dataclass(frozen=True)
 class Linkage:
-    """Complete data of a planar linkage. Links are in the order of the file, the frame first.
+    """Complete data of a planar linkage.
 
-    keep_side: at exact change points groups stay on the side of the sketch instead of passing smoothly through. turns:
-    crank turns after which the loads repeat.
+    Attributes:
+        links: links by name, in the order of the file, the frame first.
+        hinges: revolute pairs and compound hinges.
+        slides: prismatic pairs.
+        driver: the first driver, which defines the positions.
+        sketch: approximate position that selects the assemblies.
+        loads: loads.
+        gravity: acceleration of gravity, a vector (m/s2).
+        output: the main output, or None.
+        others: further drivers.
+        meshes: higher pairs.
+        springs: springs and dampers.
+        friction: friction in pairs.
+        outputs: all outputs that the file names.
+        keep_side: True if groups stay on the side of the sketch at exact change points, instead of passing smoothly.
+        turns: crank turns after which the loads repeat.
     """
 
     links: Mapping[str, Link]
@@ -266,40 +349,41 @@ class Linkage:
 
     @property
     def drivers(self) -> tuple[Driver, ...]:
-        """All drivers; the first one defines the positions."""
+        """All drivers. The first one defines the positions."""
         return (self.driver, *self.others)
 
     @property
     def cranks(self) -> tuple[Driver, ...]:
-        """Drivers on the frame: their links belong to no group."""
+        """Drivers on the frame. Their links belong to no Assur group."""
         return tuple(d for d in self.drivers if d.base == FRAME)
 
     @property
     def acting(self) -> tuple[str, ...]:
-        """Names of the loads and springs."""
+        """Names of all loads and springs."""
         return (*(load.name for load in self.loads), *(spring.name for spring in self.springs))
 
     @property
     def by_strokes(self) -> bool:
-        """True if loads depend on the strokes: they act in working strokes only, or follow a table."""
+        """True if a load acts in working strokes only, or is given by a table."""
         return any(load.working_stroke_only or load.table is not None for load in self.loads)
 
     @property
     def stroke_links(self) -> tuple[str, ...]:
-        """Links other than the main output whose strokes the loads depend on."""
+        """Links, other than the main output, on whose strokes loads depend."""
         named = [load.stroke_link for load in self.loads if load.working_stroke_only]
         named += [load.table.stroke_link for load in self.loads if load.table is not None]
         return tuple(dict.fromkeys(link for link in named if link))
 
     def working_direction(self, output: str) -> Literal["auto", "forward", "backward"]:
-        """Return the direction of the working stroke of an output, as given in the file."""
+        """Return the direction of the working stroke of an output, as the file gives it; "auto" if it does not."""
         outputs = self.outputs or ((self.output,) if self.output else ())
         return next((other.working for other in outputs if other.link == output), "auto")
 
     @property
     def by_speed(self) -> tuple[str, ...] | None:
-        """Keys of the first force that depends on the speed of the mechanism (dampers; friction through the reactions),
-        or None.
+        """Path in the file of the first force that depends on the speed of the mechanism, or None.
+
+        Such forces are those of dampers, and friction, which depends on the reactions.
         """
         damped = next((spring.name for spring in self.springs if spring.damping), None)
         if damped is not None:
@@ -307,11 +391,11 @@ class Linkage:
         return ("friction",) if self.friction else None
 
     def slide(self, name: str) -> Slide:
-        """Return the sliding pair with this name."""
+        """Return the prismatic pair with this name."""
         return next(s for s in self.slides if s.name == name)
 
     def shared(self, link: str, other_link: str) -> str | None:
-        """Return the point at which two links are hinged to each other, or None."""
+        """Return the name of the point at which two links are hinged to each other, or None."""
         return common_hinge(self.hinges, link, other_link)
 
     @property
@@ -321,12 +405,12 @@ class Linkage:
 
     @property
     def moving_points(self) -> tuple[str, ...]:
-        """Names of the points that move, each once."""
+        """Names of the points that do not belong to the frame."""
         points = dict.fromkeys(point for link in self.moving for point in self.links[link].points)
         return tuple(point for point in points if point not in self.links[FRAME].points)
 
     def local(self, link: str, point: str) -> complex:
-        """Return a named point in the axes of its link, m."""
+        """Return the position of a named point in the axes of a link, m."""
         return self.links[link].points[point]
 
     def slides_on_frame(self, link: str) -> bool:
@@ -338,12 +422,13 @@ class Linkage:
         return any(FRAME in h.links and link in h.links for h in self.hinges)
 
     def output_point(self, output: str) -> str | None:
-        """Return the point of an output such as K.x; None if the output is a link."""
+        """Return the name of the point of an output such as K.x; None if the output is a link."""
         return None if output in self.links else output.rpartition(".")[0]
 
     def output_guide(self, output: str) -> Slide | None:
-        """Return the prismatic pair of an output link: with the frame, or of a sliding block on a moving link; None if
-        there is none.
+        """Return the prismatic pair in which an output link slides; None if it does not slide.
+
+        It is the pair with the frame, or that of a sliding block on a moving link.
         """
         on_frame = next((s for s in self.slides if {s.carrier, s.runner} == {FRAME, output}), None)
         if on_frame is not None or self.hinged_to_frame(output):
@@ -351,17 +436,18 @@ class Linkage:
         return next((s for s in self.slides if s.runner == output), None)
 
     def output_carrier(self, output: str) -> str:
-        """Return the link of an output: the link itself, or the one that owns the point."""
+        """Return the link of an output: the output itself, or the link that has its point."""
         point = self.output_point(output)
         return output if point is None else self.owner(point)
 
     def output_swings(self, output: str) -> bool:
-        """Return True if the output is the angle of a link (rad), False if it is a length (m)."""
+        """Return True if the output is the angle of a link (rad), False if it is a displacement (m)."""
         return output in self.links and self.output_guide(output) is None
 
     def output_arm(self, output: str) -> tuple[str, float] | None:
-        """Return a point of an output link that swings about the frame, and its distance from the pivot (m), or
-        None.
+        """Return a point of an output link that rotates about the frame, and its distance from the pivot (m).
+
+        None if the output does not rotate about the frame, or has no other point.
         """
         pivot = self.shared(FRAME, output) if output in self.links else None
         if pivot is None or not self.output_swings(output):
@@ -371,12 +457,14 @@ class Linkage:
         return None if point is None else (point, abs(link.points[point] - link.points[pivot]))
 
     def carriers(self, point: str) -> tuple[str, ...]:
-        """Return all links that own the point, moving links before the frame."""
+        """Return the names of all links that have this point, moving links before the frame."""
         return tuple(name for name in (*self.moving, FRAME) if point in self.links[name].points)
 
     def owner(self, point: str) -> str:
-        """Return the first link that owns the point, moving links before the frame. Raises KeyError if there is
-        none.
+        """Return the name of the first link that has this point, moving links before the frame.
+
+        Raises:
+            KeyError: no link has the point.
         """
         for name in (*self.moving, FRAME):
             if point in self.links[name].points:
@@ -386,9 +474,14 @@ class Linkage:
 
 @dataclass(frozen=True)
 class Request:
-    """Requested positions: a count over the range, or individual driver coordinates.
+    """Requested positions of the driver.
 
-    centres: True if the instantaneous centres are requested for the positions in detail.
+    Attributes:
+        count: number of positions, evenly spaced over the range of the driver.
+        start: driver coordinate of the first position (rad), or the beginning of the working stroke.
+        places: individual driver coordinates (rad or m); if given, they are used instead.
+        detail: numbers of the positions to be drawn in detail.
+        centres: True if instantaneous centres are requested for the positions in detail.
     """
 
     count: int = 12

@@ -1,13 +1,12 @@
-"""Quantities of motion, forces and energy: name, dimension, and how to read each from its record.
+"""Quantities of motion, forces and energy: name, dimension, and how each is read from its record.
 
-There is one tuple of quantities for each kind of object: points, links, sliding pairs, reactions, loads, drivers,
-forces on the Zhukovsky lever, and the mechanism as a whole. An object is a record of arrays with one value for each
-position: `kinematics.motion.PointMotion`, `forces.plan.Reaction`, ... Users of the tuples:
+There is a tuple of quantities for each kind of object: points, links, prismatic pairs, reactions, loads, drivers,
+forces on the Zhukovsky lever, and the whole mechanism. An object is a record of arrays with one value for each
+position, such as `kinematics.motion.PointMotion` or `forces.plan.Reaction`. The tuples determine
 
-- tables contain a column, or columns of the components, for every quantity that has headers (`quantity_columns`);
-- result.json has a key for every quantity, and its schema the description and the unit;
-- goals of optimal synthesis read reactions and the balancing moment through them;
-- the rounding bounds and `prepare` use the quantities marked `leading` of all objects of a linkage.
+- the columns of tables: one for every header of a quantity (`quantity_columns`); - the keys of result.json, and in its
+schema their descriptions and units; - how goals of optimal synthesis read reactions and the balancing moment; - which
+quantities `prepare` and the rounding bounds give for each object: those marked `leading`.
 
 To add a quantity of a point, for example, add an attribute to `PointMotion` and a line to POINT.
 """
@@ -26,7 +25,7 @@ from tmm_cli.language import N_, _
 
 @dataclass(frozen=True)
 class Dimension:
-    """A physical dimension: exponents of length, mass, time and angle."""
+    """A physical dimension, given by the exponents of length, mass, time and angle."""
 
     length: int = 0
     mass: int = 0
@@ -34,7 +33,7 @@ class Dimension:
     angle: int = 0
 
     def times(self, other: Dimension, power: int = 1) -> Dimension:
-        """Return the dimension of the product with other**power."""
+        """Return the dimension of a product: this dimension times other**power."""
         return Dimension(
             self.length + power * other.length,
             self.mass + power * other.mass,
@@ -46,7 +45,7 @@ class Dimension:
         return NUMBER.times(self, exponent)
 
     def fits(self, required: Dimension) -> bool:
-        """Return True if a value of this dimension is accepted where `required` is expected.
+        """Return True if a value of this dimension is accepted where the dimension `required` is expected.
 
         Radians are ignored beside other dimensions (1/s for rad/s, rad/s * m for m/s), but a pure number is not
         accepted as an angle.
@@ -58,11 +57,11 @@ class Dimension:
 
     @property
     def name(self) -> str | None:
-        """Name of the dimension (`length`, `moment of force`, ...); None if it has no entry in DIMENSIONS."""
+        """Name of the dimension, e.g. "length" or "moment of force"; None if it is not in DIMENSIONS."""
         return next((name for name, kind in DIMENSIONS.items() if kind.dimension == self), None)
 
     def __str__(self) -> str:
-        """Return the name with its article: `a length`, `an angle`."""
+        """Return the name with its article, in the current language: "a length", "an angle"."""
         if name := self.name:
             return _(NAMES_WITH_ARTICLE[name])
         bases = {"m": self.length, "kg": self.mass, "s": self.time, "rad": self.angle}
@@ -70,7 +69,7 @@ class Dimension:
 
     @property
     def example(self) -> str:
-        """Dimension with an example, for error messages: `an angle, e.g. 30 deg or 0.5 rad`."""
+        """Name of the dimension with an example, for error messages: "an angle, e.g. 30 deg or 0.5 rad"."""
         name = self.name
         return (
             _("{kind}, e.g. {example}").format(kind=self, example=_translate_example(DIMENSIONS[name].example))
@@ -80,13 +79,19 @@ class Dimension:
 
 
 def _translate_example(examples: str) -> str:
-    """Translate the `or` of an example such as "30 deg or 0.5 rad"."""
+    """Translate the word "or" of an example such as "30 deg or 0.5 rad"."""
     first, __, second = examples.partition(" or ")
     return _("{one} or {other}").format(one=first, other=second) if second else first
 
 
 class NamedDimension(NamedTuple):
-    """A named dimension with its default unit for numbers without a unit, and an example."""
+    """A dimension that has a name.
+
+    Attributes:
+        dimension: the dimension.
+        default: unit assumed for a number without a unit.
+        example: example of a value with its unit, for error messages.
+    """
 
     dimension: Dimension
     default: str
@@ -158,7 +163,7 @@ NAMES_WITH_ARTICLE: Final[Mapping[str, str]] = {
 
 
 def product_text(powers: Mapping[str, int]) -> str:
-    """Write a product of powers: {"m": 2, "s": -1} gives `m^2*s^-1`."""
+    """Write a product of powers: `m^2*s^-1` for {"m": 2, "s": -1}."""
     return "*".join(name if power == 1 else f"{name}^{power}" for name, power in powers.items() if power)
 
 
@@ -167,16 +172,21 @@ NamedValues = tuple[str, Any, Dimension]  # header, values at the positions (Non
 
 @dataclass(frozen=True)
 class Quantity:
-    """A quantity of an object, in SI and radians, with one value for each position.
+    """A quantity of an object, with one value for each position (SI units and radians).
 
     Attributes:
-        name: key in result.json, and attribute of the record unless `read` is given.
-        headers: of its table columns; for a vector (complex, x + iy) those of x, y and possibly its magnitude, or of
-            the magnitude alone; empty if it is in no table.
-        of_slider: header and dimension for a sliding driver, if they differ.
-        leading: True if `prepare` and the rounding bounds use it.
-        symbol: its name in `prepare`, if not `name`.
-        goes_with: attribute that is None for objects without this quantity.
+        name: key in result.json, and name of the attribute of the record unless `read` is given.
+        text: description in the schema of result.json.
+        unit: unit in the schema.
+        dimension: physical dimension.
+        headers: headings of its table columns. A vector has columns for x, y and possibly the magnitude, or for the
+            magnitude alone. Empty if the quantity is in no table.
+        vector: True for a vector (complex, x + iy).
+        read: function that reads the values from the record; by default the attribute `name`.
+        of_slider: heading and dimension for a sliding driver, if they differ.
+        leading: True if `prepare` and the rounding bounds give it.
+        symbol: name in `prepare`; by default `name`.
+        goes_with: name of an attribute that is None for objects without this quantity.
     """
 
     name: str
@@ -192,22 +202,22 @@ class Quantity:
     goes_with: str = ""
 
     def value(self, record: Any) -> Any:
-        """Return the values of this quantity, or None if the record has none."""
+        """Return the values of this quantity, read from a record."""
         return getattr(record, self.name) if self.read is None else self.read(record)
 
     def there(self, record: Any) -> bool:
-        """Return True if the record has this quantity."""
+        """Return True if the object of this record has the quantity."""
         return not self.goes_with or getattr(record, self.goes_with) is not None
 
     def measures(self, slider: bool) -> Dimension:
-        """Return the dimension; slider: True for a mechanism with a sliding driver."""
+        """Return the dimension of the quantity; slider: True for a mechanism with a sliding driver."""
         return self.of_slider[1] if slider and self.of_slider is not None else self.dimension
 
     def columns(self, record: Any, slider: bool = False) -> Iterator[NamedValues]:
-        """Yield the table columns of this quantity: header, values, dimension.
+        """Yield the table columns of this quantity: heading, values, dimension.
 
         Args:
-            record: the object; None gives columns without values.
+            record: the record of the object; None for columns without values.
             slider: True for a mechanism with a sliding driver.
         """
         value = None if record is None else self.value(record)
@@ -228,8 +238,9 @@ def quantity_columns(quantities: Iterable[Quantity], record: Any, slider: bool =
 
 
 def coordinate_dimension(kind: str) -> Dimension:
-    """Return the dimension of the coordinate of a driver or output that rotates ("turn", "swing") or slides
-    ("slide").
+    """Return the dimension of the coordinate of a driver or output.
+
+    kind: "slide" for a displacement (m); "turn" or "swing" for an angle (rad).
     """
     return LENGTH if kind == "slide" else ANGLE
 

@@ -1,6 +1,4 @@
-"""Selection of the assembly that the sketch shows, continuation along the driver coordinate, and listing of
-assemblies.
-"""
+"""Assembly of the groups as the sketch shows them, continuation along the driver coordinate, list of all assemblies."""
 
 from . import assembling as assembling, sketch_matching as sketch_matching
 from .assembling import (

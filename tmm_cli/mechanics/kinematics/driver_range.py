@@ -189,7 +189,10 @@ def _at_infinity(kernel: GroupSolver, place: float, towards: int) -> float:
 
 
 def _search_interval(kernels: tuple[GroupSolver, ...], at: float, half: float) -> tuple[float, float]:
-    """Return the interval to examine, relative to the sketch: a cycle, or more if the trace of a group extends further."""
+    """Return the interval to examine, relative to the sketch.
+
+    It is a cycle, or longer if the trace of a group extends further.
+    """
     low, high = -half, half
     for kernel in kernels:
         trace = kernel.followed
@@ -207,7 +210,10 @@ def _trace_limits(kernel: GroupSolver) -> tuple[float, ...]:
 
 
 def link_rotations(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> dict[str, int]:
-    """Return the revolutions per revolution of the driver of links with accumulated angles (gears and their carriers)."""
+    """Return the revolutions per revolution of the driver of links with accumulated angles, by name.
+
+    These are the links on which gears depend.
+    """
     rotations = {}
     for kernel in kernels:
         winding = kernel.winding if isinstance(kernel, ClosedFormSolver) else None
@@ -219,7 +225,10 @@ def link_rotations(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> dict[s
 
 
 def cycle_turns(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> int | None:
-    """Return the number of driver turns after which loads, gears, drivers and groups all repeat; None if they never do."""
+    """Return the number of driver turns after which loads, gears, drivers and groups all repeat.
+
+    None if they never do, or only after more than MOST_TURNS turns.
+    """
     turns = turns_of_cycle(linkage, link_rotations(linkage, kernels))
     for kernel in kernels:
         trace = kernel.followed
@@ -398,7 +407,7 @@ class SlotExcess:
 def find_slot_excess(
     linkage: Linkage, kernels: tuple[GroupSolver, ...], driver_range: DriverRange, requested: Sequence[float]
 ) -> tuple[SlotExcess, ...]:
-    """Find how far sliding blocks travel beyond the ends of their guides, for both ends of every guide of limited length.
+    """Find how far sliding blocks travel beyond the ends of their guides.
 
     Args:
         linkage: the linkage.
@@ -406,6 +415,9 @@ def find_slot_excess(
         driver_range: range of the driver.
         requested: requested driver coordinates. If the driver cannot make full turns, only the range between the first
             and the last of them is examined.
+
+    Returns:
+        The excess at both ends of every guide of limited length.
     """
     driven = {driver.joint for driver in linkage.drivers if driver.kind == "slide"}
     slides = [slide for slide in linkage.slides if slide.ends is not None and slide.name not in driven]

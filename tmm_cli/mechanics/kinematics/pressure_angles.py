@@ -295,8 +295,9 @@ def _is_constant(angles: Real) -> bool:
 
 
 def _blocked_ends(driver_range: DriverRange) -> tuple[tuple[float, int], ...]:
-    """Return the ends of the range at which a group stops the driver, each with the direction into the range (+1 or
-    -1).
+    """Return the ends of the range at which a group stops the driver.
+
+    Each is returned with the direction into the range, +1 or -1.
     """
     stops = {limit.place for limit in driver_range.limits}
     return tuple(end for end in ((driver_range.start, 1), (driver_range.end, -1)) if end[0] in stops)
@@ -315,7 +316,7 @@ def _tends_to_right_angle(
 
 
 def _negative_angle(linkage: Linkage, kernels: tuple[GroupSolver, ...], lead: DrivenLink, q: Real) -> Real:
-    """Return the pressure angle of the last group with a minus sign (for a search of minima); -90 deg where it is dead."""
+    """Return the negative pressure angle of the last group, for a search of minima; -90 deg where it is dead."""
     motion = link_states(linkage, kernels, q, 0)
     at = motion.placements[-1]
     return np.where(at.dead, -np.pi / 2, -pressure_angle(motion, kernels[-1], at, lead))

@@ -261,7 +261,7 @@ class Strokes:
 
     @property
     def k(self) -> float:
-        """Time ratio k of working to return strokes at constant driver speed; dwells are not counted. nan if undefined."""
+        """Time ratio k of working to return strokes at constant driver speed, dwells not counted; nan if undefined."""
         idle = sum(s.length for s in self.strokes if not s.working)
         return sum(s.length for s in self.working) / idle if idle else float("nan")
 

@@ -1,4 +1,4 @@
-"""Structure of a linkage, from its links and pairs: mobility, Assur groups, names of links and schemes."""
+"""Structure of a linkage: its mobility, pairs and Assur groups, and the names of links and of the mechanism."""
 
 from .assur import (
     Structure as Structure,
