@@ -1,4 +1,4 @@
-"""Web pages with moving mechanisms: a page for one mechanism, and a gallery of many."""
+"""Web pages with moving mechanisms: the page of one mechanism, and a gallery of many mechanisms."""
 
 from tmm_cli.interfaces import lazy
 

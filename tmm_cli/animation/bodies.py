@@ -1,6 +1,6 @@
-"""Bodies that move as one on the page: links, boxes of sliders, springs, with their marks in their own axes.
+"""Rigid bodies of the animated drawing: links, slider boxes and springs, each drawn in its own axes.
 
-A body is drawn once; the page moves it to its place in each frame.
+A body is drawn once. In each frame the page only moves and rotates it (and stretches it if it is a spring).
 """
 
 from __future__ import annotations
@@ -31,10 +31,13 @@ from tmm_cli.mechanics.numerics import Real, Vector, unit
 
 @dataclass
 class MovingBody:
-    """Body with its place (mm on the sheet), accumulated angle (rad) and stretch relative to the drawing, in
-    every frame.
+    """A body of the animated drawing and its motion.
 
-    marks: its marks in its own axes.
+    Attributes:
+        place: position of its origin on the sheet in each frame, (frames,), mm.
+        angle: rotation angle in each frame, accumulated over the revolutions, (frames,), rad.
+        stretch: length relative to that in the first frame, (frames,); 1 except for springs.
+        marks: its lines, areas and texts, in its own axes.
     """
 
     place: Vector
@@ -42,16 +45,16 @@ class MovingBody:
     stretch: Real
     marks: list[Mark] = field(default_factory=list)
 
-    def own(self, at: complex) -> complex:
-        """Return a place on the sheet in the first frame in the body's axes."""
+    def to_body_axes(self, at: complex) -> complex:
+        """Convert a point of the sheet (mm, first frame) to the axes of the body."""
         return complex((at - self.place[0]) * np.exp(-1j * self.angle[0]))
 
-    def take(self, marks: list[Mark]) -> None:
-        """Attach marks drawn in the first frame to the body."""
-        self.marks += [_in_body_axes(mark, self.own) for mark in marks]
+    def add_marks(self, marks: list[Mark]) -> None:
+        """Add marks drawn on the sheet in the first frame to the body."""
+        self.marks += [_in_body_axes(mark, self.to_body_axes) for mark in marks]
 
-    def at(self, local_place: Any, k: int) -> Any:
-        """Return a place of the body on the sheet in frame k."""
+    def to_sheet(self, local_place: Any, k: int) -> Any:
+        """Convert a point from the axes of the body to the sheet (mm) in frame k."""
         local = np.real(local_place) * self.stretch[k] + 1j * np.imag(local_place)
         return self.place[k] + local * np.exp(1j * self.angle[k])
 
@@ -69,7 +72,7 @@ def _in_body_axes(mark: Mark, to_body: Callable[[complex], complex]) -> Mark:
 
 @dataclass
 class MechanismPicture:
-    """A mechanism divided into bodies by name; each link and the frame is one."""
+    """Drawing of a mechanism, divided into bodies by name. Each link is a body, and so is the frame."""
 
     sheet: DrawingSheet
     motion: Motion
@@ -79,13 +82,14 @@ class MechanismPicture:
 
     @classmethod
     def of(cls, sheet: DrawingSheet, motion: Motion, scene: MechanismScene) -> MechanismPicture:
-        """Draw a scene in its first frame and divide it; marks of no body, such as contact points of gears, are
-        omitted.
+        """Draw the mechanism in its first frame and assign each mark to a body.
+
+        Marks that belong to no body, such as contact points of gears, are omitted.
         """
         linkage, pairs = scene.linkage, scene.structure.pairs
         drawn = render_scene(sheet, scene, linkage.moving, pairs, MOVING, dict.fromkeys(linkage.links, DARK_COLOUR))
         picture = cls(sheet, motion, scene, {}, drawn.forms)
-        picture._masses()
+        picture._draw_mass_centres()
         parts, alike = {name for name, __ in sheet.parts}, np.ones(motion.q.shape)
         picture.bodies[FRAME] = MovingBody(np.zeros_like(motion.q) * 0j, np.zeros_like(motion.q), alike)
         for link in linkage.moving:
@@ -96,21 +100,24 @@ class MechanismPicture:
             if BOX_BODY.format(slide.name) in parts:
                 angle = picture.bodies[slide.carrier].angle + float(np.angle(unit(slide.direction)))
                 picture.bodies[BOX_BODY.format(slide.name)] = MovingBody(
-                    picture._spots(slide.runner, slide.at), angle, alike
+                    picture._point_positions(slide.runner, slide.at), angle, alike
                 )
         for spring in linkage.springs:
-            start, end = picture._spots(spring.i, spring.at_i), picture._spots(spring.j, spring.at_j)
+            start, end = (
+                picture._point_positions(spring.i, spring.at_i),
+                picture._point_positions(spring.j, spring.at_j),
+            )
             length = np.abs(end - start)
             if SPRING_BODY.format(spring.name) in parts and length.min() > 0:
                 angle = np.unwrap(np.angle(end - start))
                 picture.bodies[SPRING_BODY.format(spring.name)] = MovingBody(start, angle, length / length[0])
         for name, indices in sheet.parts:
             if name in picture.bodies:
-                picture.bodies[name].take(sheet.marks[indices])
+                picture.bodies[name].add_marks(sheet.marks[indices])
         return picture
 
-    def _masses(self) -> None:
-        """Draw centres of mass that are not named points."""
+    def _draw_mass_centres(self) -> None:
+        """Draw the centres of mass that do not coincide with a named point."""
         for link in self.scene.linkage.moving:
             properties = self.scene.linkage.links[link]
             if np.any(properties.mass != 0) and all(
@@ -119,14 +126,14 @@ class MechanismPicture:
                 with self.sheet.part(link):
                     draw_mass_centre(self.sheet, self.sheet.on(self.scene.place(link, complex(properties.centre))))
 
-    def _spots(self, link: str, local: complex) -> Vector:
-        """Places of a point of a link on the sheet, in all frames."""
+    def _point_positions(self, link: str, local: complex) -> Vector:
+        """Return the positions of a point of a link on the sheet in all frames, (frames,), mm."""
         if link == FRAME:
             return np.full(self.motion.q.shape, self.sheet.on(complex(local)))
         return self.sheet.origin + self.motion.poses[link].spread(self.motion.q.shape).at(local) / self.sheet.mu
 
     def layers(self) -> Iterator[tuple[str, list[Mark]]]:
-        """Yield marks of bodies from the lowest to the highest layer."""
+        """Yield the marks in drawing order, as (body name, consecutive marks of this body)."""
         marks = [(mark.z, name, mark) for name, body in self.bodies.items() for mark in body.marks]
         marks.sort(key=lambda entry: entry[0])
         for name, layer in groupby(marks, key=lambda entry: entry[1]):
@@ -143,9 +150,7 @@ LABEL_DISTANCE, NUMBER_DISTANCE = (
 
 
 def body_labels(picture: MechanismPicture, names: Sequence[str]) -> list[dict[str, Any]]:
-    """Return names of points beyond the ends of links and numbers beside links, in axes of the bodies that carry
-    them.
-    """
+    """Return the names of points and the numbers of links as JSON data, each positioned in the axes of its body."""
     linkage, names_by_place = picture.scene.linkage, dict[tuple[str, complex], list[str]]()
     for name in {point: None for link in (FRAME, *linkage.moving) for point in linkage.links[link].points}:
         owners = [link for link in (FRAME, *linkage.moving) if name in linkage.links[link].points]
@@ -156,39 +161,46 @@ def body_labels(picture: MechanismPicture, names: Sequence[str]) -> list[dict[st
     points = [
         {
             "body": names.index(link),
-            "at": page_coordinates(_point_label_place(picture, link, local)),
+            "at": page_coordinates(_point_label_position(picture, link, local)),
             "text": ", ".join(text),
             "kind": "point",
         }
         for (link, local), text in names_by_place.items()
     ]
     numbers = [
-        {"body": names.index(link), "at": page_coordinates(_number_place(picture, link)), "text": link, "kind": "link"}
+        {
+            "body": names.index(link),
+            "at": page_coordinates(_link_number_position(picture, link)),
+            "text": link,
+            "kind": "link",
+        }
         for link in linkage.moving
         if np.isfinite(picture.forms[link].middle)
     ]
     return [*points, *numbers]
 
 
-def _point_label_place(picture: MechanismPicture, link: str, local: complex) -> complex:
-    """Place of a point's name in its link's axes: away from the middle of the link, outside a slider's box."""
+def _point_label_position(picture: MechanismPicture, link: str, local: complex) -> complex:
+    """Return the position of a point's name in the axes of its link: on the side away from the middle of the link."""
     sheet, scene = picture.sheet, picture.scene
     at, driven = sheet.on(scene.place(link, local)), cylinder_drivers(scene.linkage)
     slides = [slide for slide in scene.linkage.slides if slide.name not in driven]
     boxed = any(abs(sheet.on(scene.place(slide.runner, slide.at)) - at) < ON_LINE for slide in slides)
-    label = picture.bodies[link].own(at)
+    label = picture.bodies[link].to_body_axes(at)
     if link == FRAME:
         return label + LABEL_DISTANCE * (-1 if at.real < sheet.origin.real else 1)
     points = [sheet.on(scene.place(link, complex(z))) for z in scene.linkage.links[link].points.values()]
-    out = label - picture.bodies[link].own(sum(points) / len(points))
+    out = label - picture.bodies[link].to_body_axes(sum(points) / len(points))
     return label + (2 * LABEL_DISTANCE if boxed else LABEL_DISTANCE) * (
         out / abs(out) if abs(out) > 1 else complex(0.8, 0.6)
     )
 
 
-def _number_place(picture: MechanismPicture, link: str) -> complex:
-    """Place of a link's number in its axes: on its plate, beside its longest line, or beside its box."""
-    form, to_body = picture.forms[link], picture.bodies[link].own
+def _link_number_position(picture: MechanismPicture, link: str) -> complex:
+    """Return the position of a link's number in the axes of the link: on its plate, or beside its longest line or its
+    box.
+    """
+    form, to_body = picture.forms[link], picture.bodies[link].to_body_axes
     if len(form.hull) > 2:
         return to_body(form.middle)
     start, end = max(form.lines, key=lambda line: abs(line[1] - line[0]), default=(0j, 0j))
@@ -199,5 +211,5 @@ def _number_place(picture: MechanismPicture, link: str) -> complex:
 
 
 def page_coordinates(z: complex) -> list[float]:
-    """Return x and y with y pointing down."""
+    """Return [x, y] of a point, rounded, with y pointing down as on a web page."""
     return [round(z.real, 2) + 0.0, round(-z.imag, 2) + 0.0]

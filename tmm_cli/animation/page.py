@@ -1,8 +1,7 @@
-"""Web page of a moving mechanism: inline SVG, frames, plans of motion and diagrams as JSON, and a script
-that moves it.
+"""Web page of one moving mechanism: the drawing as inline SVG, the frames, plans and diagrams as JSON, and a script.
 
-It loads nothing from the network: its content security policy allows its own style and script only. Texts
-of files are escaped.
+The page loads nothing from the network: its content security policy allows only its own style and script. Texts
+from the problem file are escaped.
 """
 
 from __future__ import annotations
@@ -39,8 +38,15 @@ LEAST_DISTANCE = 1e-6  # of a plan: nearer points are one
 
 
 def plan_data(motion: Motion, sort: MotionPlanKind) -> dict[str, Any]:
-    """Return a plan in all frames: points (SI, y up), vectors between them, letters, scale in units per SI unit,
-    view box.
+    """Return the velocity or acceleration plan in all frames as JSON data.
+
+    Args:
+        motion: motion of the mechanism; a position is a frame.
+        sort: kind of plan.
+
+    Returns:
+        Title, points (SI, y up) in each frame, vectors as pairs of point numbers, letters of the points, scale in page
+        units per SI unit, and view box.
     """
     plans = [sort.plan(motion, k) for k in range(len(motion.q))]
     first = plans[0]
@@ -86,19 +92,19 @@ def plan_data(motion: Motion, sort: MotionPlanKind) -> dict[str, Any]:
 
 
 def field_sides(points: Vector, room: float) -> tuple[float, float, float, float]:
-    """Return left, top (y down), width and height of a field with a margin around places."""
+    """Return left, top, width and height of the box that contains these points, with a margin; y points down."""
     x, y = points.real, -points.imag
     return float(x.min()) - room, float(y.min()) - room, float(np.ptp(x)) + 2 * room, float(np.ptp(y)) + 2 * room
 
 
 def _join_letters(letters: list[str]) -> str:
-    """Letters of one point, abbreviated if there are too many."""
+    """Join the letters of coincident points of a plan; from MOST_LETTERS on, the rest is replaced by an ellipsis."""
     few = letters if len(letters) <= MOST_LETTERS else [*letters[:MOST_LETTERS], "…"]
     return ", ".join(map(with_subscripts, few))
 
 
 def chart_quantities(results: Results, whole: Results) -> Iterable[QuantityPlot]:
-    """Yield the motion of the first outputs, and balancing moments or forces of the drivers."""
+    """Yield the diagrams of the page: motion of the first two outputs, and balancing moments or forces of the drivers."""
     assert whole.motion is not None
     for link in results.mechanism.outputs[:2]:
         yield from output_plots(results, whole.motion, link)
@@ -106,7 +112,7 @@ def chart_quantities(results: Results, whole: Results) -> Iterable[QuantityPlot]
 
 
 def chart_data(results: Results, quantities: QuantityPlot) -> dict[str, Any]:
-    """Return a diagram in the units of the file."""
+    """Return a diagram as JSON data, with values in the units of the file."""
 
     def values(si: Real) -> list[float | None]:
         clean = without_rounding(si, largest_magnitude(si))
@@ -119,7 +125,7 @@ def chart_data(results: Results, quantities: QuantityPlot) -> dict[str, Any]:
 
 
 def position_marks(results: Results, motion: Motion) -> list[list[Any]]:
-    """Return the places of the numbered positions among the frames."""
+    """Return [frame, number] of each numbered position; the frame is a fraction between two frames."""
     marks = []
     for number, q in zip(results.numbers, results.asked[list(results.numbers)].tolist(), strict=True):
         k = int(np.argmin(np.abs(motion.q - q)))
@@ -131,7 +137,7 @@ def position_marks(results: Results, motion: Motion) -> list[list[Any]]:
 
 
 def round_figures(values: Any, digits: int) -> list[float | None]:
-    """Round to significant figures; None where there is no value."""
+    """Round values to `digits` significant figures; values that are not finite become None."""
     array = np.asarray(values, float)
     return [float(f"{value:.{digits}g}") + 0.0 if np.isfinite(value) else None for value in array.tolist()]
 
@@ -145,7 +151,11 @@ SECONDS = 4.0  # of a turn, or of a way, as long as one looks at it with ease
 
 
 def results_in_frames(results: Results, count: int) -> Results:
-    """Return results at about `count` frames per revolution in which the mechanism moves. Raises ProblemError."""
+    """Compute the mechanism at about `count` frames per revolution. Positions that it cannot reach are omitted.
+
+    Raises:
+        ProblemError: The mechanism does not move over the requested positions.
+    """
     q = results.closely(count * (results.turns or 1) + 1)
     moved = results_at(results, q)
     assert moved.motion is not None
@@ -156,7 +166,13 @@ def results_in_frames(results: Results, count: int) -> Results:
 
 
 def page_data(results: Results, whole: Results, picture: MechanismPicture) -> dict[str, Any]:
-    """Return all data of the script; places in mm on a sheet with y down, angles in rad, plans in SI."""
+    """Return the data of the page for its script: positions in mm with y down, angles in rad, plans in SI units.
+
+    Args:
+        results: results at the positions of the file.
+        whole: results in all frames.
+        picture: drawing of the first frame with the motion of its bodies.
+    """
     motion = picture.motion
     names = list(picture.bodies)
     driver, turns = results.linkage.driver, results.turns
@@ -180,7 +196,7 @@ def page_data(results: Results, whole: Results, picture: MechanismPicture) -> di
 
 
 def draw_first_frame(whole: Results, motion: Motion) -> MechanismPicture:
-    """Draw the mechanism in its first frame on a sheet that has room for its whole motion."""
+    """Draw the mechanism in its first frame, at a scale at which its whole motion fits on the sheet."""
     linkage = whole.linkage
     scene = MechanismScene(linkage, whole.structure, motion.poses, 0)
     points = [*frame_pivots(linkage), *(z for name in linkage.moving_points for z in motion.spot(name).tolist())]
@@ -190,16 +206,16 @@ def draw_first_frame(whole: Results, motion: Motion) -> MechanismPicture:
 
 
 def picture_view(picture: MechanismPicture) -> tuple[float, float, float, float]:
-    """Return the part of the sheet that is drawn on in any frame: left, top (y down), width and height, mm."""
+    """Return the area of the sheet that the moving bodies sweep, as left, top (y down), width and height, mm."""
     local = [
         (body, np.array([z for mark in body.marks for z in mark_corners(mark)])) for body in picture.bodies.values()
     ]
     times = range(0, len(picture.motion.q), max(1, len(picture.motion.q) // 24))
-    return field_sides(np.concatenate([body.at(corners, k) for body, corners in local for k in times]), EDGE)
+    return field_sides(np.concatenate([body.to_sheet(corners, k) for body, corners in local for k in times]), EDGE)
 
 
 def body_data(body: MovingBody) -> dict[str, Any]:
-    """Return the place of a body in each frame; a constant as one number."""
+    """Return position, angle and stretch of a body in each frame as JSON data. A constant is written as one number."""
     return {
         "x": rounded_frames(body.place.real, 2),
         "y": rounded_frames(-body.place.imag, 2),
@@ -209,13 +225,13 @@ def body_data(body: MovingBody) -> dict[str, Any]:
 
 
 def rounded_frames(values: Real, digits: int) -> Any:
-    """Round values; a constant becomes one number."""
+    """Round one value per frame to `digits` decimals; if all values are equal, return one number."""
     rounded = [round(value, digits) + 0.0 for value in np.asarray(values, float).tolist()]
     return rounded[0] if min(rounded) == max(rounded) else rounded
 
 
 def point_paths(picture: MechanismPicture) -> Iterable[list[list[float]]]:
-    """Yield the paths of all moving points."""
+    """Yield the trajectory of each moving point on the page, as [x, y] in each frame."""
     for name in picture.scene.linkage.moving_points:
         yield [
             page_coordinates(z) for z in (picture.sheet.origin + picture.motion.spot(name) / picture.sheet.mu).tolist()
@@ -228,7 +244,11 @@ TEXT = str.maketrans({"<": "\\u003c", ">": "\\u003e", "&": "\\u0026"})  # nothin
 
 
 def animation_page(results: Results) -> str:
-    """Return the page of a mechanism, with fewer frames if it would exceed MOST_BYTES. Raises ProblemError."""
+    """Return the HTML page of a moving mechanism. If it would exceed MOST_BYTES, it gets fewer frames.
+
+    Raises:
+        ProblemError: The mechanism does not move over the requested positions.
+    """
     count = FRAMES
     page = _build_page(results, count)
     while len(page.encode()) > MOST_BYTES and count > FEWEST_FRAMES:
@@ -267,7 +287,7 @@ def _build_page(results: Results, count: int) -> str:
 
 
 def fill_page(folder: str, **texts: str) -> str:
-    """Fill the page template of a folder with its style, its script and these texts."""
+    """Fill the HTML template in a subfolder with its style sheet, its script and the given texts."""
     package = files("tmm_cli.animation")
     whole, style, script = (
         package.joinpath(f"{folder}page.{kind}").read_text("utf-8") for kind in ("html", "css", "js")
@@ -277,7 +297,7 @@ def fill_page(folder: str, **texts: str) -> str:
 
 
 def data_text(data: Any) -> str:
-    """Return JSON that is safe inside a script element."""
+    """Convert data to JSON that is safe inside an HTML script element."""
     return json.dumps(data, separators=(",", ":"), allow_nan=False).translate(TEXT)
 
 
@@ -286,5 +306,5 @@ def _path_html(path: Iterable[Iterable[float]]) -> str:
 
 
 def _digest(text: str) -> str:
-    """Hash of a text as in a content security policy."""
+    """Return the hash of a style or script in the form that a content security policy requires."""
     return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()

@@ -1,4 +1,4 @@
-"""Sweeps: quantities of a mechanism over one or two parameters, and the borders of the feasible region."""
+"""Parameter sweep: quantities of a mechanism over one or two parameters, and the boundaries of the feasible region."""
 
 from tmm_cli.interfaces import lazy
 

@@ -1,4 +1,4 @@
-"""Drawings of a sweep: curves over one parameter, contour lines over two; infeasible regions are hatched."""
+"""Diagrams of a sweep: curves over one parameter, contour lines over two. Infeasible regions are hatched."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ LEAST = 15.0  # mm: length of a line that is labelled
 
 
 def sweep_sheets(title: str, sweep: SweepResults, units: UnitSystem) -> Iterable[tuple[str, Drawing]]:
-    """Yield every sheet with the stem of its file name."""
+    """Yield the drawings of a sweep, as (stem of the file name, drawing)."""
     if len(sweep.axes) == 1:
         parts = [range(first, min(first + PANELS, len(sweep.shown))) for first in range(0, len(sweep.shown), PANELS)]
         for number, panels in enumerate(parts):
@@ -71,7 +71,7 @@ def sweep_sheets(title: str, sweep: SweepResults, units: UnitSystem) -> Iterable
 
 
 def curve_sheet(title: str, sweep: SweepResults, indices: Sequence[int], units: UnitSystem) -> Drawing:
-    """Draw some of the quantities over one parameter, one panel each."""
+    """Draw the quantities with these indices over one parameter, each in a panel of its own."""
     (axis,) = sweep.axes
     caption = _("Quantities as functions of {parameter}; dense hatching: no mechanism; wide hatching: limit exceeded")
     sheet = DrawingSheet(title, caption.format(parameter=axis.name), paper=LANDSCAPE)
@@ -97,14 +97,14 @@ def curve_sheet(title: str, sweep: SweepResults, indices: Sequence[int], units: 
             sheet.canvas.path(panel.at(curve.xs, curve.ys)[:: max(1, len(curve.xs) // 200)].tolist())
         for (low, high), n in zip(pairwise(ends), states, strict=True):
             if n >= LIMIT:
-                _hatch_stretch(panel, low, high, fails=n >= STOPS)
+                _hatch_interval(panel, low, high, fails=n >= STOPS)
     for mark in sweep.marks[:LABELLED_BORDERS]:
         _label_border(panels[0], axis, mark)
     return sheet.finish()
 
 
-def _hatch_stretch(panel: Panel, low: float, high: float, *, fails: bool) -> None:
-    """Hatch an interval of a panel."""
+def _hatch_interval(panel: Panel, low: float, high: float, *, fails: bool) -> None:
+    """Hatch an interval of the parameter in a panel; `fails` means that no mechanism exists there."""
     left, right = (float(panel.x.on(value)) for value in (low, high))
     corners = [
         complex(left, panel.y.start),
@@ -117,14 +117,14 @@ def _hatch_stretch(panel: Panel, low: float, high: float, *, fails: bool) -> Non
 
 
 def _label_border(panel: Panel, axis: SweepAxis, mark: Border) -> None:
-    """Write the value of a border beside it in a panel."""
+    """Label a boundary between states with the value of the parameter."""
     place = float(panel.x.on(mark.at[0]))
     text = f"{numeral(mark.at[0], '.6g')} {spelt(axis.unit)}".strip()
     panel.sheet.label(text, complex(place, panel.y.end - TEXT_ROW), SMALL_TEXT, DARK_COLOUR)
 
 
 def contour_sheet(title: str, sweep: SweepResults, k: int, units: UnitSystem) -> Drawing:
-    """Draw contour lines of quantity k over both parameters."""
+    """Draw contour lines of quantity k over two parameters."""
     quantity = sweep.shown[k]
     caption = _("{quantity}: contour lines over two parameters").format(quantity=_quantity_label(quantity, units))
     sheet = DrawingSheet(title, caption, paper=LANDSCAPE)
@@ -143,7 +143,7 @@ def contour_sheet(title: str, sweep: SweepResults, k: int, units: UnitSystem) ->
     panel.numbers_across(0.2 * TEXT_ROW)
     sheet.text(complex((x.start + x.end) / 2, low.imag + 1.5), _axis_label(across), PLAIN_TEXT, ha="center")
     sheet.text(complex(low.real, high.imag - TEXT_ROW / 2), _axis_label(up), PLAIN_TEXT)
-    columns, rows = (_drawn_nodes(len(axis.values)) for axis in sweep.axes)
+    columns, rows = (_select_nodes(len(axis.values)) for axis in sweep.axes)
     values = (sweep.values[:, k] / units.factor(quantity.dimension)).reshape(sweep.shape)[np.ix_(columns, rows)]
     state = sweep.state.reshape(sweep.shape)[np.ix_(columns, rows)]
     lines = _Grid(panel, sweep, (columns, rows))
@@ -153,19 +153,22 @@ def contour_sheet(title: str, sweep: SweepResults, k: int, units: UnitSystem) ->
         if np.any((state >= STOPS) if fails else (state == LIMIT))
     ]
     for fails, __ in drawn:
-        lines.hatched(state, fails=fails)
-    _draw_levels(lines, values, degrees=_in_degrees(quantity, units))
+        lines.draw_region(state, fails=fails)
+    _draw_contour_lines(lines, values, degrees=_in_degrees(quantity, units))
     _draw_legend(panel, drawn)
     return sheet.finish()
 
 
-def _drawn_nodes(count: int) -> Real:
-    """Indices of the grid nodes that are drawn, both ends included."""
+def _select_nodes(count: int) -> Real:
+    """Return the indices of at most MOST_NODES grid nodes, evenly chosen, including both ends."""
     return np.unique(np.round(np.linspace(0, count - 1, min(count, MOST_NODES))).astype(int))
 
 
 class _Grid:
-    """Grid nodes of a sweep on a panel. drawn: indices of the drawn nodes of each parameter."""
+    """Grid of a sweep over two parameters, in a panel.
+
+    drawn: indices of the parameter values that are drawn, one array for each parameter.
+    """
 
     def __init__(self, panel: Panel, sweep: SweepResults, drawn: Sequence[Real]) -> None:
         self.panel = panel
@@ -179,34 +182,34 @@ class _Grid:
                 self.marks.setdefault((mark.along, line), []).append(mark.at[mark.along])
 
     def on(self, nodes: Any) -> Any:
-        """Return places column + i row on paper, mm."""
+        """Convert grid coordinates, column + i row, to points on paper, mm."""
         grid = np.asarray(nodes)
         x = np.interp(grid.real, np.arange(len(self.x)), self.x)
         y = np.interp(grid.imag, np.arange(len(self.y)), self.y)
         return self.panel.at(x, y)
 
-    def share(self, start: tuple[int, int], end: tuple[int, int]) -> float:
-        """Return the fraction of the distance between two nodes at which a border was found."""
+    def border_fraction(self, start: tuple[int, int], end: tuple[int, int]) -> float:
+        """Return where the boundary crosses a grid edge, as a fraction of its length; 0.5 if the boundary is not known."""
         along = 0 if start[0] != end[0] else 1
         values = (self.x, self.y)[along]
         low, high = float(values[start[along]]), float(values[end[along]])
         borders = [at for at in self.marks.get((along, start[1 - along]), ()) if low <= at <= high]
         return (borders[0] - low) / (high - low) if borders else 0.5
 
-    def hatched(self, state: Any, *, fails: bool) -> None:
-        """Hatch the region without a mechanism, or beyond a limit, and outline it."""
+    def draw_region(self, state: Any, *, fails: bool) -> None:
+        """Hatch and outline the region without a mechanism (`fails`), or the region where a limit is exceeded."""
         inside, outline = (state >= STOPS, state >= STOPS) if fails else (state == LIMIT, state != WORKS)
-        pieces = [self.on(piece).tolist() for piece in region_polygons(inside, self.share)]
+        pieces = [self.on(piece).tolist() for piece in region_polygons(inside, self.border_fraction)]
         for start, end in hatch_polygons(pieces, PITCH[fails]):
             self.panel.sheet.line([start, end], COLOURS[fails], 0.4, z=0.4, faint=True)
         style: Style = "-" if fails else "--"
         colour, z = (DARK_COLOUR, 2.5) if fails else (LOAD_COLOUR, 2.4)
-        for line in region_borders(outline, self.share):
+        for line in region_borders(outline, self.border_fraction):
             self.panel.sheet.line(self.on(line).tolist(), colour, 1.1 if fails else 0.9, style, z, blocks=False)
 
 
-def _draw_levels(lines: _Grid, values: Any, *, degrees: bool) -> None:
-    """Draw contour lines at round values, each with its value on its longest line."""
+def _draw_contour_lines(lines: _Grid, values: Any, *, degrees: bool) -> None:
+    """Draw contour lines at round values and write each value on its longest line."""
     low, high = finite_limits([values])
     if not high > low:
         return
@@ -225,7 +228,7 @@ def _draw_levels(lines: _Grid, values: Any, *, degrees: bool) -> None:
 
 
 def _draw_legend(panel: Panel, drawn: Sequence[tuple[bool, str]]) -> None:
-    """Explain the hatching above the panel, on the right."""
+    """Draw a legend of the kinds of hatching above the panel, on the right."""
     at = panel.x.end - sum(SAMPLE + 5 + text_width(text, SMALL_TEXT * POINT) for __, text in drawn)
     height = panel.sheet.canvas.high.imag - TEXT_ROW / 2
     for fails, text in drawn:

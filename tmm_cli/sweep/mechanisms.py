@@ -1,4 +1,7 @@
-"""Mechanisms at the points of a parameter grid: their state and their quantities, by a trace or one by one."""
+"""State and quantities of the mechanisms at the points of a parameter grid.
+
+They are computed for many points at once from a trace of the calculation, or else one by one.
+"""
 
 from __future__ import annotations
 
@@ -37,8 +40,9 @@ BLOCK = 1_000  # variants at once: their scan stays in the cache
 
 
 class FirstLinkMotion(Motion):
-    """Motion in a trace: the first link that has a shared point determines its motion, as no numbers are there
-    to choose by.
+    """Motion of traced variants, in which a point shared by several links is taken as a point of the first of them.
+
+    The usual choice compares numbers, and a trace has none.
     """
 
     def _sway(self, link: str, point: str) -> float:
@@ -47,7 +51,7 @@ class FirstLinkMotion(Motion):
 
 @dataclass(frozen=True, eq=False)
 class SolvedVariants:
-    """Solved state of variants, from which quantities are read (see `SolvedState`)."""
+    """Solved variants of a linkage, in the form from which quantities are read (see `SolvedState`)."""
 
     linkage: Any
     motion: Any = None
@@ -74,8 +78,15 @@ class SweepPoints:
 
 
 class SweptMechanisms:
-    """Mechanisms of a file over some of its parameters. Raises ProblemError if the file's own numbers give no
-    mechanism.
+    """Mechanisms of a problem file in which one or two parameters vary.
+
+    Args:
+        tree: content of the problem file.
+        axes: swept parameters with their values.
+        show: options `--show`, the requested quantities.
+
+    Raises:
+        ProblemError: The file itself does not define a mechanism, or a quantity does not exist.
     """
 
     def __init__(self, tree: Tree, axes: Sequence[SweepAxis], show: Sequence[str]) -> None:
@@ -94,12 +105,12 @@ class SweptMechanisms:
         )
 
     def __reduce__(self) -> tuple[type[SweptMechanisms], tuple[Any, ...]]:
-        """Pickle the input only; the rest is computed again in the other process."""
+        """Pickle only the arguments of the constructor; another process computes the rest again."""
         return SweptMechanisms, self.given
 
     @cached_property
     def crank_variants(self) -> CrankVariants | None:
-        """Trace of variants with a rotating crank; None if there is none."""
+        """Trace for variants with a fully rotating crank; None if the problem cannot be traced."""
         problem = self.task.problem.whole
         if "synthesis" in self.task.tree.data or problem.dynamics is not None:
             return None
@@ -130,17 +141,22 @@ class SweptMechanisms:
 
     @cached_property
     def limits(self) -> dict[str, float]:
-        """Limits of limited curves, by their names in the trace."""
+        """Allowed value of each limited curve (pressure angle, travel in a slot), by the name of the curve."""
         assert self.crank_variants is not None
         return {curve.name: curve_limit(curve, self.allowed) for curve in self.crank_variants.limited}
 
     @cached_property
     def file_completes_range(self) -> bool:
-        """True if the driver of the file's own variant rotates fully, or covers its whole stroke."""
+        """True if the driver completes its revolution or its whole stroke with the parameter values of the file."""
         return measures.completes_range(pipeline.solve(inputs_of(self.task.problem.whole), "kinematics"))
 
     def at(self, points: Real, *, values: bool = True) -> SweepPoints:
-        """Solve points in the units of the file, (points, parameters). values: False: states only."""
+        """Solve the mechanisms at points of the grid.
+
+        Args:
+            points: parameter values in the units of the file, (points, parameters).
+            values: False if only the states are needed, and not the quantities.
+        """
         count = len(points)
         solved = SweepPoints(
             np.zeros(count, dtype=int),
@@ -174,10 +190,10 @@ class SweptMechanisms:
             solved.state[row], solved.why[row], solved.values[row], solved.reach[row] = self._solve_point(points[row])
 
     def _solve_by_trace(self, points: Real, indices: Real, solved: SweepPoints, values: bool) -> tuple[Real, Real]:
-        """Solve the points `indices` by the trace and store them in `solved`.
+        """Solve the points with these indices by the trace and store the results in `solved`.
 
         Returns:
-            Rows that need the ordinary stages, and rows whose linkage is built differently.
+            Indices of points with an uncertain result, and indices of points whose linkage has another structure.
         """
         crank_variants, nothing = self.crank_variants, np.zeros(0, dtype=int)
         assert crank_variants is not None
@@ -187,31 +203,36 @@ class SweptMechanisms:
                 varied, otherwise = crank_variants.varied(columns)
             except (ProblemError, DependsOnData):
                 return nothing, indices
-            looked = scan_variants(
-                crank_variants, columns, ScanRequest(self._pressures() if values else (), self.limits, values)
+            scanned = scan_variants(
+                crank_variants,
+                columns,
+                ScanRequest(self._shown_pressure_angles() if values else (), self.limits, values),
             )
-            works = looked.does == SCAN_WORKS
-            solved.state[indices] = np.select([looked.does == SCAN_STOPS, looked.does == SCAN_APART], [STOPS, APART])
+            works = scanned.does == SCAN_WORKS
+            solved.state[indices] = np.select([scanned.does == SCAN_STOPS, scanned.does == SCAN_APART], [STOPS, APART])
             for curve in crank_variants.limited:
-                over = indices[works & (looked.peaks[curve.name] > self.limits[curve.name])]
+                over = indices[works & (scanned.peaks[curve.name] > self.limits[curve.name])]
                 for row in over[solved.state[over] == WORKS]:
                     solved.why[row] = f"{curve.kind} {curve.link}"
                 solved.state[over] = LIMIT
-            unsure = values & works & ~looked.sure & ~otherwise
-            rows = np.flatnonzero(works & looked.sure & ~otherwise)
+            unsure = values & works & ~scanned.sure & ~otherwise
+            rows = np.flatnonzero(works & scanned.sure & ~otherwise)
             if values and rows.size:
                 whole = len(rows) == len(indices)
                 kept = varied if whole else crank_variants.varied(columns[rows])[0]
                 try:
-                    solved.values[indices[rows]], solved.reach[indices[rows]] = self._values(
-                        columns[rows], looked.take(rows), kept
+                    solved.values[indices[rows]], solved.reach[indices[rows]] = self._read_traced_quantities(
+                        columns[rows], scanned.take(rows), kept
                     )
                 except NoTapeError:
                     return indices, nothing
         return indices[unsure], indices[otherwise]
 
-    def _pressures(self) -> list[str]:
-        """Names of the limited curves whose largest peak is the pressure angle; empty if that is not shown."""
+    def _shown_pressure_angles(self) -> list[str]:
+        """Return the names of the pressure angles of which the largest is shown; empty if it was not requested.
+
+        These are the pressure angles on the output, or on all driven links if the output has none.
+        """
         assert self.crank_variants is not None
         if not any(curve.name == PRESSURE for curve in self.shown):
             return []
@@ -220,11 +241,11 @@ class SweptMechanisms:
             curve.name for curve in angles
         ]
 
-    def _values(self, columns: Real, looked: ScanResults, varied: Any) -> tuple[Real, Real]:
-        """Requested quantities of feasible variants, and the reach of their load tables."""
+    def _read_traced_quantities(self, columns: Real, scanned: ScanResults, varied: Any) -> tuple[Real, Real]:
+        """Return the requested quantities of feasible variants, (variants, quantities), and the result of `_load_table_reach`."""
         crank_variants = self.crank_variants
         assert crank_variants is not None
-        strokes = variant_strokes(crank_variants, columns, looked, varied)
+        strokes = variant_strokes(crank_variants, columns, scanned, varied)
         q, at = crank_variants.over_cycle(columns, strokes)
         at_positions = [quantity.name for quantity in self.shown if not quantity.whole]
         rows = np.arange(len(columns))
@@ -232,17 +253,17 @@ class SweptMechanisms:
         table = np.full((len(columns), len(self.shown)), np.nan)
         for k, quantity in enumerate(self.shown):
             if quantity.name == PRESSURE:
-                peaks = [looked.peaks[name] for name in self._pressures()]
+                peaks = [scanned.peaks[name] for name in self._shown_pressure_angles()]
                 table[:, k] = np.fmax.reduce(peaks) if peaks else np.nan
             elif quantity.quantity is not None and quantity.whole:
                 table[:, k] = np.ravel(quantity.quantity.read(SolvedVariants(varied.linkage, strokes=strokes)))
             else:
                 values = np.broadcast_to(over[quantity.name], (len(columns), len(q)))
                 table[:, k] = quantity.over_cycle(_curve_reader(at, quantity.name), q, values)
-        return table, self._reach(varied.linkage, strokes, len(columns))
+        return table, self._load_table_reach(varied.linkage, strokes, len(columns))
 
-    def _reach(self, linkage: Linkage, strokes: Strokes | None, count: int) -> Real:
-        """Last rows of load tables against the stroke, and the strokes, (variants, loads, 2)."""
+    def _load_table_reach(self, linkage: Linkage, strokes: Strokes | None, count: int) -> Real:
+        """Return the last argument of each load table against the stroke, and that stroke, (variants, loads, 2)."""
         reach = np.full((count, len(self.tables), 2), np.nan)
         for load, last, stroke in table_lengths(linkage, strokes):
             k = self.tables.index(load.name)
@@ -250,12 +271,14 @@ class SweptMechanisms:
         return reach
 
     def _solve_point(self, point: Real) -> tuple[int, str, Real, Real]:
-        """Solve one point by the ordinary stages: state, reason, quantities, reach of its load tables."""
+        """Solve one point without the trace and return its state, the reason, its quantities and the result of
+        `_load_table_reach`.
+        """
         nothing = np.full(len(self.shown), np.nan), np.full((len(self.tables), 2), np.nan)
         texts = {axis.name: axis.text(float(value)) for axis, value in zip(self.axes, point, strict=True)}
         forces = any(check.forces for check in self.shown)
         try:
-            problem = self._as_own(self.task.variant(texts).whole)
+            problem = self._adopt_file_assembly(self.task.variant(texts).whole)
         except ProblemError as error:
             return REFUSED, error.message, *nothing
         try:
@@ -268,12 +291,15 @@ class SweptMechanisms:
         over = [f"pressure {check.link}" for check in results.pressure if not check.holds]
         over += [f"slot {check.slide.name}" for check in results.slots if check.ways]
         with np.errstate(all="ignore"):
-            reach = self._reach(results.linkage, results.strokes, 1)[0]
+            reach = self._load_table_reach(results.linkage, results.strokes, 1)[0]
             state, why = (LIMIT, over[0]) if over else (WORKS, "")
-            return state, why, self._of(results), reach
+            return state, why, self._read_quantities(results), reach
 
-    def _as_own(self, problem: Problem) -> Problem:
-        """Problem with the sketch computed for the assembly of the file's own variant, if a trace knows that."""
+    def _adopt_file_assembly(self, problem: Problem) -> Problem:
+        """Return the problem with its sketch recomputed, so that it is assembled like the mechanism of the file.
+
+        Without a trace, or if the assembly does not exist, the problem is returned unchanged.
+        """
         if self.crank_variants is None:
             return problem
         linkage = problem.linkage
@@ -283,8 +309,8 @@ class SweptMechanisms:
             return problem
         return replace(problem, linkage=replace(linkage, sketch=sketch), extended=None)
 
-    def _of(self, results: Results) -> Real:
-        """Requested quantities of a mechanism that was solved by the ordinary stages."""
+    def _read_quantities(self, results: Results) -> Real:
+        """Return the requested quantities of a mechanism that was solved without the trace."""
         assert results.motion is not None
         searched = {
             "H": measures.arc_or_stroke,
@@ -293,7 +319,7 @@ class SweptMechanisms:
             PRESSURE: measures.largest_pressure_angle,
         }
         q = results.closely(CYCLE * max(results.turns, 1) + 1)
-        read = _ResultsAtPlaces(results)
+        read = _ResultsAtCoordinates(results)
         quantities = []
         for quantity in self.shown:
             if quantity.name in searched:
@@ -312,16 +338,14 @@ def _curve_reader(
     return lambda rows, q: np.broadcast_to(at(rows, q, [name])[name], q.shape)
 
 
-class _ResultsAtPlaces:
-    """Solved mechanism at other driver coordinates; the last ones are kept for the next quantity."""
+class _ResultsAtCoordinates:
+    """A solved mechanism that can be evaluated at other driver coordinates. The last results are cached."""
 
     def __init__(self, results: Results) -> None:
         self.results, self.q, self.there = results, np.empty(0), results
 
     def curves(self, quantity: ShownQuantity, rows: Real, q: Real) -> Real:
-        """Return a quantity at driver coordinates (rows, n), the same mechanism in each row; nan where it cannot
-        move.
-        """
+        """Return a quantity at driver coordinates q, in the shape of q; nan where the mechanism cannot move."""
         if not np.array_equal(q.ravel(), self.q):
             self.q, self.there = q.ravel(), pipeline.results_at(self.results, q.ravel())
         assert self.there.motion is not None

@@ -1,4 +1,4 @@
-"""Options of a sweep: parameters with their grids (--over) and the quantities to show (--show)."""
+"""Options of a sweep: swept parameters with their values (--over), and requested quantities (--show)."""
 
 from __future__ import annotations
 
@@ -24,10 +24,14 @@ EXAMPLE = "--over OA=80..120:41"
 
 @dataclass(frozen=True, eq=False)
 class SweepAxis:
-    """Swept parameter. values: as written, in `unit` (empty for plain numbers). dimension: None for plain
-    numbers.
+    """A swept parameter.
 
-    factor: factor from written values to SI, 1 for plain numbers.
+    Attributes:
+        name: name of the parameter.
+        values: its values, in `unit`.
+        unit: unit as written in the option or in the file; empty for plain numbers.
+        dimension: dimension of the parameter; None for plain numbers.
+        factor: SI value of one `unit`; 1 for plain numbers.
     """
 
     name: str
@@ -38,16 +42,20 @@ class SweepAxis:
 
     @property
     def words(self) -> str:
-        """Name with the unit."""
+        """Name of the parameter with its unit, e.g. "OA, mm"."""
         return f"{self.name}, {self.unit}" if self.unit else self.name
 
     def text(self, value: float) -> str:
-        """Return a value as `--set` reads it."""
+        """Return a value with its unit, in the form that `--set` accepts."""
         return f"{value!r} {self.unit}".strip()
 
 
 def read_axes(task: Task, over: Sequence[str]) -> tuple[SweepAxis, ...]:
-    """Read one or two options `--over`. Raises ProblemError."""
+    """Read one or two options `--over`, e.g. "OA=80..120:41".
+
+    Raises:
+        ProblemError: An option is malformed, or its parameter does not exist.
+    """
     if not 1 <= len(over) <= 2:
         raise ProblemError(_("a sweep takes one or two parameters"), found=", ".join(over) or None, allowed=EXAMPLE)
     axes = []
@@ -99,7 +107,7 @@ def _read_axis(task: Task, text: str, usual: int) -> SweepAxis:
 
 
 def _unit_in_file(task: Task, name: str) -> str:
-    """Unit of the parameter in the file; empty if it is computed from others."""
+    """Return the unit of the parameter in the file; empty if the parameter is computed from others or has no unit."""
     written = NUMBER_WITH_UNIT.fullmatch(str(task.tree.data.get("parameters", {}).get(name, "")))
     try:
         task.value(f"1 {written[2]}" if written else "")
@@ -109,7 +117,10 @@ def _unit_in_file(task: Task, name: str) -> str:
 
 
 def grid_points(axes: Sequence[SweepAxis]) -> Real:
-    """Return all points in the units of the file, (points, axes); the last parameter changes first."""
+    """Return all combinations of the parameter values, in the units of the file, (points, axes).
+
+    The value of the last parameter changes first.
+    """
     return np.stack(
         [coordinates.ravel() for coordinates in np.meshgrid(*(axis.values for axis in axes), indexing="ij")], axis=1
     )
@@ -122,7 +133,13 @@ MOST_QUANTITIES = 12  # in one sweep
 
 @dataclass(frozen=True)
 class ShownQuantity:
-    """Requested quantity. quantity: reads it from a solved state; None for a number that is found by a search."""
+    """A quantity requested with `--show`.
+
+    Attributes:
+        name: name of the quantity.
+        dimension: its dimension.
+        quantity: how it is read from a solved mechanism; None for the largest pressure angle, which is searched for.
+    """
 
     name: str
     dimension: Dimension
@@ -135,12 +152,12 @@ class ShownQuantity:
 
     @property
     def forces(self) -> bool:
-        """True if it needs the force plan."""
+        """True if the quantity requires the calculation of forces."""
         return self.quantity is not None and self.quantity.stage in ("forces", "balance")
 
     @property
     def words(self) -> str:
-        """Name for people, in the current language."""
+        """Description of the quantity in the current language."""
         if self.whole:
             return {PRESSURE: _("largest pressure angle")}.get(self.name, self.name)
         if self.ranges:
@@ -152,16 +169,16 @@ class ShownQuantity:
         return self.quantity is not None and self.quantity.against in ("range", "angle")
 
     def at_positions(self, solved: SolvedState) -> Any:
-        """Return its values at positions, as `over_cycle` needs them."""
+        """Return the quantity at each position of a solved mechanism, or its magnitude if the largest value is shown."""
         assert self.quantity is not None
         samples = self.quantity.read(solved)
         return samples if self.ranges else np.abs(samples)
 
     def over_cycle(self, curves: Callable[[Real, Real], Real], q: Real, values: Real) -> Real:
-        """Return one number per variant, (variants,): the largest value over the cycle, or the range.
+        """Return the largest value over the cycle, or the range of an angle or coordinate, shape (variants,).
 
         Args:
-            curves, q, values: as in `greatest`.
+            curves, q, values: as in `greatest_values`.
         """
         if not self.ranges:
             return greatest_values(curves, q, values)
@@ -173,7 +190,11 @@ class ShownQuantity:
 
 
 def showable_quantities(task: Task) -> Mapping[str, ShownQuantity]:
-    """Return all quantities of a file that can be shown, by name. Raises ProblemError."""
+    """Return all quantities of a problem that a sweep can show, by name.
+
+    Raises:
+        ProblemError: The problem cannot be built.
+    """
     named = {
         name: ShownQuantity(name, quantity.dimension, quantity)
         for name, quantity in task.quantities.items()
@@ -183,7 +204,11 @@ def showable_quantities(task: Task) -> Mapping[str, ShownQuantity]:
 
 
 def read_shown(task: Task, texts: Sequence[str]) -> tuple[ShownQuantity, ...]:
-    """Read options `--show`: names separated by commas; `v_E` is v of E. Raises ProblemError."""
+    """Read options `--show`, each with names separated by commas; `v_E` means "v of E".
+
+    Raises:
+        ProblemError: A quantity does not exist, or there are too many.
+    """
     available = showable_quantities(task)
     names = {
         **{name.replace(" of ", "_").replace(" on ", "_"): name for name in available},
@@ -210,7 +235,7 @@ def read_shown(task: Task, texts: Sequence[str]) -> tuple[ShownQuantity, ...]:
 
 
 def _split_names(text: str, names: Mapping[str, str]) -> list[str]:
-    """Split names at commas; a name may contain a comma itself, R_10,11."""
+    """Split a text at its commas, but not inside a name that contains a comma, e.g. R_10,11."""
     split: list[str] = []
     for piece in re.split(r"\s*,\s*", text.strip()):
         if split and f"{split[-1]},{piece}" in names:
@@ -221,6 +246,6 @@ def _split_names(text: str, names: Mapping[str, str]) -> list[str]:
 
 
 def _example_names(available: Mapping[str, ShownQuantity]) -> list[str]:
-    """One example of each kind of quantity."""
+    """Return the name of one quantity of each kind, for an error message."""
     kinds = {re.split(r" of |_(?=[^b])", name)[0]: name for name in reversed(list(available))}
     return list(kinds.values())[::-1]

@@ -1,4 +1,4 @@
-"""Results of a sweep: the record, its tables and its JSON."""
+"""Results of a sweep, their tables and their JSON."""
 
 from __future__ import annotations
 
@@ -28,10 +28,13 @@ STATE_WORDS = (
 
 @dataclass(frozen=True)
 class Border:
-    """Point (in the units of the file) at which the state of the mechanism changes, and the states before and
-    after.
+    """A boundary point: the state of the mechanism changes there along a grid line.
 
-    along: index of the parameter along whose grid line it was found. why: the exceeded limit, or a refusal.
+    Attributes:
+        at: parameter values in the units of the file.
+        along: index of the parameter that varies along the grid line.
+        before, after: states on both sides, in the direction in which the parameter increases.
+        why: the exceeded limit, or the reason why there is no mechanism.
     """
 
     at: tuple[float, ...]
@@ -43,11 +46,19 @@ class Border:
 
 @dataclass(frozen=True, eq=False)
 class SweepResults:
-    """Results of a sweep. state: state of the mechanism, (points,). values: (points, quantities), SI, nan where
-    infeasible.
+    """Results of a sweep.
 
-    points: in the order of `grid_points`. taped: a trace was used. reach: for each load tabulated against the
-    stroke in lengths, its last argument and the stroke of each point (m or rad).
+    Attributes:
+        axes: swept parameters.
+        shown: requested quantities.
+        points: parameter values in the units of the file, in the order of `grid_points`, (points, axes).
+        state: state of the mechanism, (points,).
+        why: the exceeded limit, or the reason why there is no mechanism, for each point.
+        values: quantities in SI units, (points, quantities); nan where there is no mechanism.
+        marks: boundary points between states.
+        taped: True if the points were computed from a trace.
+        reach: by load name, for each load table against a stroke in units of length or angle: its last argument and
+            the stroke at each point (m or rad).
     """
 
     axes: tuple[SweepAxis, ...]
@@ -70,7 +81,10 @@ TITLE, BORDERS = N_("Sweep"), N_("Boundaries between states")
 
 
 def points_table(sweep: SweepResults, *, words: bool = False) -> Table:
-    """Return a table with one row per point. words: states in words for people, else as in files."""
+    """Return the table of results with one row per point.
+
+    words: True for states in the reader's language; False for the words used in files.
+    """
     names = [translated(word) for word in STATE_WORDS] if words else list(STATES)
     columns = [Column(axis.words, sweep.points[:, k], NUMBER) for k, axis in enumerate(sweep.axes)]
     columns += [Column(quantity.name, sweep.values[:, k], quantity.dimension) for k, quantity in enumerate(sweep.shown)]
@@ -81,7 +95,10 @@ def points_table(sweep: SweepResults, *, words: bool = False) -> Table:
 
 
 def borders_table(sweep: SweepResults, *, words: bool = False) -> Table:
-    """Return a table with one row per border. words: states in words for people, else as in files."""
+    """Return the table of boundary points between states, one row each.
+
+    words: True for states in the reader's language; False for the words used in files.
+    """
     names = [translated(word) for word in STATE_WORDS] if words else list(STATES)
     columns = [
         Column(axis.words, np.array([mark.at[k] for mark in sweep.marks]), NUMBER, digits=9)
@@ -96,7 +113,10 @@ def borders_table(sweep: SweepResults, *, words: bool = False) -> Table:
 
 
 def sections(sweep: SweepResults, problem: Problem) -> Iterator[tuple[str, Any]]:
-    """Yield result.json of a sweep part by part: values in SI and radians, parameters in the units of the file."""
+    """Yield the top-level entries of result.json, as (key, value).
+
+    Quantities are in SI units and radians, parameters in the units of the file.
+    """
     yield "format", FORMAT
     yield "problem", problem.name
     yield "title", problem.title
@@ -137,7 +157,7 @@ def sections(sweep: SweepResults, problem: Problem) -> Iterator[tuple[str, Any]]
 
 
 def _reason_text(text: str, state: int) -> str:
-    """Reason in words for people."""
+    """Express an exceeded limit in the reader's language; any other reason is returned unchanged."""
     kind, _space, thing = text.partition(" ")
     if state == LIMIT and kind == "pressure":
         return _("pressure angle of link {link}").format(link=thing)

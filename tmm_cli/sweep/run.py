@@ -1,4 +1,4 @@
-"""Runs a sweep in chunks, in this process, in several or on a cluster, and finds the borders between states."""
+"""Running of a sweep: points are solved in jobs, on one or more cores or on a cluster, then boundaries are located."""
 
 from __future__ import annotations
 
@@ -30,10 +30,17 @@ SINGLE_HALVINGS = (20, 4)  # of a grid step, one by one: with one parameter, wit
 
 @dataclass(frozen=True, eq=False)
 class BorderSearch:
-    """Bisection between pairs of points (pairs, parameters) with different states; `inside` has the state
-    `state`.
+    """Job that locates boundary points by bisection between points with different states.
 
-    Returns the last points with that state, the first ones beyond, and their states and reasons.
+    When called, it returns the last points with the state `state`, the first points beyond the boundary, and the states
+    and reasons at the latter.
+
+    Attributes:
+        mechanisms: the swept mechanisms.
+        inside: points with the state `state`, (pairs, parameters).
+        outside: points with other states, (pairs, parameters).
+        state: state of each point in `inside`, (pairs,).
+        halvings: number of bisection steps.
     """
 
     mechanisms: SweptMechanisms
@@ -57,14 +64,17 @@ class BorderSearch:
 
 
 def refuse_points(problem: Problem, points: int, *, peaks: bool, taped: bool, cores: int | None) -> None:
-    """Refuse a sweep that would take longer than a minute on all cores. Raises ProblemError.
+    """Refuse a sweep that would take longer than a minute on all cores.
 
     Args:
         problem: the problem of the file.
         points: number of points.
-        peaks: a quantity is shown whose peak over the cycle is searched.
-        taped: a trace is used.
-        cores: None for a cluster.
+        peaks: True if a quantity is shown whose largest value over the cycle must be searched for.
+        taped: True if the points are computed from a trace.
+        cores: number of cores; None for a cluster.
+
+    Raises:
+        ProblemError: There are too many points.
     """
     refuse_work(problem.linkage, problem.request)
     positions = 2 * CYCLE if peaks else 0  # a scan, and finer grids about its peaks
@@ -86,12 +96,12 @@ def refuse_points(problem: Problem, points: int, *, peaks: bool, taped: bool, co
 def run_sweep(
     mechanisms: SweptMechanisms, runner: JobRunner = run_here, seen: Callable[[int], None] = lambda count: None
 ) -> SweepResults:
-    """Solve all points, and find the borders between them. Raises ProblemError.
+    """Solve all points of the grid and locate the boundaries between states.
 
     Args:
         mechanisms: the mechanisms and their grid.
-        runner: runs the jobs.
-        seen: called with the number of points after each chunk.
+        runner: runs the jobs, for example on several cores.
+        seen: called with the number of points solved by each job.
     """
     axes, points = mechanisms.axes, grid_points(mechanisms.axes)
     taped = mechanisms.crank_variants is not None
@@ -115,7 +125,14 @@ def run_sweep(
 
 @dataclass(frozen=True, eq=False)
 class GridEdge:
-    """Two neighbouring grid points (parameters,) with different states, and the reasons."""
+    """Edge of the grid between two neighbouring points with different states.
+
+    Attributes:
+        along: index of the parameter that differs between the points.
+        points: parameter values of both points.
+        states: their states.
+        why: their reasons.
+    """
 
     along: int
     points: tuple[Real, Real]
@@ -124,7 +141,7 @@ class GridEdge:
 
 
 def _find_edges(axes: Sequence[SweepAxis], points: Real, state: Real, why: Sequence[str]) -> list[GridEdge]:
-    """Grid edges whose ends have different states."""
+    """Return the grid edges whose ends have different states."""
     number = np.arange(len(points)).reshape([len(axis.values) for axis in axes])
     edges = []
     for along in range(len(axes)):
@@ -137,7 +154,7 @@ def _find_edges(axes: Sequence[SweepAxis], points: Real, state: Real, why: Seque
 
 
 def _find_borders(mechanisms: SweptMechanisms, edges: Sequence[GridEdge], runner: JobRunner) -> tuple[Border, ...]:
-    """Borders on grid edges; one edge may contain several."""
+    """Locate the boundary points on these grid edges; an edge may contain several."""
     taped = mechanisms.crank_variants is not None
     halvings = HALVINGS if taped else SINGLE_HALVINGS[len(mechanisms.axes) - 1]
     chunk_size = CHUNK if taped else max(1, SINGLE_CHUNK // halvings)

@@ -1,8 +1,8 @@
-"""Scan of many variants at once by their trace: assembly, full rotation, limits, ends of strokes.
+"""Scan of traced variants: assembly, full rotation of the crank, limits, ends of strokes.
 
-Driver positions of one revolution are scanned first; what decides between two of them (a group that may
-fail to close, ends of strokes, peaks of limited quantities) is then searched there. Variants in which
-much happens between two positions are scanned with a finer step.
+The variants are first evaluated at equally spaced driver positions of one revolution. Where something may happen
+between two positions (a group fails to close, a stroke ends, a limited curve has a peak), a search follows. Variants
+for which this is inconclusive are scanned again in smaller steps.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ SCAN_WORKS, SCAN_STOPS, SCAN_APART = range(3)  # states of a variant
 
 @dataclass(frozen=True)
 class ScanRequest:
-    """Curves to be followed in a scan.
+    """Curves to be examined in a scan.
 
     Attributes:
-        peaks: names of limited curves whose peaks are needed with full precision.
-        limits: limits of curves, near which all peaks are computed precisely.
-        strokes: True if the ends of strokes are to be found too.
+        peaks: names of limited curves whose largest values are needed with full precision.
+        limits: limits by the name of the curve; a peak near its limit is computed with full precision.
+        strokes: True if the ends of strokes are needed.
     """
 
     peaks: Sequence[str] = ()
@@ -46,12 +46,15 @@ class ScanRequest:
 
 @dataclass(frozen=True, eq=False)
 class ScanResults:
-    """State of each variant (SCAN_WORKS, ...), (variants,); for working ones the peaks of limited curves by
-    name, else nan.
+    """Results of a scan.
 
-    sure: the scan is conclusive: outputs have the number of strokes of the first variant, no near misses. A
-    peak far below its limit that was not requested has the precision of the scan. ends: driver coordinates of
-    the ends of strokes of `CrankVariants.stroke_links`, (variants, links, 2).
+    Attributes:
+        does: state of each variant: SCAN_WORKS, SCAN_STOPS or SCAN_APART, (variants,).
+        sure: True where the scan is conclusive: each output has as many strokes as in the first variant, and no curve
+            comes so close to zero that a change of sign may be overlooked, (variants,).
+        peaks: largest value of each limited curve, by name, (variants,). Nan unless the variant works. It has only the
+            precision of the scan if it is far below its limit and was not requested.
+        ends: driver coordinates at the ends of the strokes of `CrankVariants.stroke_links`, (variants, links, 2).
     """
 
     does: Real
@@ -66,11 +69,17 @@ class ScanResults:
 
 
 def scan_variants(crank_variants: CrankVariants, columns: Real, wish: ScanRequest) -> ScanResults:
-    """Scan the variants whose numbers are the rows of columns (variants, n)."""
-    scanned = _VariantScan(crank_variants, columns, wish, SCAN).looked
+    """Scan variants.
+
+    Args:
+        crank_variants: the traced problem.
+        columns: parameter values of the variants in SI units, (variants, parameters).
+        wish: curves to be examined.
+    """
+    scanned = _VariantScan(crank_variants, columns, wish, SCAN).scanned
     again = np.flatnonzero(~scanned.sure)
     for rows in np.array_split(again, -(-len(again) // BLOCK)) if again.size else ():
-        fine = _VariantScan(crank_variants, columns[rows], wish, FINE_SCAN).looked
+        fine = _VariantScan(crank_variants, columns[rows], wish, FINE_SCAN).scanned
         scanned.does[rows], scanned.sure[rows], scanned.ends[rows] = fine.does, fine.sure, fine.ends
         for name, peak in scanned.peaks.items():
             peak[rows] = fine.peaks[name]
@@ -78,7 +87,7 @@ def scan_variants(crank_variants: CrankVariants, columns: Real, wish: ScanReques
 
 
 class _VariantScan:
-    """Variants at equally spaced driver positions of one revolution."""
+    """Curves of variants at equally spaced driver positions of one revolution."""
 
     def __init__(self, crank_variants: CrankVariants, columns: Real, wish: ScanRequest, samples: int) -> None:
         self.crank_variants, self.columns, self.wish = crank_variants, columns, wish
@@ -86,35 +95,37 @@ class _VariantScan:
         self.found = crank_variants.scan(*split_columns(columns), self.at(np.arange(samples)))
 
     def at(self, numbers: Real) -> Real:
-        """Return driver coordinates of scan positions."""
+        """Return the driver coordinates of scan positions, given by their numbers."""
         return self.crank_variants.linkage.sketch.at + self.step * numbers
 
     @property
-    def looked(self) -> ScanResults:
-        """Results of the scan."""
-        does, sure = self._assembled()
+    def scanned(self) -> ScanResults:
+        """Results of the scan, refined between scan positions."""
+        does, sure = self._determine_states()
         ends = np.full((len(self.columns), len(self.crank_variants.stroke_links), 2), np.nan)
         if self.wish.strokes and np.any(does == SCAN_WORKS):
             for k in range(len(self.crank_variants.stroke_links)):
                 slope = self.found[f"slope{k}"]
                 turns = sign_changes(slope)
                 sure &= np.sum(turns, axis=1) == self.crank_variants.strokes[k]
-                sure &= ~_nearly_reaches(-np.abs(slope), ~(turns | np.roll(turns, 1, axis=1)))
+                sure &= ~_may_reach_zero(-np.abs(slope), ~(turns | np.roll(turns, 1, axis=1)))
                 rows = np.flatnonzero((does == SCAN_WORKS) & sure)
                 if self.crank_variants.strokes[k] and rows.size:
                     low = np.nonzero(turns[rows])[1].reshape(-1, 2)
                     slope_of = _curve_of_variants(self.crank_variants, f"slope{k}", self.columns[rows])
-                    ends[rows, k] = _stroke_ends(slope_of, self.at(low), self.at(low + 1))
+                    ends[rows, k] = _find_stroke_ends(slope_of, self.at(low), self.at(low + 1))
         works = does == SCAN_WORKS
         peaks = {
-            limited.name: np.where(works, self._peak(limited.name, works), np.nan)
+            limited.name: np.where(works, self._largest_values(limited.name, works), np.nan)
             for limited in self.crank_variants.limited
         }
         return ScanResults(does, sure | ~works, peaks, ends)
 
-    def _assembled(self) -> tuple[Real, Real]:
-        """State of each variant by assembly at the sketch, full rotation and dead positions; and whether it is
-        certain.
+    def _determine_states(self) -> tuple[Real, Real]:
+        """Determine the state of each variant from its assembly over one revolution.
+
+        Returns:
+            States, (variants,), and True where the state is certain, (variants,).
         """
         does = np.full(len(self.columns), SCAN_WORKS)
         apart, lost, doubtful = np.zeros((3, len(does)), dtype=bool)
@@ -124,44 +135,53 @@ class _VariantScan:
             apart |= missing[:, 0]
             lost |= np.any(missing | (gap >= -2 * slack) | (np.sign(det) != np.sign(det[:, :1])), axis=1)
             if k in self.crank_variants.single:
-                doubtful |= _nearly_reaches(-np.abs(det), np.ones(det.shape, dtype=bool))
+                doubtful |= _may_reach_zero(-np.abs(det), np.ones(det.shape, dtype=bool))
         does[lost], does[apart] = SCAN_STOPS, SCAN_APART
         for k in range(len(self.crank_variants.kernels)):
             name = f"gap{k}"
             gap = self.found[name]
             rows, at = candidate_peaks(gap, np.zeros(len(gap)), (does == SCAN_WORKS)[:, None])
             if rows.size:
-                close = VariantCurves(self.crank_variants.part(name, f"slack{k}"), self.columns[rows])
+                close = VariantCurves(self.crank_variants.curve_program(name, f"slack{k}"), self.columns[rows])
                 q = self.at(at)
                 place, value = find_minima(_negated_curve(close, name), q - self.step, q + self.step)
                 does[rows[-value >= -2 * close(place)[f"slack{k}"]]] = SCAN_STOPS
         return does, ~doubtful
 
-    def _peak(self, name: str, works: Real) -> Real:
-        """Largest value of a curve of each variant; if not requested, refined only near its limit."""
+    def _largest_values(self, name: str, works: Real) -> Real:
+        """Return the largest value of a curve for each variant, (variants,).
+
+        Unless its peaks are requested, the curve is refined only where it may reach its limit.
+        """
         curve = self.found[name]
         top: Real = np.max(curve, axis=1)
         limit = self.wish.limits.get(name)
         level = top if name in self.wish.peaks or limit is None else np.maximum(top, limit)
         rows, at = candidate_peaks(curve, level, works[:, None])
         if rows.size:
-            close = VariantCurves(self.crank_variants.part(name), self.columns[rows])
+            close = VariantCurves(self.crank_variants.curve_program(name), self.columns[rows])
             before, centre, after = (curve[rows, (at + n) % self.places] for n in (-1, 0, 1))
             peaks = refine_peaks(lambda q: close(q)[name], self.at(at), self.step, (before, centre, after))
             np.maximum.at(top, rows, peaks)
         return top
 
 
-def _nearly_reaches(curve: Real, where: Real) -> Real:
-    """Variants whose negative curves may reach zero between two positions. where: positions that count."""
+def _may_reach_zero(curve: Real, where: Real) -> Real:
+    """Return True for each variant whose negative curve may reach zero between two scan positions.
+
+    where: mask of the positions to be examined, (variants, positions).
+    """
     rows, _at = candidate_peaks(curve, np.zeros(len(curve)), where)
     reaching = np.zeros(len(curve), dtype=bool)
     reaching[rows] = True
     return reaching
 
 
-def _stroke_ends(slope: Callable[[Real], Real], low: Real, high: Real) -> Real:
-    """Roots between scan positions; a root at a position itself may be lost by rounding, and is taken there."""
+def _find_stroke_ends(slope: Callable[[Real], Real], low: Real, high: Real) -> Real:
+    """Find the roots of a slope between `low` and `high`.
+
+    If rounding hides a sign change that lies at one of these bounds, that bound is returned.
+    """
     at_low, at_high = slope(low), slope(high)
     outside = np.sign(at_low) == np.sign(at_high)
     roots = find_roots(slope, low, high)
@@ -169,8 +189,8 @@ def _stroke_ends(slope: Callable[[Real], Real], low: Real, high: Real) -> Real:
 
 
 def _curve_of_variants(crank_variants: CrankVariants, name: str, columns: Real) -> Callable[[Real], Real]:
-    """One curve of variants, as a function of driver coordinates of each."""
-    close = VariantCurves(crank_variants.part(name), columns)
+    """Return one curve of the variants as a function of their driver coordinates, (variants, n)."""
+    close = VariantCurves(crank_variants.curve_program(name), columns)
     return lambda q: close(q)[name]
 
 
@@ -179,9 +199,9 @@ def _negated_curve(close: VariantCurves, name: str) -> Callable[[Real], Real]:
 
 
 def variant_strokes(
-    crank_variants: CrankVariants, columns: Real, looked: ScanResults, varied: Variant
+    crank_variants: CrankVariants, columns: Real, scanned: ScanResults, varied: Variant
 ) -> Strokes | None:
-    """Strokes of working variants, as arrays (variants, 1)."""
+    """Return the strokes of working variants, as arrays (variants, 1); None if no link has strokes."""
     outputs = []
     for k, link in enumerate(crank_variants.stroke_links):
         curve = _TracedOutputCurve(
@@ -189,7 +209,7 @@ def variant_strokes(
         )
         if crank_variants.strokes[k]:
             resists = resisted_direction(varied.linkage, link)
-            outputs.append(working_and_idle_strokes(crank_variants.linkage, curve, looked.ends[:, k], resists))
+            outputs.append(working_and_idle_strokes(crank_variants.linkage, curve, scanned.ends[:, k], resists))
         else:
             outputs.append(Strokes(link, curve.kind, (), ""))
     return replace(outputs[0], others=tuple(outputs[1:])) if outputs else None
@@ -197,7 +217,7 @@ def variant_strokes(
 
 @dataclass(frozen=True)
 class _TracedOutputCurve:
-    """Curve of one output, see `kinematics.Curve`."""
+    """Coordinate of an output link as a function of the driver coordinate (see `kinematics.Curve`)."""
 
     link: str
     swings: bool

@@ -1,8 +1,7 @@
-"""Trace of the stages for variants with a fully rotating crank, and peaks of their curves between scan
-positions.
+"""Traced calculation of variants with a fully rotating crank, and peaks of their curves between scan positions.
 
-Unlike `batch.TracedVariants` it also handles loads that act in strokes: start and length of strokes are
-inputs.
+Unlike `batch.TracedVariants`, it also handles loads that act in one stroke only: the start and the length of each
+stroke are inputs of the trace.
 """
 
 from __future__ import annotations
@@ -48,10 +47,17 @@ SHIFTS = 12  # largest number of shifts of a window whose peak lies at its edge
 
 
 def candidate_peaks(curve: Real, level: Real, where: Real) -> tuple[Real, Real]:
-    """Find peaks of closed curves (variants, places) that may reach a level (variants,) between two places.
+    """Find samples of closed curves near which a peak may reach a given level.
 
-    Between places a curve is assumed to rise by at most twice its rise from one place to the next. where:
-    places that count. Returns row and place.
+    Between two samples a curve is assumed to rise by at most twice the difference of the samples.
+
+    Args:
+        curve: samples of the curves, (variants, positions).
+        level: level for each curve, (variants,).
+        where: mask of the samples to be examined, (variants, positions) or (variants, 1).
+
+    Returns:
+        Variant number and position number of each such sample.
     """
     before, after = np.roll(curve, 1, axis=1), np.roll(curve, -1, axis=1)
     with np.errstate(invalid="ignore"):
@@ -62,13 +68,13 @@ def candidate_peaks(curve: Real, level: Real, where: Real) -> tuple[Real, Real]:
 
 
 def refine_peaks(curve: Callable[[Real], Real], q: Real, step: float, values: tuple[Real, Real, Real]) -> Real:
-    """Refine one peak of each curve.
+    """Refine one peak of each curve and return its value, (peaks,).
 
     Args:
-        curve: values at places (peaks, n) of each curve.
-        q: place of each peak, (peaks,).
-        step: distance of scan places.
-        values: values of the curves before, at and after q.
+        curve: function that evaluates the curves at driver coordinates (peaks, n).
+        q: driver coordinate of the highest sample, (peaks,).
+        step: distance between samples.
+        values: samples of the curves before, at and after q.
     """
     before, centre, after = values
     bend = 2 * centre - before - after
@@ -97,8 +103,16 @@ FINE_SCAN = 1440  # positions per revolution, as in the ordinary stages
 
 @dataclass(frozen=True)
 class LimitedCurve:
-    """Curve with a limit: pressure angle of a link (rad), or distance beyond the end of a slot as a fraction of
-    its length.
+    """A quantity over one revolution that has a limit.
+
+    It is the pressure angle of a link (rad), or the distance of a block beyond an end of its slot, as a fraction of the
+    length of the slot.
+
+    Attributes:
+        name: name of the curve in the trace.
+        kind: "pressure" or "slot".
+        link: driven link, or name of the prismatic pair.
+        sliding: True if the driven link slides.
     """
 
     name: str
@@ -108,10 +122,17 @@ class LimitedCurve:
 
 
 class CrankVariants:
-    """Variants by a trace, each at driver positions of its own.
+    """Variants of a linkage with a fully rotating crank, computed from a trace; each has its own driver positions.
 
-    read: reads the requested quantities at positions; forces: they need reactions. Raises NoTapeError or
-    DependsOnData if there is no trace, and the errors of assembly.
+    Args:
+        make: builds the linkage from its numbers.
+        first: numbers of the first variant, SI units.
+        read: reads the requested quantities from the motion and the reactions.
+        forces: True if these quantities need reactions.
+
+    Raises:
+        NoTapeError, DependsOnData: The calculation cannot be traced.
+        LinkageError: The first variant cannot be assembled.
     """
 
     def __init__(
@@ -153,17 +174,20 @@ class CrankVariants:
         self._parts: dict[tuple[str, ...], TraceProgram] = {}
         self._some: dict[tuple[str, ...], TraceProgram] = {}
 
-    def part(self, *names: str) -> TraceProgram:
-        """Return the program for some curves at places of each variant; cached."""
+    def curve_program(self, *names: str) -> TraceProgram:
+        """Return the traced program that computes only these curves, each variant at its own driver coordinates.
+        Cached.
+        """
         if names not in self._parts:
             self._parts[names] = self.close.only(*names)
         return self._parts[names]
 
     @cached_property
     def strokes(self) -> tuple[int, ...]:
-        """Number of strokes of each of `stroke_links` in the first linkage: two or none.
+        """Number of strokes of each link in `stroke_links` in the first variant: two or none.
 
-        Raises NoTapeError if the main output has more than two, or another link has not exactly two.
+        Raises:
+            NoTapeError: The main output has more than two strokes, or another link does not have exactly two.
         """
         coordinates = self.linkage.sketch.at + 2 * np.pi * np.arange(FINE_SCAN) / FINE_SCAN
         names = [f"slope{k}" for k in range(len(self.stroke_links))]
@@ -174,7 +198,7 @@ class CrankVariants:
         return counts
 
     def _linkage(self, data: Sequence[Any]) -> Any:
-        """Linkage and groups with placeholders for their numbers."""
+        """Return the linkage and its group solvers for the inputs of a trace."""
         linkage = placeholder_linkage(self.make, self.first, data, self.linkage.sketch)
         return linkage, tuple(kernel.rebind(linkage) for kernel in self.kernels)
 
@@ -214,7 +238,11 @@ class CrankVariants:
         return solve_stages(linkage, structure, kernels, q, read, forces, strokes, blank=False, start=begin)
 
     def varied(self, columns: Real) -> tuple[Variant, Real]:
-        """Return the variants as one with arrays as numbers, and the mask of those that would be built differently."""
+        """Combine variants into one whose numbers are arrays, (variants, 1).
+
+        Returns:
+            This combined variant, and True for each variant whose linkage has another structure, (variants,).
+        """
         otherwise: list[Any] = []
         both = zip(self.first, split_columns(columns), strict=True)
         variant = self.make([TracedNumber(x, column, otherwise) for x, column in both])
@@ -226,10 +254,15 @@ class CrankVariants:
     def over_cycle(
         self, columns: Real, strokes: Strokes | None
     ) -> tuple[Real, Callable[[Real, Real, Sequence[str]], Mapping[str, Real]]]:
-        """Return driver coordinates over a cycle, (places,), and a function for requested quantities at other
-        places.
+        """Prepare the evaluation of requested quantities over a cycle.
 
-        The function takes indices of variants (k,), places of each (k, n) and names.
+        Args:
+            columns: parameter values of the variants in SI units, (variants, parameters).
+            strokes: strokes of the variants; None if no link has strokes.
+
+        Returns:
+            Driver coordinates over a cycle, (positions,), and a function that evaluates quantities. Its arguments are
+            variant numbers (k,), driver coordinates (k, n) and names of quantities.
         """
         outputs = () if strokes is None else (strokes, *strokes.others)
         firsts = [next(iter(x.strokes), Stroke(0.0, 0.0, 0.0, 0.0, True)) for x in outputs]
@@ -238,13 +271,13 @@ class CrankVariants:
         start, sense = self.linkage.sketch.at, self.linkage.driver.sense
 
         def at(rows: Real, q: Real, names: Sequence[str]) -> Mapping[str, Real]:
-            program = self._wanted(*names)
+            program = self._quantity_program(*names)
             return program(*split_columns(columns[rows]), *(x[rows] for x in numbers), q[:, :1], q)
 
         return start + sense * np.linspace(0, 2 * np.pi, CYCLE + 1), at
 
-    def _wanted(self, *names: str) -> TraceProgram:
-        """Program for some requested quantities at positions; cached."""
+    def _quantity_program(self, *names: str) -> TraceProgram:
+        """Return the traced program that computes only these requested quantities. Cached."""
         if names not in self._some:
             self._some[names] = self.forces.only(*names)
         return self._some[names]
@@ -252,7 +285,10 @@ class CrankVariants:
 
 @dataclass(frozen=True)
 class VariantCurves:
-    """Program for certain variants; q is (variants, n), or (m variants,) for m values per variant."""
+    """Traced curves of certain variants, as a function of the driver coordinate.
+
+    q has the shape (variants, n), or (m * variants,) for m values per variant; the curves have the shape of q.
+    """
 
     program: TraceProgram
     columns: Real
@@ -264,12 +300,12 @@ class VariantCurves:
 
 
 def sign_changes(slope: Real) -> Real:
-    """Mask of the places of a revolution after which a slope changes its sign."""
+    """Return True where the slope changes its sign before the next position; positions form a closed revolution."""
     forward = slope >= 0
     changes: Real = forward != np.roll(forward, -1, axis=1)
     return changes
 
 
 def curve_limit(curve: LimitedCurve, allowed: tuple[float, float]) -> float:
-    """Limit of a curve. allowed: pressure angles of sliding and of rotating links (rad)."""
+    """Return the limit of a curve. allowed: limits of the pressure angle for sliding and for rotating links (rad)."""
     return END_OF_SLOT if curve.kind == "slot" else allowed[0 if curve.sliding else 1]

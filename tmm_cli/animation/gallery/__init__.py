@@ -1,3 +1,1 @@
-"""Gallery: many mechanisms on one page, each drawn and moving, with search by structure, purpose and
-properties.
-"""
+"""Gallery page: many moving mechanisms with a search by structure, purpose and properties."""

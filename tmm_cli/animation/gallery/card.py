@@ -1,4 +1,4 @@
-"""Cards of a gallery: class, groups, purposes and properties of a mechanism, and its moving picture."""
+"""Cards of the gallery: structure, purposes, properties and moving picture of one mechanism each."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ PURPOSES: Final = {
 
 
 def purposes(results: Results) -> tuple[str, ...]:
-    """Return keys of PURPOSES, in their order, for results with a motion."""
+    """Return the purposes of a mechanism with computed motion, as keys of PURPOSES in their order."""
     keys = set(_iterate_purposes(results))
     return tuple(key for key in PURPOSES if key in keys)
 
@@ -75,7 +75,7 @@ def _iterate_purposes(results: Results) -> Iterable[str]:
 
 
 def _has_dwell(results: Results, link: str) -> bool:
-    """Return True if an output hardly moves near an end of its stroke while the crank rotates."""
+    """Return True if the output hardly moves near an end of its stroke while the crank rotates."""
     motion = motion_at_positions(results, results.closely(360 * results.turns + 1)[:-1])
     run = output_run(motion, link)[0]
     run = np.unwrap(run) if results.linkage.output_swings(link) else run
@@ -97,7 +97,13 @@ Value = tuple[str, float, Dimension]
 
 @dataclass(frozen=True)
 class Fact:
-    """Property: its name, its value with unit for people, and the number in that unit for searches."""
+    """A property of a mechanism.
+
+    Attributes:
+        name: name of the property.
+        told: value with its unit, formatted for the reader.
+        number: the same value as a number in that unit, for searches.
+    """
 
     name: str
     told: str
@@ -106,10 +112,20 @@ class Fact:
 
 @dataclass(frozen=True)
 class Card:
-    """Card of a mechanism; texts are those of the file, which may contain anything.
+    """Card of one mechanism in the gallery. Its texts come from the problem file and are not escaped yet.
 
-    number: class, empty for spatial chains. groups: class and type, II RRR. purposes: keys of PURPOSES.
-    language: of the file. turning: moving picture; for a chain given by pairs only, its scheme.
+    Attributes:
+        file: path of the problem file.
+        language: language of the problem file; empty if the file does not give it.
+        title: title of the problem.
+        reference: source of the problem, e.g. a textbook.
+        about: description of the mechanism.
+        number: class of the mechanism as a Roman numeral; empty for spatial chains.
+        formula: structural formula.
+        groups: class and type of each kind of Assur group, e.g. "II RRR".
+        purposes: keys of PURPOSES.
+        facts: properties of the mechanism.
+        turning: moving picture of the mechanism; a diagram of links and pairs for a spatial chain.
     """
 
     file: str
@@ -126,7 +142,11 @@ class Card:
 
 
 def make_card(file: str) -> Card:
-    """Make the card of a problem file. Raises ProblemError."""
+    """Make the gallery card of a problem file.
+
+    Raises:
+        ProblemError: The file cannot be read or solved.
+    """
     tree = read_file(file)
     if is_chain(tree):
         return _chain_card(file, tree, count(build_chain(tree)))
@@ -170,7 +190,7 @@ def _chain_card(file: str, tree: Tree, results: ChainResults) -> Card:
 
 
 def leading_comment(file: str) -> str:
-    """Return the comment at the beginning of a file, which usually describes it."""
+    """Return the comment lines at the beginning of a file as one text. They usually describe the problem."""
     lines = []
     with open(file, encoding="utf-8-sig") as stream:
         for line in stream:
@@ -186,7 +206,7 @@ def _file_language(tree: Tree) -> str:
 
 
 def _facts(results: Results) -> Iterator[Value]:
-    """Properties shown in the file, and those that every mechanism has."""
+    """Yield the properties that the file requests, then mobility, strokes and pressure angle."""
     structure, linkage = results.structure, results.linkage
     yield from _shown_properties(results)
     yield _("mobility W"), float(structure.mobility + structure.redundant), NUMBER
@@ -220,7 +240,10 @@ def _shown_properties(results: Results | ChainResults) -> Iterable[Value]:
 
 
 def _format_facts(values: Iterable[Value], units: UnitSystem) -> Iterator[Fact]:
-    """Values in the units of the file; the first one of each name, without those that are undefined."""
+    """Yield the properties in the units of the file.
+
+    Undefined values are omitted, and so are further values of a name that has already occurred.
+    """
     listed = set[str]()
     for name, value, dimension in values:
         if name not in listed and math.isfinite(value):

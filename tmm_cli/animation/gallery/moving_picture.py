@@ -1,7 +1,7 @@
-"""Moving picture of a card: bodies as SVG, and their places in few frames as integers.
+"""Moving picture on a card: bodies as SVG, and their positions in a few frames as integers.
 
-The page interpolates between frames by cubic curves, so few are enough. A chain given by pairs alone is
-drawn as a scheme: links in rows by their distance from the frame, pairs between them.
+Few frames are enough because the page interpolates between them by cubic curves. A spatial chain is drawn as a
+diagram: links in rows by their distance from the frame, connected by pairs.
 """
 
 from __future__ import annotations
@@ -30,11 +30,16 @@ FrameValues = int | list[int]
 
 @dataclass(frozen=True)
 class MovingPicture:
-    """Drawing of the first frame, its view box (mm), and the frames, which are empty if nothing moves.
+    """SVG drawing of the first frame, and the motion of its bodies.
 
-    bodies: x, y, angle and stretch of each body, in STEPS_PER_MM and STEPS_PER_RADIAN: a constant as one
-    number, else the first value and the differences. loops: the last frame is the first one again. seconds:
-    duration of all frames.
+    Attributes:
+        svg: SVG elements of the drawing.
+        view: view box: left, top, width, height, mm.
+        bodies: x, y, angle and stretch of each moving body, as integers in steps of 1/STEPS_PER_MM and
+            1/STEPS_PER_RADIAN. A constant is one number. Otherwise the first value is followed by the differences from
+            frame to frame. Empty if nothing moves.
+        loops: True if the last frame equals the first one.
+        seconds: duration of the whole motion.
     """
 
     svg: str
@@ -45,7 +50,7 @@ class MovingPicture:
 
 
 def draw_moving_picture(results: Results) -> MovingPicture:
-    """Draw the moving picture of results with kinematics."""
+    """Draw the moving picture of a mechanism with computed kinematics."""
     turns = results.turns or 1
     motion = _choose_motion(results, min(FRAMES * turns, MOST_FRAMES) + 1)
     still = len(motion.q) < 2
@@ -61,7 +66,9 @@ def draw_moving_picture(results: Results) -> MovingPicture:
 
 
 def _choose_motion(results: Results, count: int) -> Motion:
-    """Motion over the requested range, else over the driver's range, else the sketched position."""
+    """Return the motion over the requested positions, or else over the driver range, or else the sketched position
+    alone.
+    """
     reach = results.driver_range
     assert reach is not None
     for q in (results.closely(count), np.linspace(reach.start, reach.end, count)):
@@ -72,7 +79,7 @@ def _choose_motion(results: Results, count: int) -> Motion:
 
 
 def _group_attributes(picture: MechanismPicture, name: str, moving: list[str]) -> str:
-    """SVG attributes of a body: its place in the first frame, and its index if it moves."""
+    """Return the SVG attributes of a body: its number if it moves, and its transformation matrix in the first frame."""
     body = picture.bodies[name]
     if name == FRAME:
         return ""
@@ -84,7 +91,7 @@ def _group_attributes(picture: MechanismPicture, name: str, moving: list[str]) -
 
 
 def _body_frames(body: MovingBody) -> tuple[FrameValues, FrameValues, FrameValues, FrameValues]:
-    """Frames of a body with y pointing down, as on the page."""
+    """Return x, y, angle and stretch of a body in all frames, as in `MovingPicture.bodies`; y points down."""
     return (
         _frame_values(body.place.real * STEPS_PER_MM),
         _frame_values(-body.place.imag * STEPS_PER_MM),
@@ -112,7 +119,7 @@ EDGE, LEAST = 4.0, 110.0  # mm: about the scheme, and its least width
 
 
 def draw_chain(chain: SpatialChain) -> MovingPicture:
-    """Draw a chain with the frame at the bottom; each pair shows the number of its freedoms."""
+    """Draw a spatial chain as a diagram with the frame at the bottom. Each pair shows its number of degrees of freedom."""
     centres = chain_places(chain)
     marks: list[Mark] = []
     between = Counter[frozenset[str]]()
@@ -134,7 +141,7 @@ def draw_chain(chain: SpatialChain) -> MovingPicture:
 
 
 def _link_box(name: str, place: complex) -> list[Mark]:
-    """Box of a link, with as much of its name as fits."""
+    """Return the box of a link with its name, which is cut if it is too long."""
     most = int((APART - 2) / (SHARE * LETTER))
     text = name if len(name) <= most else f"{name[: most - 1]}…"
     half = max(SHARE * LETTER * len(text), HIGH) / 2 + 0.5 + 0.5j * HIGH
@@ -144,7 +151,9 @@ def _link_box(name: str, place: complex) -> list[Mark]:
 
 
 def chain_places(chain: SpatialChain) -> dict[str, complex]:
-    """Return the centres of the links: in rows, each link as near to its neighbours below as its row allows."""
+    """Return the centre of each link in the diagram of a chain (mm): links in rows, near their neighbours in the row
+    below.
+    """
     rows = [[FRAME]]
     placed = {FRAME}
     while rows[-1]:

@@ -1,7 +1,7 @@
-"""Page of a gallery: one HTML file with cards, frames as JSON, and a script that searches and moves them.
+"""Gallery page: one HTML file with the cards, their frames as JSON, and a script for search and animation.
 
-It loads nothing from the network: its content security policy allows its own style and script only. Texts
-of files are escaped.
+The page loads nothing from the network: its content security policy allows only its own style and script. Texts
+from problem files are escaped.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tmm_cli.mechanics.structure import ROMAN
 
 
 def gallery_page(cards: Sequence[Card]) -> str:
-    """Return the HTML page of these mechanisms, in their order."""
+    """Return the HTML of the gallery with the cards in the given order."""
     groups = Counter(group for card in cards for group in card.groups)
     numbers = Counter(card.number for card in cards if card.number)
     purposes = Counter(purpose for card in cards for purpose in card.purposes)
@@ -75,7 +75,7 @@ def _card_data(card: Card) -> dict[str, Any]:
 
 
 def _display_names(files: Sequence[str]) -> list[str]:
-    """File names for readers: absolute paths are shortened to the part below their common folder."""
+    """Shorten absolute file paths to the part below their common folder."""
     full = [os.path.dirname(file) for file in files if os.path.isabs(file)]
     try:
         above = os.path.commonpath(full) if full else ""
@@ -127,5 +127,5 @@ def _options_html(words: Mapping[str, str], counts: Mapping[str, int]) -> str:
 
 
 def _escape(text: str) -> str:
-    """Escape text for HTML, without characters that a page must not contain."""
+    """Escape text for HTML and remove characters that are not allowed there."""
     return escape(text.translate(NOT_XML).encode(errors="replace").decode())
