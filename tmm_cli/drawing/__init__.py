@@ -1,1 +1,1 @@
-"""Drawings: recorded in millimetres of paper, then written in any format."""
+"""Drawings of mechanisms, recorded as lines, areas and texts in mm of paper, then written in any file format."""

@@ -1,4 +1,4 @@
-"""All sheets of a run, drawn first and then written in any format; a new sheet is a function listed here."""
+"""All sheets of a run. They are drawn first and then written in each format; a new kind of sheet is added here."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ DrawingJob = Callable[[], NamedDrawings]  # may be pickled
 
 
 def all_sheets(results: Results) -> NamedDrawings:
-    """Yield every sheet with the stem of its file: structure, whole cycle, then each detailed position."""
+    """Yield all sheets, as (stem of the file name, drawing): structure, whole cycle, then each detailed position."""
     return chain.from_iterable(job() for job in sheet_jobs(results))
 
 
 def sheet_jobs(results: Results) -> list[DrawingJob]:
-    """Return jobs that can be run separately and together draw all sheets, in order."""
+    """Return jobs that draw some of the sheets each. They can run independently, e.g. on several cores."""
     if results.motion is None:
         return [partial(_draw_mechanism, results)]
     chosen = detailed_positions(results)
@@ -82,7 +82,7 @@ def _draw_positions(results: Results, chosen: Sequence[int]) -> NamedDrawings:
 def sheet_files(
     results: Results, say: Callable[[str], None] = lambda note: None, runner: JobRunner = run_in_process
 ) -> Iterable[tuple[str, bytes]]:
-    """Yield every sheet in every format of a run, as (file name, content).
+    """Yield the files of all sheets, as (file name, content).
 
     Args:
         results: Computed results.
@@ -95,7 +95,7 @@ def sheet_files(
 
 
 def position_remarks(results: Results) -> Iterable[str]:
-    """Yield a note on the position drawn in detail, and the reason, if the file names none."""
+    """Yield a note that explains which position is drawn in detail, if the file does not specify one."""
     if results.motion is not None and detail_chosen_by_program(results):
         yield from (_default_position_note(results, k) for k in detailed_positions(results))
 

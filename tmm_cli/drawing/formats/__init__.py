@@ -1,4 +1,4 @@
-"""Formats of drawings."""
+"""File formats of drawings: PDF, DXF, SVG, PNG and EMF."""
 
 from tmm_cli.interfaces import lazy
 

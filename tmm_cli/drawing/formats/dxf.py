@@ -1,4 +1,4 @@
-"""Drawings for CAD programs: DXF in millimetres, a layer for each kind of line; written by ezdxf (extra `cad`)."""
+"""DXF files for CAD programs, in millimetres, with a layer for each kind of line. Requires ezdxf (extra `cad`)."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def write_dxf(drawing: Drawing) -> bytes:
 
 
 def escape_codes(text: str) -> str:
-    r"""Return the text with DXF control codes (%%c, ^I, \U+0416 and the like) made harmless."""
+    r"""Make DXF control codes in a text (%%c, ^I, \U+0416 and the like) harmless, so that they are shown as written."""
     text = "".join(letter if letter.isprintable() else " " for letter in text)
     return re.sub(r"%(?=%)|\\(?=[UM]\+)", lambda match: match[0] + CODE_BREAKER, text).replace("^", "^ ")
 

@@ -1,4 +1,4 @@
-"""Drawings for word processors: Enhanced Metafiles with vector graphics; texts are written as outlines.
+"""EMF files (Enhanced Metafile) for word processors, with vector graphics. Texts are written as outlines.
 
 The records are those of Microsoft's [MS-EMF]; a logical unit is a hundredth of a millimetre.
 """
@@ -64,7 +64,10 @@ def write_emf(drawing: Drawing) -> bytes:
 
 
 class _RecordWriter:
-    """Writer of EMF records for marks on paper of this height (mm); each pen and brush is created once."""
+    """Writer of EMF records for the marks of a drawing. Each pen and brush is created only once.
+
+    height: height of the paper, mm.
+    """
 
     def __init__(self, height: float) -> None:
         self.height = height
@@ -144,7 +147,10 @@ class _RecordWriter:
 
 
 def _dash_polyline(points: Vector, dashes: Sequence[float]) -> Iterable[Vector]:
-    """Yield a polyline, or its dashes if `dashes` (mm, lengths drawn and skipped alternately) is not empty."""
+    """Split a polyline into dashes.
+
+    dashes: lengths drawn and skipped alternately, mm; if empty, the polyline is returned whole.
+    """
     if not dashes or len(points) < 2:
         yield points
         return

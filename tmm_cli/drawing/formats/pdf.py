@@ -1,4 +1,4 @@
-"""PDF with vector graphics, searchable text and embedded subsets of the TrueType fonts."""
+"""PDF files with vector graphics, searchable text and embedded subsets of the TrueType fonts."""
 
 from __future__ import annotations
 
@@ -35,9 +35,13 @@ CHECKSUM_BASE = 0xB1B0AFBA  # constant of the TrueType specification for the che
 
 
 def subset_font(path: str, glyphs: Sequence[int]) -> bytes:
-    """Return the TrueType font at `path` reduced to these glyphs, in this order.
+    """Return a TrueType font that contains only the given glyphs, in this order.
 
-    Glyphs that are components of composite glyphs are appended after the requested ones.
+    Glyphs that are components of composite glyphs are appended after them.
+
+    Args:
+        path: file of the complete font.
+        glyphs: glyph numbers in that font.
     """
     tables = _read_tables(path)
     offsets = np.frombuffer(tables["loca"], ">u4" if tables["head"][51] else ">u2").astype(int)
@@ -74,7 +78,7 @@ def _read_tables(path: str) -> dict[str, bytes]:
 
 
 def _component_offsets(shape: bytearray) -> Iterator[int]:
-    """Yield the byte offsets at which a composite glyph stores the numbers of its components."""
+    """Yield the byte offsets of the component numbers in a composite glyph; none for a simple glyph."""
     if len(shape) < 10 or shape[0] < 0x80:  # not composite: the number of contours is not negative
         return
     at, more = 10, True
@@ -87,7 +91,6 @@ def _component_offsets(shape: bytearray) -> Iterator[int]:
 
 
 def _build_font(tables: dict[str, bytes]) -> bytes:
-    """Assemble a TrueType font file from its tables, with checksums."""
     power = len(tables).bit_length() - 1
     head = struct.pack(">IHHHH", 0x10000, len(tables), 16 << power, power, 16 * (len(tables) - (1 << power)))
     entries, body = [head], list[bytes]()
@@ -119,7 +122,7 @@ Slant = tuple[bool, bool]  # bold, italic
 
 
 def write_pdf(*drawings: Drawing) -> bytes:
-    """Write a PDF with a page for each drawing.
+    """Write drawings as one PDF file, each on a page of its own.
 
     The file has no date: the same drawings give the same bytes.
     """
@@ -136,11 +139,11 @@ def write_pdf(*drawings: Drawing) -> bytes:
     ]
     kids = " ".join(f"{page} 0 R" for page in pages)
     file.add(f"<</Type/Pages/Count {len(pages)}/Kids[{kids}]>>")
-    return file.closed(file.add(f"<</Type/Catalog/Pages {parent} 0 R>>"))
+    return file.finish(file.add(f"<</Type/Catalog/Pages {parent} 0 R>>"))
 
 
 class _PdfObjects:
-    """PDF objects in the order of the file, numbered from 1."""
+    """The numbered objects of a PDF file, collected in the order in which they are written."""
 
     def __init__(self) -> None:
         self.parts = [b"%PDF-1.4\n%\xb5\xb6\xb7\xb8\n"]
@@ -153,8 +156,11 @@ class _PdfObjects:
         self.parts.append(b"%d 0 obj\n%b\nendobj\n" % (len(self.parts), _bytes(content)))
         return self.count
 
-    def closed(self, root: int) -> bytes:
-        """Return the whole file, with its cross-reference table; `root` is the number of the catalogue object."""
+    def finish(self, root: int) -> bytes:
+        """Complete the file with its cross-reference table and return its bytes.
+
+        root: number of the catalogue object.
+        """
         *offsets, end = accumulate(map(len, self.parts))
         table = b"".join(b"%010d 00000 n \n" % place for place in offsets)
         form = b"xref\n0 %d\n0000000000 65535 f \n%btrailer\n<</Size %d/Root %d 0 R>>\nstartxref\n%d\n%%%%EOF\n"
@@ -162,13 +168,13 @@ class _PdfObjects:
 
 
 class _FontCodes:
-    """Character codes of each font, assigned as letters occur; two characters of the same shape get two codes."""
+    """Character codes of each embedded font, assigned from 1 on in the order in which characters first occur."""
 
     def __init__(self) -> None:
         self.codes: dict[Slant, dict[str, int]] = {}
 
     def encode(self, text: str, slant: Slant) -> tuple[int, str]:
-        """Return the number of the font of this slant and the hexadecimal codes of the characters."""
+        """Encode a text in the font of this weight and slant: number of the font, and hexadecimal character codes."""
         codes = self.codes.setdefault(slant, {})
         return list(self.codes).index(slant), "".join(
             f"{codes.setdefault(x, len(codes) + 1):04x}" for x in replace_missing(text)
@@ -176,7 +182,7 @@ class _FontCodes:
 
 
 def _add_font(file: _PdfObjects, slant: Slant, codes: Iterable[str]) -> int:
-    """Add a font with these letters (codes from 1): outlines, widths, descriptor, map to Unicode; return its number."""
+    """Add a font that contains these characters to the file and return its object number."""
     face, letters = load_font(*slant), list(codes)
     outlines = subset_font(str(font_file(*slant)), [0, *(face.get_char_index(ord(letter)) for letter in letters)])
     tag, per = zlib.crc32(outlines), 1000 / face.units_per_EM
@@ -201,7 +207,7 @@ def _add_font(file: _PdfObjects, slant: Slant, codes: Iterable[str]) -> int:
 
 
 def _character_map(letters: Sequence[str]) -> str:
-    """Return the ToUnicode CMap of the codes from 1, in blocks of at most 100 letters."""
+    """Return the ToUnicode CMap of an embedded font, from which a reader extracts the text. Codes begin at 1."""
     lines = [f"<{code:04x}><{letter.encode('utf-16-be').hex()}>\n" for code, letter in enumerate(letters, 1)]
     blocks = [lines[k : k + 100] for k in range(0, len(lines), 100)]
     return (
@@ -223,7 +229,7 @@ def _bytes(content: str | bytes) -> bytes:
 
 
 def _page_content(drawing: Drawing, fonts: _FontCodes) -> str:
-    """Return the page operators of all marks; pen and colour operators are written only when they change."""
+    """Return the content stream of a page. Operators for pen and colour are written only where they change."""
     current: dict[str, str] = {}
     lines = [ROUND_LINES]
     for mark in drawing.marks:
@@ -237,7 +243,7 @@ def _page_content(drawing: Drawing, fonts: _FontCodes) -> str:
 
 
 def _mark_operators(mark: Mark, fonts: _FontCodes) -> tuple[list[tuple[str, str]], str]:
-    """Return the graphics states that a mark needs, as (kind, operator), and the operators that draw it."""
+    """Return the PDF operators for a mark: those of its graphics states, as (kind, operator), and those that draw it."""
     match mark:
         case LineMark():
             dashes = f"[{' '.join(map(_format_length, mark.dashes))}] 0 d"
@@ -280,7 +286,7 @@ def _path_operators(points: Sequence[complex]) -> str:
 
 
 def _circle_operators(centre: complex, radius: float) -> str:
-    """Return the operators of a circle made of four Bézier curves."""
+    """Return the PDF operators for a circle, approximated by four Bézier curves."""
     lines = [f"{_format_point(centre + radius)} m\n"]
     for k in range(4):
         axis_point = radius * 1j**k
@@ -294,5 +300,5 @@ def _format_point(place: complex) -> str:
 
 
 def _format_length(length: float) -> str:
-    """Convert a length from mm to points."""
+    """Convert a length from mm to PDF points (1/72 inch) and format it."""
     return f"{length / POINT:.4f}".rstrip("0").rstrip(".")

@@ -1,4 +1,4 @@
-"""PNG images of drawings."""
+"""PNG files of drawings."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ AGG: Any = backend_agg  # matplotlib has no type hints here
 
 
 def write_png(drawing: Drawing) -> bytes:
-    """Write a drawing as a PNG image on white paper."""
+    """Write a drawing as a PNG image on a white background."""
     width, height = (round(side / 25.4 * DPI) for side in drawing.paper)
     renderer, rows = _renderer_and_buffer(width, height)
     pixels = np.asarray(renderer.buffer_rgba())
@@ -53,7 +53,9 @@ def write_png(drawing: Drawing) -> bytes:
 
 @lru_cache(2)
 def _renderer_and_buffer(width: int, height: int) -> tuple[Any, NDArray[Any]]:
-    """Return a renderer and a buffer for the filtered rows; reusing them is faster than allocating new ones."""
+    """Return a renderer and a buffer for the filtered pixel rows. They are cached, which is faster than a new
+    allocation.
+    """
     return AGG.RendererAgg(width, height, DPI), np.full((height, 1 + 3 * width), UP_FILTER, np.uint8)
 
 
@@ -88,7 +90,7 @@ def _path(points: Sequence[complex], *, closed: bool = False) -> Path:
 
 
 def _draw_texts(marks: Sequence[TextMark], colour: str, renderer: RendererBase, to_pixels: Affine2D) -> None:
-    """Draw texts as filled outlines, so that letters stand where their widths say, whatever the resolution."""
+    """Draw texts as filled outlines, so that the letters have their exact widths at any resolution."""
     placed, codes = [], []
     for mark in marks:
         start, along = baseline(mark)
@@ -106,7 +108,7 @@ def _draw_texts(marks: Sequence[TextMark], colour: str, renderer: RendererBase, 
 
 
 def _encode_png(pixels: NDArray[Any], rows: NDArray[Any]) -> bytes:
-    """Encode an image as PNG without its alpha channel, in half the time of the usual libraries."""
+    """Encode pixels as PNG without alpha channel. This takes half the time of the usual libraries."""
     height, width, __ = pixels.shape
     for k in range(3):
         rows[0, 1 + k :: 3] = pixels[0, :, k]

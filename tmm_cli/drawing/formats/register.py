@@ -1,4 +1,4 @@
-"""Register of the formats of drawings: a new one is a function in its own module and an entry below."""
+"""Table of the file formats of drawings. To add one, write a function in a module of its own and add it to FORMATS."""
 
 from __future__ import annotations
 
@@ -29,22 +29,22 @@ JobResult = TypeVar("JobResult")
 
 
 class JobRunner(Protocol):
-    """Callable that runs jobs (they may be pickled) and yields their results in order."""
+    """A function that runs jobs, for example in several processes, and yields the results in the order of the jobs."""
 
     def __call__(self, jobs: Sequence[Callable[[], JobResult]], /) -> Iterable[JobResult]: ...
 
 
 def run_in_process(jobs: Sequence[Callable[[], JobResult]], /) -> Iterable[JobResult]:
-    """Run the jobs one after another in this process."""
+    """Run the jobs one after another in this process and yield their results."""
     return (job() for job in jobs)
 
 
 def drawing_files(drawn: NamedDrawings, say: Callable[[str], None] = lambda note: None) -> Iterable[tuple[str, bytes]]:
-    """Yield every sheet in the formats of a run, as (file name, content).
+    """Yield the files of drawings in each of RUN_FORMATS, as (file name, content).
 
     Args:
-        drawn: Stems of file names, with the drawings.
-        say: Called at the end with notes that concern all sheets.
+        drawn: Drawings with the stems of their file names.
+        say: Called at the end with notes that concern all drawings.
     """
     return files_of_parts([lambda: drawn], say)
 
@@ -54,15 +54,12 @@ def files_of_parts(
     say: Callable[[str], None] = lambda note: None,
     runner: JobRunner = run_in_process,
 ) -> Iterable[tuple[str, bytes]]:
-    """Yield the files of sheets that are drawn in parts, each of which is one job.
+    """Yield the files of drawings in each of RUN_FORMATS, as (file name, content). Each part is drawn in one job.
 
     Args:
-        parts: Functions that draw some sheets each; they may be pickled.
+        parts: Functions that draw some of the sheets each; they must be picklable if jobs run in other processes.
         say: Called at the end with notes that concern all sheets.
         runner: Runs the jobs, for example on several cores.
-
-    Returns:
-        Pairs of file name and content.
     """
     boxes: set[str] = set()
     for written, lost in runner([partial(_write_part, job) for job in parts]):
@@ -73,14 +70,14 @@ def files_of_parts(
 
 
 def _write_part(job: Callable[[], NamedDrawings]) -> tuple[FormatFiles, set[str]]:
-    """Draw one part; return its files and the characters that the font lacks."""
+    """Draw one part and return its files and the characters that are missing in the font."""
     drawings = list(job())
     lost = missing_characters("".join(text for __, sheet in drawings for text in sheet.texts()))
     return [(f"{stem}.{kind}", FORMATS[kind](sheet)) for stem, sheet in drawings for kind in RUN_FORMATS], lost
 
 
 def missing_character_notes(texts: Iterable[str]) -> Iterable[str]:
-    """Yield a note that names the characters of the texts that the font lacks, if there are any."""
+    """Yield a note that lists the characters that are missing in the font, if the texts contain any."""
     boxes = missing_characters("".join(texts))
     if boxes:
         text = _("note: the font of the drawings lacks these characters; boxes replace them: {characters}")

@@ -1,4 +1,4 @@
-"""SVG drawings in millimetres for browsers and editors; text remains text."""
+"""SVG files in millimetres for browsers and vector editors. Texts can be edited and searched."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def write_svg(drawing: Drawing) -> bytes:
 
 
 def svg_element(mark: Mark, height: float) -> str:
-    """Return the SVG element of a mark; `height` (mm) is that of the paper, because y points down in SVG."""
+    """Return the SVG element of a mark. height: height of the paper (mm), needed because y points down in SVG."""
     match mark:
         case LineMark():
             dashes = f' stroke-dasharray="{" ".join(f"{d:.3g}" for d in mark.dashes)}"' if mark.dashes else ""

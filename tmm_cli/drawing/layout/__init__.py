@@ -1,4 +1,4 @@
-"""Large sheets to hand in: drawings and tables arranged in a frame with a title block."""
+"""Large sheets for a course project: drawings and tables arranged within a frame with a title block."""
 
 from tmm_cli.interfaces import lazy
 

@@ -1,4 +1,4 @@
-"""Large sheets of a project: drawings made as large as fits, arranged on framed pages, written as files."""
+"""Large sheets of a project: the drawings are made as large as possible, arranged on pages and written as files."""
 
 from __future__ import annotations
 
@@ -69,7 +69,11 @@ MOST_ROUNDS = 8  # while a page stays thin
 
 @dataclass(frozen=True)
 class LargeSheet(Drawing):
-    """A framed sheet; `pictures` are the drawings on it, each with its lower left corner (mm)."""
+    """A large sheet with frame and title block.
+
+    Attributes:
+        pictures: The drawings on the sheet, each with the position of its lower left corner, mm.
+    """
 
     pictures: tuple[tuple[complex, SheetPicture], ...] = ()
 
@@ -77,14 +81,14 @@ class LargeSheet(Drawing):
 def large_sheets(
     choice: SheetChoice, paper: str, runner: JobRunner = run_in_process
 ) -> Iterator[tuple[str, LargeSheet]]:
-    """Yield the large sheets of a project with the stems of their files, numbered from 1.
+    """Yield the large sheets of a project, as (stem of the file name, sheet), numbered from 1.
 
-    What does not fit on one sheet continues on the next. The structure sheet, which has no scale, gets the smallest
-    format that holds it.
+    Drawings that do not fit on one sheet continue on the next. The structure sheet, which has no scale, gets the
+    smallest paper on which it fits.
 
     Args:
         choice: Results and the positions to be drawn.
-        paper: Largest format, a key of PAPERS.
+        paper: Largest paper size, a key of PAPERS.
         runner: Draws the subjects, for example on several cores.
 
     Raises:
@@ -110,9 +114,12 @@ def large_sheets(
 def _fit_smallest_paper(
     number: int, choice: SheetChoice, papers: Sequence[str]
 ) -> tuple[Size, list[SheetPicture], list[Page]]:
-    """Arrange a subject on the first of these formats that holds it on one page.
+    """Arrange the drawings of a subject on the first of these paper sizes on which they need one page only.
 
-    If none does, the last one is used. If the page stays thin, the next smaller format is tried.
+    If no size is enough, the last one is used. If one page is left rather empty, the next smaller paper is tried too.
+
+    Returns:
+        Paper size, the drawings, and the drawings of each page by their numbers.
     """
     for paper in papers:
         size, pictures, pages = arrangement = _arrange_on_paper(paper, number, choice)
@@ -134,7 +141,10 @@ def _arrange_on_paper(paper: str, number: int, choice: SheetChoice) -> tuple[Siz
 def _arrange_fullest(
     number: int, choice: SheetChoice, paper: Size, field: PackingField
 ) -> tuple[list[SheetPicture], list[Page]]:
-    """Arrange the drawings of a subject; if a page stays thin, try again with a lower limit of height."""
+    """Arrange the drawings of a subject on pages so that no page is left rather empty.
+
+    If a page is, the arrangement is repeated with drawings limited to smaller heights, so that more fit side by side.
+    """
     arrangement = _arrange_sheet(number, choice, paper, field, field.height - DRAWING_GAP)
     for high in (field.height - field.taken[1] - DRAWING_GAP, *(share * field.height for share in FLAT_HEIGHTS)):
         if _least_page_area(arrangement) > THIN_BELOW * field.area:
@@ -146,13 +156,20 @@ def _arrange_fullest(
 
 
 def _least_page_area(arrangement: tuple[list[SheetPicture], list[Page]]) -> float:
-    """Return the area (mm²) of the drawings on the emptiest page."""
+    """Return the total area (mm²) of the drawings on the emptiest page."""
     pictures, pages = arrangement
     return min((page_area([picture.paper for picture in pictures], page) for page in pages), default=0.0)
 
 
 def drawing_field(paper: Size, block: str) -> PackingField:
-    """Return the field for drawings, each of which includes the gap to its right and below it."""
+    """Return the area of a sheet that is available for drawings.
+
+    It allows for the gap to the right of each drawing and below it.
+
+    Args:
+        paper: Width and height of the paper, mm.
+        block: Kind of title block, a key of TITLE_BLOCK_SIZES.
+    """
     low, high = frame_corners(paper)
     room, taken = high - low - (2 * FRAME_GAP - DRAWING_GAP) * (1 + 1j), TITLE_BLOCK_SIZES[block]
     return PackingField(room.real, room.imag, (taken[0] - FRAME_GAP + DRAWING_GAP, taken[1] - FRAME_GAP + DRAWING_GAP))
@@ -161,14 +178,14 @@ def drawing_field(paper: Size, block: str) -> PackingField:
 def _arrange_sheet(
     number: int, choice: SheetChoice, paper: Size, field: PackingField, high: float
 ) -> tuple[list[SheetPicture], list[Page]]:
-    """Draw a subject and distribute its drawings over pages.
+    """Make the drawings of a subject and distribute them over pages.
 
     Args:
-        number: Number of the subject.
+        number: Number of the subject in SUBJECTS.
         choice: Results and the positions to be drawn.
         paper: Width and height of the paper, mm.
-        field: Field for drawings on it.
-        high: Largest height (mm) of a drawing that can be folded.
+        field: Area of the paper for drawings.
+        high: Largest height (mm) of drawings that can be broken into columns.
 
     Returns:
         The drawings, and for each page the numbers of the drawings on it.
@@ -187,8 +204,8 @@ def _arrange_sheet(
     )
     pieces = [all_pieces[k] for k in order]
 
-    def drawn(rooms: Sequence[float]) -> list[SheetPiece]:
-        """Draw the pieces again in other rooms, source by source."""
+    def draw_again(rooms: Sequence[float]) -> list[SheetPiece]:
+        """Make all drawings again for these longest sides (mm)."""
         back = sorted(range(len(order)), key=order.__getitem__)
         old, new = [pieces[k] for k in back], [rooms[k] for k in back]
         starts = accumulate(lengths, initial=0)
@@ -207,7 +224,7 @@ def _arrange_sheet(
         share_out_pages(pieces, begin, pages, field, shrunk)[0],
         grow_rooms(pieces, begin, pages, field, shrunk),
     ):
-        larger = drawn(wanted_rooms)
+        larger = draw_again(wanted_rooms)
         held = fill_pages(_paper_sizes(larger), field)
         if held is not None and len(held) <= len(pages):
             pieces, pages = larger, held
@@ -216,7 +233,7 @@ def _arrange_sheet(
         large = list(range(len(pieces)))
         for __ in range(SHRINK_TRIES):
             rooms = shrink_rooms(pieces, rooms, SHRINK_SHARE, large)
-            pieces = drawn(rooms)
+            pieces = draw_again(rooms)
             large = [k for k in large if pack_boxes(add_gaps(_paper_sizes(pieces), [k]), field) is None]
             if not large:
                 break
@@ -229,30 +246,33 @@ def _arrange_sheet(
         rooms, pages = share_out_pages(pieces, before, pages, field, shrunk)
         if all(room <= (1.0 if thin else NOTABLE_GROWTH) * old for room, old in zip(rooms, before, strict=True)):
             break
-        larger = drawn(rooms)
+        larger = draw_again(rooms)
         accepted = _accept_larger(pieces, larger, pages, field)
         pieces = [  # pieces without enough room are tried with half the growth
             request if request is new else replace(request, most=(old + room) / 2)
             for request, new, old, room in zip(accepted, larger, before, rooms, strict=True)
         ]
     pages = evenest_pages(_paper_sizes(pieces), pages, field)
-    return [piece.drawn for piece in _tidy_pages(pieces, pages, field, drawn)], pages
+    return [piece.drawn for piece in _tidy_pages(pieces, pages, field, draw_again)], pages
 
 
 def _tidy_pages(
     pieces: list[SheetPiece],
     pages: Sequence[Page],
     field: PackingField,
-    drawn: Callable[[Sequence[float]], list[SheetPiece]],
+    draw_again: Callable[[Sequence[float]], list[SheetPiece]],
 ) -> list[SheetPiece]:
-    """Equalize the letters of tables on each page; reduce drawings if that lets a page keep its reading order."""
+    """Make the letters of the tables on a page equally large, and restore the reading order of the drawings on it.
+
+    Some drawings are reduced for this if necessary.
+    """
     for page in pages:
-        tried = drawn(equalize_letters(pieces, _drawn_lengths(pieces), page))
+        tried = draw_again(equalize_letters(pieces, _drawn_lengths(pieces), page))
         if pack_boxes(add_gaps(_paper_sizes(tried), page), field) is not None:
             pieces = tried
         if packs_in_order(_paper_sizes(pieces), page, field):
             continue
-        for tried in map(drawn, islice(tidier_rooms(pieces, _drawn_lengths(pieces), page, field), SHRINK_TRIES)):
+        for tried in map(draw_again, islice(tidier_rooms(pieces, _drawn_lengths(pieces), page, field), SHRINK_TRIES)):
             sizes = _paper_sizes(tried)
             if page_area(sizes, page) > THIN_BELOW * field.area and packs_in_order(sizes, page, field):
                 pieces = tried
@@ -261,14 +281,14 @@ def _tidy_pages(
 
 
 def _drawn_lengths(pieces: Sequence[SheetPiece]) -> list[float]:
-    """Return the longest side (mm) for which each piece was drawn."""
+    """Return the longest side (mm) for which each drawing was made."""
     return [piece.drawn.longest or piece.usual for piece in pieces]
 
 
 def _accept_larger(
     pieces: Sequence[SheetPiece], larger: Sequence[SheetPiece], pages: Sequence[Page], field: PackingField
 ) -> list[SheetPiece]:
-    """Replace pieces by their larger versions, one after another, as long as the page still holds them."""
+    """Replace drawings by their larger versions, one after another, as long as they still fit on their page."""
     accepted = list(pieces)
     for page, (led, tidy, enough) in product(pages, PACKING_RULES):
         if page_area(_paper_sizes(accepted), page) < enough * field.area:
@@ -284,10 +304,13 @@ def _paper_sizes(pieces: Sequence[SheetPiece]) -> list[Size]:
 
 
 def arrange_as_drawn(pictures: Sequence[SheetPicture], field: PackingField) -> list[Page]:
-    """Distribute drawings over pages without resizing them.
+    """Distribute drawings over pages in their present size.
+
+    Returns:
+        For each page the numbers of its drawings.
 
     Raises:
-        ProblemError: A drawing is larger than the field.
+        ProblemError: A drawing is larger than the page.
     """
     for picture in pictures:
         if pack_boxes(add_gaps([picture.paper], [0]), field) is None:
@@ -297,7 +320,10 @@ def arrange_as_drawn(pictures: Sequence[SheetPicture], field: PackingField) -> l
 
 
 def _draw_first(source: DrawingSource, choice: SheetChoice, most: Size, shrunk: float) -> list[SheetPiece]:
-    """Draw a source at its usual size; `shrunk` is the size of the paper relative to A1."""
+    """Make the drawings of a source for the first time, at their usual size.
+
+    shrunk: size of the paper relative to A1.
+    """
     number = len(getattr(choice, source.over)) if source.over else 1
     usual = source.usual and source.usual * max(
         SMALLEST_SHARE, min(1.0, math.sqrt(FULL_SIZE_POSITIONS / max(number, 1)))
@@ -317,7 +343,7 @@ def _draw_first(source: DrawingSource, choice: SheetChoice, most: Size, shrunk: 
 def _redraw(
     source: DrawingSource, choice: SheetChoice, most: Size, pieces: list[SheetPiece], rooms: Sequence[float]
 ) -> list[SheetPiece]:
-    """Draw the pieces of a source again if their rooms have changed."""
+    """Make the drawings of a source again if one of their longest sides (`rooms`, mm) has changed."""
     if all(math.isclose(piece.drawn.longest, room) for piece, room in zip(pieces, rooms, strict=True)):
         return pieces
     pictures = _draw_source(source, choice, most, rooms)
@@ -327,7 +353,10 @@ def _redraw(
 def _draw_source(
     source: DrawingSource, choice: SheetChoice, most: Size, rooms: Iterable[float | None]
 ) -> list[SheetPicture]:
-    """Draw a source, each drawing in its room (mm, longest side; None: as it comes)."""
+    """Make the drawings of a source.
+
+    rooms: longest side of each drawing, mm; None: the usual one.
+    """
     drawings, pictures = iter(source.drawings(choice)), list[SheetPicture]()
     for room in rooms:
         with drawing_within(PictureSpace(room, most)):
@@ -342,7 +371,7 @@ def _draw_source(
 def frame_pictures(
     pictures: Sequence[SheetPicture], field: PackingField, paper: Size, titles: TitleBlockTexts
 ) -> LargeSheet:
-    """Arrange pictures on a field and add the frame and the title block."""
+    """Arrange drawings on a sheet and add the frame and the title block."""
     sizes = [(picture.paper[0] + DRAWING_GAP, picture.paper[1] + DRAWING_GAP) for picture in pictures]
     corners = spread_boxes(arrange_boxes(sizes, field) or [], sizes, field)
     low, high = frame_corners(paper)
@@ -360,10 +389,10 @@ MOST_PLANS = 24  # positions with motion plans
 
 
 def parse_formats(text: str) -> list[str]:
-    """Parse comma-separated names of formats.
+    """Parse a comma-separated list of file formats.
 
     Raises:
-        ProblemError: A format is unknown, or its library is not installed.
+        ProblemError: A format is unknown, or the library for it is not installed.
     """
     names = parse_names(text, FORMATS, "--as", _("unknown drawing format"))
     if "dxf" in names and find_spec("ezdxf") is None:
@@ -373,10 +402,10 @@ def parse_formats(text: str) -> list[str]:
 
 
 def refuse_plans(count: int) -> None:
-    """Refuse more motion plans than a reader can use.
+    """Refuse to draw motion plans for more than MOST_PLANS positions on a large sheet.
 
     Raises:
-        ProblemError: More than MOST_PLANS positions.
+        ProblemError: There are more positions.
     """
     if count > MOST_PLANS:
         raise ProblemError(
@@ -397,18 +426,18 @@ def large_sheet_files(
     *,
     every: bool,
 ) -> Iterator[tuple[str, bytes]]:
-    """Yield the large sheets in every format, as (file name, content); a PDF has one page for each sheet.
+    """Yield the files of the large sheets, as (file name, content). A PDF contains all sheets.
 
     Args:
         results: Computed results.
-        paper: Largest format, a key of PAPERS.
-        formats: Names of formats.
-        say: Called with notes.
+        paper: Largest paper size, a key of PAPERS.
+        formats: Names of file formats.
+        say: Called with notes for the user.
         runner: Draws and writes, for example on several cores.
         every: Draw motion plans of all positions, not only of the detailed ones.
 
     Raises:
-        ProblemError: Too many motion plans, or a drawing that does not fit.
+        ProblemError: There are too many motion plans, or a drawing does not fit on the paper.
     """
     choice = choose_positions(results, every=every)
     refuse_plans(len(choice.plans))

@@ -1,6 +1,6 @@
-"""Contents of the large sheets: which drawings stand on which sheet, and their usual sizes.
+"""Contents of the large sheets: which drawings each sheet contains, and their usual sizes.
 
-Extend CONTENTS to add one.
+To add a drawing, extend CONTENTS.
 """
 
 from __future__ import annotations
@@ -51,7 +51,13 @@ CONTINUATION_SUFFIX = "-sheet-"  # in the names of drawings that continue anothe
 
 @dataclass(frozen=True)
 class SheetChoice:
-    """The results, and the positions of the motion plans and of the force drawings."""
+    """What is to be drawn on the large sheets.
+
+    Attributes:
+        results: Computed results.
+        plans: Positions for which motion plans are drawn.
+        detail: Positions for which force drawings are made.
+    """
 
     results: Results
     plans: tuple[Position, ...]
@@ -65,16 +71,16 @@ class SheetChoice:
 
     @property
     def loaded(self) -> bool:
-        """True if there are forces to draw; without any load every force would be zero."""
+        """True if there are forces to draw. Without weights and loads, every force would be zero."""
         reactions = self.results.reactions
         return reactions is None or reactions.loaded
 
     def shows(self, sheet: int) -> bool:
-        """Return True if this sheet has something to show."""
+        """Return True if the sheet with this number is not empty."""
         return sheet == STRUCTURE_SHEET or (self.moves and (sheet != FORCES_SHEET or self.loaded))
 
     def title(self, sheet: int) -> str:
-        """Return the title of a sheet, still to be translated."""
+        """Return the untranslated title of the sheet with this number."""
         return (
             SYNTHESIS_TITLE
             if sheet == STRUCTURE_SHEET and self.results.problem.synthesis is not None
@@ -84,15 +90,15 @@ class SheetChoice:
 
 @dataclass(frozen=True)
 class DrawingSource:
-    """Function that makes some of the drawings of a large sheet.
+    """A function that makes one kind of drawing for a large sheet.
 
     Attributes:
         sheet: Number of the sheet in SUBJECTS.
-        draw: Called with the results, or with each of some positions.
-        usual: Longest side (mm) on A1; None for tables, which keep their own size.
-        over: Positions for which it draws; empty: it draws the whole mechanism.
-        about: Prefix of the names of its drawings. Drawings of different sources whose names continue alike after
-            their prefixes become neighbours.
+        draw: Function of the results, or of a position if `over` names some.
+        usual: Longest side (mm) on A1 paper; None for tables, which keep their own size.
+        over: Field of `SheetChoice` with the positions to draw; empty if the drawing is of the whole mechanism.
+        about: Prefix of the names of its drawings. Drawings whose names agree after the prefix are placed side by side,
+            even if they come from different sources.
     """
 
     sheet: int
@@ -102,7 +108,7 @@ class DrawingSource:
     about: str = ""
 
     def drawings(self, choice: SheetChoice) -> NamedDrawings:
-        """Yield the drawings; each is drawn when it is requested."""
+        """Yield the drawings, as (stem of the file name, drawing). Each is made only when it is requested."""
         if not choice.shows(self.sheet):
             return ()
         if self.over:
@@ -111,7 +117,7 @@ class DrawingSource:
 
 
 def reading_order(drawings: Iterable[tuple[DrawingSource, str]]) -> list[int]:
-    """Return the numbers of the drawings in reading order, drawings of one group next to each other.
+    """Return the numbers of the drawings in reading order, with the drawings of one Assur group next to each other.
 
     Args:
         drawings: Source and name of each drawing.
@@ -125,7 +131,7 @@ def reading_order(drawings: Iterable[tuple[DrawingSource, str]]) -> list[int]:
 
 
 def choose_positions(results: Results, *, every: bool) -> SheetChoice:
-    """Choose the detailed positions; with `every`, motion plans of all computed positions."""
+    """Choose the positions to be drawn: the detailed ones, and with `every` motion plans of all positions."""
     motion = results.motion
     if motion is None:
         return SheetChoice(results, (), ())

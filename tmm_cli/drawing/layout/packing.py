@@ -1,4 +1,4 @@
-"""Packing of boxes on a field with an occupied corner (sizes in mm); frame and title block of a sheet."""
+"""Packing of boxes into the field of a sheet, and its frame and title block. All sizes are in mm."""
 
 from __future__ import annotations
 
@@ -21,7 +21,12 @@ THOROUGH_ORDERS = 300  # random orders when the best arrangement is sought
 
 @dataclass(frozen=True)
 class PackingField:
-    """Width and height of a field; `taken` is the size of the title block in its lower right corner."""
+    """A rectangular field for boxes, of which the lower right corner is occupied.
+
+    Attributes:
+        width, height: Size of the field, mm.
+        taken: Width and height of the title block in the corner, mm.
+    """
 
     width: float
     height: float
@@ -29,15 +34,17 @@ class PackingField:
 
     @property
     def area(self) -> float:
-        """Area that is free for boxes."""
+        """Free area, mm²."""
         return self.width * self.height - self.taken[0] * self.taken[1]
 
     def depth(self, start: float, end: float) -> float:
-        """Return how far down a box between these distances from the left edge may reach."""
+        """Return the free height below the top edge between two distances from the left edge."""
         return self.height - (self.taken[1] if end > self.width - self.taken[0] + 1e-9 else 0.0)
 
     def holds(self, at: Size, size: Size) -> bool:
-        """Return True if a box fits with its upper left corner at `at` (from the left, and down from the top)."""
+        """Return True if a box fits into the field with its upper left corner at `at` (distances from the left and the
+        top).
+        """
         right, low = at[0] + size[0], at[1] + size[1]
         return right <= self.width + 1e-9 and low <= self.depth(at[0], right) + 1e-9
 
@@ -48,20 +55,24 @@ def pack_boxes(
     """Pack boxes into a field.
 
     Args:
-        sizes: Widths and heights.
-        field: The field.
+        sizes: Widths and heights of the boxes.
+        field: Field to pack them into.
         led: Keep the first box in the upper left corner.
-        tidy: Let no box lie both above and to the left of an earlier one.
+        tidy: Keep the reading order: no box lies both above and to the left of an earlier one.
 
     Returns:
-        Upper left corners (from the left, and down from the top), or None if no packing was found.
+        Upper left corner of each box (distances from the left and the top), or None if no packing was found.
     """
     packings = _packings(sizes, field, RANDOM_ORDERS, led=led, tidy=tidy)
     return next((corners for corners in packings if not tidy or not _count_out_of_order(corners)), None)
 
 
 def arrange_boxes(sizes: Sequence[Size], field: PackingField) -> list[Size] | None:
-    """Pack boxes so that they are met about in order when reading to the right and down; None if impossible."""
+    """Pack boxes so that they are as nearly as possible in reading order.
+
+    Returns:
+        Upper left corner of each box (distances from the left and the top), or None if no packing was found.
+    """
     for led in (True, False):
         packings = [
             corners
@@ -74,7 +85,10 @@ def arrange_boxes(sizes: Sequence[Size], field: PackingField) -> list[Size] | No
 
 
 def _packings(sizes: Sequence[Size], field: PackingField, mixed: int, *, led: bool, tidy: bool) -> Iterator[list[Size]]:
-    """Yield packings that fit; `mixed` is the number of random orders, with `tidy` close to the given order."""
+    """Yield packings that fit into the field.
+
+    mixed: number of random orders in which the boxes are placed; with `tidy`, they differ little from the given order.
+    """
     if sum(width * height for width, height in sizes) > field.area:
         return
     turned = PackingField(field.height, field.width, field.taken[::-1])
@@ -88,12 +102,12 @@ def _packings(sizes: Sequence[Size], field: PackingField, mixed: int, *, led: bo
 
 
 def _count_out_of_order(corners: Sequence[Size]) -> int:
-    """Count pairs of boxes of which the later one lies both above and to the left of the earlier one."""
+    """Count the pairs of boxes of which the later one lies both above and to the left of the earlier one."""
     return sum(late[0] <= early[0] and late[1] <= early[1] for early, late in combinations(corners, 2))
 
 
 def _disorder(corners: Sequence[Size], sizes: Sequence[Size], field: PackingField) -> float:
-    """Return how much boxes precede earlier ones on the way right and down, weighted by the distance in order."""
+    """Measure how far an arrangement is from the reading order, right and down; 0 if it is in order."""
     middles = [
         (x + width / 2) / field.width + (y + height / 2) / field.height
         for (x, y), (width, height) in zip(corners, sizes, strict=True)
@@ -104,7 +118,10 @@ def _disorder(corners: Sequence[Size], sizes: Sequence[Size], field: PackingFiel
 
 
 def _orders(sizes: Sequence[Size], mixed: int, kept: int, *, tidy: bool) -> Iterator[Sequence[int]]:
-    """Yield orders for placing boxes: as given, then large ones first, then random; the first `kept` stay first."""
+    """Yield orders in which to place the boxes: as given, then the largest first, then random ones.
+
+    The first `kept` boxes are always placed first.
+    """
     numbers = range(len(sizes))
     first, rest, chance = numbers[:kept], numbers[kept:], Random(len(sizes))
     yield numbers
@@ -125,7 +142,10 @@ def _orders(sizes: Sequence[Size], mixed: int, kept: int, *, tidy: bool) -> Iter
 
 
 def _place_in_order(sizes: Sequence[Size], order: Sequence[int], field: PackingField) -> list[Size] | None:
-    """Place each box as far up, then as far left as possible; the skyline is the lower edge of those placed."""
+    """Place boxes one after another, each as high up and then as far left as possible.
+
+    The skyline is the lower boundary of the boxes placed so far. None if a box does not fit.
+    """
     skyline: list[SkylineStep] = [(0.0, field.width, 0.0)]
     corners = [(0.0, 0.0)] * len(sizes)
     for k in order:
@@ -146,7 +166,10 @@ def _place_in_order(sizes: Sequence[Size], order: Sequence[int], field: PackingF
 
 
 def _skyline_top(skyline: Sequence[SkylineStep], number: int, end: float, most: float) -> float:
-    """Return the top of a box from the left end of a skyline step to `end`; `most` if it would not be higher."""
+    """Return the highest possible upper edge of a box that extends from a skyline step to `end`.
+
+    The search stops at `most`, which is returned if the edge cannot be higher.
+    """
     begin, top = skyline[number][0] + 1e-9, 0.0
     for left, right, down in islice(skyline, number, None):
         if left >= end - 1e-9:
@@ -159,7 +182,7 @@ def _skyline_top(skyline: Sequence[SkylineStep], number: int, end: float, most: 
 
 
 def _lower_skyline(skyline: Sequence[SkylineStep], start: float, end: float, down: float) -> list[SkylineStep]:
-    """Return the skyline after placing a box whose lower edge is at `down`."""
+    """Return the skyline after a box from `start` to `end` with its lower edge at `down` has been placed."""
     steps: list[SkylineStep] = []
     for left, right, depth in skyline:
         if left < start - 1e-9:
@@ -172,9 +195,9 @@ def _lower_skyline(skyline: Sequence[SkylineStep], start: float, end: float, dow
 
 
 def spread_boxes(corners: Sequence[Size], sizes: Sequence[Size], field: PackingField) -> list[Size]:
-    """Distribute the free space of an arrangement, first horizontally, then vertically.
+    """Distribute the free space of an arrangement evenly, first horizontally, then vertically.
 
-    All corners are scaled by one factor, so boxes that did not overlap still do not.
+    The coordinates of all corners are multiplied by one factor, so the boxes still do not overlap.
     """
     for axis in (0, 1):
         low, high = 1.0, 4.0
@@ -203,7 +226,15 @@ SMALL_LETTERS, USUAL_LETTERS, LARGE_LETTERS = 2.8, 3.5, 5.0  # mm: font sizes
 
 @dataclass(frozen=True)
 class TitleBlockTexts:
-    """Texts of the title block of sheet `number` of `count`."""
+    """Texts in the title block of a sheet.
+
+    Attributes:
+        texts: Names and codes from the problem file.
+        title: Title of the project.
+        subject: Subject of the sheet.
+        number: Number of the sheet.
+        count: Number of sheets.
+    """
 
     texts: SheetTexts
     title: str
@@ -213,7 +244,7 @@ class TitleBlockTexts:
 
 
 def sheet_frame(paper: tuple[float, float]) -> LineMark:
-    """Return the frame of a sheet as a mark."""
+    """Return the frame line of a sheet."""
     low, high = frame_corners(paper)
     return _rectangle(low, high)
 
@@ -224,7 +255,7 @@ def frame_corners(paper: tuple[float, float]) -> tuple[complex, complex]:
 
 
 def title_block(titles: TitleBlockTexts, corner: complex) -> Iterable[Mark]:
-    """Return the marks of the title block, its lower right corner at `corner`."""
+    """Return the lines and texts of the title block. corner: its lower right corner."""
     kind = titles.texts.block
     low = corner - TITLE_BLOCK_SIZES[kind][0]
     marks = _gost_block(titles) if kind == "gost" else _plain_block(titles)
@@ -297,7 +328,10 @@ def _rectangle(low: complex, high: complex) -> LineMark:
 
 
 def _ruled_lines(axis: str, positions: Sequence[tuple[float, float, float]], width: float) -> list[LineMark]:
-    """Return ruling lines at positions along one axis (at, from, to) of the given width."""
+    """Return lines parallel to the other axis.
+
+    positions: coordinate on `axis`, and start and end of the line, for each line.
+    """
     ends = [
         (complex(at, a), complex(at, b)) if axis == "x" else (complex(a, at), complex(b, at)) for at, a, b in positions
     ]

@@ -1,4 +1,8 @@
-"""Sizes of the drawings of a large sheet, and their distribution over pages: round scales, as large as fits."""
+"""Sizes of the drawings on a large sheet, and their distribution over pages.
+
+Drawings get round scales and become as large as the pages permit. The room of a drawing is the longest side (mm)
+that it may have.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +48,15 @@ MOST_PARTITIONS = 2000  # with more possible ways none is tried
 
 @dataclass(frozen=True)
 class SheetPiece:
-    """A drawing with the usual, the least and the largest room (mm, longest side) for it."""
+    """A drawing whose size can be changed. Its room is the longest side that it may have, mm.
+
+    Attributes:
+        drawn: The drawing in its present size.
+        usual: Usual room.
+        least: Smallest room.
+        most: Largest room.
+        letters: True for a table, whose size follows from its letters.
+    """
 
     drawn: SheetPicture
     usual: float
@@ -54,30 +66,30 @@ class SheetPiece:
 
     @property
     def length(self) -> float:
-        """Longest side of the figure in SI units; 0 if it is not to scale."""
+        """Longest side of the depicted figure in SI units; 0 if it is not to scale."""
         longest = max(self.drawn.figure or (0.0,))
         return longest * self.drawn.mu if longest > POINT_SIZE and self.drawn.mu else 0.0
 
-    def fitted(self, room: float) -> float:
-        """Return the length (mm) that the drawing takes in a room; at a round scale it is shorter than the room."""
+    def fitting_length(self, room: float) -> float:
+        """Return the longest side (mm) of the drawing at the largest round scale that fits into the room."""
         return self.length / round_scale(self.length, 0.0, room, room) if self.length else room
 
-    def about(self, room: float) -> float:
-        """Return the length (mm) at the round scale nearest to the room, which may exceed it slightly."""
-        return self.fitted(ROOM_TOLERANCE * room) if self.length else room
+    def round_length(self, room: float) -> float:
+        """Return the longest side (mm) of the drawing at a round scale near the room; it may be slightly larger."""
+        return self.fitting_length(ROOM_TOLERANCE * room) if self.length else room
 
-    def larger(self, room: float) -> float:
-        """Return the next room (mm) in which the drawing becomes larger."""
+    def next_room(self, room: float) -> float:
+        """Return the next larger room (mm) in which the drawing becomes larger."""
         if not self.length:
             return GROWTH_STEP * room
         return next(
             room * step
             for step in SCALE_RATIOS
-            if step == SCALE_RATIOS[-1] or self.fitted(room * step) > 0.99 * room * step
+            if step == SCALE_RATIOS[-1] or self.fitting_length(room * step) > 0.99 * room * step
         )
 
     def size(self, room: float) -> Size:
-        """Return width and height (mm) in another room; letters keep their size."""
+        """Return width and height (mm) of the drawing in another room. Texts outside the figure keep their size."""
         (width, height), figure, factor = self.drawn.paper, self.drawn.figure, room / (self.drawn.longest or 1.0)
         if figure is None:
             return width * factor, height * factor
@@ -88,7 +100,7 @@ Page = list[int]  # numbers of pieces
 
 
 def initial_rooms(pieces: Sequence[SheetPiece], field: PackingField, shrunk: float) -> tuple[list[float], list[Page]]:
-    """Choose a room for each piece and distribute the pieces over as few pages as possible at a legible size.
+    """Choose a room for each drawing so that as few pages as possible are needed and all drawings are legible.
 
     Args:
         pieces: The drawings.
@@ -96,14 +108,16 @@ def initial_rooms(pieces: Sequence[SheetPiece], field: PackingField, shrunk: flo
         shrunk: Size of the paper relative to A1.
 
     Returns:
-        Rooms (mm), and for each page the numbers of its pieces.
+        Rooms (mm), and for each page the numbers of its drawings.
 
     Raises:
         ProblemError: The paper is too small.
     """
     few, best = MOST_PAGES, None
     for share in size_shares():
-        rooms = [piece.about(min(max(share * shrunk * piece.usual, piece.least), piece.most)) for piece in pieces]
+        rooms = [
+            piece.round_length(min(max(share * shrunk * piece.usual, piece.least), piece.most)) for piece in pieces
+        ]
         pages = fill_pages(sizes_in_rooms(pieces, rooms), field)
         if pages is not None and len(pages) < few:
             few, best = len(pages), (rooms, pages)
@@ -118,35 +132,35 @@ def initial_rooms(pieces: Sequence[SheetPiece], field: PackingField, shrunk: flo
 def shrink_rooms(
     pieces: Sequence[SheetPiece], rooms: Sequence[float], share: float, chosen: Container[int]
 ) -> list[float]:
-    """Multiply the rooms of the pieces in `chosen` by `share`, but not below their least rooms."""
+    """Multiply the rooms of the chosen drawings by `share`, but not below their smallest rooms."""
     return [
-        piece.fitted(max(share * room, min(room, piece.least))) if k in chosen else room
+        piece.fitting_length(max(share * room, min(room, piece.least))) if k in chosen else room
         for k, (piece, room) in enumerate(zip(pieces, rooms, strict=True))
     ]
 
 
 def size_shares() -> Iterator[float]:
-    """Yield shares of the usual size, from larger than usual to hardly legible."""
+    """Yield fractions of the usual size to be tried, from larger than usual down to hardly legible."""
     yield from (1.3 * 0.95**k for k in range(SIZES_TRIED))
 
 
 def sizes_in_rooms(pieces: Sequence[SheetPiece], rooms: Sequence[float]) -> list[Size]:
-    """Return the sizes of the pieces in these rooms."""
+    """Return width and height (mm) of each drawing in its room."""
     return [piece.size(room) for piece, room in zip(pieces, rooms, strict=True)]
 
 
 def add_gaps(sizes: Sequence[Size], page: Page) -> list[Size]:
-    """Return the sizes of the pieces of a page, each with the gap to its right and below it."""
+    """Return the sizes of the drawings on a page, each enlarged by the gap to the right and below."""
     return [(sizes[k][0] + DRAWING_GAP, sizes[k][1] + DRAWING_GAP) for k in page]
 
 
 def fill_pages(sizes: Sequence[Size], field: PackingField) -> list[Page] | None:
-    """Distribute pieces over as few pages as possible, about equally full.
+    """Distribute drawings over as few, about equally full pages as possible.
 
-    The order is kept unless fewer pages suffice when some pieces move to earlier pages.
+    Their order is kept, unless fewer pages are enough if some drawings move to an earlier page.
 
     Returns:
-        Numbers of the pieces of each page, or None if a piece alone does not fit.
+        Numbers of the drawings on each page, or None if a drawing does not fit on an empty page.
     """
     fewest, back = _fill_in_order(sizes, field, math.inf), False
     if fewest is None or len(fewest) < 2:
@@ -158,7 +172,7 @@ def fill_pages(sizes: Sequence[Size], field: PackingField) -> list[Page] | None:
 
 
 def _fill_evenly(sizes: Sequence[Size], field: PackingField, count: int, *, back: bool) -> list[Page] | None:
-    """Distribute pieces over `count` pages, none of them much fuller than necessary."""
+    """Distribute drawings over `count` pages, with the fullest page about as empty as possible."""
     most = page_area(sizes, [*range(len(sizes))]) / count
     while True:
         pages = _fill_in_order(sizes, field, most, back=back)
@@ -168,7 +182,10 @@ def _fill_evenly(sizes: Sequence[Size], field: PackingField, count: int, *, back
 
 
 def page_partitions(sizes: Sequence[Size], pages: list[Page], field: PackingField) -> Iterator[list[Page]]:
-    """Yield these pages, then other partitions into as many pages: in order, the most even first, then mixed."""
+    """Yield ways to distribute the drawings over as many pages as now.
+
+    The present way comes first, then others in the given order, the most even first, then one that changes the order.
+    """
     yield pages
     numbers, count = range(len(sizes)), len(pages)
     if count < 2 or math.comb(len(sizes) - 1, count - 1) > MOST_PARTITIONS:
@@ -191,7 +208,7 @@ def page_partitions(sizes: Sequence[Size], pages: list[Page], field: PackingFiel
 
 
 def evenest_pages(sizes: Sequence[Size], pages: list[Page], field: PackingField) -> list[Page]:
-    """Return the partition into as many pages whose emptiest page is fullest."""
+    """Return the distribution over as many pages as now in which the emptiest page is fullest."""
     return max(
         page_partitions(sizes, pages, field),
         key=lambda partition: min((page_area(sizes, page) for page in partition), default=0.0),
@@ -199,12 +216,15 @@ def evenest_pages(sizes: Sequence[Size], pages: list[Page], field: PackingField)
 
 
 def page_area(sizes: Sequence[Size], page: Page) -> float:
-    """Return the area (mm²) of the pieces of a page."""
+    """Return the total area (mm²) of the drawings on a page."""
     return sum(sizes[k][0] * sizes[k][1] for k in page)
 
 
 def _fill_in_order(sizes: Sequence[Size], field: PackingField, most: float, *, back: bool = False) -> list[Page] | None:
-    """Fill pages up to an area of `most` mm² each; with `back`, later pieces may go to earlier pages."""
+    """Fill pages one after another, each up to an area of `most` mm².
+
+    With `back`, a drawing may also be placed on an earlier page. None if a drawing does not fit on an empty page.
+    """
     pages: list[Page] = []
     for number in range(len(sizes)):
         for page in pages if back else pages[-1:]:
@@ -222,11 +242,15 @@ def _fill_in_order(sizes: Sequence[Size], field: PackingField, most: float, *, b
 def share_out_pages(
     pieces: Sequence[SheetPiece], start_rooms: Sequence[float], pages: list[Page], field: PackingField, shrunk: float
 ) -> tuple[list[float], list[Page]]:
-    """Enlarge rooms and repartition the pieces so that the emptiest page is as full as possible."""
+    """Enlarge the drawings and redistribute them so that the emptiest page is as full as possible.
+
+    Returns:
+        Rooms (mm), and for each page the numbers of its drawings.
+    """
     best, most = (list(start_rooms), pages), -1.0
 
-    def better(partitions: Iterable[list[Page]], enough: float) -> bool:
-        """Return True if one of these partitions has a fuller emptiest page."""
+    def improve(partitions: Iterable[list[Page]], enough: float) -> bool:
+        """Try these distributions and return True if the emptiest page of one of them is fuller than before."""
         nonlocal best, most
         before = most
         for partition in partitions:
@@ -239,8 +263,8 @@ def share_out_pages(
                 break
         return most > before
 
-    better(page_partitions(sizes_in_rooms(pieces, start_rooms), pages, field), EVEN_ENOUGH)
-    while most < THIN_BELOW * field.area and better(
+    improve(page_partitions(sizes_in_rooms(pieces, start_rooms), pages, field), EVEN_ENOUGH)
+    while most < THIN_BELOW * field.area and improve(
         pages_with_moved_piece(sizes_in_rooms(pieces, start_rooms), best[1], field), THIN_BELOW
     ):
         pass
@@ -248,7 +272,7 @@ def share_out_pages(
 
 
 def pages_with_moved_piece(sizes: Sequence[Size], pages: list[Page], field: PackingField) -> Iterator[list[Page]]:
-    """Yield partitions in which the emptiest page gets a piece of another page, or exchanges one with it."""
+    """Yield distributions in which the emptiest page gets a drawing from another page, possibly in exchange for one."""
     thin = min(range(len(pages)), key=lambda number: page_area(sizes, pages[number]), default=0)
     for other, page in enumerate(pages):
         for piece, back in product(page if other != thin else (), (None, *pages[thin])):
@@ -262,14 +286,17 @@ def pages_with_moved_piece(sizes: Sequence[Size], pages: list[Page], field: Pack
 
 
 def packs_in_order(sizes: Sequence[Size], page: Page, field: PackingField) -> bool:
-    """Return True if the pieces of a page can be packed in order, the first one in the upper left corner."""
+    """Return True if the drawings of a page can be packed in reading order, with the first in the upper left corner."""
     return pack_boxes(add_gaps(sizes, page), field, led=True, tidy=True) is not None
 
 
 def tidier_rooms(
     pieces: Sequence[SheetPiece], start_rooms: Sequence[float], page: Page, field: PackingField
 ) -> Iterator[list[float]]:
-    """Yield rooms with one or two drawings, or all tables, reduced so that the page packs in order and stays full."""
+    """Yield rooms with which a page can be packed in reading order and stays full.
+
+    One or two drawings, or all tables, are reduced for this.
+    """
     tables = [k for k in page if pieces[k].letters]
     single = [tables, *([k] for k in page if k not in tables)]
     for share, chosen in product(SHRINK_SHARES, [*single, *([*a, *b] for a, b in combinations(single, 2))]):
@@ -286,10 +313,10 @@ def grow_rooms(
     field: PackingField,
     shrunk: float,
 ) -> list[float]:
-    """Enlarge rooms as long as every page holds its pieces, those farthest below their usual size first.
+    """Enlarge the drawings as long as they fit on their pages; those farthest below their usual size grow first.
 
-    Pieces keep their order and the first one its corner, unless that would leave too much of the page empty. Letters
-    of tables stay about equal.
+    On each page the drawings keep their order, and the first one keeps its corner, unless too much of the page would
+    stay empty. The letters of tables stay about equally large.
     """
     rooms = list(start_rooms)
     for page, (led, tidy, enough) in product(pages, PACKING_RULES):
@@ -297,7 +324,7 @@ def grow_rooms(
         while growing and page_area(sizes_in_rooms(pieces, rooms), page) < enough * field.area:
             number = min(growing, key=lambda k: (rooms[k] / pieces[k].usual, k))
             piece, before = pieces[number], rooms[number]
-            rooms[number] = piece.larger(before)
+            rooms[number] = piece.next_room(before)
             sizes = sizes_in_rooms(pieces, rooms)
             most = min(MOST_GROWTH * shrunk * piece.usual, piece.most, letter_limit(pieces, rooms, page, number))
             if (
@@ -310,12 +337,15 @@ def grow_rooms(
 
 
 def equalize_letters(pieces: Sequence[SheetPiece], rooms: Sequence[float], page: Page) -> list[float]:
-    """Reduce the tables of a page whose letters are larger than those of the others."""
+    """Reduce the tables whose letters are larger than those of other tables on the page, and return all rooms."""
     return [min(room, letter_limit(pieces, rooms, page, k)) if k in page else room for k, room in enumerate(rooms)]
 
 
 def letter_limit(pieces: Sequence[SheetPiece], rooms: Sequence[float], page: Page, number: int) -> float:
-    """Return the largest room of a table next to other tables, so that its letters are hardly larger; else inf."""
+    """Return the room at which the letters of a table are hardly larger than those of other tables on the page.
+
+    Inf for other drawings, and for a table that is alone.
+    """
     if not pieces[number].letters:
         return math.inf
     others = [rooms[k] / pieces[k].usual for k in page if pieces[k].letters and k != number]

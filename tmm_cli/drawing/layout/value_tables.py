@@ -1,4 +1,4 @@
-"""Tables of values as drawings: ruled cells, long tables folded into parts side by side."""
+"""Tables of computed values as drawings with ruled cells. A long table is broken into parts side by side."""
 
 from __future__ import annotations
 
@@ -57,7 +57,14 @@ WIDEST_TEXT = 24.0  # of the letter size: a longer text is cut
 def draw_table(
     title: str, heads: Sequence[Words], rows: Sequence[Sequence[Words]], notes: Sequence[str] = ()
 ) -> SheetPicture:
-    """Draw a table with letters as large as its room allows."""
+    """Draw a table; its letters are as large as the available space permits.
+
+    Args:
+        title: Heading.
+        heads: Headings of the columns.
+        rows: Cells, row by row.
+        notes: Lines below the heading.
+    """
     cells = [
         [cut_text(cell, 1.0, WIDEST_TEXT) if isinstance(cell, str) else cell for cell in row] for row in (heads, *rows)
     ]
@@ -79,7 +86,7 @@ def draw_table(
 
 
 def _draw_table_part(cells: Sequence[Sequence[Words]], columns: Sequence[float], size: float) -> list[Mark]:
-    """Draw the heads and some rows; words are aligned left, numbers right."""
+    """Draw some rows below the column headings. Words are aligned left, numbers right."""
     row, wide = ROW_HEIGHT * size, sum(columns)
     edges = [sum(columns[:k]) for k in range(len(columns) + 1)]
     high = [-row * k for k in range(len(cells) + 1)]
@@ -137,7 +144,7 @@ def draw_structure_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
 
 
 def draw_motion_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
-    """Yield tables of the speeds, then of the accelerations, of all points and links in all positions."""
+    """Yield the tables of speeds, then those of accelerations, of all points and links in all positions."""
     motion, linkage = results.motion, results.linkage
     assert motion is not None
     points = {name: motion.named(name) for name in linkage.moving_points}
@@ -157,7 +164,7 @@ def draw_motion_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
 
 
 def draw_balance_table(results: Results) -> Iterator[tuple[str, Drawing]]:
-    """Yield the table of balancing moments or forces in all positions, by force plans and Zhukovsky lever."""
+    """Yield the table of balancing moments or forces in all positions, by force plans and by the Zhukovsky lever."""
     reactions, lever = results.reactions, results.lever
     if reactions is None or lever is None:
         return
@@ -176,7 +183,7 @@ def draw_balance_table(results: Results) -> Iterator[tuple[str, Drawing]]:
 
 
 def table_over_positions(results: Results, title: str, columns: Sequence[QuantityColumn]) -> Drawing:
-    """Draw a table with a row for each position; the driver coordinate is the first quantity."""
+    """Draw a table with a row for each position. The first column is the driver coordinate."""
     units, motion = results.problem.units, results.motion
     assert motion is not None
     crank = results.linkage.driver.kind == "turn"
@@ -194,7 +201,7 @@ def table_over_positions(results: Results, title: str, columns: Sequence[Quantit
 
 
 def draw_forces_table(position: Position) -> Iterator[tuple[str, Drawing]]:
-    """Yield the table of all forces (magnitude, angle from x) and moments at a position."""
+    """Yield the table of all forces and moments in a position. Forces have a magnitude and an angle from x."""
     results, k = position.results, position.k
     reactions, units = results.reactions, results.problem.units
     if reactions is None:
@@ -221,7 +228,10 @@ def draw_forces_table(position: Position) -> Iterator[tuple[str, Drawing]]:
 
 
 def _polar_cells(force: complex, largest: float, units: UnitSystem) -> tuple[str, str]:
-    """Format magnitude and angle (0 to 360°) of a force; one below the rounding error is "0" without an angle."""
+    """Format the magnitude of a force and its angle (0 to 360°) as two cells of a table.
+
+    A force below the rounding error is written as "0", without angle.
+    """
     if not abs(force) > NO_FORCE * largest:
         return "0", "-"
     angle = round(math.degrees(math.atan2(force.imag, force.real)), 1) % 360
@@ -229,7 +239,17 @@ def _polar_cells(force: complex, largest: float, units: UnitSystem) -> tuple[str
 
 
 def format_column(values: Any, dimension: Dimension, units: UnitSystem, rows: Iterable[int]) -> list[str]:
-    """Format values (SI) in the units of the file, with the decimals of the largest; "-" for undefined ones."""
+    """Format a column of values with equally many decimals.
+
+    Args:
+        values: Values in SI units.
+        dimension: Their dimension.
+        units: Units of the file, in which they are written.
+        rows: Indices of the values to be written.
+
+    Returns:
+        Texts of the cells; "-" for an undefined value.
+    """
     in_units = np.broadcast_to(np.asarray(values, float), (max(np.size(values), 1),)) / units.factor(dimension)
     picked = np.array([in_units[k if len(in_units) > 1 else 0] for k in rows])
     finite = in_units[np.isfinite(in_units)]
@@ -250,7 +270,7 @@ def format_column(values: Any, dimension: Dimension, units: UnitSystem, rows: It
 
 
 def draw_law_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
-    """Yield the table of results of dynamics, then that of the law of motion in all positions."""
+    """Yield the table of the results of dynamics, then the law of motion in all positions."""
     running = results.steady
     if running is None or results.motion is None:
         return
