@@ -243,7 +243,7 @@ def _page_content(drawing: Drawing, fonts: _FontCodes) -> str:
 
 
 def _mark_operators(mark: Mark, fonts: _FontCodes) -> tuple[list[tuple[str, str]], str]:
-    """Return the PDF operators for a mark: those of its graphics states, as (kind, operator), and those that draw it."""
+    """Return PDF operators for a mark: the graphics states it needs, as (kind, operator), and the drawing operators."""
     match mark:
         case LineMark():
             dashes = f"[{' '.join(map(_format_length, mark.dashes))}] 0 d"

@@ -1,7 +1,4 @@
-"""Drawing on paper: record of a drawing, texts, labels, note blocks, charts, dimension lines.
-
-Independent of mechanisms.
-"""
+"""Drawing on paper, independent of mechanisms: marks, texts, labels, note blocks, charts and dimension lines."""
 
 from tmm_cli.interfaces import lazy
 

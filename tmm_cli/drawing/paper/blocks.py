@@ -1,4 +1,4 @@
-"""Blocks of notes and tables on a sheet, and the choice of scale and position that leaves room for them."""
+"""Blocks of notes and tables on a sheet, and the choice of a scale at which figure and block fit on the paper."""
 
 from __future__ import annotations
 
@@ -27,7 +27,12 @@ MOST_PARTS = 4  # of one table side by side
 
 @dataclass(frozen=True)
 class TableRow:
-    """Cells of a table row; `head` marks a row of column titles."""
+    """A row of a table.
+
+    Attributes:
+        cells: Texts of the cells.
+        head: True if they are column headings.
+    """
 
     cells: tuple[Words, ...]
     head: bool = False
@@ -35,7 +40,15 @@ class TableRow:
 
 @dataclass(frozen=True)
 class BlockText:
-    """Text of a block; `at` is its left or right end, relative to the lower left corner of the block (mm)."""
+    """A text of a note block.
+
+    Attributes:
+        at: Its left end, or its right end if `right` is set, relative to the lower left corner of the block, mm.
+        words: The text.
+        size: Font size, points.
+        right: True if the text is aligned right.
+        head: True for a column heading.
+    """
 
     at: complex
     words: Words
@@ -46,7 +59,13 @@ class BlockText:
 
 @dataclass(frozen=True)
 class BlockShape:
-    """A possible layout of a block: its size, texts and lines (mm)."""
+    """One possible layout of a note block.
+
+    Attributes:
+        size: Width + i height, mm.
+        texts: Texts with their positions.
+        lines: Ends of the lines below column headings, mm.
+    """
 
     size: complex
     texts: tuple[BlockText, ...]
@@ -55,14 +74,20 @@ class BlockShape:
 
 @dataclass
 class NoteBlock:
-    """Notes with a table below them; the last `numbers` columns are aligned right."""
+    """Notes with a table below them.
+
+    Attributes:
+        notes: Lines of notes.
+        rows: Rows of the table.
+        numbers: Number of columns, counted from the right, that are aligned right.
+    """
 
     notes: list[Words] = field(default_factory=list)
     rows: list[TableRow] = field(default_factory=list)
     numbers: int = 1
 
     def shapes(self) -> Iterator[BlockShape]:
-        """Yield possible layouts from the tallest on; in the others the table is split into parts side by side."""
+        """Yield the possible layouts, the tallest first. In the others the table is broken into parts side by side."""
         for parts in range(1, 1 + min(MOST_PARTS, max(1, len(self.rows) // 4))):
             yield self._shape(parts)
 
@@ -103,7 +128,7 @@ class NoteBlock:
 
 
 def split_rows(rows: Sequence[TableRow], parts: int) -> Iterator[list[TableRow]]:
-    """Split rows into parts of about equal length; the last column titles are repeated at the top of each part."""
+    """Split the rows of a table into parts of about equal length, and repeat the last column headings in each part."""
     each = math.ceil(len(rows) / parts)
     head: list[TableRow] = []
     for start in range(0, len(rows), each or 1):
@@ -113,7 +138,9 @@ def split_rows(rows: Sequence[TableRow], parts: int) -> Iterator[list[TableRow]]
 
 
 def block_positions(low: complex, high: complex, size: complex) -> Vector:
-    """Return candidate positions of the lower left corner of a block: the corners of the field, then its edges."""
+    """Return possible positions of the lower left corner of a block: the corners of a field, then points along its
+    edges.
+    """
     room = high - low - size
     if min(room.real, room.imag) < 0:
         return np.zeros(0, complex)
@@ -128,7 +155,14 @@ def block_positions(low: complex, high: complex, size: complex) -> Vector:
 
 
 def count_covered(crowd: Vector, at: Vector, size: complex, about: Vector | float = BLOCK_CLEARANCE) -> Vector:
-    """Count the points that a block would cover, or approach within `about` mm, at each candidate position."""
+    """Count the points that a block would cover at each possible position.
+
+    Args:
+        crowd: Points of the drawing, mm.
+        at: Possible positions of the lower left corner of the block, (positions,), mm.
+        size: Width + i height of the block, mm.
+        about: Clearance to be kept about the block, mm; one value, or one for each point.
+    """
     off = crowd[None, :] - at[:, None] - size / 2
     near = (np.abs(off.real) < size.real / 2 + about) & (np.abs(off.imag) < size.imag / 2 + about)
     counts: Vector = np.count_nonzero(near, axis=1)
@@ -136,7 +170,7 @@ def count_covered(crowd: Vector, at: Vector, size: complex, about: Vector | floa
 
 
 def least_covering_block(block: NoteBlock, low: complex, high: complex, crowd: Vector) -> tuple[BlockShape, complex]:
-    """Return the layout and position of a block in a field at which it covers least."""
+    """Choose the layout of a block and its position in a field so that it covers as few points as possible."""
     best: tuple[int, BlockShape, complex] | None = None
     for shape in block.shapes():
         positions = block_positions(low, high, shape.size)
@@ -151,14 +185,16 @@ def least_covering_block(block: NoteBlock, low: complex, high: complex, crowd: V
 def free_block_position(
     block: NoteBlock, low: complex, high: complex, crowd: Vector, fits: Callable[[float, float], bool]
 ) -> tuple[BlockShape, complex]:
-    """Return a layout and a position at which a block covers nothing: inside the box of a drawing, below or beside it.
+    """Choose the layout of a block and its position so that it covers nothing of the drawing.
+
+    The block is placed on a free area inside the drawing, or else below it or on its right.
 
     Args:
         block: The block.
         low: Lower left corner of the drawing, mm.
         high: Upper right corner of the drawing, mm.
         crowd: Points of the drawing, mm.
-        fits: Returns True if the sheet holds a drawing of this width and height (mm).
+        fits: Returns True if a drawing of this width and height (mm) fits on the sheet.
     """
     candidates: list[tuple[bool, float, BlockShape, complex]] = []
     for shape in block.shapes():
@@ -194,14 +230,20 @@ LINE_POINTS = 40  # sample points of a line
 
 @dataclass
 class FigureExtent:
-    """Points of a figure (SI), their offsets on paper (mm), and the clearance about each (mm)."""
+    """Points that must be on the paper when a figure is drawn.
+
+    Attributes:
+        places: Points of the figure, SI units.
+        off: Offset of each point on paper, which does not depend on the scale, mm.
+        about: Clearance about each point, mm.
+    """
 
     places: list[Vector] = field(default_factory=list)
     off: list[Vector] = field(default_factory=list)
     about: list[Vector] = field(default_factory=list)
 
     def spots(self, points: Sequence[complex] | Vector, about: float, off: complex = 0j) -> None:
-        """Add the finite ones of these points (SI), with a clearance and an offset (mm)."""
+        """Add points (SI units) with a clearance and an offset (mm); points that are not finite are ignored."""
         finite = np.asarray(points, complex)
         finite = finite[np.isfinite(finite)]
         self.places.append(finite)
@@ -209,15 +251,20 @@ class FigureExtent:
         self.about.append(np.full(len(finite), about))
 
     def line(self, start: complex, end: complex, about: float, off: complex = 0j) -> None:
-        """Add a straight line between two points (SI)."""
+        """Add a straight line between two points (SI units) with a clearance and an offset (mm)."""
         self.spots(start + (end - start) * np.linspace(0, 1, LINE_POINTS), about, off)
 
 
 @dataclass(frozen=True)
 class PaperLayout:
-    """Paper size (mm), scale (SI units per mm) and position of the origin on the paper (mm).
+    """Paper size and scale of a drawing.
 
-    figure: width and height of the part to scale (mm); free: the drawing has no scale.
+    Attributes:
+        paper: Width and height of the paper, mm.
+        mu: Scale, SI units per mm.
+        origin: Position of the origin of coordinates on the paper, mm.
+        figure: Width and height of the part that is to scale, mm.
+        free: True if the drawing has no scale.
     """
 
     paper: tuple[float, float]
@@ -228,15 +275,14 @@ class PaperLayout:
 
 
 def choose_scale(figure: FigureExtent, block: NoteBlock, also: Sequence[float] = ()) -> PaperLayout:
-    """Choose paper and the largest round scale at which the figure fits and the block covers nothing of it.
+    """Choose the paper and the largest round scale at which a figure fits and its note block covers nothing of it.
+
+    On a large sheet the scale follows from the space there.
 
     Args:
-        figure: Points and clearances of the figure.
-        block: Notes and table that need room on the sheet.
-        also: Further scales (SI units per mm) that are allowed.
-
-    Returns:
-        Paper, scale and origin. On a large sheet the scale follows from the room there.
+        figure: Points of the figure and their clearances.
+        block: Notes and table to be placed on the sheet.
+        also: Scales (SI units per mm) that are allowed besides the round ones.
     """
     points, off, about = (np.concatenate(arrays) for arrays in (figure.places, figure.off, figure.about))
     if on_large_sheet():
@@ -265,7 +311,7 @@ def choose_scale(figure: FigureExtent, block: NoteBlock, also: Sequence[float] =
 
 
 def _tight_layout(points: Vector, off: Vector, about: Vector) -> PaperLayout:
-    """Return the layout at the scale of a large sheet, on paper no larger than the figure."""
+    """Return the layout for a large sheet: the scale that fits the space there, and paper no larger than the figure."""
     longest = longest_for(max(LANDSCAPE))
     __, across, up, ___ = extent(points.tolist())
     mu = round_scale(across, up, longest, longest)
@@ -280,13 +326,13 @@ def _tight_layout(points: Vector, off: Vector, about: Vector) -> PaperLayout:
 def scaleless_layout(
     points: Sequence[complex], pad: float, least: float, below: Callable[[float], float] = lambda width: 0
 ) -> PaperLayout:
-    """Return the layout of a drawing without scale on a large sheet.
+    """Return the layout of a drawing without scale for a large sheet.
 
     Args:
         points: Points of the drawing.
         pad: Clearance about them, mm.
-        least: Least width of the paper, mm.
-        below: Height (mm) to be kept free below the drawing, as a function of the width.
+        least: Smallest width of the paper, mm.
+        below: Height (mm) to be kept free below the drawing, as a function of the width of the paper.
     """
     size, across, up, __ = extent(list(points) or [0j])
     factor = longest_for(max(LANDSCAPE)) / (size or 1.0)
@@ -297,7 +343,7 @@ def scaleless_layout(
 
 
 def round_scales(size: float, also: Sequence[float]) -> Iterator[float]:
-    """Yield round scales (SI units per mm) in ascending order, from one at which the figure fits on no sheet."""
+    """Yield round scales (SI units per mm) in ascending order. At the first one the figure is larger than any sheet."""
     least = size / max(LANDSCAPE)
     power = math.floor(math.log10(least)) if least > 0 and math.isfinite(least) else 0
     for n in count(power):

@@ -1,4 +1,4 @@
-"""Plane geometry on paper: convex hull, axis-parallel boxes, distances to segments."""
+"""Plane geometry on paper: convex hulls, axis-parallel boxes, line segments."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 
 def convex_hull(corners: list[complex]) -> list[complex]:
-    """Return the corners of the convex hull; only the two ends if all points are collinear."""
+    """Return the corners of the convex hull of points; for collinear points only the two ends."""
     corners = list(dict.fromkeys(complex(round(p.real, 6), round(p.imag, 6)) for p in corners if np.isfinite(p)))
     if len(corners) < 3:
         return corners or [complex(np.nan, np.nan)]
@@ -37,29 +37,37 @@ LEAST_STEP = 1e-12  # mm: replaces a zero component of a segment
 
 
 def box_about(middle: complex, width: float, height: float) -> Box:
-    """Return the box with this centre, width and height."""
+    """Return the box (left, right, low, high) with this centre, width and height."""
     return middle.real - width / 2, middle.real + width / 2, middle.imag - height / 2, middle.imag + height / 2
 
 
 def boxes_about(middles: NDArray[Any], width: float | NDArray[Any], height: float | NDArray[Any]) -> Boxes:
-    """Return boxes with these centres, shape (boxes, 4); width and height may differ from box to box."""
+    """Return boxes (left, right, low, high) with these centres, (boxes, 4). Width and height may differ from box to
+    box.
+    """
     x, y = middles.real, middles.imag
     return np.stack([x - width / 2, x + width / 2, y - height / 2, y + height / 2], axis=1)
 
 
 def widen(boxes: Boxes, air: float) -> Boxes:
-    """Return the boxes enlarged by `air` on every side."""
+    """Return the boxes enlarged by `air` on each side."""
     return boxes + air * np.array([-1, 1, -1, 1])
 
 
 def text_squares(middle: complex, along: complex, width: float, height: float) -> list[complex]:
-    """Return centres of squares that together cover a text of this width and height along a unit vector."""
+    """Cover a slanted text with overlapping squares and return their centres.
+
+    Args:
+        middle: Middle of the text, mm.
+        along: Unit vector along the text.
+        width, height: Width and height of the text, mm; the height is the side of the squares.
+    """
     reach = max(width - height, 0.0) / 2
     return [middle + share * reach * along for share in np.linspace(-1, 1, max(2, math.ceil(width / height)))]
 
 
 def nearest_in_boxes(boxes: Boxes, points: NDArray[Any]) -> NDArray[Any]:
-    """Return the point of each box that is nearest to the corresponding one of `points`."""
+    """Return for each box the point in it that is nearest to the point of the same index, (boxes,)."""
     left, right, low, high = boxes.T
     nearest: NDArray[Any] = np.clip(points.real, left, right) + 1j * np.clip(points.imag, low, high)
     return nearest
@@ -83,7 +91,10 @@ def lengths_inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> ND
 
 
 def shares_inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return the parameters (0 to 1) at which every segment enters and leaves every box; exit < entry if it misses."""
+    """Return where each segment enters and leaves each box, as fractions of its length, (boxes, segments).
+
+    If the segment misses the box, the exit is before the entry.
+    """
     span = ends - starts
     left, right, low, high = boxes.T[:, :, None]
     first: Any = 0.0
@@ -99,7 +110,7 @@ def shares_inside(boxes: Boxes, starts: NDArray[Any], ends: NDArray[Any]) -> tup
 
 
 def stretches_outside(points: Sequence[complex], boxes: Boxes) -> Iterator[tuple[complex, ...]]:
-    """Yield the parts of a polyline that lie in none of the boxes."""
+    """Yield the parts of a polyline that lie outside all boxes."""
     z = np.asarray(points, complex)
     left, right, low, high = boxes.T
     across, up = (left < z.real.max()) & (right > z.real.min()), (low < z.imag.max()) & (high > z.imag.min())
@@ -125,7 +136,12 @@ def stretches_outside(points: Sequence[complex], boxes: Boxes) -> Iterator[tuple
 
 
 def segments_cross(starts: NDArray[Any], ends: NDArray[Any], firsts: NDArray[Any], lasts: NDArray[Any]) -> NDArray[Any]:
-    """Return whether each segment crosses each of the other ones, shape (segments, others)."""
+    """Return True where a segment crosses one of the other segments, (segments, others).
+
+    Args:
+        starts, ends: Ends of the segments.
+        firsts, lasts: Ends of the other segments.
+    """
     span, other = (ends - starts)[:, None], lasts - firsts
 
     def side(along: NDArray[Any], off: NDArray[Any]) -> NDArray[Any]:
@@ -139,7 +155,7 @@ def segments_cross(starts: NDArray[Any], ends: NDArray[Any], firsts: NDArray[Any
 
 
 def shared_areas(boxes: Boxes, others: Boxes) -> NDArray[Any]:
-    """Return the area (mm²) that each box shares with each of the others, shape (boxes, others)."""
+    """Return the overlapping area (mm²) of each box with each of the other boxes, (boxes, others)."""
     left, right, low, high = boxes.T[:, :, None]
     across = np.minimum(right, others[:, 1]) - np.maximum(left, others[:, 0])
     up = np.minimum(high, others[:, 3]) - np.maximum(low, others[:, 2])

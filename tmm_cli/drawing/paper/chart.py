@@ -1,4 +1,4 @@
-"""Charts: axes at round scales with round numbers, panels above one another, curves, legends, numbers of positions."""
+"""Charts: panels above one another on a common axis, with round scales, curves, legends and position numbers."""
 
 from __future__ import annotations
 
@@ -32,9 +32,15 @@ MOST_DECADES = 12  # on a logarithmic axis; smaller values are drawn at its end
 
 @dataclass(frozen=True)
 class ChartAxis:
-    """An axis from value `low`, with `mu` units per mm, `length` mm long, beginning at `start` mm.
+    """A horizontal or vertical axis of a chart.
 
-    A logarithmic axis counts powers of ten. degrees: its round numbers are those of angles.
+    Attributes:
+        low: Value at its start; for a logarithmic axis, the decimal logarithm of it.
+        mu: Units per mm; for a logarithmic axis, powers of ten per mm.
+        start: Position of its start on paper, mm.
+        length: Length, mm.
+        logarithmic: True for a logarithmic axis.
+        degrees: True if the values are angles, so that its numbers are multiples of 15, 30, 45, ... degrees.
     """
 
     low: float
@@ -50,11 +56,13 @@ class ChartAxis:
 
     @property
     def end(self) -> float:
-        """End of the axis, mm."""
+        """Position of the end of the axis on paper, mm."""
         return self.start + self.length
 
     def on(self, values: Any) -> NDArray[Any]:
-        """Return the positions of values (mm); on a logarithmic axis values below its end are put at the end."""
+        """Return the positions of values along the axis, mm. Too small values on a logarithmic axis are put at its
+        start.
+        """
         scaled = np.asarray(values, dtype=float)
         if self.logarithmic:
             with np.errstate(divide="ignore", invalid="ignore"):
@@ -62,7 +70,7 @@ class ChartAxis:
         return self.start + (scaled - self.low) / self.mu
 
     def ticks(self, apart: float) -> list[tuple[float, str]]:
-        """Return round values at least `apart` mm from each other, with their texts."""
+        """Return round values for the axis, at least `apart` mm from each other, with their texts."""
         step = max(1.0, math.ceil(apart * self.mu)) if self.logarithmic else self._step(apart * self.mu)
         first, last = math.ceil(self.low / step - EQUAL_WITHIN), math.floor(self.high / step + EQUAL_WITHIN)
         values = [k * step for k in range(first, last + 1)]
@@ -77,7 +85,7 @@ class ChartAxis:
 
 
 def round_up(least: float, steps: Sequence[float] = ROUND_SCALES) -> float:
-    """Return the smallest round number that is not less than `least`."""
+    """Return the smallest round number that is not less than `least`: one of `steps` times a power of ten."""
     power = 10.0 ** math.floor(math.log10(least))
     return next(step for step in steps if step * power >= least * (1 - EQUAL_WITHIN)) * power
 
@@ -90,12 +98,12 @@ def finite_limits(values: Sequence[Any]) -> tuple[float, float]:
 
 
 def filling_axis(low: float, high: float, start: float, length: float) -> ChartAxis:
-    """Return an axis that spans exactly `length` mm, whatever its scale."""
+    """Return an axis from `low` to `high` that is exactly `length` mm long; its scale need not be round."""
     return ChartAxis(low, (high - low) / length, start, length)
 
 
 def round_axis(low: float, high: float, start: float, most: float, *, degrees: bool = False) -> ChartAxis:
-    """Return an axis that ends at the last value, at the largest round scale that keeps it within `most` mm."""
+    """Return an axis from `low` to `high` at the largest round scale at which it is no longer than `most` mm."""
     low, high = _widen_range(low, high)
     mu = round_up((high - low) / most, DEGREE_SCALES if degrees else ROUND_SCALES)
     return ChartAxis(low, mu, start, (high - low) / mu, degrees=degrees)
@@ -104,10 +112,10 @@ def round_axis(low: float, high: float, start: float, most: float, *, degrees: b
 def vertical_axis(
     low: float, high: float, start: float, length: float, *, degrees: bool = False, air: float = 2.0
 ) -> ChartAxis:
-    """Return an axis of this length at a round scale, with `air` mm above and below the values.
+    """Return an axis of this length at a round scale, with at least `air` mm free above and below the values.
 
-    Zero is on it unless the values are far from zero; if all values are on one side of zero, the axis begins or ends
-    there.
+    It includes zero unless the values are far from zero. If no value is negative, or none is positive, it begins or ends
+    at zero.
     """
     low, high = _widen_range(low, high)
     if max(abs(low), abs(high)) < 2 * (high - low):
@@ -119,7 +127,7 @@ def vertical_axis(
 
 
 def logarithmic_axis(low: float, high: float, start: float, length: float) -> ChartAxis:
-    """Return a logarithmic axis of whole powers of ten."""
+    """Return a logarithmic axis from one power of ten to another, for values from `low` to `high`."""
     most = math.ceil(math.log10(high)) if high > 0 else 0
     least = math.floor(math.log10(low)) if low > 0 else most - MOST_DECADES
     least = max(min(least, most - 1), most - MOST_DECADES)
@@ -127,7 +135,7 @@ def logarithmic_axis(low: float, high: float, start: float, length: float) -> Ch
 
 
 def equal_scales(axes: tuple[ChartAxis, ChartAxis], ends: Sequence[tuple[float, float]]) -> tuple[ChartAxis, ChartAxis]:
-    """Return both axes at one round scale, with the ranges `ends` centred on them."""
+    """Give two axes the same round scale, each with one of the ranges `ends` in its middle."""
     spans = [_widen_range(*limits) for limits in ends]
     mu = round_up(max((high - low) / axis.length for axis, (low, high) in zip(axes, spans, strict=True)))
     first_axis, other = (
@@ -138,7 +146,7 @@ def equal_scales(axes: tuple[ChartAxis, ChartAxis], ends: Sequence[tuple[float, 
 
 
 def _widen_range(low: float, high: float) -> tuple[float, float]:
-    """Return the range, or one about its value if both ends coincide."""
+    """Return a range unchanged, or a range around its value if both ends coincide."""
     if high - low > EQUAL_WITHIN * max(abs(low), abs(high)):
         return low, high
     half = abs(low) / 2 or 0.5
@@ -163,7 +171,17 @@ LABEL_SAMPLING = 8  # every eighth point of a curve keeps labels off it
 
 @dataclass(frozen=True)
 class ChartCurve:
-    """A curve over the common axis; non-finite values interrupt it. dots: drawn as separate dots."""
+    """A curve of a chart.
+
+    Attributes:
+        xs: Values on the common axis.
+        ys: Values on the axis of the panel; the curve is interrupted where they are not finite.
+        label: Name in the legend.
+        colour: Colour of the line.
+        style: Style of the line.
+        width: Width of the line, points.
+        dots: True if the values are drawn as dots instead of a line.
+    """
 
     xs: Any
     ys: Any
@@ -186,9 +204,16 @@ class CurveJump:
 
 @dataclass(frozen=True)
 class PlotContent:
-    """Content of a panel.
+    """Content of one panel of a chart.
 
-    scale: returns the text of the scale of its axis for a scale factor; share: relative height of the panel.
+    Attributes:
+        words: Title with the unit.
+        curves: Curves.
+        jumps: Discontinuities of the curves.
+        scale: Returns the text for a scale factor (units per mm) of the vertical axis; None: no text.
+        share: Height of the panel relative to other panels.
+        degrees: True if the values are angles in degrees.
+        logarithmic: True if the vertical axis is logarithmic.
     """
 
     words: str
@@ -201,14 +226,21 @@ class PlotContent:
 
     @property
     def legend(self) -> list[ChartCurve]:
-        """Named curves; none if the panel has only one curve."""
+        """Curves that are listed in the legend: those with a name, if the panel has more than one curve."""
         named = [curve for curve in self.curves if curve.label]
         return named if len(self.curves) > 1 else []
 
 
 @dataclass(frozen=True)
 class CommonAxis:
-    """The common horizontal axis. numbers: position numbers by value; spans: named intervals (start, end, name)."""
+    """The horizontal axis that all panels share.
+
+    Attributes:
+        axis: The axis.
+        words: Title with the unit.
+        numbers: Values on the axis at the positions, with the numbers of the positions.
+        spans: Named intervals, e.g. strokes: start, end, name.
+    """
 
     axis: ChartAxis
     words: Words
@@ -217,41 +249,41 @@ class CommonAxis:
 
 
 def axis_extent(sheet: DrawingSheet) -> tuple[float, float]:
-    """Return the start (mm) and the largest length (mm) of the common axis."""
+    """Return the start and the greatest possible length of the horizontal axis on a sheet, mm."""
     start = sheet.canvas.low.real + LEFT_MARGIN
     return start, sheet.canvas.high.real - RIGHT_MARGIN - start
 
 
 def count_fitting(sheet: DrawingSheet, plots: Sequence[PlotContent], over: CommonAxis) -> int:
-    """Return how many of the panels, from the first on, fit on the sheet at LEAST_PANEL_HEIGHT."""
+    """Return how many of the panels fit on a sheet, at least one. They are counted from the first."""
     needed = np.cumsum([TEXT_ROW * len(_legend_rows(plot, over.axis.length)) for plot in plots])
     free = [_height_for_panels(sheet, over, count) for count in range(1, len(plots) + 1)]
     return max(1, int(np.count_nonzero(needed <= free)))
 
 
 def _height_for_panels(sheet: DrawingSheet, over: CommonAxis, count: int) -> float:
-    """Return the height (mm) left for the headings when `count` panels have their least height."""
+    """Return the height (mm) that remains for the headings if `count` panels have their smallest height."""
     beside = (2 + bool(over.spans)) * TEXT_ROW
     return float((sheet.canvas.high - sheet.canvas.low).imag - beside - count * (_panel_gap(over) + LEAST_PANEL_HEIGHT))
 
 
 def _panel_gap(over: CommonAxis) -> float:
-    """Return the distance (mm) between a panel and the head of the next one."""
+    """Return the distance (mm) between a panel and the heading of the next one."""
     return 0.3 * TEXT_ROW + (TEXT_ROW if over.numbers else 0.6 * TEXT_ROW)
 
 
 def draw_chart(
     sheet: DrawingSheet, plots: Sequence[PlotContent], over: CommonAxis, *, same_scale: bool = False
 ) -> list[Panel]:
-    """Draw panels above one another, as high as the sheet allows.
+    """Draw panels above one another, as high as the sheet permits.
 
-    Legend entries for which the sheet is too low are omitted.
+    If the sheet is too low for all legends, the last entries are omitted.
 
     Args:
         sheet: Sheet to draw on.
         plots: Contents of the panels, from the top down.
-        over: The common axis.
-        same_scale: Use one scale for both axes of a single panel.
+        over: The horizontal axis.
+        same_scale: Use the same scale for both axes of a single panel.
 
     Returns:
         The panels.
@@ -292,26 +324,26 @@ def draw_chart(
 
 @dataclass(frozen=True)
 class Panel:
-    """A panel of a chart with its two axes."""
+    """A panel of a chart with its horizontal and its vertical axis."""
 
     sheet: DrawingSheet
     x: ChartAxis
     y: ChartAxis
 
     def at(self, x: Any, y: Any) -> NDArray[Any]:
-        """Return the points on paper (mm) of these values."""
+        """Convert values to points on paper, mm."""
         return self.x.on(x) + 1j * self.y.on(y)
 
     def line(self, start: complex, end: complex, colour: str, width: float, style: Style = "-", z: float = 1.0) -> None:
-        """Draw a line; one above the grid (z > 1) keeps labels off, others are interrupted by labels."""
+        """Draw a line. Labels avoid lines above the grid (z > 1), and interrupt lines of the grid."""
         self.sheet.line([start, end], colour, width, style, z, faint=z <= 1)
 
     def upright(self, place: float, colour: str, width: float, style: Style = "-", z: float = 1.0) -> None:
-        """Draw a vertical line through the panel at `place` mm."""
+        """Draw a vertical line through the panel, `place` mm from the left edge of the paper."""
         self.line(complex(place, self.y.start), complex(place, self.y.end), colour, width, style, z)
 
     def level(self, place: float, colour: str, width: float, z: float) -> None:
-        """Draw a horizontal line through the panel at `place` mm."""
+        """Draw a horizontal line through the panel, `place` mm from the lower edge of the paper."""
         self.line(complex(self.x.start, place), complex(self.x.end, place), colour, width, z=z)
 
     def text(
@@ -335,12 +367,17 @@ class Panel:
             self.level(float(self.y.on(0.0)), DARK_COLOUR, 0.7, z=1.5)
 
     def numbers_across(self, under: float) -> None:
-        """Write round numbers `under` mm below the panel."""
+        """Write the numbers of the horizontal axis, `under` mm below the panel."""
         for value, text in self.x.ticks(NUMBER_GAPS[0]):
             self.text(complex(float(self.x.on(value)), self.y.start - under - 0.5 * TEXT_ROW), text, "center")
 
     def positions(self, numbers: Sequence[tuple[float, str]]) -> None:
-        """Mark positions with short lines and numbers; if they are too many, every second, fifth and so on."""
+        """Mark positions on the horizontal axis with short lines and numbers.
+
+        If there are too many for all numbers, only every second, fifth or tenth is marked.
+
+        numbers: value on the axis and number of each position.
+        """
         widest = max((width_of(text, SMALL_TEXT * POINT) for __, text in numbers), default=0.0)
         crowd = len(numbers) * (widest + 2) / self.x.length
         for value, text in numbers[:: max(1, round(round_up(crowd, TICK_STEPS)))] if numbers else ():
@@ -349,7 +386,7 @@ class Panel:
             self.text(complex(place, self.y.start - 0.65 * TEXT_ROW), text, "center", SMALL_TEXT, SCALE_COLOUR)
 
     def fill(self, plot: PlotContent) -> None:
-        """Draw the curves and their jumps."""
+        """Draw the curves and their discontinuities."""
         for curve in plot.curves:
             points = self.at(curve.xs, curve.ys)
             if curve.dots:
@@ -382,7 +419,7 @@ def _legend_width(curve: ChartCurve) -> float:
 
 
 def _legend_rows(plot: PlotContent, most: float) -> list[list[ChartCurve]]:
-    """Distribute the legend over rows above a panel; the first row begins with the title."""
+    """Distribute the legend entries over rows above a panel. The first row also contains the title."""
     words = (plot.words, *(split_symbols(plot.scale(0.00025)) if plot.scale else ()))
     rows: list[list[ChartCurve]] = [[]]
     if sum(map(_legend_width, plot.legend)) < most - width_of_words(words, PLAIN_TEXT * POINT) - 2 * LEGEND_GAP:
@@ -398,7 +435,7 @@ def _legend_rows(plot: PlotContent, most: float) -> list[list[ChartCurve]]:
 
 
 def _write_head(panel: Panel, plot: PlotContent, rows: Sequence[Iterable[ChartCurve]], top: float) -> None:
-    """Write title, scale and legend of a panel."""
+    """Write title, scale and legend above a panel."""
     at = complex(panel.x.start, top - TEXT_ROW / 2)
     panel.text(at, plot.words, size=PLAIN_TEXT)
     if plot.scale is not None:
@@ -418,7 +455,7 @@ def _write_head(panel: Panel, plot: PlotContent, rows: Sequence[Iterable[ChartCu
 
 
 def _draw_spans(panels: Sequence[Panel], spans: Sequence[tuple[float, float, str]], height: float) -> None:
-    """Draw the limits of intervals through all panels, with names between arrows above the first panel."""
+    """Draw the bounds of named intervals through all panels, and their names between arrows above the first panel."""
     if not spans:
         return
     first = panels[0]

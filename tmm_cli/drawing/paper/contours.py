@@ -1,4 +1,4 @@
-"""Contour lines on a grid, and regions of the grid with their hatching."""
+"""Contour lines of values on a grid, and hatching of regions of the grid."""
 
 from __future__ import annotations
 
@@ -16,16 +16,23 @@ BorderShare = Callable[[tuple[int, int], tuple[int, int]], float]  # of the way 
 
 
 def contour_lines(values: NDArray[Any], level: float) -> list[NDArray[Any]]:
-    """Return lines of equal value as points column + i*row; cells with an undefined value have none.
+    """Return the lines on which interpolated values equal `level`, as points column + i row.
 
-    values: shape (columns, rows).
+    There are no lines in cells with an undefined value.
+
+    values: values at the grid nodes, (columns, rows).
     """
     lines = contour_generator(z=np.ma.masked_invalid(values.T)).lines(level)
     return [points[:, 0] + 1j * points[:, 1] for points in map(np.asarray, lines)]
 
 
 def region_borders(inside: NDArray[Any], share: BorderShare) -> list[NDArray[Any]]:
-    """Return the outlines of a region of grid nodes; inside: shape (columns, rows)."""
+    """Return the outlines of a region as polylines of points column + i row.
+
+    Args:
+        inside: True at the grid nodes inside the region, (columns, rows).
+        share: Returns where the outline crosses a grid edge between two nodes, as a fraction of its length.
+    """
     pieces = []
     for i, j in _mixed_cells(inside):
         crossed = [place for _, _, place in _crossings(inside, i, j, share)]
@@ -34,7 +41,11 @@ def region_borders(inside: NDArray[Any], share: BorderShare) -> list[NDArray[Any
 
 
 def region_polygons(inside: NDArray[Any], share: BorderShare) -> Iterator[list[complex]]:
-    """Yield polygons (corners column + i*row) that make up the region: strips of whole cells, and cut cells."""
+    """Yield polygons that together fill a region, with corners column + i row.
+
+    They are strips of whole cells, and parts of the cells that the outline crosses. The arguments are those of
+    `region_borders`.
+    """
     whole = inside[:-1, :-1] & inside[1:, :-1] & inside[1:, 1:] & inside[:-1, 1:]
     for j in range(whole.shape[1]):
         ends = np.flatnonzero(np.diff(np.concatenate([[False], whole[:, j], [False]])))
@@ -51,7 +62,7 @@ def region_polygons(inside: NDArray[Any], share: BorderShare) -> Iterator[list[c
 
 
 def hatch_polygons(pieces: Sequence[Sequence[complex]], pitch: float) -> list[tuple[complex, complex]]:
-    """Return oblique hatching lines through polygons, `pitch` mm apart; lines continue from polygon to polygon."""
+    """Return the ends of oblique hatching lines, `pitch` mm apart; they continue from one polygon to the next."""
     along, across = np.exp(0.25j * np.pi), np.exp(0.75j * np.pi)
     spans: dict[int, list[tuple[float, float]]] = {}
     for piece in pieces:
@@ -82,7 +93,7 @@ def hatch_polygons(pieces: Sequence[Sequence[complex]], pitch: float) -> list[tu
 
 
 def _mixed_cells(inside: NDArray[Any]) -> list[list[int]]:
-    """Return the cells that the border of the region crosses."""
+    """Return column and row of each cell that the outline of the region crosses."""
     corners = [inside[i : i + inside.shape[0] - 1, j : j + inside.shape[1] - 1] for i, j in CORNERS]
     return np.argwhere(np.any(np.stack(corners) != corners[0], axis=0)).tolist()
 
@@ -90,7 +101,7 @@ def _mixed_cells(inside: NDArray[Any]) -> list[list[int]]:
 def _crossings(
     above: NDArray[Any], i: int, j: int, share: BorderShare
 ) -> Iterator[tuple[tuple[int, int], tuple[int, int], complex]]:
-    """Yield the sides of a cell that the border crosses: first node, second node, point of crossing."""
+    """Yield the sides of a cell that the outline crosses: first node, second node, point of intersection."""
     for k, (a, b) in enumerate(CORNERS):
         c, d = CORNERS[(k + 1) % 4]
         first_node, other = (i + a, j + b), (i + c, j + d)
@@ -100,7 +111,7 @@ def _crossings(
 
 
 def _join_pieces(pieces: Sequence[tuple[complex, complex]]) -> list[NDArray[Any]]:
-    """Join pieces with common ends into polylines."""
+    """Join line segments with common ends into polylines."""
     at: dict[complex, list[int]] = {}
     for n, piece in enumerate(pieces):
         for end in piece:

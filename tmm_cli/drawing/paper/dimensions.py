@@ -1,4 +1,4 @@
-"""Dimension lines and angles as on engineering drawings (GOST 2.307, ISO 129); rulers with numbers of positions."""
+"""Dimension lines and angles as on engineering drawings (GOST 2.307, ISO 129), and rulers with position numbers."""
 
 from __future__ import annotations
 
@@ -36,15 +36,15 @@ UPRIGHT_BELOW = 0.3  # horizontal component of the direction of a nearly upright
 
 
 def draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str, along: complex = 0j) -> None:
-    """Draw a dimension line beside two points (mm), where it interferes least.
+    """Draw a dimension line for the distance of two points, where it covers least of the drawing.
 
-    The text stands above the line, or to the left of an upright one. If the line is short, the text stands beyond one
-    of its ends, or beside an upright line.
+    Its text is above the line, or to the left of a vertical line. If the line is short, the text is beyond one of its
+    ends, or beside a vertical line.
 
     Args:
         sheet: Sheet to draw on.
-        start: First measured point, mm.
-        end: Second measured point, mm.
+        start: First point, mm.
+        end: Second point, mm.
         text: Text of the dimension.
         along: Direction of measurement; 0: from start to end.
     """
@@ -58,7 +58,7 @@ def _draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str
     if length < LEAST_LENGTH:
         return
     u = span / length
-    crowd = sheet.canvas.crowd
+    crowd = sheet.canvas.line_points
     width, height = text_extent(text, DIMENSION_TEXT)
     tail = 2 * ARROWHEAD_ROOM + 3 + width
     fits = length > 2 * ARROWHEAD_ROOM + 1 and length > width + 3
@@ -67,7 +67,13 @@ def _draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str
     stands = tuple(TEXT_SHARES) if fits else others
 
     def lines(side: complex, offset: float, stand: str) -> tuple[complex, complex, complex, complex]:
-        """Return both ends of the dimension line, the middle of the text and its direction."""
+        """Return both ends of the dimension line, the middle of its text and the direction of the text.
+
+        Args:
+            side: Unit vector from the measured points to the dimension line.
+            offset: Distance of the line from these points, mm.
+            stand: Position of the text along the line.
+        """
         foot = max(dot(z, side) for z in (start, end)) + offset
         first, last = (z + (foot - dot(z, side)) * side for z in (start, end))
         middle = first + TEXT_SHARES.get(stand, 0.5) * (last - first)
@@ -88,7 +94,7 @@ def _draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str
         stretch = first - (low_run + 1) * u, last + (high_run + 1) * u
         price = 4.0 * sum(distance_to_segment(z, *stretch) < LETTER_CLEARANCE for z in sheet.canvas.rivals)
         legs = [(z, foot + 2 * EXTENSION_OVERHANG * side) for z, foot in ((start, first), (end, last))]
-        price += count_beside(crowd, *stretch, 1.5) + sheet.canvas.crossed([*legs, stretch])
+        price += count_beside(crowd, *stretch, 1.5) + sheet.canvas.crossing_price([*legs, stretch])
         price += 0.5 * sum(count_beside(crowd, z + 4 * side, foot, 0.8) for z, foot in ((start, first), (end, last)))
         squares = np.array([*text_squares(middle, v, width, height), first, last])
         prices = sheet.canvas.price(boxes_about(squares, height, height))
@@ -113,24 +119,32 @@ def _draw_dimension(sheet: DrawingSheet, start: complex, end: complex, text: str
         sheet.arrow(back, tip, DARK_COLOUR, 0.6, 4.5)
     if stand in ("after", "before"):  # the line continues under the text
         sheet.line([last, last + u * tail] if stand == "after" else [first, first - u * tail], DARK_COLOUR, 0.6, z=4.5)
-    sheet.along(middle, text, DIMENSION_TEXT, v)
+    sheet.text_along(middle, text, DIMENSION_TEXT, v)
 
 
 def text_side(u: complex) -> complex:
-    """Return the normal on the side of a line where its text stands: above it, or left of an upright line."""
+    """Return the normal of a line on the side of its text: above the line, or to the left of a vertical line."""
     turned = 1j * u
     return turned if turned.imag > 1e-6 or (abs(turned.imag) <= 1e-6 and turned.real < 0) else -turned
 
 
 def count_beside(crowd: Vector, start: complex, end: complex, width: float) -> int:
-    """Count the points within `width` of a segment, on both sides of it."""
+    """Count the points beside a segment, on both sides up to a distance of `width`."""
     along = (end - start) / abs(end - start)
     run, off = dot(crowd - start, along), np.abs(cross(along, crowd - start))
     return int(np.count_nonzero((run > 0) & (run < abs(end - start)) & (off < width)))
 
 
 def draw_angle(sheet: DrawingSheet, vertex: complex, first: complex, last: complex, name: str, *, right: bool) -> None:
-    """Draw the arc of an angle between the directions to two points (mm), or a right-angle mark, with its name."""
+    """Draw the arc of an angle with its name, or a right-angle mark.
+
+    Args:
+        sheet: Sheet to draw on.
+        vertex: Vertex of the angle, mm.
+        first, last: Points on its sides, mm.
+        name: Name of the angle.
+        right: True for a right-angle mark.
+    """
     with sheet.on_layer("dimensions"):
         _draw_angle(sheet, vertex, first, last, name, right=right)
 
@@ -173,10 +187,14 @@ ARC_STEP = 1.0  # mm between points of a drawn arc
 
 @dataclass(frozen=True)
 class Ruler:
-    """A ruler parallel to a straight path through `base` along `along`, or concentric with a circular one about `base`.
+    """A scale line with position numbers, parallel to the straight or circular path of a point.
 
-    A circular ruler is measured from direction `along`. off: offset from the path (mm), positive to the left of a
-    line or outside a circle.
+    Attributes:
+        base: Point of a straight path from which lengths are measured, or centre of a circular path, mm.
+        along: Unit vector along a straight path. For a circular path, unit vector from the centre to the point of the path
+            from which lengths are measured.
+        off: Distance from the path (mm), positive to the left of a straight path or outside a circular one.
+        radius: Radius of a circular path, mm; 0: the path is straight.
     """
 
     base: complex
@@ -185,7 +203,7 @@ class Ruler:
     radius: float = 0.0
 
     def at(self, run: float, out: float = 0.0) -> complex:
-        """Return the point at `run` mm along the ruler and `out` mm away from the path."""
+        """Return the point `run` mm along the ruler and `out` mm beyond it, on the side away from the path."""
         if self.radius == 0:
             return self.base + run * self.along + (self.off + out * self.side) * 1j * self.along
         return self.base + (self.radius + self.off + out * self.side) * self.along * cmath.rect(1, run / self.radius)
@@ -195,32 +213,39 @@ class Ruler:
         return float(np.sign(self.off))
 
     def path_point(self, run: float) -> complex:
-        """Return the point of the path at `run` mm."""
+        """Return the point `run` mm along the path."""
         return replace(self, off=0.0).at(run)
 
     def away(self, points: Vector) -> Vector:
-        """Return the distances (mm) of points from the path, positive on the side of the ruler."""
+        """Return the distances of points from the path (mm), positive on the side of the ruler."""
         off = points - self.base
         if self.radius == 0:
             return self.side * np.asarray(dot(1j * self.along, off))
         return self.side * np.asarray(abs(off) - self.radius)
 
     def run(self, points: Vector | complex) -> Real:
-        """Return the coordinates (mm) of points of the path along the ruler."""
+        """Return the lengths along the path (mm) at which points are."""
         off = points - self.base
         if self.radius == 0:
             return np.asarray(dot(self.along, off))
         return self.radius * np.asarray(np.angle(off / self.along))
 
     def out(self, run: float) -> complex:
-        """Return the unit vector away from the path."""
+        """Return the unit vector from the path to the ruler at `run` mm."""
         step = self.at(run, 1.0) - self.at(run)
         return step / abs(step)
 
 
 @dataclass(frozen=True)
 class RulerNumber:
-    """A number at coordinate `run` of a ruler; outer: it stands on the side away from the path."""
+    """Number of a position on a ruler.
+
+    Attributes:
+        run: Length along the ruler, mm.
+        text: The number.
+        outer: True if it is written on the side away from the path.
+        strong: True if it is highlighted, as an extreme position is.
+    """
 
     run: float
     text: str
@@ -229,7 +254,7 @@ class RulerNumber:
 
 
 def fit_ruler(points: Sequence[complex], line: complex, pivot: complex | None) -> Ruler:
-    """Return a ruler for the points of a path (mm), along a line or about a pivot."""
+    """Return a ruler for points of a path (mm): along the direction `line`, or about `pivot` if this is given."""
     finite = [place for place in points if np.isfinite(place)]
     if pivot is None:
         middle = sum(finite) / len(finite)
@@ -239,24 +264,27 @@ def fit_ruler(points: Sequence[complex], line: complex, pivot: complex | None) -
 
 
 def numbers_height(ruler: Ruler, numbers: Sequence[RulerNumber]) -> float:
-    """Return the extent (mm) of the numbers across a ruler."""
+    """Return the largest extent (mm) of the numbers perpendicular to the ruler."""
     return max((number_height(ruler, number) for number in numbers), default=0.0)
 
 
 def number_height(ruler: Ruler, number: RulerNumber) -> float:
-    """Return the extent (mm) of one number across a ruler."""
+    """Return the extent (mm) of a number perpendicular to the ruler."""
     out, (wide, high) = ruler.out(number.run), text_extent(number.text, NUMBER_SIZE)
     return abs(out.real) * wide + abs(out.imag) * high
 
 
 def number_width(ruler: Ruler, number: RulerNumber) -> float:
-    """Return the extent (mm) of a number along a ruler."""
+    """Return the extent (mm) of a number along the ruler, with the gap to the next one."""
     out, (wide, high) = ruler.out(number.run), text_extent(number.text, NUMBER_SIZE)
     return min(wide / max(abs(out.imag), 1e-9), high / max(abs(out.real), 1e-9)) + NUMBER_GAP
 
 
 def least_crowded_ruler(ruler: Ruler, numbers: Sequence[RulerNumber], lines: Vector) -> Ruler:
-    """Return the ruler at the side and offset where least is drawn; `lines` are the points drawn (mm)."""
+    """Choose the side of the path and the distance from it at which the ruler covers the fewest points.
+
+    lines: points of the drawing, mm.
+    """
     inner = numbers_height(ruler, [number for number in numbers if not number.outer])
     least = PATH_CLEARANCE + (inner + TICK_LENGTH + 2 * NUMBER_GAP if inner else 0.0)
     choices = [replace(ruler, off=side * (least + more)) for more in RULER_OFFSETS for side in (-1.0, 1.0)]
@@ -264,12 +292,17 @@ def least_crowded_ruler(ruler: Ruler, numbers: Sequence[RulerNumber], lines: Vec
 
 
 def ruler_reach(ruler: Ruler, numbers: Sequence[RulerNumber]) -> float:
-    """Return the distance (mm) from the ruler to the far ends of its outer numbers."""
+    """Return the distance (mm) from the ruler to the far ends of the numbers on its outer side."""
     return TICK_LENGTH + NUMBER_GAP + numbers_height(ruler, [number for number in numbers if number.outer])
 
 
 def count_under_ruler(ruler: Ruler, numbers: Sequence[RulerNumber], lines: Vector) -> float:
-    """Count the drawn points (mm) in the area of the ruler; inf if it does not fit inside a circular path."""
+    """Count the points of the drawing that a ruler with its numbers would cover.
+
+    Inf if the ruler has no space inside a circular path.
+
+    lines: points of the drawing, mm.
+    """
     if ruler.radius and ruler.radius + ruler.off < ruler_reach(ruler, numbers) + PATH_CLEARANCE:
         return math.inf
     runs, coordinates, far = [number.run for number in numbers], ruler.run(lines), ruler.away(lines)
@@ -282,7 +315,7 @@ def count_under_ruler(ruler: Ruler, numbers: Sequence[RulerNumber], lines: Vecto
 
 
 def gather_numbers(numbers: Sequence[RulerNumber]) -> list[RulerNumber]:
-    """Combine numbers that coincide on paper; an extreme position keeps its place."""
+    """Combine coincident numbers into one text, e.g. "0, 12". The highlighted one of them determines its position."""
     gathered = []
     for __, coincident in in_place((complex(number.run, number.outer), number) for number in numbers):
         place = next((number for number in coincident if number.strong), coincident[0])
@@ -291,7 +324,7 @@ def gather_numbers(numbers: Sequence[RulerNumber]) -> list[RulerNumber]:
 
 
 def draw_ruler(sheet: DrawingSheet, ruler: Ruler, numbers: Sequence[RulerNumber]) -> None:
-    """Draw a ruler with a tick and a number for each position; numbers that would overlap are moved apart."""
+    """Draw a ruler with a tick and a number for each position. Numbers that would overlap are moved apart."""
     runs = [number.run for number in numbers]
     steps = max(2, int((max(runs) - min(runs)) / ARC_STEP)) if ruler.radius else 2
     sheet.line([ruler.at(float(run)) for run in np.linspace(min(runs), max(runs), steps)], THIN_COLOUR, 0.7, z=2.6)
@@ -314,7 +347,15 @@ def draw_ruler(sheet: DrawingSheet, ruler: Ruler, numbers: Sequence[RulerNumber]
 
 
 def spread_intervals(middles: Sequence[float], sizes: Sequence[float]) -> list[float]:
-    """Return the middles of intervals of these sizes, in order and without overlap, nearest to the wanted middles."""
+    """Move intervals apart so that they do not overlap.
+
+    Args:
+        middles: Desired middles of the intervals, ascending.
+        sizes: Lengths of the intervals.
+
+    Returns:
+        Middles as near as possible to the desired ones.
+    """
     heaps: list[tuple[float, list[int]]] = []  # start of each group of touching intervals, and the group
     for k in range(len(middles)):
         heap = [k]

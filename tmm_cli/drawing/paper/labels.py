@@ -1,4 +1,4 @@
-"""Placement of labels: next to their anchors, or farther away with a leader, where they cover nothing."""
+"""Placement of labels so that they cover nothing: beside their points, or farther away with a leader line."""
 
 from __future__ import annotations
 
@@ -71,7 +71,16 @@ Item = TypeVar("Item")
 
 @dataclass(frozen=True)
 class Label:
-    """A text of `size` points to be placed near an anchor (mm), or anywhere beside `line` if one is given."""
+    """A label to be placed.
+
+    Attributes:
+        text: The text.
+        anchor: Point that it names, mm.
+        size: Font size, points.
+        colour: Colour of the text.
+        style: "normal" or "italic".
+        line: Line (mm) that it names instead of a point; the label may be anywhere beside it.
+    """
 
     text: Words
     anchor: complex
@@ -83,7 +92,13 @@ class Label:
 
 @dataclass(frozen=True)
 class PlacedLabel:
-    """A label with the middle of its text (mm), and its leader if it stands far from the anchor."""
+    """A placed label.
+
+    Attributes:
+        label: The label.
+        middle: Middle of its text, mm.
+        leader: Ends of its leader line (mm), or None if it is near its point.
+    """
 
     label: Label
     middle: complex
@@ -92,9 +107,15 @@ class PlacedLabel:
 
 @dataclass(frozen=True)
 class LabelCandidates:
-    """Candidate positions of a label: boxes, leaders (foot, end), and the price of each.
+    """Possible positions of a label, with the cost of each.
 
-    led: True where there is a leader. The price includes the distance and what is covered on the sheet.
+    Attributes:
+        middles: Middles of the text, mm.
+        boxes: Boxes of the text, mm.
+        feet: Starts of the leader lines, at the named point or line, mm.
+        ends: Ends of the leader lines, at the text, mm.
+        led: True where a leader line is needed.
+        price: Cost: distance from the named point, lines and texts that are covered, possible confusion.
     """
 
     middles: NDArray[Any]
@@ -110,7 +131,7 @@ class LabelCandidates:
 
 
 class LabelPlacer:
-    """Search for label positions. rivals: points with other names, or named by these labels."""
+    """Search for the positions of labels with the least cost."""
 
     def __init__(self, canvas: OccupiedArea, labels: Sequence[Label]) -> None:
         self.canvas, self.labels, self.raster = canvas, labels, PriceRaster(canvas)
@@ -128,11 +149,13 @@ class LabelPlacer:
         together = max(1, MOST_DISTANCES // (DIRECTIONS * RING_TIERS[1] * (len(self.rivals) + 1)))
         while wanting:
             for first in range(0, len(wanting), together):
-                self._look_farther(wanting[first : first + together])
-            wanting = [k for k in wanting if self.more(k) and self.known[k][-1].price.min() > LINE_PRICE / 2]
+                self._evaluate_next_ring(wanting[first : first + together])
+            wanting = [
+                k for k in wanting if self.has_farther_candidates(k) and self.known[k][-1].price.min() > LINE_PRICE / 2
+            ]
 
-    def _look_farther(self, numbers: Sequence[int]) -> None:
-        """Evaluate the next ring of candidates of several labels at once."""
+    def _evaluate_next_ring(self, numbers: Sequence[int]) -> None:
+        """Evaluate the next ring of possible positions, farther from the anchor, for several labels at once."""
         rings = [next(self.tiers[k]) for k in numbers]
         feet, middles, price = (np.concatenate(arrays) for arrays in zip(*rings, strict=True))
         lengths = [len(tier[0]) for tier in rings]
@@ -143,17 +166,22 @@ class LabelPlacer:
         away = np.abs(off)
         led = away > LEADER_FROM
         ends = np.where(led, feet + off * (1 - LEADER_GAP / np.maximum(away, LEADER_GAP)), feet)
-        price = price + LEADER_PRICE * led + self.raster.price(boxes) + self._mistaken(whose, middles, boxes, away, led)
+        price = (
+            price
+            + LEADER_PRICE * led
+            + self.raster.price(boxes)
+            + self._confusion_price(whose, middles, boxes, away, led)
+        )
         candidates, stops = LabelCandidates(middles, boxes, feet, ends, led, price), np.cumsum([0, *lengths])
         for k, start, stop in zip(numbers, stops[:-1], stops[1:], strict=True):
-            self.known[k].append(self._clear(candidates.part(slice(start, stop))))
+            self.known[k].append(self._add_leader_prices(candidates.part(slice(start, stop))))
 
-    def more(self, k: int) -> bool:
-        """Return True if a label has candidates that are not evaluated yet."""
+    def has_farther_candidates(self, k: int) -> bool:
+        """Return True if label k has possible positions that have not been evaluated yet."""
         return len(self.known[k]) < (len(LINE_DISTANCES) if self.labels[k].line else len(RING_CANDIDATES))
 
-    def _clear(self, candidates: LabelCandidates) -> LabelCandidates:
-        """Keep the cheapest candidates with leaders, and add the price of what the leaders cross."""
+    def _add_leader_prices(self, candidates: LabelCandidates) -> LabelCandidates:
+        """Add the cost of what leader lines cross; of positions with leader lines only the cheapest are kept."""
         if not candidates.led.any():
             return candidates
         best = np.argsort(candidates.price, kind="stable")[:LEADERS_KEPT]
@@ -164,10 +192,10 @@ class LabelPlacer:
         through = (lengths_inside(self.texts, kept.feet, kept.ends) > 0).sum(axis=0)
         return replace(kept, price=kept.price + CROSSING_PRICE * crossed + LINE_PRICE * through)
 
-    def _mistaken(
+    def _confusion_price(
         self, whose: NDArray[Any], middles: NDArray[Any], boxes: Boxes, away: NDArray[Any], led: NDArray[Any]
     ) -> NDArray[Any]:
-        """Return the price of standing nearer to another named point or line than to the label's own."""
+        """Return the cost of confusion: a label nearer to another named point or line than to its own."""
         nearer = np.zeros(len(middles), bool)
         if len(self.rivals) and not led.all():  # a leader makes a label unambiguous
             off = box_distances(boxes, self.rivals)
@@ -183,18 +211,23 @@ class LabelPlacer:
         return np.where(nearer, np.where(led, 0.0, AMBIGUITY_PRICE), 0.0)
 
     def best(self, k: int, taken: Boxes, leaders: NDArray[Any]) -> tuple[float, LabelCandidates]:
-        """Return the price and the cheapest candidate of a label, given the boxes and leaders of the other labels.
+        """Return the least cost of label k, and its position.
 
-        Farther rings are evaluated only while nothing nearer is free.
+        More distant positions are evaluated only if none of the nearer ones is free.
+
+        Args:
+            k: Number of the label.
+            taken: Boxes of the other labels, mm.
+            leaders: Ends of the leader lines of the other labels, mm.
         """
         best: tuple[float, LabelCandidates] | None = None
         for number in count():
             if best is not None and best[0] <= LINE_PRICE / 2:
                 break
             if number == len(self.known[k]):
-                if not self.more(k):
+                if not self.has_farther_candidates(k):
                     break
-                self._look_farther([k])
+                self._evaluate_next_ring([k])
             candidates = self.known[k][number]
             cost = candidates.price + overlap_price(candidates.boxes, taken)
             if len(leaders):
@@ -209,12 +242,13 @@ class LabelPlacer:
 
 
 def place_labels(canvas: OccupiedArea, labels: Sequence[Label]) -> list[PlacedLabel]:
-    """Place labels where they cover least.
+    """Place labels where they cover least of the drawing.
 
-    Labels with the least choice come first; then every label is placed again, given the others, until nothing moves.
+    Labels with the fewest good positions come first. Then each label is placed again, given the others, until nothing
+    changes.
 
     Args:
-        canvas: Area with the lines and texts drawn so far.
+        canvas: Lines and texts drawn so far.
         labels: Labels to be placed.
 
     Returns:
@@ -247,7 +281,7 @@ CandidateTier = tuple[NDArray[Any], NDArray[Any], NDArray[Any]]  # feet of leade
 
 
 def _ring_candidates(number: int) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return the directions (unit vectors) and the distances (mm) of the candidates of a ring."""
+    """Return directions (unit vectors) and distances (mm) of the possible positions on one ring about an anchor."""
     many = DIRECTIONS * (1 + (ANCHOR_DISTANCES[number] > LEADER_FROM))
     turns = (np.arange(many) + 0.5 * (number % 2)) / many
     return np.exp(1j * (2 * np.pi * turns + np.pi / 4)), np.full(many, ANCHOR_DISTANCES[number])
@@ -260,14 +294,14 @@ RING_CANDIDATES = [
 
 
 def candidates_about(label: Label, width: float, height: float) -> Iterator[CandidateTier]:
-    """Yield candidates about an anchor, ring by ring; the box touches a circle about the anchor."""
+    """Yield possible positions about a point, ring by ring, the nearest first."""
     for along, reach in RING_CANDIDATES:
         off = reach * along + along.real * width / 2 + 1j * along.imag * height / 2
         yield np.full(len(along), label.anchor), label.anchor + off, DISTANCE_PRICE * reach
 
 
 def candidates_beside(label: Label, width: float, height: float) -> Iterator[CandidateTier]:
-    """Yield candidates beside a line, those above it first."""
+    """Yield possible positions on both sides of a line, the nearest first."""
     assert label.line is not None
     start, end = label.line
     span = (end - start) / (abs(end - start) or 1.0)
@@ -280,7 +314,7 @@ def candidates_beside(label: Label, width: float, height: float) -> Iterator[Can
 
 
 def gather_coincident(placed: Iterable[tuple[complex, Item]]) -> list[tuple[complex, list[Item]]]:
-    """Group items whose points (mm) coincide on paper."""
+    """Group items by their points (mm); points that coincide on paper are one."""
     groups: list[tuple[complex, list[Item]]] = []
     for at, item in placed:
         same = next((items for place, items in groups if abs(place - at) < SAME_PLACE), None)
@@ -292,6 +326,6 @@ def gather_coincident(placed: Iterable[tuple[complex, Item]]) -> list[tuple[comp
 
 
 def text_extent(text: Words, size: float) -> tuple[float, float]:
-    """Return width and height (mm) of a text, with a small margin at its ends; size in points."""
+    """Return width and height (mm) of a text of `size` points, with a small margin at both ends."""
     high = 1.0 if isinstance(text, str) else 1.3  # with indices below and above the line
     return script_width(text, size * POINT) + 0.6, high * size * POINT

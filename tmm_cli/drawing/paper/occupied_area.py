@@ -1,4 +1,4 @@
-"""The area of a drawing with the lines and texts on it, and what it costs to cover them with a label."""
+"""Lines and texts that a drawing already contains, and the cost of covering them with a label."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ OUTSIDE_PRICE = 200.0  # of a position beyond the edge of the field
 
 @dataclass
 class Segments:
-    """Line segments, collected one by one and evaluated together."""
+    """Collection of line segments. They are added one by one and evaluated together as arrays."""
 
     fresh: list[tuple[complex, complex]] = field(default_factory=list)
     found: NDArray[Any] = field(default_factory=lambda: np.zeros((0, 2), complex))
     reach: NDArray[Any] = field(default_factory=lambda: np.zeros((4, 0)))  # left, right, low, high of each
 
     def path(self, points: Sequence[complex]) -> None:
-        """Add a polyline, or the outline of a figure."""
+        """Add the segments of a polyline."""
         self.fresh += [
             (start, end)
             for start, end in pairwise(points)
@@ -41,7 +41,7 @@ class Segments:
 
     @property
     def all(self) -> NDArray[Any]:
-        """Ends of all segments, shape (segments, 2)."""
+        """Both ends of each segment, (segments, 2), mm."""
         if self.fresh:
             self.found = np.concatenate([self.found, np.array(self.fresh, complex)])
             self.fresh.clear()
@@ -50,7 +50,7 @@ class Segments:
         return self.found
 
     def near(self, field: Box) -> NDArray[Any]:
-        """Return the segments that may enter a box."""
+        """Return the segments whose bounding boxes overlap a box, (segments, 2), mm."""
         segments, (left, right, low, high) = self.all, field
         first, last, under, over = self.reach
         near: NDArray[Any] = segments[(last >= left) & (first <= right) & (over >= low) & (under <= high)]
@@ -68,11 +68,15 @@ class Segments:
 
 @dataclass
 class OccupiedArea:
-    """A field of the paper (mm) with the lines and texts on it.
+    """Field of the paper with the lines and texts that it contains.
 
-    rivals: named points, none of which may be nearer to a label than the label's own point; lines: named lines,
-    likewise.
-    solid: lines that no label may cover; faint: thin lines that are interrupted by labels.
+    Attributes:
+        low, high: Lower left and upper right corner of the field, mm.
+        boxes: Boxes of texts, mm.
+        rivals: Named points, mm. A label must not be nearer to one of them than to the point that it names.
+        lines: Named lines, mm, to which the same applies.
+        solid: Lines that labels must not cover.
+        faint: Thin lines that are interrupted where labels cover them.
     """
 
     low: complex
@@ -84,27 +88,27 @@ class OccupiedArea:
     faint: Segments = field(default_factory=Segments)
 
     @property
-    def crowd(self) -> NDArray[Any]:
-        """Points along the solid lines."""
+    def line_points(self) -> NDArray[Any]:
+        """Closely spaced points along the solid lines, mm."""
         return self.solid.points()
 
     @property
-    def written(self) -> NDArray[Any]:
-        """Points in all texts."""
+    def text_points(self) -> NDArray[Any]:
+        """Points in the boxes of all texts, mm."""
         left, right, low, high = np.reshape(np.array(self.boxes), (-1, 4)).T
         points: NDArray[Any] = np.linspace(left, right, 5)[:, None] + 1j * np.linspace(low, high, 2)
         return points.ravel()
 
     def line(self, start: complex, end: complex) -> None:
-        """Add a solid line."""
+        """Add a solid line between two points, mm."""
         self.solid.path([start, end])
 
     def path(self, points: Sequence[complex]) -> None:
-        """Add a solid polyline, or the outline of a figure."""
+        """Add a solid polyline, mm."""
         self.solid.path(points)
 
     def spot(self, place: complex, radius: float = 1.0) -> None:
-        """Add a circle."""
+        """Add a solid circle about a point, mm."""
         turns = (
             CIRCLE_CORNERS
             if radius < 4 * SAMPLE_STEP
@@ -113,11 +117,11 @@ class OccupiedArea:
         self.path([complex(corner) for corner in place + radius * turns])
 
     def free(self, box: Box) -> bool:
-        """Return True if a text in this box covers nothing."""
+        """Return True if a text in this box would not cover anything."""
         return bool(self.price(np.array([box]))[0] < LINE_PRICE)
 
-    def crossed(self, lines: Sequence[tuple[complex, complex]]) -> float:
-        """Return the price of the texts that these segments, or arrowheads on them, would cover."""
+    def crossing_price(self, lines: Sequence[tuple[complex, complex]]) -> float:
+        """Return the cost of texts that these line segments, or arrowheads on them, would cover."""
         if not self.boxes:
             return 0.0
         return TEXT_PRICE * float(
@@ -125,7 +129,9 @@ class OccupiedArea:
         )
 
     def price(self, boxes: Boxes) -> NDArray[Any]:
-        """Return the price of what texts in these boxes cover: lines, texts, the edge of the field."""
+        """Return the cost of a text in each of these boxes, (boxes,): covered lines and texts, and parts beyond the
+        field.
+        """
         wide = widen(boxes, TEXT_AIR)
         room = wide[:, 0].min(), wide[:, 1].max(), wide[:, 2].min(), wide[:, 3].max()
         solid, faint = self.solid.near(room), self.faint.near(room)
@@ -140,7 +146,7 @@ class OccupiedArea:
 
 
 def overlap_price(boxes: Boxes, others: Boxes) -> NDArray[Any]:
-    """Return the price of covering other texts, for texts in these boxes."""
+    """Return the cost of the other texts that a text in each of these boxes would cover, (boxes,)."""
     if not len(others):
         return np.zeros(len(boxes))
     areas = shared_areas(widen(boxes, TEXT_AIR), others)
@@ -156,7 +162,10 @@ SOLID_UNIT, TEXT_UNIT = 1 << 20, 1 << 40  # one count holds points on faint line
 
 
 class PriceRaster:
-    """Cumulative counts of what is drawn, on a raster of squares: four look-ups give the content of any box."""
+    """Summed-area table of lines and texts on a raster of squares.
+
+    Four look-ups give the number of line points and covered squares in any box.
+    """
 
     def __init__(self, canvas: OccupiedArea) -> None:
         self.low, self.high = canvas.low, canvas.high
@@ -180,7 +189,7 @@ class PriceRaster:
         return np.floor(off.real).astype(int), np.floor(off.imag).astype(int)
 
     def _edges(self, boxes: Boxes) -> NDArray[Any]:
-        """Return for each box the first square and the one after the last, horizontally and vertically."""
+        """Return for each box the range of raster squares it covers: first and last + 1, in x and in y, (boxes, 4)."""
         x, y = self.low.real, self.low.imag
         off = (boxes - np.array([x, x, y, y])) / self.cell
         off[:, ::2], off[:, 1::2] = np.floor(off[:, ::2]), np.ceil(off[:, 1::2])
@@ -189,7 +198,7 @@ class PriceRaster:
         return edges
 
     def price(self, boxes: Boxes) -> NDArray[Any]:
-        """Return the price of what texts in these boxes cover: lines, texts, the edge of the field."""
+        """Return the approximate cost of a text in each of these boxes, as `OccupiedArea.price` does."""
         left, right, low, high = self._edges(widen(boxes, RASTER_AIR)).T
         sums = self.sums
         counts = sums[right, high] - sums[left, high] - sums[right, low] + sums[left, low]

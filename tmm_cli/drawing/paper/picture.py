@@ -1,4 +1,4 @@
-"""Drawings that stand on a large sheet beside others: their largest size, and cropping with a heading."""
+"""Pictures: drawings placed beside others on a large sheet. They are cropped and have a heading instead of a frame."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ class SheetPicture(Drawing):
 
     Attributes:
         longest: Longest side (mm) for which it was drawn.
-        figure: Width and height (mm) of the part that grows with it; None: all of it.
+        figure: Width and height (mm) of the part that grows with `longest`; None: the whole drawing.
         mu: Scale, SI units per mm; None if it is not to scale.
         stem: Stem of its file name.
-        title: Its heading, even if it is not written.
+        title: Its heading, even where headings are not written.
     """
 
     longest: float = 0.0
@@ -47,12 +47,12 @@ class SheetPicture(Drawing):
 
 @dataclass(frozen=True)
 class PictureSpace:
-    """Space for a picture on a large sheet.
+    """Space for a picture on a large sheet or in an explanatory note.
 
     Attributes:
-        longest: Longest side (mm) of a figure to scale, or of the requested paper; None: the usual size.
-        most: Width and height (mm) of the field of the sheet.
-        written: Headings and equations are part of the drawing; in an explanatory note its own text has them.
+        longest: Longest side (mm) of the figure if it is to scale, otherwise of the paper; None: the usual size.
+        most: Width and height (mm) of the area for drawings on the sheet.
+        written: True if heading and equations belong to the picture; False if the text of the note contains them.
     """
 
     longest: float | None
@@ -65,7 +65,7 @@ _PICTURE_SPACE: ContextVar[PictureSpace | None] = ContextVar("space", default=No
 
 @contextmanager
 def drawing_within(space: PictureSpace) -> Iterator[None]:
-    """Let drawings made in this context become pictures for a space, without paper of their own."""
+    """Make all drawings in this context pictures for a given space instead of sheets of their own."""
     token = _PICTURE_SPACE.set(space)
     try:
         yield
@@ -74,29 +74,31 @@ def drawing_within(space: PictureSpace) -> Iterator[None]:
 
 
 def on_large_sheet() -> bool:
-    """Return True if the current drawing is to be a picture beside others."""
+    """Return True if drawings are currently made as pictures, for a large sheet or a note."""
     return _PICTURE_SPACE.get() is not None
 
 
 def writes_equations() -> bool:
-    """Return True if the current drawing includes its heading and equations."""
+    """Return True if heading and equations are to be included in the current drawing."""
     space = _PICTURE_SPACE.get()
     return space is None or space.written
 
 
 def longest_for(usual: float) -> float:
-    """Return the longest side (mm) of the current drawing, whose usual one is given."""
+    """Return the longest side (mm) that the current drawing is to have, which is `usual` unless another is required."""
     space = _PICTURE_SPACE.get()
     return usual if space is None or space.longest is None else space.longest
 
 
 def fits_sheet(width: float, height: float) -> bool:
-    """Return True if the sheet holds a drawing of this size (mm), with its heading if that is written."""
+    """Return True if a drawing of this size (mm), with its heading, fits on the sheet."""
     return excess_factor(width, height) <= 1.0
 
 
 def excess_factor(width: float, height: float) -> float:
-    """Return the size of a drawing relative to the space for it; more than 1: it does not fit."""
+    """Return the size of a drawing, with its heading, relative to the available space. If it exceeds 1, it does not
+    fit.
+    """
     space = _PICTURE_SPACE.get()
     if space is None:
         return 0.0
@@ -105,7 +107,13 @@ def excess_factor(width: float, height: float) -> float:
 
 
 def choose_paper(points: Sequence[complex], pad: float, paper: Size | None) -> tuple[Size, float]:
-    """Return the paper (mm) and the scale (SI units per mm) for points (SI); `paper` is a requested format."""
+    """Choose the paper size (mm) and the scale (SI units per mm) of a drawing.
+
+    Args:
+        points: Points that must be on it, SI units.
+        pad: Clearance about them, mm.
+        paper: Required paper size, mm; None: any.
+    """
     if not on_large_sheet():
         best, mu = sheet_scale(points, pad)
         return paper or best, mu
@@ -157,7 +165,7 @@ def bounding_corners(marks: Iterable[Mark]) -> tuple[complex, complex]:
 
 
 def mark_corners(mark: Mark) -> Sequence[complex]:
-    """Return points (mm) whose hull contains a mark."""
+    """Return points (mm) whose convex hull contains the mark."""
     match mark:
         case LineMark():
             return mark.places
@@ -170,7 +178,7 @@ def mark_corners(mark: Mark) -> Sequence[complex]:
 
 
 def points_covered(marks: Iterable[Mark]) -> Vector:
-    """Return closely spaced points (mm) on lines and in texts."""
+    """Return closely spaced points (mm) along the lines and in the texts of a drawing."""
     points = [np.zeros(0, complex)]
     for mark in marks:
         low, high = bounding_corners([mark])

@@ -1,7 +1,6 @@
-"""Record of a drawing: primitives in millimetres of paper, from which every format is written.
+"""Record of a drawing: lines, areas, circles and texts in mm of paper, from which each file format is written.
 
-The origin is the lower left corner of the paper. Texts are data: no format may interpret them as markup or
-mathematics.
+The origin is the lower left corner of the paper. No format may interpret a text as markup or mathematics.
 """
 
 from __future__ import annotations
@@ -21,7 +20,16 @@ DASHES: dict[Style, tuple[float, ...]] = {"-": (), "--": (3.7, 1.6), ":": (1.0, 
 
 @dataclass(frozen=True, slots=True)
 class LineMark:
-    """A polyline; width in mm."""
+    """A polyline.
+
+    Attributes:
+        places: Its points, mm.
+        colour: Colour, e.g. "#1a1a1a".
+        width: Width of the line, mm.
+        style: Solid, dashed, dotted or dash-dotted.
+        layer: Layer in a CAD program.
+        z: Marks with larger z are drawn over those with smaller z.
+    """
 
     places: tuple[complex, ...]
     colour: str
@@ -35,13 +43,21 @@ class LineMark:
 
     @property
     def dashes(self) -> tuple[float, ...]:
-        """Lengths (mm) drawn and skipped alternately; empty for a solid line."""
+        """Lengths drawn and skipped alternately, mm; empty for a solid line."""
         return tuple(length * self.width for length in DASHES[self.style])
 
 
 @dataclass(frozen=True, slots=True)
 class AreaMark:
-    """A filled polygon; edge: colour of its outline, or None."""
+    """A filled polygon.
+
+    Attributes:
+        corners: Its corners, mm.
+        face: Colour of the area.
+        edge: Colour of the outline; None: no outline.
+        width: Width of the outline, mm.
+        layer, z: As in `LineMark`.
+    """
 
     corners: tuple[complex, ...]
     face: str
@@ -56,7 +72,7 @@ class AreaMark:
 
 @dataclass(frozen=True, slots=True)
 class CircleMark:
-    """A filled circle with its outline."""
+    """A filled circle with an outline; its attributes are those of `AreaMark`."""
 
     centre: complex
     radius: float
@@ -72,9 +88,17 @@ class CircleMark:
 
 @dataclass(frozen=True, slots=True)
 class TextMark:
-    """One line of text; `at` is its left end, middle or right end at half the height of the letters.
+    """One line of text.
 
-    size: font size (mm); turn: rotation about `at` (deg).
+    Attributes:
+        at: Its left end, middle or right end (according to `align`) at half the height of the letters, mm.
+        text: The text.
+        size: Font size, mm.
+        colour: Colour of the letters.
+        align: Alignment.
+        bold, italic: Weight and slant of the font.
+        turn: Rotation about `at`, counterclockwise, deg.
+        layer, z: As in `LineMark`.
     """
 
     at: complex
@@ -97,18 +121,18 @@ Mark = LineMark | AreaMark | CircleMark | TextMark
 
 @dataclass(frozen=True)
 class Drawing:
-    """Marks on paper (sizes in mm), in drawing order."""
+    """A finished drawing: paper size (mm) and marks in drawing order."""
 
     paper: tuple[float, float]
     marks: tuple[Mark, ...]
 
     @classmethod
     def of(cls, paper: tuple[float, float], marks: Iterable[Mark]) -> Drawing:
-        """Sort marks by their z; marks of equal z keep their order."""
+        """Make a drawing of marks, sorted by their z."""
         return cls(paper, tuple(sorted(marks, key=lambda mark: mark.z)))
 
     def moved(self, by: complex) -> Drawing:
-        """Return the drawing shifted on its paper."""
+        """Return the drawing with all marks shifted on its paper."""
         return replace(self, marks=tuple(mark.moved(by) for mark in self.marks))
 
     def texts(self) -> list[str]:

@@ -1,7 +1,4 @@
-"""A sheet of paper in millimetres with true scales: lines, arrows, labels, a title strip.
-
-Everything drawn is recorded.
-"""
+"""A sheet of paper with true scales, on which lines, areas, arrows, texts, labels and hatching are drawn."""
 
 from __future__ import annotations
 
@@ -69,7 +66,16 @@ CURVE_EDGE = 4.0  # mm inside the edge of the field: curves are cut there
 
 
 class DrawingSheet:
-    """A drawing in mm; quantities are given in SI and put on paper by `mu` (SI units per mm) and `origin`."""
+    """A sheet of paper that is being drawn on. Positions on paper are in mm.
+
+    Attributes:
+        mu: Scale, SI units per mm.
+        origin: Position of the origin of SI coordinates on the paper, mm.
+        canvas: Field for the drawing, with the lines and texts it already contains.
+        marks: Marks drawn so far.
+        labels: Labels that are not placed yet.
+        block: Notes and table to be placed at the end.
+    """
 
     def __init__(
         self,
@@ -81,15 +87,15 @@ class DrawingSheet:
         paper: tuple[float, float] | None = None,
         room: PaperLayout | None = None,
     ) -> None:
-        """Open a sheet for points (SI), a requested paper, or a layout.
+        """Begin a sheet, with a scale suitable for given points, on required paper, or with a layout chosen beforehand.
 
         Args:
             title: Title of the project.
-            caption: What the sheet shows.
-            points: Points (SI) that must be on it; they decide scale and orientation.
+            caption: Subject of the drawing.
+            points: Points (SI) that must be on the sheet; they determine scale and orientation.
             pad: Clearance about the points, mm.
             paper: Width and height (mm) of a sheet whose scale is set later.
-            room: Layout chosen beforehand; it overrides the others.
+            room: Layout chosen beforehand; the other arguments about size are ignored.
         """
         finite = [p for p in points if np.isfinite(p)] or [0j]
         __, across, up, middle = extent(finite)
@@ -108,11 +114,11 @@ class DrawingSheet:
         self.labels: list[Label] = []
         self.block = NoteBlock()
         if not on_large_sheet():
-            self._strip(title)
+            self._write_strip(title)
         self.layer = "construction"
 
-    def _strip(self, title: str) -> None:
-        """Write the title and the caption above the drawing."""
+    def _write_strip(self, title: str) -> None:
+        """Write title and caption above the drawing."""
         width, height = self.paper
         edge = 1j * (height - MARGIN - STRIP + 5)
         self.line([MARGIN + edge, width - MARGIN + edge], DARK_COLOUR, 0.6, blocks=False)
@@ -122,24 +128,24 @@ class DrawingSheet:
         self.text(complex(MARGIN, height - MARGIN - 8), shortened, size / POINT, colour="#404040")
 
     def on(self, value: complex) -> complex:
-        """Return the point on paper (mm) of a value (SI)."""
+        """Convert a point from SI units to paper, mm."""
         return self.origin + value / self.mu
 
     @property
     def field(self) -> tuple[complex, complex]:
-        """Corners of the field to which curves and guides are cut, mm."""
+        """Lower left and upper right corner (mm) of the field beyond which curves and guides are cut off."""
         return self.canvas.low + CURVE_EDGE * (1 + 1j), self.canvas.high - CURVE_EDGE * (1 + 1j)
 
     @contextmanager
     def on_layer(self, layer: Layer) -> Iterator[None]:
-        """Put everything drawn in this context on a layer."""
+        """Put all marks drawn in this context on a layer."""
         before, self.layer = self.layer, layer
         yield
         self.layer = before
 
     @contextmanager
     def part(self, name: str) -> Iterator[None]:
-        """Assign everything drawn in this context to a body: a link, or something that moves separately, as a block."""
+        """Assign all marks drawn in this context to a body: a link, or a block or spring that moves separately."""
         first = len(self.marks)
         yield
         self.parts.append((name, slice(first, len(self.marks))))
@@ -156,7 +162,18 @@ class DrawingSheet:
         style: str = "normal",
         turn: float = 0.0,
     ) -> None:
-        """Write a text of `size` points at a point (mm), rotated by `turn` degrees; never read as mathematics."""
+        """Write a text.
+
+        Args:
+            at: Left end, middle or right end of the text (according to `ha`), at half the height of its letters, mm.
+            text: The text; it is never interpreted as markup or mathematics.
+            size: Font size, points.
+            colour: Colour of the letters.
+            weight: "normal" or "bold".
+            ha: Alignment.
+            style: "normal" or "italic".
+            turn: Rotation about `at`, counterclockwise, deg.
+        """
         bold, italic, along = weight == "bold", style == "italic", complex(unit(np.radians(turn)))
         plain = isinstance(text, str)
         start = complex(at) if plain else at - ALIGN_SHARE[ha] * script_width(text, size * POINT) * along
@@ -173,7 +190,7 @@ class DrawingSheet:
     def label(
         self, text: Words, anchor: complex, size: float = 9, colour: str = DARK_COLOUR, style: str = "normal"
     ) -> None:
-        """Request a label near a point (mm); it is placed when everything is drawn."""
+        """Request a label for a point (mm). Its position is chosen when everything else is drawn."""
         if np.isfinite(anchor):
             self.labels.append(Label(text, anchor, size, colour, style))
 
@@ -188,9 +205,16 @@ class DrawingSheet:
         blocks: bool = True,
         faint: bool = False,
     ) -> None:
-        """Draw a polyline through points (mm), `width` points wide; non-finite points interrupt it.
+        """Draw a polyline through points (mm). Points that are not finite interrupt it.
 
-        faint: the line is interrupted by texts.
+        Args:
+            points: Points, mm.
+            colour: Colour.
+            width: Width, points.
+            style: Line style.
+            z: Height in the drawing order.
+            blocks: True if labels must not cover it.
+            faint: True if labels may cover it; it is then interrupted.
         """
         for stretch in finite_stretches(points):
             if faint:
@@ -209,7 +233,16 @@ class DrawingSheet:
         *,
         blocks: bool = True,
     ) -> None:
-        """Fill a polygon; its outline of `width` points has colour `edge` unless that is "none"."""
+        """Draw a filled polygon.
+
+        Args:
+            corners: Corners, mm.
+            face: Colour of the area.
+            edge: Colour of the outline, or "none".
+            width: Width of the outline, points.
+            z: Height in the drawing order.
+            blocks: True if labels must not cover the outline.
+        """
         outline = None if edge == "none" else edge
         self.marks.append(AreaMark(tuple(map(complex, corners)), face, outline, width * POINT, self.layer, z))
         if blocks:
@@ -218,13 +251,15 @@ class DrawingSheet:
     def circle(
         self, at: complex, radius: float, face: str = "white", edge: str = DARK_COLOUR, width: float = 1.0, z: float = 6
     ) -> None:
-        """Draw a circle about a point (mm)."""
+        """Draw a filled circle about a point (mm); nothing if the point is not finite."""
         if np.isfinite(at):
             self.marks.append(CircleMark(complex(at), radius, face, edge, width * POINT, self.layer, z))
             self.canvas.spot(at, radius)
 
     def arrow(self, start: complex, end: complex, colour: str = DARK_COLOUR, width: float = 1.2, z: float = 5) -> None:
-        """Draw an arrow; on a short shaft its head is smaller."""
+        """Draw an arrow between two points (mm). If it is short, its head is smaller; a very short one is drawn as a
+        dot.
+        """
         length = abs(end - start)
         if not np.isfinite(length) or length < 0.15:
             self.circle(end, 0.5, colour, colour, 0.3, z)
@@ -238,18 +273,21 @@ class DrawingSheet:
             self.area([end, neck + side, neck - side], colour, "none", z=z)
 
     def note(self, text: Words) -> None:
-        """Add a line to the note block: a scale factor or a remark."""
+        """Add a line to the note block, e.g. a scale factor."""
         self.block.notes.append(text)
 
     def table(self, rows: Iterable[TableRow], numbers: int) -> None:
-        """Put a table below the notes; its last `numbers` columns are aligned right."""
+        """Put a table below the notes. Its last `numbers` columns are aligned right."""
         self.block.rows, self.block.numbers = list(rows), numbers
 
     def finish(self) -> Drawing:
-        """Place the note block and the labels, and return the drawing; on a large sheet, cropped below its caption."""
-        self.corner()
-        self.settle()
-        self._interrupt()
+        """Place the note block and the labels, and return the finished drawing.
+
+        On a large sheet the drawing is cropped and has its caption as a heading.
+        """
+        self.draw_note_block()
+        self.place_requested_labels()
+        self._interrupt_faint_lines()
         if on_large_sheet():
             longest = max(self.figure or self.paper)
             if self.free and self.figure:
@@ -258,8 +296,8 @@ class DrawingSheet:
             return render_picture(self.marks, self.caption, longest, self.figure, mu, self.remarks)
         return Drawing.of(self.paper, self.marks)
 
-    def _interrupt(self) -> None:
-        """Cut faint lines where texts stand on them."""
+    def _interrupt_faint_lines(self) -> None:
+        """Interrupt faint lines where they are covered by texts."""
         boxes = widen(np.array(self.canvas.boxes), TEXT_AIR)
         for number in reversed(self.faint):
             mark = self.marks[number]
@@ -269,8 +307,8 @@ class DrawingSheet:
             ]
         self.faint.clear()
 
-    def settle(self) -> None:
-        """Place the pending labels in the current field."""
+    def place_requested_labels(self) -> None:
+        """Place the requested labels in the current field."""
         for placed in place_labels(self.canvas, self.labels):
             label = placed.label
             self.text(placed.middle, label.text, label.size, colour=label.colour, ha="center", style=label.style)
@@ -278,14 +316,14 @@ class DrawingSheet:
                 self.line(placed.leader, THIN_COLOUR, 0.5, z=1.1, faint=True)
         self.labels.clear()
 
-    def along(self, at: complex, text: str, size: float, along: complex) -> None:
-        """Write a text along a unit vector, its middle at a point (mm); labels avoid it."""
+    def text_along(self, at: complex, text: str, size: float, along: complex) -> None:
+        """Write a text along a unit vector, with its middle at a point (mm). The text is never upside down."""
         turn = float(np.degrees(np.angle(along)))
         turn -= 180 * np.round(turn / 180) if abs(abs(turn) - 90) > 1e-6 else turn - 90
         self.text(at, text, size, ha="center", turn=turn)
 
-    def corner(self) -> None:
-        """Put the note block where it covers least of the drawing."""
+    def draw_note_block(self) -> None:
+        """Draw the note block where it covers least of the drawing."""
         if not self.block.notes and not self.block.rows:
             return
         if on_large_sheet():
@@ -293,7 +331,7 @@ class DrawingSheet:
                 self.block, *bounding_corners(self.marks), points_covered(self.marks), fits_sheet
             )
         else:
-            crowd = np.concatenate([self.canvas.crowd, self.canvas.faint.points(), self.canvas.written])
+            crowd = np.concatenate([self.canvas.line_points, self.canvas.faint.points(), self.canvas.text_points])
             shape, at = least_covering_block(self.block, self.canvas.low, self.canvas.high, crowd)
         wide, high = complex(shape.size.real), 1j * shape.size.imag
         self.area([at, at + wide, at + shape.size, at + high], "white", THIN_COLOUR, 0.6, 8, blocks=False)
@@ -313,7 +351,7 @@ class DrawingSheet:
 
 
 def finite_stretches(points: Sequence[complex]) -> Iterator[tuple[complex, ...]]:
-    """Yield the parts of a polyline between non-finite points."""
+    """Split a polyline at points that are not finite, and yield its parts."""
     array = np.asarray(points, complex)
     finite = np.isfinite(array)
     for stretch in [array] if finite.all() else np.split(array, np.flatnonzero(~finite)):  # most polylines are finite
@@ -323,7 +361,13 @@ def finite_stretches(points: Sequence[complex]) -> Iterator[tuple[complex, ...]]
 
 
 def draw_hatching(sheet: DrawingSheet, start: complex, end: complex, outward: complex) -> None:
-    """Draw hatching on the outer side of a line of the frame; labels avoid the whole strip."""
+    """Draw hatching on the outer side of a line of the frame. Labels do not cover it.
+
+    Args:
+        sheet: Sheet to draw on.
+        start, end: Ends of the line, mm.
+        outward: Unit vector to the outer side.
+    """
     along = (end - start) / abs(end - start)
     number = int(abs(end - start) / 2.0)
     with sheet.on_layer("supports"):
@@ -337,7 +381,16 @@ def draw_hatching(sheet: DrawingSheet, start: complex, end: complex, outward: co
 def divide_into_cells(
     low: complex, high: complex, columns: int, rows: int, gap: float
 ) -> tuple[complex, list[tuple[complex, complex]]]:
-    """Divide a field into equal cells; return their size and two corners of each, row by row from the top (mm)."""
+    """Divide a field into equal cells.
+
+    Args:
+        low, high: Lower left and upper right corner of the field, mm.
+        columns, rows: Numbers of columns and rows.
+        gap: Distance between cells, mm.
+
+    Returns:
+        Width + i height of a cell (mm), and lower left and upper right corner of each cell, row by row from the top.
+    """
     size = complex(((high - low).real + gap) / columns - gap, ((high - low).imag + gap) / rows - gap)
     step = size + gap * (1 + 1j)
     starts = [
@@ -349,7 +402,12 @@ def divide_into_cells(
 
 
 def leave_field(inner: complex, outer: complex, low: complex, high: complex) -> complex:
-    """Return the point where the segment from a point inside a field to another one leaves the field."""
+    """Return the point at which a segment from a point inside a field to a point outside it crosses the edge.
+
+    Args:
+        inner, outer: Ends of the segment, mm. If `outer` lies inside the field too, it is returned.
+        low, high: Lower left and upper right corner of the field, mm.
+    """
     span, share = outer - inner, 1.0
     for at, step, least, most in (
         (inner.real, span.real, low.real, high.real),
@@ -361,15 +419,15 @@ def leave_field(inner: complex, outer: complex, low: complex, high: complex) -> 
 
 
 def scale_words(symbol: str, mu: float, unit: str) -> tuple[Symbol, str]:
-    """Return the text of a scale factor, e.g. μ_l = 0.005 m/mm."""
+    """Return the text of a scale factor, e.g. "μ_l = 0.005 m/mm"."""
     return Symbol("μ", symbol), f" = {numeral(mu, '.10g')} {spelt(unit)}"
 
 
 def with_unit(words: str, dimension: Dimension, units: UnitSystem) -> str:
-    """Return the title of an axis with the unit of its quantity."""
+    """Append the unit of a quantity to its name, e.g. "v_B, m/s"."""
     return ", ".join(piece for piece in (words, typeset_unit(units.spelt(dimension))) if piece)
 
 
 def file_safe_name(name: str) -> str:
-    """Return the name with every character replaced that a file name may not have."""
+    """Replace characters that are not safe in a file name by underscores."""
     return "".join(c if c.isalnum() or c in "-_" else "_" for c in name)

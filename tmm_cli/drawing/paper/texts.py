@@ -1,4 +1,4 @@
-"""Texts on paper: widths and outlines of letters, symbols with indices, lines broken to fit a width or a cell."""
+"""Texts on paper: widths and outlines of letters, symbols with indices, line breaks, texts in cells of a table."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ FONT_UNITS = 1000  # the size at which advances are read
 
 
 def font_file(bold: bool = False, italic: bool = False) -> Path:
-    """Return the file of the font of this weight and slant."""
+    """Return the path of the font file for this weight and slant."""
     ending = ("Bold" if bold else "") + ("Oblique" if italic else "")
     return Path(mpl.get_data_path(), "fonts", "ttf", f"DejaVuSans-{ending}.ttf" if ending else "DejaVuSans.ttf")
 
 
 @cache
 def load_font(bold: bool = False, italic: bool = False) -> FT2Font:
-    """Load a font completely into memory; forked processes would share the position in an open file."""
+    """Load a font completely into memory, because forked processes would share the read position of an open file."""
     font = FT2Font(BytesIO(font_file(bold, italic).read_bytes()))
     font.set_size(FONT_UNITS, 72)
     return font
@@ -42,7 +42,10 @@ def load_font(bold: bool = False, italic: bool = False) -> FT2Font:
 
 @cache
 def _letter(letter: str, bold: bool, italic: bool) -> tuple[float, NDArray[Any], NDArray[Any]]:
-    """Return advance, outline points (x + iy from the baseline) and matplotlib path codes of a letter of size 1."""
+    """Return the advance width, outline and matplotlib path codes of a letter at font size 1.
+
+    The points of the outline are x + iy, measured from the left end of the baseline.
+    """
     glyph = load_font(bold, italic).load_char(ord(replace_missing(letter)))
     points, codes = load_font(bold, italic).get_path()
     return float(glyph.linearHoriAdvance) / 65536 / FONT_UNITS, (points[:, 0] + 1j * points[:, 1]) / FONT_UNITS, codes
@@ -59,13 +62,16 @@ def _unit_width(text: str, bold: bool, italic: bool) -> float:
 
 
 def text_width(text: str, size: float, *, bold: bool = False, italic: bool = False) -> float:
-    """Return the width of a line of text, in the unit of its size."""
+    """Return the width of a line of text, in the unit of the font size."""
     return size * _unit_width(text, bold, italic)
 
 
 @lru_cache(1000)
 def glyph_outline(text: str, *, bold: bool = False, italic: bool = False) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return outline points (from the left end of the baseline) and matplotlib path codes of a text of size 1."""
+    """Return the outline and the matplotlib path codes of a text at font size 1.
+
+    The points of the outline are x + iy, measured from the left end of the baseline.
+    """
     along, points, codes = 0.0, [], []
     for letter in text:
         advance, letter_points, its_codes = _letter(letter, bold, italic)
@@ -82,13 +88,13 @@ def text_start(mark: TextMark) -> complex:
 
 
 def baseline(mark: TextMark) -> tuple[complex, complex]:
-    """Return the left end of the baseline of a text (mm) and its direction."""
+    """Return the left end of the baseline of a text (mm) and the unit vector along it."""
     along = cmath.rect(1, math.radians(mark.turn))
     return text_start(mark) - 1j * BASELINE_SHARE * mark.size * along, along
 
 
 def text_corners(mark: TextMark) -> tuple[complex, complex, complex, complex]:
-    """Return the corners of the box of a text (mm), counterclockwise from the lower left."""
+    """Return the corners of a text's box (mm), counterclockwise from the lower left."""
     along = cmath.rect(1, math.radians(mark.turn))
     low = text_start(mark) - 0.5j * mark.size * along
     end = low + text_width(mark.text, mark.size, bold=mark.bold, italic=mark.italic) * along
@@ -102,13 +108,13 @@ def _font_letters() -> frozenset[int]:
 
 
 def replace_missing(text: str) -> str:
-    """Return the text with a box in place of every character that the font lacks."""
+    """Replace each character that is missing in the font by a box."""
     available = _font_letters()
     return "".join(letter if ord(letter) in available else MISSING_GLYPH for letter in text)
 
 
 def missing_characters(text: str) -> set[str]:
-    """Return the characters that the font lacks and boxes replace."""
+    """Return the characters of a text that are missing in the font."""
     available = _font_letters()
     return {letter for letter in text if ord(letter) not in available}
 
@@ -120,13 +126,13 @@ INDEX_BELOW, INDEX_ABOVE = -0.30, 0.36  # of the font size: offset of the middle
 
 
 def split_symbols(words: Words) -> tuple[str | Symbol, ...]:
-    """Return the texts and symbols of which words consist, with typographic minus signs."""
+    """Split a text into plain strings and symbols with indices, with typographic minus signs in the strings."""
     several = words if isinstance(words, tuple) else (words,)
     return tuple(signed(typeset(piece)) if isinstance(piece, str) else piece for piece in several)
 
 
 def plain_text(words: Words) -> str:
-    """Return words on one line, with indices written like a^n_BA."""
+    """Write a text as a plain string, with indices as in a^n_BA."""
     return "".join(
         piece
         if isinstance(piece, str)
@@ -136,7 +142,7 @@ def plain_text(words: Words) -> str:
 
 
 def placed_pieces(words: Words, size: float) -> Iterator[tuple[complex, str, float]]:
-    """Yield the pieces of a text: offset from its left end, letters, and their size."""
+    """Yield the parts of a text with indices, as (offset from the left end, letters, font size)."""
     at = 0.0
     for piece in split_symbols(words):
         if isinstance(piece, str):
@@ -152,7 +158,7 @@ def placed_pieces(words: Words, size: float) -> Iterator[tuple[complex, str, flo
 
 @lru_cache(10_000)
 def script_width(words: Words, size: float) -> float:
-    """Return the width of words with indices, in the unit of their size."""
+    """Return the width of a text with indices, in the unit of the font size."""
     return sum(
         text_width(piece, size)
         if isinstance(piece, str)
@@ -164,9 +170,11 @@ def script_width(words: Words, size: float) -> float:
 
 @lru_cache(1000)
 def wrap_symbols(words: Words, size: float, most: float, hanging: str = "") -> tuple[Words, ...]:
-    """Break words at spaces into lines of at most `most`; all lines but the first begin with `hanging`.
+    """Break a text with indices at spaces into lines no wider than `most`.
 
-    The last word, which may be a unit, stays with the one before it.
+    The last word, which may be a unit, stays on one line with the word before it.
+
+    hanging: indent of all lines but the first.
     """
     lines: list[Words] = []
     line: list[str | Symbol] = []
@@ -183,7 +191,7 @@ def wrap_symbols(words: Words, size: float, most: float, hanging: str = "") -> t
 
 
 def _join_texts(line: Iterable[str | Symbol]) -> tuple[str | Symbol, ...]:
-    """Join consecutive texts into one."""
+    """Join consecutive strings into one."""
     joined: list[str | Symbol] = []
     for piece in line:
         if joined and isinstance(piece, str) and isinstance(joined[-1], str):
@@ -194,7 +202,7 @@ def _join_texts(line: Iterable[str | Symbol]) -> tuple[str | Symbol, ...]:
 
 
 def _split_at_spaces(words: Words) -> Iterator[tuple[str | Symbol, ...]]:
-    """Yield the words between spaces, each with the space before it."""
+    """Yield the words of a text, each with the space before it."""
     token: list[str | Symbol] = []
     for piece in split_symbols(words):
         first, *others = piece.split(" ") if isinstance(piece, str) else [piece]
@@ -214,7 +222,7 @@ LINE_SPACING = 1.25  # of the font size
 
 
 def cut_text(text: str, size: float, room: float, *, bold: bool = False) -> str:
-    """Return as much of a text as fits the room (mm), with an ellipsis if it is cut."""
+    """Shorten a text to a width of `room` mm; an ellipsis marks where it is cut."""
     text = text[: max(int(8 * room / size), 1)]  # no letter of a line is narrower on average; measuring takes time
     if text_width(text, size, bold=bold) <= room:
         return text
@@ -227,7 +235,9 @@ def cut_text(text: str, size: float, room: float, *, bold: bool = False) -> str:
 
 
 def wrap_text(text: str, size: float, room: float, most: int, *, bold: bool = False) -> list[str]:
-    """Break a text into at most `most` lines of about equal length within the room (mm); the last one is cut."""
+    """Break a text into at most `most` lines of about equal length, no wider than `room` mm. The last line is cut if
+    needed.
+    """
     lines = narrower = _fill_lines(text, size, room, most, bold)
     while 1 < len(narrower) == len(lines) and " ".join(narrower) == " ".join(lines):
         lines = narrower
@@ -237,7 +247,7 @@ def wrap_text(text: str, size: float, room: float, most: int, *, bold: bool = Fa
 
 
 def _fill_lines(text: str, size: float, room: float, most: int, bold: bool) -> list[str]:
-    """Break a text into lines, each as long as the room allows."""
+    """Break a text into at most `most` lines, each as long as possible."""
     lines: list[str] = []
     left = text.split()
     while left and len(lines) < most - 1:
@@ -252,7 +262,16 @@ def _fill_lines(text: str, size: float, room: float, most: int, bold: bool) -> l
 def cell_text(
     text: str, low: complex, high: complex, size: float, align: Align = "center", *, lines: int = 1, bold: bool = False
 ) -> list[TextMark]:
-    """Return a text in the middle of a cell with these corners (mm), reduced or cut if it is too long."""
+    """Return a text for a cell of a table; if it is too long, its font is reduced, then it is cut.
+
+    Args:
+        text: The text.
+        low, high: Lower left and upper right corner of the cell, mm.
+        size: Font size, mm.
+        align: Horizontal alignment.
+        lines: Largest number of lines.
+        bold: True for bold letters.
+    """
     room = (high - low).real - 2 * CELL_GAP
     smaller = next(
         (s for s in (size, 0.87 * size, LEAST_TEXT_SHARE * size) if _fits_cell(text, s, room, lines, bold)),
@@ -266,7 +285,11 @@ def cell_text(
 
 
 def fit_one_line(text: str, size: float, room: float, *, bold: bool = False) -> tuple[str, float]:
-    """Return a text for one line of this room (mm) and its size, reduced or cut if it is too long."""
+    """Fit a text into one line of `room` mm: its font is reduced, then it is cut.
+
+    Returns:
+        The text, and its font size.
+    """
     words = " ".join(text.split())
     smaller = (
         max(min(1.0, room / max(text_width(words[: int(8 * room / size)], size, bold=bold), room)), LEAST_TEXT_SHARE)

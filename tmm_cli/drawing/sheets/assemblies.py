@@ -136,7 +136,7 @@ def _draw_assembly(sheet: DrawingSheet, scene: MechanismScene, group: GroupAssem
     named = [(p, p.point) for p in pairs if p.kind == "R"]
     named += [(p, p.name) for p in pairs if p.slide and (p.slide.carrier == FRAME or p.point not in hinged)]
     draw_names(sheet, [(name_anchor(sheet, scene, p, look), name, DARK_COLOUR) for p, name in named])
-    sheet.settle()
+    sheet.place_requested_labels()
 
 
 def _draw_cell(sheet: DrawingSheet, low: complex, high: complex, number: int, assembly: Assembly) -> None:

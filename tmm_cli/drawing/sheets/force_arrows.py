@@ -85,7 +85,7 @@ class ForceArrows:
 
     def _covered(self, at: complex, direction: complex) -> int:
         """Count the drawn points along a direction from a point."""
-        crowd = self.sheet.canvas.crowd - at
+        crowd = self.sheet.canvas.line_points - at
         run, off = dot(direction, crowd), np.abs(cross(direction, crowd))
         return int(np.count_nonzero((run > 2.5) & (run < LOAD_LENGTH + 3) & (off < SHAFT_REACH)))
 

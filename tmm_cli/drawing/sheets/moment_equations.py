@@ -253,7 +253,7 @@ def _group_sheets(
         points, sized = points[:1], [(points[0], along) for __, along in sized]
     sheet, text = captioned_sheets(position, title, sized, beneath, links=", ".join(loaded.links))
     draw_measured(sheet, scene, links=loaded.links)
-    bars = sheet.canvas.crowd
+    bars = sheet.canvas.line_points
     forces = ForceArrows(sheet)
     forces.draw(loaded.acting)
     forces.draw(replace(a, kind="inner") for a in further)
@@ -332,7 +332,7 @@ def draw_lever(position: Position) -> Iterable[tuple[str, Drawing]]:
         sheet.line(
             [sheet.on(bar.start), sheet.on(bar.end)], DARK_COLOUR if bar.kind == "absolute" else THIN_COLOUR, 1.5, z=3
         )
-    bars = sheet.canvas.crowd
+    bars = sheet.canvas.line_points
     drawn_loads = significant_forces(plan)
     ForceArrows(sheet).draw(drawn_loads)
     draw_arms(

@@ -127,7 +127,7 @@ def scheme_sheet(title: str, place: str, scene: MechanismScene) -> DrawingSheet:
     _draw_replacements(sheet, scene)
     draw_link_numbers(sheet, drawn.forms, hue)
     draw_names(sheet, [(name_anchor(sheet, scene, p, look), p.name, DARK_COLOUR) for p in pairs])
-    sheet.settle()
+    sheet.place_requested_labels()
     legend.draw(sheet)
     return sheet
 
@@ -369,7 +369,7 @@ def _draw_part(sheet: DrawingSheet, scene: MechanismScene, part: MechanismPart, 
     )
     draw_names(sheet, ((name_anchor(sheet, scene, p, look), external_pair_name(p, part), DARK_COLOUR) for p in outer))
     _mark_later_pairs(sheet, scene, part, (*inner, *outer), look)
-    sheet.settle()
+    sheet.place_requested_labels()
 
 
 def external_pair_name(pair: Pair, part: MechanismPart) -> str:

@@ -209,7 +209,7 @@ def draw_construction(
         vertex, first, last = (sheet.on(p) for p in (angle.vertex, angle.first, angle.last))
         draw_angle(sheet, vertex, first, last, angle.name, right=angle.right)
     _write_notes(sheet, drawn, letters, units)
-    sheet.corner()
+    sheet.draw_note_block()
     for dimension in drawn.sizes:
         _draw_size(sheet, dimension, units)
     for spot in drawn.spots:
@@ -275,7 +275,7 @@ def _label_curve(sheet: DrawingSheet, name: str, pieces: Sequence[Sequence[compl
         run = np.concatenate([[0], np.cumsum(np.abs(np.diff(piece)))])
         points += [complex(np.interp(share * run[-1], run, piece)) for share in np.linspace(0.1, 0.9, 17)]
     if name and points:
-        crowd = sheet.canvas.crowd
+        crowd = sheet.canvas.line_points
         free = min(points, key=lambda z: (int(np.count_nonzero(np.abs(crowd - z) < NAME_CLEARANCE)), -abs(z)))
         sheet.label(name, free, 10, NAME_COLOUR, "italic")
 

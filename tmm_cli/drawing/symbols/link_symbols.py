@@ -138,7 +138,7 @@ def quiet_direction(
     sheet: DrawingSheet, at: complex, wish: complex, reach: float, choices: Iterable[complex] = (), from_: float = 1.8
 ) -> complex:
     """Return the direction from a point in which least is drawn, as near to `wish` as possible."""
-    crowd = sheet.canvas.crowd
+    crowd = sheet.canvas.line_points
     crowd = crowd[np.abs(crowd - at) < 2 * reach] - at
 
     def cost(direction: complex) -> float:
@@ -154,7 +154,7 @@ def draw_rotation_arrow(
     sheet: DrawingSheet, pivot: complex, start: float, sense: int, name: Words, colour: str
 ) -> None:
     """Draw an arrow of rotation about a pivot, beginning beside the link or where there is more room."""
-    radius, crowd = 8.5, sheet.canvas.crowd
+    radius, crowd = 8.5, sheet.canvas.line_points
 
     def arc(first: float) -> list[complex]:
         return [pivot + radius * complex(unit(first + sense * a)) for a in np.linspace(0, 1.5, 24)]
@@ -188,7 +188,7 @@ def symbol_scale(sheet: DrawingSheet, scene: MechanismScene, links: Iterable[str
 def draw_link_numbers(sheet: DrawingSheet, forms: Mapping[str, LinkForm], hue: Mapping[str, str]) -> None:
     """Write the numbers of links in the middle of empty plates, or beside the links."""
     for link, form in forms.items():
-        if len(form.hull) > 2 and np.all(np.abs(sheet.canvas.crowd - form.middle) > NUMBER_CLEARANCE):
+        if len(form.hull) > 2 and np.all(np.abs(sheet.canvas.line_points - form.middle) > NUMBER_CLEARANCE):
             sheet.text(form.middle, link, 11, colour=hue[link], ha="center", style="italic")
         else:
             sheet.label(link, form.middle, 11, hue[link], "italic")
