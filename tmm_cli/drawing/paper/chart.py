@@ -114,8 +114,7 @@ def vertical_axis(
 ) -> ChartAxis:
     """Return an axis of this length at a round scale, with at least `air` mm free above and below the values.
 
-    It includes zero unless the values are far from zero. If no value is negative, or none is positive, it begins or ends
-    at zero.
+    It includes zero unless the values are far from zero. If all values have the same sign, it begins or ends at zero.
     """
     low, high = _widen_range(low, high)
     if max(abs(low), abs(high)) < 2 * (high - low):

@@ -191,8 +191,8 @@ class Ruler:
 
     Attributes:
         base: Point of a straight path from which lengths are measured, or centre of a circular path, mm.
-        along: Unit vector along a straight path. For a circular path, unit vector from the centre to the point of the path
-            from which lengths are measured.
+        along: Unit vector along a straight path, or from the centre of a circular path to the point from which lengths
+            are measured.
         off: Distance from the path (mm), positive to the left of a straight path or outside a circular one.
         radius: Radius of a circular path, mm; 0: the path is straight.
     """

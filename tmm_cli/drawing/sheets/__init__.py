@@ -1,4 +1,4 @@
-"""Sheets of a project, one subject in each module; `drawing/run.py` lists those of a run."""
+"""Sheets of a project, one subject in each module. `drawing/run.py` lists those that a run draws."""
 
 from tmm_cli.interfaces import lazy
 

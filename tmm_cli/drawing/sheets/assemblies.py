@@ -1,4 +1,4 @@
-"""All real assemblies of an Assur group side by side at one scale, with the links to which the group is attached."""
+"""Sheets with all real assemblies of an Assur group, side by side at one scale, and the links next to the group."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ LEAST_SYMBOLS = 0.7  # relative size of symbols; smaller ones are illegible
 
 
 def draw_assemblies(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """Yield the sheets with the stems of their files; groups with many assemblies get more than one sheet."""
+    """Yield the sheets, as (stem of the file name, drawing). A group with many assemblies gets more than one sheet."""
     for stem, configuration, group in name_assembly_files(results.assemblies or ()):
         numbered = list(enumerate(group.assemblies, 1))
         for first in range(0, len(numbered), ASSEMBLIES_PER_SHEET):
@@ -62,7 +62,14 @@ def draw_assemblies(results: Results) -> Iterable[tuple[str, Drawing]]:
 def assemblies_sheet(
     results: Results, configuration: Assemblies, group: GroupAssemblies, numbered: Sequence[tuple[int, Assembly]]
 ) -> DrawingSheet:
-    """Draw a sheet of numbered assemblies; the scale also suits the assemblies of the group on other sheets."""
+    """Draw a sheet with some of the assemblies of a group. All assemblies of the group have the same scale.
+
+    Args:
+        results: Computed results.
+        configuration: Position of the links to which the group is connected.
+        group: The group with all its assemblies.
+        numbered: Assemblies on this sheet with their numbers.
+    """
     pairs = _drawn_pairs(results.structure, group)
     structure = replace(results.structure, pairs=pairs)
     links = [*group.group.links, *_adjacent_links(group)]
@@ -91,30 +98,39 @@ def assemblies_sheet(
 
 
 def _adjacent_links(group: GroupAssemblies) -> list[str]:
-    """Return the moving links to which a group is attached."""
+    """Return the moving links to which the group is connected."""
     group_links = group.group.links
     joined_links = (pair.i if pair.j in group_links else pair.j for pair in group.group.outer)
     return list(dict.fromkeys(link for link in joined_links if link != FRAME))
 
 
 def _drawn_pairs(structure: Structure, group: GroupAssemblies) -> tuple[Pair, ...]:
-    """Return the pairs of the group and of its adjacent links with the frame, and hinges of later groups."""
+    """Return the pairs to be drawn: those between drawn links or the frame, and hinges to which later groups are
+    connected.
+    """
     group_links = set(group.group.links)
     drawn = group_links | {FRAME} | set(_adjacent_links(group))
     return tuple(p for p in structure.pairs if {p.i, p.j} <= drawn or (p.kind == "R" and p.i in group_links))
 
 
 def _assembly_box(scene: MechanismScene, links: Sequence[str]) -> tuple[complex, complex]:
-    """Return the centre of an assembly, and its width and height as a complex number, m."""
+    """Return the centre of an assembly (m), and its width + i height (m)."""
     points = [*scene.extent(links), *(scene.at(pair) for pair in scene.structure.pairs)]
     __, across, up, middle = extent([p for p in points if np.isfinite(p)] or [0j])
     return middle, complex(across, up)
 
 
 def _choose_cells(count: int, largest: complex) -> tuple[float, tuple[float, float], list[tuple[complex, complex]]]:
-    """Return scale (m per mm), paper and cells (mm) for `count` drawings of at most this size (m).
+    """Choose scale and paper for `count` drawings side by side.
 
-    The largest scale is chosen; of equal ones, that with the fewest empty cells.
+    The largest scale is chosen; if several layouts have this scale, the one with the fewest empty cells.
+
+    Args:
+        count: Number of drawings.
+        largest: Largest width + i height of a drawing, m.
+
+    Returns:
+        Scale (m per mm), paper size (mm), and lower left and upper right corner of each cell (mm).
     """
     layouts = []
     for paper in (LANDSCAPE, PORTRAIT):
@@ -127,7 +143,7 @@ def _choose_cells(count: int, largest: complex) -> tuple[float, tuple[float, flo
 
 
 def _draw_assembly(sheet: DrawingSheet, scene: MechanismScene, group: GroupAssemblies, look: SymbolStyle) -> None:
-    """Draw the group in its colour, the adjacent links in grey and the frame dark."""
+    """Draw the group in its colour, the links to which it is connected in grey, and the frame in black."""
     group_links, adjacent, pairs = group.group.links, _adjacent_links(group), scene.structure.pairs
     hue = link_colours(scene.structure) | dict.fromkeys(adjacent, THIN_COLOUR)
     drawn = render_scene(sheet, scene, (*adjacent, *group_links), pairs, look, hue)
@@ -140,7 +156,7 @@ def _draw_assembly(sheet: DrawingSheet, scene: MechanismScene, group: GroupAssem
 
 
 def _draw_cell(sheet: DrawingSheet, low: complex, high: complex, number: int, assembly: Assembly) -> None:
-    """Draw the frame of a cell and the number of the assembly; that of the sketch is marked."""
+    """Draw the border of a cell and the number of the assembly. The assembly of the sketch has a thick border."""
     corners = [low, complex(high.real, low.imag), high, complex(low.real, high.imag), low]
     mark = assembly.of_sketch
     sheet.line(corners, DARK_COLOUR if mark else THIN_COLOUR, 2.2 if mark else 0.5, z=1, blocks=False)

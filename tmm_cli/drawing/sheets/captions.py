@@ -1,4 +1,4 @@
-"""Equations and small tables that accompany a drawing, below it or on its right."""
+"""Equations and small tables that accompany a drawing: lines below it, tables below it or on its right."""
 
 from __future__ import annotations
 
@@ -50,14 +50,14 @@ SHEET_PAPERS = (LANDSCAPE, PORTRAIT)
 
 @dataclass(frozen=True)
 class CaptionTable:
-    """Column titles, and rows of the same length."""
+    """A small table: column headings, and rows with one cell for each of them."""
 
     head: tuple[str, ...]
     rows: Sequence[tuple[Words, ...]]
 
     @property
     def size(self) -> complex:
-        """Width and height (mm) in one column, as a complex number."""
+        """Width + i height of the table, mm, if it is not broken into parts."""
         return complex(sum(self.widths), CAPTION_ROW * (len(self.rows) + 1.5))
 
     @cached_property
@@ -69,14 +69,23 @@ class CaptionTable:
 
 @dataclass(frozen=True)
 class DrawingCaption:
-    """Wrapped lines, and tables side by side below them (with `aside`: stacked beside the drawing)."""
+    """Text and tables that accompany a drawing.
+
+    Attributes:
+        lines: Lines of text below the drawing; they are wrapped.
+        tables: Tables below the text.
+        aside: True if the tables are stacked on the right of the drawing instead.
+    """
 
     lines: Sequence[Words] = ()
     tables: Sequence[CaptionTable] = ()
     aside: bool = False
 
     def left(self, low: complex, high: complex) -> complex:
-        """Return the size (mm) left to the drawing; its height is negative if the caption does not fit."""
+        """Return the space that a field leaves for the drawing, width + i height, mm.
+
+        The height is negative if the caption does not fit.
+        """
         lines = CAPTION_GAP + CAPTION_LINE * len(self._wrapped((high - low).real))
         if not self.aside:
             rows = self._rows((high - low).real)
@@ -86,7 +95,7 @@ class DrawingCaption:
         return room if sum(size.imag for size in sizes) <= room.imag else complex(room.real, -1.0)
 
     def put(self, sheet: DrawingSheet, low: complex, high: complex) -> None:
-        """Write the caption into a field."""
+        """Write the caption into a field, given by its lower left and upper right corner (mm)."""
         room, across = self.left(low, high), (high - low).real
         top = low + 1j * (CAPTION_LINE * len(self._wrapped(across)))
         if not self.aside:
@@ -110,7 +119,7 @@ class DrawingCaption:
         ]
 
     def _rows(self, across: float) -> int:
-        """Return the number of rows at which all columns of the tables fit side by side."""
+        """Return the smallest number of rows at which the tables, broken into parts, fit side by side into a width."""
         tables = [table for table in self.tables if table.rows]
         most = max((len(table.rows) for table in tables), default=0)
         for rows in range(min(most, 3), most):
@@ -121,7 +130,7 @@ class DrawingCaption:
 
 
 def _write_column(sheet: DrawingSheet, top: complex, table: CaptionTable, rows: Sequence[tuple[Words, ...]]) -> None:
-    """Write some rows of a table below its titles."""
+    """Write some rows of a table below its column headings."""
     for number, row in enumerate((table.head, *rows)):
         at = top - 1j * CAPTION_ROW * (number + (0.4 if number == 0 else 0.7))
         for words, wide in zip(row, table.widths, strict=True):
@@ -142,19 +151,20 @@ def captioned_sheets(
     beneath: Callable[[float], DrawingCaption],
     **words: str,
 ) -> tuple[DrawingSheet, DrawingSheet | None]:
-    """Open a sheet for a drawing with its caption; a long caption gets a sheet of its own.
+    """Begin a sheet for a drawing and write its caption. A long caption is written on a sheet of its own.
 
-    Orientation of the paper and position of the tables are chosen so that the drawing becomes largest.
+    Orientation of the paper and position of the tables are chosen so that the drawing becomes as large as possible.
 
     Args:
-        position: The position.
-        title: Title with the field {caption}, and others given in `words`.
-        points: Points of the drawing (SI), each with the offset (mm) by which the drawing extends beyond it.
-        beneath: Returns the caption at a scale (SI units per mm).
-        words: Further fields of the title.
+        position: The position that is drawn.
+        title: Title with the field {caption}, and further fields from `words`.
+        points: Points that must be on the sheet (SI units), each with an offset on paper (mm) that does not depend on the
+            scale.
+        beneath: Returns the caption for a scale (SI units per mm).
+        words: Values of further fields of the title.
 
     Returns:
-        The sheet for the drawing, and that of the caption or None.
+        The sheet for the drawing, and the sheet with the caption or None.
     """
     name, subject = position.results.problem.title, title.format(caption=position.caption, **words)
     points = [(place, away) for place, away in points if np.isfinite(place + away)] or [(0j, 0j)]
@@ -179,7 +189,14 @@ def captioned_sheets(
 
 @dataclass(frozen=True)
 class _CaptionedLayout:
-    """Paper, scale (SI units per mm), middle of the drawing (mm) and caption."""
+    """Layout of a drawing with its caption.
+
+    Attributes:
+        paper: Width and height of the paper, mm.
+        mu: Scale, SI units per mm.
+        middle: Middle of the drawing relative to the origin of coordinates, mm.
+        written: The caption.
+    """
 
     paper: tuple[float, float]
     mu: float
@@ -190,7 +207,7 @@ class _CaptionedLayout:
 def _best_layout(
     points: Sequence[tuple[complex, complex]], *captions: Callable[[float], DrawingCaption]
 ) -> _CaptionedLayout:
-    """Return the layout with the largest drawing; of equal ones, the first."""
+    """Return the layout in which the drawing is largest; if several are equal, the first."""
     return min(
         (_fit_layout(paper, points, caption_at) for caption_at in captions for paper in SHEET_PAPERS),
         key=lambda placed: placed.mu,
@@ -200,7 +217,9 @@ def _best_layout(
 def _large_sheet_layout(
     points: Sequence[tuple[complex, complex]], beneath: Callable[[float], DrawingCaption]
 ) -> _CaptionedLayout:
-    """Return the layout at the scale of a large sheet, on the smallest paper for drawing and caption."""
+    """Return the layout for a large sheet, at the scale required there and on the smallest paper for drawing and
+    caption.
+    """
     longest = longest_for(max(LANDSCAPE))
     _, across, up, __ = extent([place for place, __ in points])
     mu = round_scale(across, up, longest, longest)
@@ -241,7 +260,7 @@ def _captioned_sheet(
 def _fit_layout(
     paper: tuple[float, float], points: Sequence[tuple[complex, complex]], written: Callable[[float], DrawingCaption]
 ) -> _CaptionedLayout:
-    """Return the layout at the smallest round scale factor at which drawing and caption fit on the paper."""
+    """Return the layout with the largest drawing at a round scale that fits on the paper together with the caption."""
     low, high = drawing_area(paper)
     size, across, up, __ = extent([place for place, __ in points])
     mu = round_scale(across, up, (high - low).real, (high - low).imag)

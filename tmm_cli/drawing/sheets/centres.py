@@ -1,4 +1,4 @@
-"""Instantaneous centres of a position, with the lines on which they lie by threes (Kennedy's theorem)."""
+"""Instantaneous centres in a position. By Kennedy's theorem, three of them lie on each of the lines drawn."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ FAR_AWAY = 1e4  # mm: beyond any sheet
 
 
 def draw_centres(results: Results) -> Iterator[tuple[str, Drawing]]:
-    """Yield a sheet of instantaneous centres for each detailed position."""
+    """Yield a sheet of instantaneous centres for each detailed position, as (stem of the file name, drawing)."""
     motion = results.motion
     assert motion is not None
     for k, centres in (results.centres or {}).items():
@@ -77,7 +77,15 @@ def _draw_kennedy_line(
     by_links: Mapping[LinkPair, InstantCentre],
     near: Mapping[LinkPair, complex],
 ) -> None:
-    """Draw the line through two centres and the one they determine, up to the border if a centre is beyond it."""
+    """Draw the line through two centres on which a third one lies. It is cut off at the edge of the sheet.
+
+    Args:
+        sheet: Sheet to draw on.
+        line: The two centres, by their links.
+        centre: The third centre.
+        by_links: All centres, by their links.
+        near: Positions (m) of the centres on the sheet, by their links.
+    """
     through = [by_links[links] for links in line]
     three = (*through, centre)
     along = _line_direction(through)
@@ -103,7 +111,7 @@ def _line_direction(through: Sequence[InstantCentre]) -> complex:
 
 
 def _distant_centre_notes(centres: Sequence[InstantCentre], near: Mapping[LinkPair, complex]) -> Iterator[str]:
-    """Yield notes on the centres that are not on the sheet."""
+    """Yield notes on centres that are not on the sheet: at infinity, or too far away."""
     for centre in centres:
         symbol = Symbol("P", centre_name(centre.links)[1:]).name
         if centre.place is None and centre.direction is not None:

@@ -1,4 +1,4 @@
-"""Diagrams over the cycle: quantities at round scales against the driver coordinate, with the numbers of positions."""
+"""Diagrams over the cycle: quantities against the driver coordinate at round scales, with position numbers."""
 
 from __future__ import annotations
 
@@ -61,7 +61,14 @@ MOST_CURVES = 6  # in a panel of reactions, pressure angles or balancing moments
 
 @dataclass(frozen=True)
 class SampledCurve:
-    """A quantity (SI) at closely spaced driver coordinates and at the computed positions. limit: an allowed value."""
+    """A quantity as a curve over the cycle and as dots at the computed positions.
+
+    Attributes:
+        name: Name in the legend.
+        values: Values of the curve at closely spaced driver coordinates, SI units.
+        points: Values at the computed positions, SI units.
+        limit: True for an allowable value, which is drawn dashed and without dots.
+    """
 
     name: str
     values: Any
@@ -71,7 +78,14 @@ class SampledCurve:
 
 @dataclass(frozen=True)
 class QuantityPlot:
-    """Curves of one dimension, in one panel. symbol: symbol in the scale, if the dimension does not determine it."""
+    """Quantities of the same dimension that are drawn in one panel.
+
+    Attributes:
+        words: Title.
+        dimension: Their dimension.
+        curves: Their curves.
+        symbol: Letter in the scale factor, e.g. "R"; if empty, the one that is usual for the dimension.
+    """
 
     words: str
     dimension: Dimension
@@ -80,7 +94,10 @@ class QuantityPlot:
 
 
 def output_plots(results: Results, motion: Motion, link: str) -> list[QuantityPlot]:
-    """Return the motion of an output; angles continue through full revolutions."""
+    """Return the plots of the motion of an output: coordinate, speed and acceleration.
+
+    Angles increase or decrease continuously over full revolutions.
+    """
     assert results.motion is not None
     near = [int(np.argmin(np.abs(motion.q - q))) for q in results.motion.q]
     plots = []
@@ -97,7 +114,10 @@ def output_plots(results: Results, motion: Motion, link: str) -> list[QuantityPl
 
 
 def balancing_plots(whole: Results, results: Results) -> list[QuantityPlot]:
-    """Return the balancing moments of the drivers in panels, and the balancing forces in others."""
+    """Return the plots of the balancing moments, then of the balancing forces of the drivers.
+
+    whole: results at closely spaced driver coordinates; results: those at the computed positions.
+    """
     if whole.reactions is None or results.reactions is None:
         return []
     several = len(whole.reactions.balances) > 1
@@ -117,7 +137,10 @@ def balancing_plots(whole: Results, results: Results) -> list[QuantityPlot]:
 
 
 def reaction_plots(whole: Results, results: Results) -> list[QuantityPlot]:
-    """Return the magnitudes of all reactions, MOST_CURVES in a panel."""
+    """Return the plots of the magnitudes of all reactions, at most MOST_CURVES in each.
+
+    whole: results at closely spaced driver coordinates; results: those at the computed positions.
+    """
     if whole.reactions is None or results.reactions is None:
         return []
     computed = {r.pair.name: r for r in results.reactions.all}
@@ -135,7 +158,10 @@ def reaction_plots(whole: Results, results: Results) -> list[QuantityPlot]:
 
 
 def energy_plots(whole: Results, results: Results) -> list[QuantityPlot]:
-    """Return reduced inertia and moment, kinetic energy and powers; nothing without weights and loads."""
+    """Return the plots of reduced inertia, reduced moment, kinetic energy and powers; none without weights and loads.
+
+    whole: results at closely spaced driver coordinates; results: those at the computed positions.
+    """
     curve, computed = whole.energy, results.energy
     if curve is None or computed is None:
         return []
@@ -162,7 +188,10 @@ def energy_plots(whole: Results, results: Results) -> list[QuantityPlot]:
 
 
 def shaking_plots(results: Results, q: Any) -> list[QuantityPlot]:
-    """Return the shaking force and moment on the frame, before and after balancing."""
+    """Return the plots of the shaking force and the shaking moment, with and without counterweights.
+
+    q: closely spaced driver coordinates.
+    """
     balancing = results.balancing
     if balancing is None or not np.any(np.nan_to_num(balancing.cycle.before.force) != 0):
         return []
@@ -181,7 +210,7 @@ def shaking_plots(results: Results, q: Any) -> list[QuantityPlot]:
 
 
 def pressure_plots(results: Results, motion: Motion) -> list[QuantityPlot]:
-    """Plot the pressure angles of sliding and of rotating driven links in separate panels, as their limits differ."""
+    """Return the plots of pressure angles. Sliding and rotating driven links are separate, as their limits differ."""
     with np.errstate(all="ignore"):
         curves = {
             (kernel.group.title, lead[0], driving_pair_names(lead)): pressure_angle(motion, kernel, at, lead)
@@ -241,7 +270,10 @@ SYMBOL_UNITS = {"T": "J", "A": "J", "P": "W", "t": "s"}  # units of quantities w
 
 
 def draw_diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """Yield the diagrams over the cycle: outputs, balancing, reactions, energy, pressure angles, shaking force."""
+    """Yield all diagrams over the cycle, as (stem of the file name, drawing).
+
+    They show outputs, balancing load, reactions, energy, pressure angles and shaking force.
+    """
     coordinates, borders = dense_coordinates(results)
     whole = results_at(results, coordinates)
     motion = whole.motion
@@ -267,7 +299,10 @@ def draw_diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
 
 
 def dense_coordinates(results: Results) -> tuple[Real, list[int]]:
-    """Return closely spaced driver coordinates, and the indices after which a stroke ends or a load jumps."""
+    """Return closely spaced driver coordinates over the cycle, and the indices after which quantities may jump.
+
+    Quantities may jump where a stroke ends or a tabulated load jumps.
+    """
     turns, sense = results.turns, results.linkage.driver.sense
     coordinates = results.closely(min((POSITIONS_PER_TURN - 1) * (turns or 1), MOST_POINTS) + 1)
     if not turns:
@@ -286,7 +321,7 @@ def dense_coordinates(results: Results) -> tuple[Real, list[int]]:
 
 
 def _strokes_from_start(results: Results) -> list[tuple[float, float, bool]]:
-    """Return the strokes from position 0 on: start (rad), length (rad), and whether it is a working stroke."""
+    """Return the strokes from position 0 on, as (start, length, True for a working stroke); angles in rad."""
     turns, strokes = results.turns, results.strokes
     if not turns or strokes is None:
         return []
@@ -302,7 +337,7 @@ def _strokes_from_start(results: Results) -> list[tuple[float, float, bool]]:
 
 
 def _stroke_names(results: Results, strokes: Sequence[tuple[float, float, bool]]) -> list[str]:
-    """Return the names of strokes."""
+    """Name the strokes: working and return stroke, or by number if there are several of them."""
     if not results.counts_strokes:
         return [_("working stroke") if working else _("return stroke") for __, __, working in strokes]
     numbers = list(range(1, len(strokes) + 1))
@@ -312,7 +347,9 @@ def _stroke_names(results: Results, strokes: Sequence[tuple[float, float, bool]]
 
 
 def _axis_values(results: Results, q: Real) -> Any:
-    """Return the crank angle from position 0 (deg), or the displacement of a slider in the unit of the file."""
+    """Convert driver coordinates to the horizontal axis: crank angle from position 0 (deg), or displacement of a
+    slider.
+    """
     if results.linkage.driver.kind == "slide":
         return np.asarray(q) / results.problem.units.factor(quantities.LENGTH)
     return np.degrees(results.linkage.driver.sense * (q - results.start))
@@ -324,12 +361,15 @@ def plot_over_driver(
     """Draw quantities against the driver coordinate on one or more sheets.
 
     Args:
-        results: Computed results.
-        stem: Stem of the first file; further ones are numbered from 2.
+        results: Results at the computed positions.
+        stem: Stem of the first file name; further ones are numbered from 2.
         caption: Caption of the sheets.
-        q: Driver coordinates (rad or m).
-        borders: Indices after which a quantity may jump.
+        q: Driver coordinates of the curves (rad or m).
+        borders: Indices of q after which a quantity may jump.
         plots: Quantities, one panel each.
+
+    Returns:
+        The sheets, as (stem of the file name, drawing).
     """
     left, number = list(plots), 1
     while left:
@@ -341,7 +381,11 @@ def plot_over_driver(
 def _plot_sheet(
     results: Results, caption: str, q: Real, borders: Sequence[int], quantity_plots: Sequence[QuantityPlot]
 ) -> tuple[int, Drawing]:
-    """Draw as many of the quantities as one sheet holds; return their number and the sheet."""
+    """Draw as many of the plots as fit on one sheet.
+
+    Returns:
+        Number of plots drawn, and the sheet.
+    """
     assert results.motion is not None
     sheet = DrawingSheet(results.problem.title, caption, paper=PORTRAIT if len(quantity_plots) > 2 else LANDSCAPE)
     xs, marks, end = _axis_values(results, q), _axis_values(results, results.motion.q), 360 * results.turns
@@ -365,7 +409,7 @@ def _plot_sheet(
 
 
 def _driver_axis(results: Results, ends: tuple[float, float], start: float, most: float) -> tuple[ChartAxis, Words]:
-    """Return the axis of the driver coordinate (deg or unit of the file) and its title."""
+    """Return the horizontal axis for the driver coordinate, and its title with the scale factor."""
     if results.linkage.driver.kind == "turn":
         axis = round_axis(*ends, start, most, degrees=True)
         title = _("crank angle from position 0, deg")
@@ -379,13 +423,13 @@ def _driver_axis(results: Results, ends: tuple[float, float], start: float, most
 def plot_quantities(
     quantity_plot: QuantityPlot, units: UnitSystem, xs: Any, marks: Any, borders: Sequence[int]
 ) -> PlotContent:
-    """Return the panel of a plot; after the indices `borders` its curves may jump.
+    """Convert a plot from SI to the units of the file, and interrupt its curves where they jump.
 
     Args:
-        quantity_plot: The quantities (SI).
+        quantity_plot: The quantities, SI units.
         units: Units of the file.
-        xs: Values of the horizontal axis, shape (coordinates,).
-        marks: Values of the horizontal axis at the computed positions.
+        xs: Values of the curves on the horizontal axis, (coordinates,).
+        marks: Values of the computed positions on the horizontal axis, (positions,).
         borders: Indices of `xs` after which a curve may jump.
     """
     factor, unit = units.factor(quantity_plot.dimension), typeset_unit(units.spelt(quantity_plot.dimension))
@@ -422,9 +466,10 @@ def plot_quantities(
 
 
 def _find_jumps(xs: Any, values: Any, borders: Sequence[int]) -> list[int]:
-    """Return the indices after which a curve jumps: at ends of strokes, and where it is much steeper than nearby.
+    """Return the indices after which a curve jumps.
 
-    The latter occurs where friction reverses within a stroke.
+    These are ends of strokes (`borders`), and points where the curve is much steeper than nearby, as when friction
+    reverses within a stroke.
     """
     steps, whole = np.abs(np.diff(values)), np.ptp(values)
     if not whole > CONSTANT_BELOW * np.max(np.abs(values)):
@@ -437,7 +482,7 @@ def _find_jumps(xs: Any, values: Any, borders: Sequence[int]) -> list[int]:
 
 
 def _scale_caption(quantity_plot: QuantityPlot, units: UnitSystem, unit: str) -> Any:
-    """Return the function that writes the scale of an axis; lengths are in metres, as on the other sheets."""
+    """Return a function that writes the scale factor of a vertical axis. Lengths are in metres, as on other sheets."""
     symbol, factor = quantity_plot.symbol or SCALE_SYMBOLS.get(quantity_plot.dimension, ""), 1.0
     if quantity_plot.dimension == quantities.LENGTH:
         unit, factor = "m", units.factor(quantities.LENGTH)

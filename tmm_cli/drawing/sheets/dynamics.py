@@ -1,8 +1,8 @@
-"""Dynamics: law of motion over the cycle, Wittenbauer's energy-mass diagram, a single run.
+"""Diagrams of dynamics: law of motion over the cycle, Wittenbauer's energy-mass diagram, a single run.
 
-The law of motion is drawn against the travel of the driver in its sense of motion: driving moments are positive,
-whichever way the driver rotates. The energy-mass diagram has its two tangents with their angles, and the segment
-that determines the flywheel.
+The law of motion is drawn against the travel of the driver in its sense of motion, so that driving moments are
+positive for either sense of rotation. The energy-mass diagram contains its two tangents with their angles, and the
+segment that determines the flywheel.
 """
 
 from __future__ import annotations
@@ -66,13 +66,13 @@ MOST_CURVES = 6  # loads or links with a curve each; of more, the smallest are a
 
 
 def draw_law_of_motion(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """Yield the law of motion and the energy-mass diagram, if the file requests dynamics."""
+    """Yield the sheets of the law of motion and the energy-mass diagram; none if the file does not request dynamics."""
     yield from draw_law_curves(results)
     yield from draw_energy_mass(results)
 
 
 def draw_law_curves(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """Yield reduced moments, works and energies, then inertia, speed, acceleration and time over the cycle."""
+    """Yield the sheets with reduced moments, work and energy, then those with inertia, speed, acceleration and time."""
     running = results.steady
     if running is None or results.motion is None:
         return
@@ -89,13 +89,15 @@ def draw_law_curves(results: Results) -> Iterable[tuple[str, Drawing]]:
 
 
 def draw_energy_mass(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """Yield the energy-mass diagram."""
+    """Yield the energy-mass diagram, as (stem of the file name, drawing); nothing if the file does not request
+    dynamics.
+    """
     if results.steady is not None and results.motion is not None:
         yield "energy-mass", energy_mass_sheet(results, results.steady, _dense_travel(results.steady)[0])
 
 
 def _dense_travel(running: SteadyRunning) -> tuple[Real, list[int]]:
-    """Return closely spaced travels, and the indices after which a piece of the functions ends: they may jump there."""
+    """Return closely spaced travels of the driver (rad), and the indices after which quantities may jump."""
     lows, highs = visible_stretches(running.steady.law.energy.edges)
     inner = np.linspace(0, 1, max(4, 720 // len(lows)))
     low, high = lows[:, None] + BORDER_OFFSET, highs[:, None] - BORDER_OFFSET
@@ -104,10 +106,10 @@ def _dense_travel(running: SteadyRunning) -> tuple[Real, list[int]]:
 
 
 def visible_stretches(edges: Real) -> tuple[Real, Real]:
-    """Return starts and ends of the intervals between `edges` that are wide enough to be seen on paper.
+    """Return the starts and the ends of the intervals between `edges` that are wide enough to be visible.
 
-    Adjacent narrow intervals form one stretch; if they are together narrower than a line, they are left out as a
-    jump.
+    Adjacent narrow intervals are joined into one. If even this is narrower than a line, it is left out, and the curve
+    jumps there.
     """
     least = LEAST_STRETCH * (edges[-1] - edges[0])
     wide = np.diff(edges) >= least
@@ -117,7 +119,10 @@ def visible_stretches(edges: Real) -> tuple[Real, Real]:
 
 
 def _load_plots(results: Results, running: SteadyRunning, travel: Real, computed: Real) -> list[QuantityPlot]:
-    """Return reduced moments of the loads with their sum, the driving moment, works and energies."""
+    """Return the plots of reduced load moments with their sum, load and driving moment, work and kinetic energy.
+
+    travel, computed: travels of the driver (rad) along the curves, and at the computed positions.
+    """
     steady = running.steady
     law, machine = steady.law, steady.machine
     loads = _curves_with_sum(
@@ -153,7 +158,10 @@ def _load_plots(results: Results, running: SteadyRunning, travel: Real, computed
 
 
 def _motion_plots(results: Results, running: SteadyRunning, travel: Real, computed: Real) -> list[QuantityPlot]:
-    """Return inertia of each link with the sum, its derivative, speed, acceleration and time."""
+    """Return the plots of reduced inertia of the links with their sum, its derivative, speed, acceleration and time.
+
+    travel, computed: travels of the driver (rad) along the curves, and at the computed positions.
+    """
     steady = running.steady
     law = steady.law
     parts = _curves_with_sum(
@@ -187,7 +195,7 @@ def _sample_curves(names: Sequence[str], function: Any, travel: Real, computed: 
 
 
 def _reduced_load_moments(results: Results, running: SteadyRunning, travel: Real) -> dict[str, Real]:
-    """Return the reduced moment of each load by its name, positive in the sense of the driver."""
+    """Return the reduced moments of the loads, by the name of the load, positive in the driver's sense of motion."""
     motion = motion_at_positions(results, running.start + running.sense * travel)
     moments: dict[str, Real] = {}
     for load in collect_loads(motion, results.strokes):
@@ -205,7 +213,15 @@ def _reduced_link_inertias(results: Results, running: SteadyRunning, travel: Rea
 
 
 def _curves_with_sum(curves: dict[str, Real], points: dict[str, Real], total: str) -> list[SampledCurve]:
-    """Return the sum, then a curve for each nonzero part; of many parts the smallest are added up."""
+    """Return the sum of several quantities as a curve, then a curve for each of them that is not zero.
+
+    If there are more than MOST_CURVES, the smallest ones are combined into one curve.
+
+    Args:
+        curves: Values along the curves, by name.
+        points: Values at the computed positions, by name.
+        total: Name of the sum.
+    """
     sizes = {name: float(np.max(np.abs(values))) for name, values in curves.items()}
     largest = max(sizes.values(), default=0.0)
     curves_drawn = [
@@ -244,7 +260,13 @@ SEGMENT_ENDS = ("a", "b")
 
 @dataclass(frozen=True)
 class DrawnTangent:
-    """A tangent on paper: start on the energy axis and point of contact (mm), angle (rad)."""
+    """A tangent of the energy-mass diagram on paper.
+
+    Attributes:
+        start: Its intersection with the energy axis, mm.
+        touching: Its point of contact with the curve, mm.
+        angle: Angle between the tangent and the inertia axis, rad.
+    """
 
     start: complex
     touching: complex
@@ -258,7 +280,7 @@ class DrawnTangent:
 
 
 def energy_mass_sheet(results: Results, running: SteadyRunning, travel: Real) -> Drawing:
-    """Draw the work of all moments from position 0 on against the reduced inertia of the links, over the cycle."""
+    """Draw the energy-mass diagram: work of all moments from position 0 against the reduced inertia of the links."""
     assert results.motion is not None
     steady, units = running.steady, results.problem.units
     factor, unit = units.factor(INERTIA), typeset_unit(units.spelt(INERTIA))
@@ -305,9 +327,9 @@ def energy_mass_sheet(results: Results, running: SteadyRunning, travel: Real) ->
 
 
 def _axis_ends(inertia: Any, massless: float) -> tuple[float, float]:
-    """Return the ends of the inertia axis: it begins at zero unless that is far away.
+    """Return the values at both ends of the inertia axis, which begins at zero unless this is far away.
 
-    massless: its end if no link has inertia.
+    massless: value at its end if no link has inertia.
     """
     low, high = float(np.min(inertia)), float(np.max(inertia))
     if high <= 0.0:
@@ -319,21 +341,24 @@ def _axis_ends(inertia: Any, massless: float) -> tuple[float, float]:
 
 
 def _massless_width(steady: SteadySolution) -> float:
-    """Return the inertia (kg*m²) over which a tangent rises by the change of work in the cycle; 1 if it is zero."""
+    """Return the width of a diagram for massless links: inertia (kg*m²) over which a tangent rises by the work change.
+
+    It is 1 if the work does not change.
+    """
     fastest, slowest = steady.tangents
     rise = abs(fastest.offset - slowest.offset)
     return rise / fastest.slope if rise > 0.0 else 1.0
 
 
 def _tangent_curve(tangent: Tangent, factor: float, ends: tuple[float, float], name: str, colour: str) -> ChartCurve:
-    """Return a tangent as a curve, beginning at the energy axis."""
+    """Return a tangent as a curve of the chart, from the energy axis to beyond its point of contact."""
     low, high = ends
     xs = np.array([low, min(tangent.inertia / factor + TANGENT_OVERHANG * (high - low), high)])
     return ChartCurve(xs, tangent.offset + tangent.slope * factor * xs, name, colour, "--", 1.0)
 
 
 def _draw_tangent_angle(sheet: DrawingSheet, tangent: DrawnTangent, name: Symbol, radius: float, colour: str) -> None:
-    """Draw the angle between a tangent and the inertia axis, and the point of contact."""
+    """Draw the angle between a tangent and the inertia axis, and mark its point of contact."""
     sheet.line([tangent.start, tangent.start + radius + ANGLE_LINE], THIN_COLOUR, 0.6, z=1.4, faint=True)
     arc = tangent.start + radius * np.exp(1j * np.linspace(0, tangent.angle, 30))
     sheet.line(arc.tolist(), colour, 0.7, z=2.6)
@@ -342,7 +367,7 @@ def _draw_tangent_angle(sheet: DrawingSheet, tangent: DrawnTangent, name: Symbol
 
 
 def _measured_text(drawn: list[DrawnTangent]) -> Words:
-    """Return the angles and the segment ab as they would be measured on the sheet."""
+    """Return the text with the angles of the tangents and the segment ab, as they would be measured on the sheet."""
     texts: list[str | Symbol] = []
     for tangent, name in zip(drawn, TANGENT_ANGLES, strict=True):
         texts += [name, f" = {numeral(math.degrees(tangent.angle), '.4g')}°;   "]
@@ -351,9 +376,9 @@ def _measured_text(drawn: list[DrawnTangent]) -> Words:
 
 
 def _flywheel_text(inertia: float, begins: float, units: UnitSystem) -> Words:
-    """Return the equation for the inertia of the flywheel.
+    """Return the text of the equation for the inertia of the flywheel.
 
-    begins: inertia at the start of the axis, in the unit of the file.
+    begins: inertia at the start of the horizontal axis, in the unit of the file.
     """
     tan, largest, least = symbol("tan"), *TANGENT_ANGLES
     in_units = units.from_si(inertia, INERTIA)
@@ -377,7 +402,9 @@ LEAST_SAMPLES = 4  # in a piece, where there are very many
 
 
 def draw_single_run(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """Yield the diagrams of a single run, if the file requests one."""
+    """Yield the diagrams of a single run, as (stem of the file name, drawing); nothing if the file does not request
+    one.
+    """
     single = results.single
     if single is None or results.motion is None:
         return
@@ -419,13 +446,13 @@ def draw_single_run(results: Results) -> Iterable[tuple[str, Drawing]]:
 def _run_plots(
     single: SingleRun, curve: tuple[Real, Any], points: tuple[Real, Real, Real], *, crank: bool
 ) -> list[QuantityPlot]:
-    """Return the quantities of a run.
+    """Return the plots of a single run: moments, work and energy, speed, acceleration and time.
 
     Args:
         single: The run.
-        curve: Times and states along the curve.
+        curve: Times and states along the curves.
         points: Times, travels and speeds at the computed positions.
-        crank: The driver rotates.
+        crank: True if the driver rotates.
     """
     times, (travel, speed, driven, loaded, braked) = curve
     time, computed, speeds = points

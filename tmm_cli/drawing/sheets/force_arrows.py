@@ -1,4 +1,4 @@
-"""Arrows of forces and couples on links, not to scale, and moment arms to scale."""
+"""Arrows for forces and couples on links, which are not to scale, and moment arms, which are."""
 
 from __future__ import annotations
 
@@ -26,10 +26,18 @@ COUPLE_RADII = (5.5, 8.1, 10.7, 13.3)  # mm: successive radii of couples at one 
 
 @dataclass
 class ForceArrows:
-    """Arrows of forces on a sheet, tail or head at the point of action, whichever covers less; couples as open circles.
+    """Arrows for forces and couples on a sheet.
 
-    whole: the forces act on the whole mechanism: all tails are at the points of action, and the balancing moment of a
-    crank is drawn around its support.
+    A force has its tail or its head at the point of action, whichever covers less. A couple is an open circle with an
+    arrowhead.
+
+    Attributes:
+        sheet: Sheet to draw on.
+        whole: True for a drawing of the whole mechanism. All forces then have their tails at the points of action, and
+            the balancing moment of a crank is drawn around its support.
+        taken: Forces drawn so far: point of action (mm), direction, and True if the tail is at the point.
+        coupled: Points of the couples drawn so far, mm.
+        directions: Points of action (mm) and directions of all forces.
     """
 
     sheet: DrawingSheet
@@ -84,14 +92,14 @@ class ForceArrows:
         self.sheet.label(name, end if out else start, 9.5, colour)
 
     def _covered(self, at: complex, direction: complex) -> int:
-        """Count the drawn points along a direction from a point."""
+        """Count the points of the drawing that an arrow from a point in this direction would cover."""
         crowd = self.sheet.canvas.line_points - at
         run, off = dot(direction, crowd), np.abs(cross(direction, crowd))
         return int(np.count_nonzero((run > 2.5) & (run < LOAD_LENGTH + 3) & (off < SHAFT_REACH)))
 
 
 def _draw_couple(sheet: DrawingSheet, at: complex, sense: float, colour: str, name: Words, radius: float) -> None:
-    """Draw a couple as an open circle with an arrowhead in its sense."""
+    """Draw a couple as an open circle with an arrowhead. sense: positive if counterclockwise."""
     angles = np.linspace(0.35 * np.pi, 1.75 * np.pi, 40)[:: int(sense)]
     arc = [at + radius * complex(np.cos(a), np.sin(a)) for a in angles]
     sheet.line(arc[:-4], colour, 1.2, z=5)
@@ -100,7 +108,7 @@ def _draw_couple(sheet: DrawingSheet, at: complex, sense: float, colour: str, na
 
 
 def arrow_extent(acting: Iterable[ForceOrCouple]) -> list[tuple[complex, complex]]:
-    """Return points (m) with the offsets (mm) by which an arrow may extend from them."""
+    """Return the points of action of forces (m), each with the offsets (mm) by which its arrow may extend."""
     offsets = []
     for load in acting:
         along = 0j if load.couple else (LOAD_LENGTH + 2) * load.force / abs(load.force)
@@ -109,14 +117,15 @@ def arrow_extent(acting: Iterable[ForceOrCouple]) -> list[tuple[complex, complex
 
 
 def draw_arms(sheet: DrawingSheet, equations: Sequence[MomentEquation], links: Vector) -> None:
-    """Draw the moment arms: from each centre a thin line to the foot of the perpendicular on each line of action.
+    """Draw the moment arms of equations, each with its letter and a right-angle mark.
 
-    Each has its letter and a right-angle mark. An arm along a link is drawn beside it as a dimension.
+    An arm is a thin line from the moment centre to the foot of the perpendicular on the line of action. An arm along a
+    link is drawn beside it as a dimension line.
 
     Args:
         sheet: Sheet to draw on.
-        equations: Equations of moments.
-        links: Points (mm) along the links.
+        equations: Moment equations.
+        links: Closely spaced points along the links, mm.
     """
     drawn: set[int] = set()
     beside_links: list[tuple[complex, complex, str]] = []
@@ -152,7 +161,7 @@ def draw_arms(sheet: DrawingSheet, equations: Sequence[MomentEquation], links: V
 
 
 def _draw_right_angle(sheet: DrawingSheet, foot: complex, direction: complex, at: complex) -> None:
-    """Draw the right-angle mark at the foot of an arm, on the side of the force."""
+    """Draw the right-angle mark at the foot of a moment arm, on the side of the force."""
     back, side = -RIGHT_ANGLE_LEG * direction, RIGHT_ANGLE_LEG * 1j * direction
     if dot(side, at - foot) < 0:
         side = -side

@@ -1,7 +1,7 @@
-"""Table of Assur groups of classes II to VI by order (Table 1 of the source on structure), as a sheet.
+"""Sheet with a table of the Assur groups of classes II to VI, by class and order.
 
-Each group is drawn alone: links as bars, or plates if they have three pairs; pairs as hinges or sliding blocks;
-dotted stubs at the external pairs.
+Links are drawn as bars, or as plates if they have three pairs; pairs as hinges or sliding blocks; external pairs with
+dotted stubs.
 """
 
 from __future__ import annotations
@@ -27,13 +27,16 @@ PLATE_COLOUR = "#e8edf2"
 
 @dataclass(frozen=True)
 class GroupExample:
-    """A group of the table.
+    """An Assur group in the table.
 
     Attributes:
-        points: Points in a square of side 1.
-        links: Links, each by the letters of its points.
-        external: External pairs: point, and direction of the stub (deg).
-        prismatic: Prismatic pairs: point, and direction of the guide (deg).
+        group_class: Class of the group.
+        order: Order of the group.
+        name: Type of a dyad, e.g. "RRP"; empty for other groups.
+        points: Positions of its pairs in a square with side 1, by letter.
+        links: Links, each given by the letters of its pairs.
+        external: External pairs by letter, with the direction of the stub (deg).
+        prismatic: Prismatic pairs by letter, with the direction of the guide (deg).
     """
 
     group_class: int
@@ -46,7 +49,7 @@ class GroupExample:
 
     @property
     def pairs(self) -> list[tuple[str, tuple[str, ...]]]:
-        """Pairs by their points, each with the links it joins; an external pair has only one."""
+        """Pairs by letter, each with the links that it connects; only one link for an external pair."""
         return [(point, tuple(link for link in self.links if point in link)) for point in self.points]
 
 
@@ -153,7 +156,7 @@ GROUP_EXAMPLES: tuple[GroupExample, ...] = (
 
 
 def draw_group_table() -> Iterator[tuple[str, Drawing]]:
-    """Yield the sheet with the stem of its file."""
+    """Yield the table, as (stem of the file name, drawing)."""
     sheet = DrawingSheet(
         _("Assur groups of classes II to VI"), _("By class and order; dotted: external pairs"), paper=LANDSCAPE
     )

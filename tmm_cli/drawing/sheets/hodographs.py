@@ -1,4 +1,4 @@
-"""Hodographs: the ends of a force drawn from one pole over the cycle, with numbers of positions."""
+"""Hodographs of forces: curves traced over the cycle by the end of a force drawn from a fixed pole."""
 
 from __future__ import annotations
 
@@ -37,7 +37,15 @@ MOST_NUMBERED = 24  # positions with numbers
 
 @dataclass(frozen=True)
 class Hodograph:
-    """A force (N) over the whole cycle and at the positions; leaps: indices after which it may jump."""
+    """Curve that the end of a force traces over the cycle.
+
+    Attributes:
+        name: Note that explains its line; empty if there is none.
+        cycle: Force at closely spaced driver coordinates, x + iy, N.
+        positions: Force at the computed positions, x + iy, N.
+        colour, style: Colour and style of the line.
+        leaps: Indices of `cycle` after which the force may jump.
+    """
 
     name: Words
     cycle: Vector
@@ -48,7 +56,7 @@ class Hodograph:
 
 
 def draw_shaking_hodograph(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """Yield the hodograph of the shaking force before and after balancing."""
+    """Yield the hodograph of the shaking force with and without counterweights; nothing if the force is zero."""
     balancing = results.balancing
     if balancing is None or not balancing.cycle.shakes:
         return
@@ -64,7 +72,7 @@ def draw_shaking_hodograph(results: Results) -> Iterable[tuple[str, Drawing]]:
 
 
 def draw_reaction_hodographs(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """Yield for every pair the hodograph of its reaction, then magnitude and components over the cycle."""
+    """Yield the hodographs of the reaction in each pair, and its magnitude and components over the cycle."""
     assert results.reactions is not None
     coordinates, borders = dense_coordinates(results)
     whole = results_at(results, coordinates)
@@ -84,7 +92,9 @@ def draw_reaction_hodographs(results: Results) -> Iterable[tuple[str, Drawing]]:
 def _turned_hodographs(
     results: Results, whole: Results, reaction: Reaction, cycle: Reaction, leaps: Sequence[int]
 ) -> Iterable[tuple[str, Drawing]]:
-    """Yield the hodograph in the axes of each rotating link of a pair, and the magnitude in polar axes."""
+    """Yield the hodograph of a reaction in the axes of each rotating link of the pair, and its magnitude as a polar
+    diagram.
+    """
     assert results.motion is not None and whole.motion is not None
     pair, symbol = reaction.pair.name, reaction_symbol(reaction.by, reaction.on)
     for link in (reaction.by, reaction.on):
@@ -109,7 +119,7 @@ def _turned_hodographs(
 
 
 def _force_components(cycle: Vector, positions: Vector) -> list[QuantityPlot]:
-    """Return the magnitude of a force, and its components along x and y."""
+    """Return the plots of the magnitude of a force and of its x and y components."""
     parts = [("x", cycle.real, positions.real), ("y", cycle.imag, positions.imag)]
     size = SampledCurve("", np.abs(cycle), np.abs(positions))
     return [
@@ -119,7 +129,14 @@ def _force_components(cycle: Vector, positions: Vector) -> list[QuantityPlot]:
 
 
 def hodograph_sheet(results: Results, caption: str, drawn: Sequence[Hodograph], letter: str) -> Drawing:
-    """Draw hodographs from one pole at one scale; a negligible force is drawn as a dot."""
+    """Draw hodographs from the same pole at the same scale. A negligible force is drawn as a dot.
+
+    Args:
+        results: Results at the computed positions.
+        caption: Caption of the sheet.
+        drawn: The hodographs.
+        letter: Letter in the scale factor.
+    """
     largest = max(float(np.nanmax(np.abs(curve.cycle))) for curve in drawn)
     points = [0j, *(complex(p) for curve in drawn for p in curve.cycle)]
     sheet = DrawingSheet(results.problem.title, caption, points, pad=FIGURE_PAD)
@@ -137,7 +154,7 @@ def hodograph_sheet(results: Results, caption: str, drawn: Sequence[Hodograph], 
 
 
 def _draw_hodograph(sheet: DrawingSheet, results: Results, curve: Hodograph) -> None:
-    """Draw the curve, closed if the driver rotates fully; jumps are thin and dotted."""
+    """Draw a hodograph, closed if the driver rotates fully. Jumps are thin dotted lines."""
     closed = np.append(curve.cycle, curve.cycle[:1]) if results.turns else curve.cycle
     points = sheet.origin + closed / sheet.mu
     leaps = [k for k in curve.leaps if abs(points[k + 1] - points[k]) > LEAST_JUMP]
@@ -147,7 +164,7 @@ def _draw_hodograph(sheet: DrawingSheet, results: Results, curve: Hodograph) -> 
 
 
 def _draw_axes(sheet: DrawingSheet, points: Sequence[complex]) -> None:
-    """Draw the axes through the pole."""
+    """Draw the x and y axes through the pole."""
     on = np.array([sheet.on(place) for place in points if np.isfinite(place)])
     pole = sheet.on(0j)
     for along, low, high, name in (
@@ -163,7 +180,7 @@ def _draw_axes(sheet: DrawingSheet, points: Sequence[complex]) -> None:
 
 
 def _number_positions(sheet: DrawingSheet, results: Results, curve: Hodograph) -> None:
-    """Write numbers of positions along a hodograph."""
+    """Mark the computed positions on a hodograph with their numbers."""
     step = -(-len(results.numbers) // MOST_NUMBERED)
     for number, value in list(zip(results.numbers, curve.positions.tolist(), strict=True))[::step]:
         if np.isfinite(value):

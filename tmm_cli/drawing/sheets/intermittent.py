@@ -1,4 +1,4 @@
-"""Intermittent motion of gears and ratchets over a cycle of the driver, or over the cycles of all settings."""
+"""Intermittent motion of gears and ratchet wheels, over one cycle of the driver or over one for each setting."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def draw_intermittent(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """Yield a sheet for each intermittently moving wheel: its angle and angular speed against the driver travel."""
+    """Yield a sheet for each wheel that moves intermittently: its angle and angular speed against the driver travel."""
     for wheel in results.wheels or ():
         yield f"intermittent-{file_safe_name(wheel.task.name)}", _intermittent_sheet(results, wheel)
 

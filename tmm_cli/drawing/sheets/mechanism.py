@@ -1,4 +1,4 @@
-"""The mechanism in one position: in detail with its loads, at the sketch, as thin lines; paths of its points."""
+"""Drawings of the mechanism in one position: in detail with its loads, in the sketched position, or as thin lines."""
 
 from __future__ import annotations
 
@@ -55,35 +55,45 @@ HIDDEN_WITHIN = 0.03  # of the size of the mechanism: closer pairs hide each oth
 
 @dataclass(frozen=True)
 class Position:
-    """A computed position by its index; it names and opens the sheets of that position."""
+    """One of the computed positions, as the subject of sheets.
+
+    Attributes:
+        results: Computed results.
+        motion: Motion in all computed positions.
+        k: Index of the position.
+    """
 
     results: Results
     motion: Motion
     k: int
 
     def stem(self, name: str) -> str:
-        """Return the stem of a file name, e.g. velocity-03."""
+        """Return the stem of a file name with the number of the position, e.g. "velocity-03"."""
         return f"{name}-{self.results.numbers[self.k]:02d}"
 
     def sheet(
         self, title: str, points: Iterable[complex] = (), room: PaperLayout | None = None, **words: str
     ) -> DrawingSheet:
-        """Open a sheet for points (SI) or a layout.
+        """Begin a sheet for this position.
 
-        The field {caption} of the title is filled with position number and driver coordinate.
+        Args:
+            title: Title. Its field {caption} is filled with the number of the position and the driver coordinate.
+            points: Points (SI) that must be on the sheet.
+            room: Layout chosen beforehand, instead of points.
+            words: Values of further fields of the title.
         """
         subject = title.format(caption=self.caption, **words)
         return DrawingSheet(self.results.problem.title, subject, points, room=room)
 
     @property
     def caption(self) -> str:
-        """Number of the position and driver coordinate, as text."""
+        """Number of the position and driver coordinate, e.g. "Position 3, crank at 90 deg"."""
         place = driver_caption(self.results, float(self.motion.q[self.k]))
         return _("Position {number}, {place}").format(number=self.results.numbers[self.k], place=place)
 
 
 def driver_caption(results: Results, q: float, digits: int = 6) -> str:
-    """Return the driver coordinate as text."""
+    """Return the driver coordinate as text, e.g. "crank at 90 deg"."""
     crank, units = results.linkage.driver.kind == "turn", results.problem.units
     measure = ANGLE if crank else LENGTH
     value = round(units.from_si(q % (2 * np.pi) if crank else q, measure), COORDINATE_DECIMALS)
@@ -94,13 +104,13 @@ def driver_caption(results: Results, q: float, digits: int = 6) -> str:
 def draw_measured(
     sheet: DrawingSheet, scene: MechanismScene, mark: str = "", links: Sequence[str] = ()
 ) -> RenderedLinks:
-    """Draw a position to scale with symbols, names of points and centres of mass, and numbers of links.
+    """Draw a position to scale, with the names of points and centres of mass and the numbers of links.
 
     Args:
         sheet: Sheet to draw on.
         scene: The position.
-        mark: Suffix of the names of moving points.
-        links: Draw only these, without the links to which they are joined; empty: all moving links.
+        mark: Suffix to the names of moving points.
+        links: Links to be drawn, without those to which they are connected; empty: all moving links.
     """
     linkage = scene.linkage
     moving, drawn_links, hue = linkage.moving_points, links or linkage.moving, dict.fromkeys(linkage.links, DARK_COLOUR)
@@ -139,7 +149,7 @@ def draw_measured(
 
 
 def join_to_link(sheet: DrawingSheet, scene: MechanismScene, link: str, at: complex) -> None:
-    """Draw a thin line from a link with one point to another point (mm) that belongs to it."""
+    """Connect a point (mm) of a link that has only one named point to that point by a thin line."""
     if len(scene.linkage.links[link].points) == 1:
         (point,) = scene.linkage.links[link].points
         sheet.line([sheet.on(scene.point(point)), at], THIN_COLOUR, 0.9, z=2.1)
@@ -148,14 +158,14 @@ def join_to_link(sheet: DrawingSheet, scene: MechanismScene, link: str, at: comp
 def draw_skeleton(
     sheet: DrawingSheet, scene: MechanismScene, colour: str = GREY_COLOUR, width: float = 0.7, z: float = 1.0
 ) -> None:
-    """Draw a position as thin lines."""
+    """Draw all moving links in a position as thin lines."""
     for link in scene.linkage.moving:
         for edge in form_by_points(sheet, scene, link, whole=False).edges:
             sheet.line(edge, colour, width, z=z, faint=True)
 
 
 def point_paths(results: Results) -> list[Vector]:
-    """Return the paths (m) of all moving points over the cycle, and of centres of mass that are not at a point."""
+    """Return the trajectories (m) of all moving points, and of centres of mass that are not at a named point."""
     linkage, whole = results.linkage, motion_at_positions(results, results.closely(POSITIONS_PER_TURN), 0)
     paths = [whole.spot(name) for name in linkage.moving_points]
     for link in links_with_mass(linkage):
@@ -166,13 +176,13 @@ def point_paths(results: Results) -> list[Vector]:
 
 
 def draw_paths(sheet: DrawingSheet, paths: Iterable[Vector]) -> None:
-    """Draw paths (m) as dashed lines; a stretch that a point retraces is drawn once."""
+    """Draw trajectories (m) as dashed lines. A stretch along which a point returns is drawn once."""
     for path in paths:
         sheet.line(drop_retraced(sheet.origin + path / sheet.mu), THIN_COLOUR, 0.7, "--", 1.5, faint=True)
 
 
 def drop_retraced(path: Vector) -> list[complex]:
-    """Return a path (mm) with nan where it retraces itself."""
+    """Return the points of a trajectory (mm), with nan where it returns along an earlier stretch."""
     steps, middles = np.diff(path), (path[1:] + path[:-1]) / 2
     off = middles[:, None] - path[None, :-1]
     lengths = np.maximum(np.abs(steps), 1e-12)
@@ -183,14 +193,17 @@ def drop_retraced(path: Vector) -> list[complex]:
 
 
 def detailed_drawings(results: Results) -> list[Position]:
-    """Return the detailed positions that could be computed."""
+    """Return the positions to be drawn in detail."""
     motion = results.motion
     assert motion is not None
     return [Position(results, motion, k) for k in detailed_positions(results)]
 
 
 def draw_position(position: Position) -> Iterable[tuple[str, Drawing]]:
-    """Yield the position with weights, inertia forces and couples, loads, and the balancing moment of the crank."""
+    """Yield the drawing of a position with its loads, as (stem of the file name, drawing).
+
+    The loads are weights, inertia forces and couples, external loads and the balancing load.
+    """
     results, motion, k = position.results, position.motion, position.k
     linkage, reactions = results.linkage, results.reactions
     scene = MechanismScene(linkage, results.structure, motion.poses, k)
@@ -216,10 +229,9 @@ def draw_position(position: Position) -> Iterable[tuple[str, Drawing]]:
 
 
 def sketch_scene(results: Results) -> tuple[str, MechanismScene] | None:
-    """Return driver coordinate (text) and scene of the sketch, or of a position in which no pair hides another.
+    """Return the sketched position with its driver coordinate as text; None if the linkage cannot be assembled there.
 
-    Returns:
-        None if the linkage cannot be assembled at the sketch.
+    If pairs hide one another in that position, one in which they do not is returned instead.
     """
     linkage, structure = results.linkage, results.structure
     driver_range = results.driver_range
@@ -238,9 +250,9 @@ def sketch_scene(results: Results) -> tuple[str, MechanismScene] | None:
 
 
 def _clearness(scenes: Sequence[MechanismScene]) -> Real:
-    """Return for each scene the least distance of a pair from another pair or a bar of other links.
+    """Return for each position the smallest distance of a pair from another pair or from a bar of another link.
 
-    It is relative to the size of the mechanism. Pairs that always coincide do not count.
+    Distances are relative to the size of the mechanism. Pairs that always coincide do not count.
     """
     moving, all_pairs = scenes[0].structure.links, scenes[0].structure.pairs
     # the position of a box along a guide on the frame is arbitrary
@@ -259,10 +271,10 @@ def _clearness(scenes: Sequence[MechanismScene]) -> Real:
 
 
 def task_picture(results: Results) -> Drawing | None:
-    """Draw the mechanism at the sketch to scale, as given in a task: names, but no results.
+    """Draw the mechanism in the sketched position to scale, as given in a task: with names, but without results.
 
     Returns:
-        None if the linkage cannot be assembled at the sketch.
+        The drawing, or None if the linkage cannot be assembled there.
     """
     sketch = sketch_scene(results)
     if sketch is None:

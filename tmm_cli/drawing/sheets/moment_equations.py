@@ -1,4 +1,4 @@
-"""Sheets with equations of moments: each group under its loads, and the Zhukovsky lever (rotated velocity plan)."""
+"""Sheets with moment equations: each group under its loads, and the Zhukovsky lever (rotated velocity plan)."""
 
 from __future__ import annotations
 
@@ -53,11 +53,11 @@ EquationPart = str | Symbol
 
 
 def equation_lines(equation: MomentEquation, unit: str = "N·m") -> Iterable[Words]:
-    """Yield an equation of moments in letters, then its solution in letters, with numbers and as a value.
+    """Yield the lines of a moment equation: the equation in symbols, then its solution in symbols and numbers.
 
     Args:
-        equation: The equation (N, m).
-        unit: Unit of moments.
+        equation: The equation in N and m.
+        unit: Unit of the moments.
     """
     solved, sought = equation.found, equation.sought
     links = (_("link {links}") if len(equation.links) == 1 else _("links {links}")).format(
@@ -98,7 +98,7 @@ def equation_lines(equation: MomentEquation, unit: str = "N·m") -> Iterable[Wor
 
 
 def guide_force_lines(forces: ForceSum) -> Iterable[Words]:
-    """Yield the sum of forces along a guide, in letters and then with numbers."""
+    """Yield the lines of a sum of forces along a guide: in symbols, then solved in numbers."""
     title = _("ΣF along guide {guide}, link {link}: ").format(guide=forces.guide, link=forces.link)
     others = [component for component in forces.parts if component is not forces.found]
     sense = -float(np.sign(forces.found.along))
@@ -133,7 +133,10 @@ def _term_numbers(term: MomentTerm) -> tuple[EquationPart, ...]:
 
 
 def _sum_text(terms: Iterable[tuple[tuple[EquationPart, ...], float]]) -> list[EquationPart]:
-    """Return terms joined with their signs, e.g. a − b + c."""
+    """Join the terms of a sum with their signs, e.g. a − b + c.
+
+    terms: text of each term, and a number that has its sign.
+    """
     words_joined: list[EquationPart] = []
     for words, sign in terms:
         plus = " + " if words_joined else ""
@@ -142,7 +145,10 @@ def _sum_text(terms: Iterable[tuple[tuple[EquationPart, ...], float]]) -> list[E
 
 
 def forces_table(acting: Iterable[ForceOrCouple], unit: str = "N·m") -> CaptionTable:
-    """Return the table of magnitudes, directions of forces from x and senses of couples; unit: of couples."""
+    """Return a table of forces with magnitudes and directions, and of couples with magnitudes and senses.
+
+    unit: unit of the couples.
+    """
     rows: list[tuple[Words, ...]] = []
     for load in acting:
         direction = f"{numeral(round(float(np.degrees(np.angle(load.force))), 1) % 360, '.1f')}°"
@@ -153,11 +159,11 @@ def forces_table(acting: Iterable[ForceOrCouple], unit: str = "N·m") -> Caption
 
 
 def arms_table(equations: Sequence[MomentEquation], units: UnitSystem | None, mu: float) -> CaptionTable:
-    """Return the table of moment arms, in the unit of lengths and on paper.
+    """Return a table of moment arms: symbol, forces, length, and length on paper.
 
     Args:
-        equations: Equations of moments.
-        units: Units of the file; None: arms are ratios.
+        equations: Moment equations.
+        units: Units of the file; None: the arms are ratios without a unit.
         mu: Scale, SI units per mm.
     """
     by_number: dict[int, list[MomentTerm]] = {}
@@ -172,7 +178,7 @@ def arms_table(equations: Sequence[MomentEquation], units: UnitSystem | None, mu
 
 
 def format_figures(value: float) -> str:
-    """Format a number with four significant figures, without a power of ten where people do not write one."""
+    """Format a number with four significant figures; only very small and very large numbers get a power of ten."""
     rounded = float(f"{half_up(value):.4g}")
     if 1e4 <= abs(rounded) < 1e7:
         return numeral(value, ".0f")
@@ -189,9 +195,9 @@ MOST_ARMS = 12  # on one sheet
 
 
 def draw_group_loads(position: Position) -> Iterable[tuple[str, Drawing]]:
-    """Yield a sheet for each group and each driving link with loads and equations of moments.
+    """Yield a sheet for each group and each driving link, with its loads and moment equations.
 
-    Equations whose arms would crowd the first sheet get another one.
+    If an equation has so many arms that the sheet would be crowded, it gets a further sheet.
     """
     if position.results.reactions is None:
         return
@@ -208,7 +214,7 @@ def draw_group_loads(position: Position) -> Iterable[tuple[str, Drawing]]:
 
 
 def split_equations(equations: Sequence[MomentEquation]) -> list[list[MomentEquation]]:
-    """Distribute equations in order over as many sheets as their arms need."""
+    """Distribute moment equations, in their order, over sheets with at most MOST_ARMS arms each."""
     sheets: list[list[MomentEquation]] = [[]]
     for equation in equations:
         number = sum(len(_arm_numbers(e)) for e in sheets[-1])
@@ -270,7 +276,7 @@ def _group_sheets(
 
 
 def _draw_assur_point(sheet: DrawingSheet, loaded: FreeBody, equation: MomentEquation) -> None:
-    """Mark the Assur point, and draw the lines of action of the reactions that meet there."""
+    """Mark the Assur point, and draw the lines of action of the reactions that intersect there."""
     at, with_moments = sheet.on(equation.centre), {t.acting.symbol for t in equation.terms}
     for load in loaded.acting:
         if load.pair and not load.couple and load.symbol not in with_moments:
@@ -284,14 +290,17 @@ SLIGHT_SHARE = 1e-3  # of the largest force or moment: a smaller load is not sig
 
 
 def draw_plan_points(sheet: DrawingSheet, ends: Mapping[str, complex], pole: str) -> None:
-    """Draw the lettered points of a plan; coincident ones share a circle and a label."""
+    """Draw the lettered points of a plan. Points that coincide on paper share a circle and a label."""
     for at, names in gather_coincident((sheet.on(end), name) for name, end in ends.items()):
         sheet.circle(at, 0.9 if pole in names else 0.55, "white" if pole in names else DARK_COLOUR, DARK_COLOUR, 1.0)
         sheet.label(", ".join(map(with_subscripts, names)), at, 11 if pole in names else 10)
 
 
 def significant_forces(plan: LeverPlan) -> Sequence[ForceOrCouple]:
-    """Return the forces to be drawn: of many, no load below 0.1 % of the largest force or moment."""
+    """Return the forces to be drawn on the lever.
+
+    If there are more than MOST_FORCES, loads below 0.1 % of the largest force or moment are omitted.
+    """
     if len(plan.acting) <= MOST_FORCES:
         return plan.acting
     force, moment = max(abs(a.force) for a in plan.acting), max(abs(term.moment) for term in plan.equation.terms)
@@ -301,7 +310,7 @@ def significant_forces(plan: LeverPlan) -> Sequence[ForceOrCouple]:
 
 
 def draw_lever(position: Position) -> Iterable[tuple[str, Drawing]]:
-    """Yield the Zhukovsky lever (rotated velocity plan) with all forces, arms and the equation of moments."""
+    """Yield the Zhukovsky lever (rotated velocity plan) with all forces, their arms and the moment equation."""
     results = position.results
     if results.lever is None or results.reactions is None:
         return
@@ -353,14 +362,14 @@ def draw_lever(position: Position) -> Iterable[tuple[str, Drawing]]:
 
 
 def _couple_equation(pair: CoupleAsForces) -> tuple[str | Symbol, ...]:
-    """Return the equation P = M / AB of the forces that replace a couple."""
+    """Return the text of the equation P = M / AB for the pair of forces that replaces a couple."""
     moment, distance, force = map(format_figures, (abs(pair.moment), pair.distance, pair.force))
     numbers = f"{moment} / {distance} = {force} {spelt('N')}"
     return (pair.symbol, " = ", pair.couple, f" / {''.join(pair.points)} = {numbers}      ")
 
 
 def _force_plan_check(position: Position) -> Iterable[Words]:
-    """Yield the balancing load by the force plans and its difference, if there is one driver."""
+    """Yield a line that compares the balancing load with that from the force plans; nothing for several drivers."""
     results, reactions = position.results, position.results.reactions
     assert reactions is not None and results.lever is not None
     if len(reactions.balances) > 1:
@@ -378,7 +387,7 @@ def _force_plan_check(position: Position) -> Iterable[Words]:
 
 
 def _several_driver_notes(position: Position) -> Iterable[str]:
-    """Yield notes for several drivers: the lever gives the sum of their powers at their speed ratios."""
+    """Yield notes for several drivers, as the lever gives only the sum of their powers; nothing for one driver."""
     motion, results, k = position.motion, position.results, position.k
     reactions = results.reactions
     assert reactions is not None and results.lever is not None

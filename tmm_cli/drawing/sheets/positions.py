@@ -1,4 +1,4 @@
-"""The mechanism in all positions: path numbering, extreme positions, stroke, and a table of lengths."""
+"""Sheet of the mechanism in all positions: trajectories, position numbers, extreme positions, stroke, lengths."""
 
 from __future__ import annotations
 
@@ -48,7 +48,10 @@ TableSize = tuple[Words, str, float, Dimension]
 
 
 def length_rows(results: Results) -> list[TableRow]:
-    """Return rows of names and values in the units of the file, with the names of parameters if these differ."""
+    """Return the rows of the table of lengths, in the units of the file.
+
+    If a length has another name in the file than on the drawing, there is a column with that name.
+    """
     sizes = [*_link_lengths(results), *_gear_radii(results.linkage), *_frame_sizes(results)]
     units = results.problem.units
     named = any(parameter for __, parameter, *___ in sizes)
@@ -63,7 +66,7 @@ def length_rows(results: Results) -> list[TableRow]:
 
 
 def _link_lengths(results: Results) -> Iterator[TableSize]:
-    """Yield enough distances between the points of a link to fix them: to the first two points each."""
+    """Yield the distances that determine the shape of each link: from each point to the first two points."""
     linkage = results.linkage
     for link in linkage.moving:
         points = list(linkage.links[link].points.items())
@@ -75,7 +78,7 @@ def _link_lengths(results: Results) -> Iterator[TableSize]:
 
 
 def _gear_radii(linkage: Linkage) -> Iterator[TableSize]:
-    """Yield the pitch radii of gears in mesh; the mesh is named if there are several."""
+    """Yield the pitch radii of gears in mesh. If there are several meshes, the name of the mesh is added."""
     teeth = [mesh for mesh in linkage.meshes if mesh.kind != "cam"]
     for mesh in teeth:
         radii = {mesh.i: abs(mesh.ratio)}  # of a gear that rolls on a rack
@@ -89,7 +92,7 @@ def _gear_radii(linkage: Linkage) -> Iterator[TableSize]:
 
 
 def _length_parameter(results: Results, link: str, name: str) -> str:
-    """Return the parameter that is the length of a link between these points, or "" if it has the same name."""
+    """Return the name of the parameter that gives the length of a link in the file; "" if its name is the same."""
     link_block = _file_value(results, "links", link)
     ends = link_block.get("points") if isinstance(link_block, dict) else None
     if not isinstance(ends, list) or "".join(map(str, ends)) != name:
@@ -98,7 +101,15 @@ def _length_parameter(results: Results, link: str, name: str) -> str:
 
 
 def _coordinate_parameter(results: Results, written: Any, place: complex, magnitude: float, name: str) -> str:
-    """Return the parameter that is the coordinate of a point with this absolute value, or ""."""
+    """Return the name of the parameter that gives a coordinate of a point in the file, or "".
+
+    Args:
+        results: Computed results.
+        written: The coordinates as written in the file.
+        place: The point, m.
+        magnitude: Absolute value of the coordinate, m.
+        name: Name of the coordinate on the drawing.
+    """
     if not isinstance(written, list):
         return ""
     both = zip(written, (place.real, place.imag), strict=False)
@@ -111,13 +122,13 @@ def _coordinate_parameter(results: Results, written: Any, place: complex, magnit
 
 
 def _renaming_parameter(results: Results, text: Any, name: str) -> str:
-    """Return the parameter of which a text of the file consists, or "" if it has the letters of `name`."""
+    """Return the parameter that a value in the file refers to; "" if there is none, or if it is spelt like `name`."""
     parameters, word = _file_value(results, "parameters"), str(text).lstrip("-")
     return word if isinstance(parameters, dict) and word in parameters and sorted(word) != sorted(name) else ""
 
 
 def _file_value(results: Results, *path: str) -> Any:
-    """Return the value at a path of keys in the problem file, or None."""
+    """Return the value under nested keys of the problem file, or None."""
     source = results.problem.source
     block: Any = None if source is None else source.data
     for key in path:
@@ -126,7 +137,9 @@ def _file_value(results: Results, *path: str) -> Any:
 
 
 def _frame_sizes(results: Results) -> Iterator[TableSize]:
-    """Yield positions of fixed hinges relative to the first one, and distance and slope of guides on the frame."""
+    """Yield the positions of fixed hinges relative to the first one, and the distances and slopes of guides on the
+    frame.
+    """
     linkage = results.linkage
     pivots = {h.point: complex(linkage.local(FRAME, h.point)) for h in linkage.hinges if FRAME in h.links}
     start, origin = next(iter(pivots.items()), ("", 0j))
@@ -153,7 +166,12 @@ def _frame_sizes(results: Results) -> Iterator[TableSize]:
 
 @dataclass(frozen=True)
 class OutputExtreme:
-    """An extreme position of the output: driver coordinate (rad or m), and its mark (a number if it is a position)."""
+    """An extreme position of the output.
+
+    Attributes:
+        q: Driver coordinate, rad or m.
+        mark: Number of the computed position, if it is one; otherwise a letter such as "k".
+    """
 
     q: float
     mark: str
@@ -161,9 +179,14 @@ class OutputExtreme:
 
 @dataclass(frozen=True)
 class NumberedPath:
-    """Path of a point along which positions are numbered: a line, an arc about a pivot, or any curve.
+    """Path of a point, beside which position numbers are written.
 
-    line, pivot: direction of the line, and centre of the arc (m).
+    Attributes:
+        kind: Straight line, arc about a pivot, or any curve.
+        link: Link to which the point belongs.
+        local: Point in the axes of the link, m.
+        line: Direction of a straight path.
+        pivot: Centre of an arc, m.
     """
 
     kind: Literal["line", "arc", "any"]
@@ -173,12 +196,12 @@ class NumberedPath:
     pivot: complex = 0j
 
     def places(self, states: LinkStates) -> Vector:
-        """Return the points of the path in these positions, m."""
+        """Return the positions of the point, (positions,), m."""
         return states.poses[self.link].at(self.local)
 
 
 def output_extremes(results: Results) -> list[OutputExtreme]:
-    """Return the extreme positions of the output in order: ends of strokes, or of the requested range."""
+    """Return the extreme positions of the output, at the ends of its strokes or of the requested range."""
     strokes, travels = results.strokes, results.travels
     if strokes is not None and strokes.strokes:
         cycle, ends = strokes.cycle, [stroke.start for stroke in strokes.strokes]
@@ -205,7 +228,7 @@ def output_extremes(results: Results) -> list[OutputExtreme]:
 
 
 def output_travel(results: Results) -> float:
-    """Return the stroke (m) or the swing angle (rad) of the main output."""
+    """Return the stroke (m) or the swing angle (rad) of the main output; 0 if it has none."""
     strokes, travels = results.strokes, results.travels
     if strokes is not None and strokes.strokes:
         return strokes.travel
@@ -213,7 +236,7 @@ def output_travel(results: Results) -> float:
 
 
 def output_path(results: Results) -> NumberedPath | None:
-    """Return the path of the main output, or None if there is none."""
+    """Return the path of the main output, or None if there is no output."""
     linkage, link = results.linkage, results.mechanism.output
     if link is None:
         return None
@@ -230,7 +253,10 @@ def output_path(results: Results) -> NumberedPath | None:
 
 
 def swinging_path(linkage: Linkage, link: str) -> NumberedPath:
-    """Return the path of the point of a link farthest from its fixed hinge, or of its first point if it has none."""
+    """Return the path of the point of a link that is farthest from its fixed hinge.
+
+    For a link without a fixed hinge it is the path of its first point.
+    """
     points = linkage.links[link].points
     pivot = next((p for p in points if p in linkage.links[FRAME].points and linkage.hinged_to_frame(link)), None)
     if pivot is None or len(points) < 2:
@@ -241,7 +267,7 @@ def swinging_path(linkage: Linkage, link: str) -> NumberedPath:
 
 
 def driver_path(results: Results) -> NumberedPath | None:
-    """Return the path of the crank pin or of the driving slider; None for a gear without a point."""
+    """Return the path of the crank pin or of the driving slider; None for a gear without a named point."""
     linkage, driver = results.linkage, results.linkage.driver
     if driver.kind == "turn":
         ends = [local for name, local in linkage.links[driver.link].points.items() if name != driver.joint]
@@ -253,7 +279,7 @@ def driver_path(results: Results) -> NumberedPath | None:
 
 
 def extreme_states(results: Results, extremes: list[OutputExtreme]) -> LinkStates:
-    """Return the states of the mechanism in the extreme positions of the output."""
+    """Return the positions of all links when the output is in its extreme positions."""
     return motion_at_positions(results, np.array([extreme.q for extreme in extremes]), 0)
 
 
@@ -276,7 +302,14 @@ RIM_CLEARANCE = 10.0  # mm about a pitch circle, for a hatched rim
 
 @dataclass(frozen=True)
 class PositionMark:
-    """A position on a path (m) with its text. end: extreme position of the output; working: in the working stroke."""
+    """Number or letter of a position beside a path.
+
+    Attributes:
+        place: Point of the path, m.
+        text: Number or letter.
+        end: True for an extreme position of the output.
+        working: True in the working stroke.
+    """
 
     place: complex
     text: str
@@ -286,7 +319,15 @@ class PositionMark:
 
 @dataclass(frozen=True)
 class PositionsView:
-    """Content of the sheet of positions: motion, position drawn in full, extreme positions of the output."""
+    """What the sheet of positions shows.
+
+    Attributes:
+        results: Computed results.
+        motion: Motion in the computed positions.
+        scene: Position that is drawn with all symbols.
+        ends: Extreme positions of the output.
+        states: Positions of all links in the extreme positions; None if there are none.
+    """
 
     results: Results
     motion: Motion
@@ -295,7 +336,7 @@ class PositionsView:
     states: LinkStates | None
 
     def lines(self, k: int) -> Vector:
-        """Return points (m) along the links in a position."""
+        """Return closely spaced points (m) along the links in position k."""
         scene, points = replace(self.scene, k=k), []
         for link in self.results.linkage.moving:
             link_points = [scene.place(link, local) for local in self.results.linkage.links[link].points.values()]
@@ -304,18 +345,18 @@ class PositionsView:
 
     @property
     def shown(self) -> list[int]:
-        """Positions drawn as thin lines."""
+        """Indices of the positions that are drawn as thin lines."""
         step = max(1, len(self.results.numbers) // MOST_SHOWN)
         return [k for k in range(0, len(self.results.numbers), step) if self.motion.placed[k]]
 
     @property
     def numbered(self) -> list[int]:
-        """Positions with numbers."""
+        """Indices of the positions that are numbered."""
         step = math.ceil(len(self.results.numbers) / MOST_NUMBERED)
         return [k for k in range(0, len(self.results.numbers), step) if self.motion.placed[k]]
 
     def marks(self, track: NumberedPath) -> list[PositionMark]:
-        """Return numbers and letters of positions along a path, including the extreme positions."""
+        """Return the marks of the numbered positions and of the extreme positions along a path."""
         named, strokes, points = [end.mark for end in self.ends], self.results.strokes, track.places(self.motion)
         working = np.ones(len(points), bool)
         if strokes is not None and strokes.strokes:
@@ -333,7 +374,11 @@ class PositionsView:
 
 
 def draw_all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """Yield the sheet of all positions: thin lines, one position in full, trajectories, numbers, stroke, lengths."""
+    """Yield the sheet of the mechanism in all positions, as (stem of the file name, drawing).
+
+    One position is drawn with all symbols, the others as thin lines. Trajectories, position numbers, the stroke and a
+    table of lengths are added.
+    """
     motion, linkage = results.motion, results.linkage
     assert motion is not None
     chosen = detailed_drawings(results)
@@ -378,12 +423,12 @@ def draw_all_positions(results: Results) -> Iterable[tuple[str, Drawing]]:
 
 
 def scale_ratio(mu: float) -> str:
-    """Return a scale factor (m/mm) as the scale of a drawing, e.g. 1:4."""
+    """Convert a scale factor (m/mm) to a ratio such as 1:4."""
     return f"1:{numeral(1000 * mu, '.6g')}" if mu >= 1e-3 else f"{numeral(1e-3 / mu, '.6g')}:1"
 
 
 def _figure_extent(view: PositionsView, whole: list[Vector]) -> FigureExtent:
-    """Return the extent of the figure without the ruler of the output."""
+    """Return the points that must be on the sheet, without those of the ruler of the output."""
     figure, pivots = FigureExtent(), frame_pivots(view.results.linkage)
     used = [*pivots, *(place for path in whole for place in path.tolist())]
     figure.spots(pivots, PIVOT_CLEARANCE)
@@ -402,7 +447,11 @@ def _figure_extent(view: PositionsView, whole: list[Vector]) -> FigureExtent:
 def _reserve_ruler(
     figure: FigureExtent, view: PositionsView, track: NumberedPath, marks: list[PositionMark], whole: list[Vector]
 ) -> float:
-    """Reserve room for the ruler of the output and its stroke; return its offset (mm), the same at any scale."""
+    """Add the ruler of the output and its stroke to the points that must be on the sheet.
+
+    Returns:
+        Distance of the ruler from the path, mm, which is independent of the scale.
+    """
     mu = sheet_scale([place for path in whole for place in path.tolist()])[1]
     plain, numbers = _ruler_numbers(track, marks, lambda place: place / mu)
     bold = [view.lines(view.scene.k)] * BOLD_WEIGHT
@@ -422,7 +471,7 @@ def _reserve_ruler(
 def _ruler_numbers(
     track: NumberedPath, marks: list[PositionMark], on: Callable[[complex], complex]
 ) -> tuple[Ruler, list[RulerNumber]]:
-    """Return a ruler along the path of the output, and its numbers."""
+    """Return the ruler along the path of the output, and its numbers. on: converts a point (m) to paper (mm)."""
     pivot = on(track.pivot) if track.kind == "arc" else None
     plain = fit_ruler([on(mark.place) for mark in marks], track.line, pivot)
     numbers = gather_numbers([RulerNumber(float(plain.run(on(m.place))), m.text, m.working, m.end) for m in marks])
@@ -432,7 +481,7 @@ def _ruler_numbers(
 def _draw_output_ruler(
     sheet: DrawingSheet, view: PositionsView, track: NumberedPath, marks: list[PositionMark], off: float
 ) -> None:
-    """Draw the ruler of the output at offset `off` (mm) from its path, and the stroke or swing angle."""
+    """Draw the ruler of the output, `off` mm from its path, and the dimension of the stroke or of the swing angle."""
     plain, numbers = _ruler_numbers(track, marks, sheet.on)
     ruler = replace(plain, off=off)
     draw_ruler(sheet, ruler, numbers)
@@ -448,7 +497,7 @@ def _draw_output_ruler(
 
 
 def _travel_text(view: PositionsView) -> str:
-    """Return the stroke H or the swing angle ψ as text."""
+    """Return the text of the stroke H or the swing angle ψ, e.g. "H = 120 mm"."""
     results, units = view.results, view.results.problem.units
     turns = results.mechanism.output is not None and results.linkage.output_swings(results.mechanism.output)
     measure, letter = (ANGLE, "ψ") if turns else (LENGTH, "H")
@@ -456,13 +505,13 @@ def _travel_text(view: PositionsView) -> str:
 
 
 def _farthest_ends(points: Vector) -> tuple[complex, complex]:
-    """Return the two points that are farthest from each other."""
+    """Return the two points with the greatest distance from each other."""
     pairs = [(p, q) for n, p in enumerate(points.tolist()) for q in points.tolist()[:n]]
     return max(pairs, key=lambda ends: abs(ends[0] - ends[1]))
 
 
 def _number_points(sheet: DrawingSheet, marks: list[PositionMark]) -> None:
-    """Write numbers of positions beside the points of a path, on its outer side."""
+    """Write position numbers beside the points of a path, on its outer side."""
     finite = [mark for mark in marks if np.isfinite(mark.place)]
     if not finite:
         return
@@ -477,7 +526,9 @@ def _number_points(sheet: DrawingSheet, marks: list[PositionMark]) -> None:
 
 
 def _position_notes(view: PositionsView, track: NumberedPath | None, marks: list[PositionMark]) -> Iterable[str]:
-    """Yield notes: position in full, extreme positions, and the travel if it is not drawn."""
+    """Yield notes on the position drawn with all symbols, on the extreme positions, and on a stroke without a
+    dimension.
+    """
     yield _("drawn in full: position {number}").format(number=view.results.numbers[view.scene.k])
     if view.ends:
         yield _("extreme positions of the output: {ends}").format(ends=", ".join(end.mark for end in view.ends))

@@ -1,4 +1,4 @@
-"""Structural scheme with its legend, and the Assur groups drawn separately with class, order and type."""
+"""Structural diagram with its legend, and the Assur groups drawn separately with class, order and type."""
 
 from __future__ import annotations
 
@@ -62,7 +62,15 @@ JOINT_RADIUS = 0.9  # mm: joints of a link that replaces a higher pair
 
 @dataclass(frozen=True)
 class MechanismPart:
-    """A driver on the frame (group is None), an Assur group, or a redundant link, with its colour."""
+    """A part of the structure: a primary mechanism, an Assur group, or a redundant link.
+
+    Attributes:
+        title: Its name.
+        links: Its links.
+        colour: Colour in which it is drawn.
+        group: The Assur group, or None.
+        redundant: The redundant link, or None.
+    """
 
     title: str
     links: tuple[str, ...]
@@ -72,7 +80,7 @@ class MechanismPart:
 
 
 def mechanism_parts(structure: Structure) -> tuple[MechanismPart, ...]:
-    """Return the primary mechanisms and the groups in the order of solution, then the redundant links."""
+    """Return the parts of a mechanism: primary mechanisms, groups in the order of solution, redundant links."""
     cranks = [driver for driver in structure.drivers if driver.base == FRAME]
     entries: list[tuple[str, tuple[str, ...], Group | None]] = [
         *((structure.driver_title(d), structure.rigid_with(d.link), None) for d in cranks),
@@ -89,20 +97,29 @@ def mechanism_parts(structure: Structure) -> tuple[MechanismPart, ...]:
 
 
 def link_colours(structure: Structure) -> dict[str, str]:
-    """Return the colour of every link; the frame and links rigid with it are dark."""
+    """Return the colour of each link. The frame and the links rigidly connected to it are black."""
     of_frame = dict.fromkeys((FRAME, *structure.rigid_with(FRAME)), DARK_COLOUR)
     return of_frame | {link: part.colour for part in mechanism_parts(structure) for link in part.links}
 
 
 def draw_scheme(results: Results) -> Iterator[tuple[str, Drawing]]:
-    """Yield the structural scheme at the sketch; nothing if the linkage cannot be assembled there."""
+    """Yield the structural diagram, as (stem of the file name, drawing).
+
+    Nothing if the linkage cannot be assembled in the sketched position.
+    """
     sketch = sketch_scene(results)
     if sketch is not None:
         yield "structure", scheme_sheet(results.problem.title, *sketch).finish()
 
 
 def scheme_sheet(title: str, place: str, scene: MechanismScene) -> DrawingSheet:
-    """Draw the structural scheme with its legend below; its labels are placed."""
+    """Draw the structural diagram with its legend below.
+
+    Args:
+        title: Title of the project.
+        place: Driver coordinate as text.
+        scene: The position.
+    """
     legend = Legend(scene.structure)
     links, pairs, hue = scene.structure.links, scene.structure.pairs, link_colours(scene.structure)
     points, most = scene.extent(links), SCHEME_BASE_SIZE + SCHEME_SIZE_PER_LINK * len(links)
@@ -133,7 +150,9 @@ def scheme_sheet(title: str, place: str, scene: MechanismScene) -> DrawingSheet:
 
 
 def _draw_replacements(sheet: DrawingSheet, scene: MechanismScene) -> None:
-    """Draw the links that replace higher pairs, dashed: with a hinge at each end, or a block on a straight profile."""
+    """Draw the links that replace higher pairs as dashed lines, with a hinge at each end or a block on a straight
+    profile.
+    """
     with sheet.on_layer("links"):
         for mesh in scene.linkage.meshes:
             link = replacement_link(higher_pair_outline(scene, mesh))
@@ -151,7 +170,7 @@ def _draw_replacements(sheet: DrawingSheet, scene: MechanismScene) -> None:
 
 
 class Legend:
-    """Band below the scheme: colours of the parts on the left; structural formula, mobility and class on the right."""
+    """Legend below the structural diagram: colours of the parts, structural formula, mobility and class."""
 
     def __init__(self, structure: Structure) -> None:
         self.structure, self.parts = structure, mechanism_parts(structure)
@@ -188,7 +207,10 @@ class Legend:
             self.facts.append(_("Compound hinge {points}: one circle for each pair").format(points=", ".join(compound)))
 
     def split(self, paper: float) -> tuple[float, list[str]]:
-        """Return the start (mm) of the right part and its lines."""
+        """Return the left edge of the right-hand column (mm) and its lines.
+
+        paper: width of the paper, mm.
+        """
         width = paper - 2 * MARGIN
         left = min(0.5 * width, 14 + max(text_extent(self.words(part), 9)[0] for part in self.parts))
         chars = int((width - left - 6) / 1.75)
@@ -196,7 +218,7 @@ class Legend:
         return left, [line for lines in wrapped for line in lines]
 
     def words(self, part: MechanismPart) -> str:
-        """Return the text of a part."""
+        """Return the legend entry of a part."""
         if part.redundant is not None:
             return _("{title}: redundant; redundant constraints: q = {q}").format(
                 title=part.title, q=part.redundant.constraints
@@ -213,7 +235,7 @@ class Legend:
         return LEGEND_ROW * min(max(len(self.parts), len(lines)), 14) + 4
 
     def draw(self, sheet: DrawingSheet) -> None:
-        """Draw the legend into the band kept free for it."""
+        """Draw the legend at the bottom of the sheet."""
         rows, (left, lines) = len(self.parts), self.split(sheet.paper[0])
         top = MARGIN + self.height(sheet.paper[0])
         sheet.line([complex(MARGIN, top), complex(sheet.paper[0] - MARGIN, top)], DARK_COLOUR, 0.6, blocks=False)
@@ -229,7 +251,7 @@ class Legend:
 
 
 def count_pair_letters(kind: str) -> str:
-    """Abbreviate the type of a large group, e.g. RRRRRR to 6R."""
+    """Abbreviate the type of a group with more than five pairs, e.g. RRRRRR to 6R."""
     if len(kind) <= 5:
         return kind
     return "".join(f"{kind.count(letter)}{letter}" for letter in dict.fromkeys(kind))
@@ -246,7 +268,7 @@ STUB_LENGTH = 8.0  # mm: piece of the link to which an external pair would be jo
 
 
 def draw_all_groups(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """Yield the sheets of the groups at the sketch; nothing if the linkage cannot be assembled there."""
+    """Yield the drawings of the Assur groups; nothing if the linkage cannot be assembled in the sketched position."""
     sketch = sketch_scene(results)
     return () if sketch is None else draw_groups(results.problem.title, *sketch, results.roles)
 
@@ -254,7 +276,14 @@ def draw_all_groups(results: Results) -> Iterable[tuple[str, Drawing]]:
 def draw_groups(
     title: str, place: str, scene: MechanismScene, roles: Mapping[str, str] | None = None
 ) -> Iterable[tuple[str, Drawing]]:
-    """Yield sheets with the groups side by side; on large sheets, a picture of each."""
+    """Yield sheets with the Assur groups side by side; for a large sheet, a drawing of each group.
+
+    Args:
+        title: Title of the project.
+        place: Driver coordinate as text.
+        scene: The position.
+        roles: Roles of links (crank, rocker, ...) by link.
+    """
     all_parts = mechanism_parts(scene.structure)
     if on_large_sheet():
         for part in all_parts:
@@ -266,7 +295,7 @@ def draw_groups(
 
 
 def _group_picture(title: str, scene: MechanismScene, part: MechanismPart, roles: Mapping[str, str]) -> DrawingSheet:
-    """Draw one part for a large sheet, below its caption."""
+    """Draw one part with its caption for a large sheet."""
     words = part_caption(part, scene.structure.pairs, roles, GROUP_CAPTION_WIDTH)
     sheet = DrawingSheet(title, words[0], room=scaleless_layout(scene.extent(part.links), GROUP_PAD[0], 0.0))
     sheet.remarks = words[1:]
@@ -277,7 +306,7 @@ def _group_picture(title: str, scene: MechanismScene, part: MechanismPart, roles
 def groups_sheet(
     title: str, place: str, scene: MechanismScene, sheet_parts: Sequence[MechanismPart], roles: Mapping[str, str]
 ) -> DrawingSheet:
-    """Draw a sheet of these parts, each in a cell with its caption below it."""
+    """Draw a sheet with several parts, each in a cell with its caption below."""
     subject = _("Assur groups drawn separately, {place}; dashed: links to which external pairs are joined").format(
         place=place
     )
@@ -302,7 +331,7 @@ def groups_sheet(
 
 
 def part_caption(part: MechanismPart, pairs: Iterable[Pair], roles: Mapping[str, str], width: float) -> list[str]:
-    """Return the caption of a part in lines of at most `width` mm."""
+    """Return the caption of a part, in lines no wider than `width` mm."""
     links = ", ".join(f"{n} {_(ROLES[roles[n]])}" if n in roles else n for n in part.links)
     if part.redundant is not None:
         q = _("redundant; redundant constraints: q = {q}").format(q=part.redundant.constraints)
@@ -332,7 +361,7 @@ def part_caption(part: MechanismPart, pairs: Iterable[Pair], roles: Mapping[str,
 
 
 def external_pairs(part: MechanismPart, pairs: Iterable[Pair]) -> tuple[Pair, ...]:
-    """Return the external pairs of a group, or all pairs of a redundant link with other links."""
+    """Return the external pairs of a group, or the pairs that connect a redundant link to other links."""
     if part.group is not None:
         return part.group.outer
     links = {*part.links}
@@ -344,7 +373,7 @@ def _list_pairs(pairs: Iterable[Pair]) -> str:
 
 
 def _draw_part(sheet: DrawingSheet, scene: MechanismScene, part: MechanismPart, pad: float) -> None:
-    """Draw one part in the current field of the sheet."""
+    """Draw one part in the current cell of the sheet."""
     pairs, links = scene.structure.pairs, part.links
     outer, frame = external_pairs(part, pairs), () if part.group or part.redundant else (FRAME,)
     inner = tuple(p for p in pairs if {p.i, p.j} <= {*links, *frame})
@@ -373,14 +402,14 @@ def _draw_part(sheet: DrawingSheet, scene: MechanismScene, part: MechanismPart, 
 
 
 def external_pair_name(pair: Pair, part: MechanismPart) -> str:
-    """Return the name of an external pair with the link to which it is joined, e.g. A (to 1)."""
+    """Name an external pair together with the link to which it connects the group, e.g. "A (to 1)"."""
     return _("{pair} (to {link})").format(pair=pair.name, link=printed(pair.i if pair.j in part.links else pair.j))
 
 
 def draw_free_prismatic(
     sheet: DrawingSheet, scene: MechanismScene, pair: Pair, part: MechanismPart, look: SymbolStyle
 ) -> None:
-    """Draw a free prismatic pair: its box with a piece of the guide, or the guide with the box it would carry."""
+    """Draw a prismatic external pair: the group's box with a piece of guide, or a dashed box on the group's guide."""
     assert pair.slide is not None
     at, along = sheet.on(scene.at(pair)), scene.along(pair.slide)
     if pair.slide.runner not in part.links:
@@ -394,7 +423,7 @@ def draw_free_prismatic(
 def _draw_stub(
     sheet: DrawingSheet, scene: MechanismScene, pair: Pair, forms: Mapping[str, LinkForm], look: SymbolStyle
 ) -> None:
-    """Draw a short dashed piece of the link to which a free hinge would be joined, where there is room."""
+    """Draw a short dashed piece of the link to which an external hinge connects the group."""
     at = sheet.on(scene.at(pair))
     arm = (forms.get(pair.j) or forms[pair.i]).middle - at
     out = quiet_direction(sheet, at, -arm / abs(arm) if abs(arm) > 0.5 else 1j, STUB_LENGTH + 2)
@@ -407,7 +436,7 @@ def _draw_stub(
 def _mark_later_pairs(
     sheet: DrawingSheet, scene: MechanismScene, part: MechanismPart, drawn: Iterable[Pair], look: SymbolStyle
 ) -> None:
-    """Mark pairs to which later groups will be joined with dots and grey names."""
+    """Mark the pairs to which later groups are connected with dots and grey names."""
     drawn_names = {p.name for p in drawn}
     circled = [sheet.on(scene.at(p)) for p in drawn if p.kind == "R"]
     later = [p for link in part.links for p in scene.of(link) if p.name not in drawn_names]

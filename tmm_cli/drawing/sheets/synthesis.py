@@ -1,4 +1,4 @@
-"""Drawings of a synthesis: its construction, its diagrams, and the mechanism in its extreme positions."""
+"""Drawings of a synthesis: geometric construction, diagrams, and the mechanism in its extreme positions."""
 
 from __future__ import annotations
 
@@ -77,7 +77,12 @@ SAME_LENGTH = 1e-6  # relative difference of equal lengths
 def use_problem_names(
     drawn: GeometricConstruction, linkage: Linkage | None, names: Mapping[str, str]
 ) -> tuple[GeometricConstruction, Mapping[str, str]]:
-    """Rename the points and sizes of a construction to those of the problem file.
+    """Rename the points and dimensions of a construction as in the problem file.
+
+    Args:
+        drawn: Construction with standard letters.
+        linkage: Linkage whose joint names are used; None: standard letters.
+        names: Parameter names in the file, by standard name.
 
     Returns:
         The renamed construction, and the new letters by the standard ones.
@@ -116,9 +121,10 @@ def use_problem_names(
 
 
 def match_joints(linkage: Linkage, chain: Chain, drawn: GeometricConstruction) -> dict[str, str]:
-    """Return the joint names along the chain from the driver by standard letter.
+    """Find the joint names of a linkage for the standard letters of a construction, along the chain from the driver.
 
-    The result is empty if the linkage does not match the chain, or is driven elsewhere.
+    Returns:
+        Joint names by standard letter; empty if the linkage does not match the construction.
     """
     driver, letters = linkage.driver, CHAIN_LETTERS.get(chain, "")
     if not letters or driver.kind != "turn":
@@ -174,14 +180,14 @@ def draw_construction(
     linkage: Linkage | None = None,
     names: Mapping[str, str] | None = None,
 ) -> DrawingSheet:
-    """Draw a construction with the joint names of the linkage and the parameter names of the file.
+    """Draw a geometric construction with the names of the problem file.
 
     Args:
         title: Title of the project.
         drawn: The construction.
         units: Units of the file.
         linkage: Linkage whose joint names are used; None: standard letters.
-        names: Parameter names, standard name to that in the file.
+        names: Parameter names in the file, by standard name.
     """
     drawn, letters = use_problem_names(drawn, linkage, names or {})
     sheet = DrawingSheet(title, translated(drawn.title).format(**letters), points_on_sheet(drawn), pad=CONSTRUCTION_PAD)
@@ -222,7 +228,10 @@ def draw_construction(
 
 
 def points_on_sheet(drawn: GeometricConstruction) -> list[complex]:
-    """Return the points (m) on the sheet: the mechanism, and optional ones that do not make it too small."""
+    """Return the points (m) that must be on the sheet.
+
+    These are the points of the mechanism, and optional points unless they would reduce the scale too much.
+    """
     points = drawn.places()
     most = MOST_REDUCTION * sheet_scale(points, CONSTRUCTION_PAD)[1]
     for wish in drawn.wishes:
@@ -232,7 +241,10 @@ def points_on_sheet(drawn: GeometricConstruction) -> list[complex]:
 
 
 def pieces_inside(points: Sequence[complex], low: complex, high: complex) -> list[list[complex]]:
-    """Return the pieces of a polyline inside a field, each extended to the edge where the line leaves it."""
+    """Cut a polyline at the edges of a field and return the pieces inside.
+
+    low, high: lower left and upper right corner of the field.
+    """
     z = np.asarray(points, dtype=complex)
     within = (z.real >= low.real) & (z.real <= high.real) & (z.imag >= low.imag) & (z.imag <= high.imag)
     pieces = []
@@ -248,7 +260,7 @@ def pieces_inside(points: Sequence[complex], low: complex, high: complex) -> lis
 
 
 def _draw_curve(sheet: DrawingSheet, points: Sequence[complex], style: str) -> list[Sequence[complex]]:
-    """Draw a curve, cut at the edge with arrows where it continues; return the pieces drawn."""
+    """Draw a curve and return the pieces inside the field. Arrows show where it continues beyond the edge."""
     colour, width, line = LINE_STYLES[style]
     pieces: list[Sequence[complex]] = [piece for piece in pieces_inside(points, *sheet.field) if len(piece) > 1]
     low, high = sheet.field
@@ -269,7 +281,7 @@ def _draw_curve(sheet: DrawingSheet, points: Sequence[complex], style: str) -> l
 
 
 def _label_curve(sheet: DrawingSheet, name: str, pieces: Sequence[Sequence[complex]]) -> None:
-    """Write the name of a curve once, where there is room."""
+    """Label a curve with its name, where there is most space."""
     points: list[complex] = []
     for piece in pieces:
         run = np.concatenate([[0], np.cumsum(np.abs(np.diff(piece)))])
@@ -281,7 +293,7 @@ def _label_curve(sheet: DrawingSheet, name: str, pieces: Sequence[Sequence[compl
 
 
 def _arc_points(sheet: DrawingSheet, arc: Arc) -> list[complex]:
-    """Return closely spaced points (mm) of an arc; of a huge circle only the part near the sheet."""
+    """Return closely spaced points (mm) of an arc; of a very large circle only the part near the sheet."""
     centre, radius = sheet.on(arc.centre), arc.radius / sheet.mu
     middle, reach = (sheet.canvas.low + sheet.canvas.high) / 2, abs(sheet.canvas.high - sheet.canvas.low) / 2
     start, end = arc.start, arc.end
@@ -299,7 +311,9 @@ def _arc_points(sheet: DrawingSheet, arc: Arc) -> list[complex]:
 
 
 def _draw_centre(sheet: DrawingSheet, centre: CircleCentre, units: UnitSystem) -> None:
-    """Draw a centre with lines to it; if it is off the sheet, arrows towards it with the radius."""
+    """Draw the centre of a circle and the radii to it. If it is off the sheet, arrows show its direction and the
+    radius.
+    """
     at, (low, high) = sheet.on(centre.at), sheet.field
     legs = [sheet.on(leg) for leg in centre.legs]
     if pieces_inside([at], low, high):
@@ -339,7 +353,7 @@ def _draw_spot(sheet: DrawingSheet, spot: LetteredPoint, rods: Sequence[Segment]
 
 
 def _draw_size(sheet: DrawingSheet, dimension: DimensionLine, units: UnitSystem) -> None:
-    """Draw a dimension line; its value has no unit."""
+    """Draw a dimension line with name and value, without the unit."""
     span = dimension.end - dimension.start
     length = abs(span) if dimension.along == 0 else abs((span * np.conj(dimension.along / abs(dimension.along))).real)
     text = _equation_text(dimension.name, length, "length", units, symbol=False)
@@ -347,7 +361,7 @@ def _draw_size(sheet: DrawingSheet, dimension: DimensionLine, units: UnitSystem)
 
 
 def _equation_text(name: str, value: float, kind: str, units: UnitSystem, *, symbol: bool = True) -> str:
-    """Return an equation such as H = 120 mm."""
+    """Return the text of an equation, e.g. "H = 120 mm"."""
     measure = DIMENSIONS[kind].dimension
     number = float(units.from_si(value, measure))
     text = numeral(number, ".0f" if "e+" in f"{number:.4g}" else ".4g")
@@ -382,10 +396,13 @@ def draw_synthesis(
 
     Args:
         title: Title of the project.
-        outcome: Result of the synthesis.
-        results: Results of the mechanism found, or None.
+        outcome: Results of the synthesis.
+        results: Results of the mechanism that it found, or None.
         units: Units of the file.
-        names: Parameter names, standard name to that in the file.
+        names: Parameter names in the file, by standard name.
+
+    Returns:
+        The drawings, as (stem of the file name, drawing).
     """
     linkage = results.linkage if results is not None else None
     for drawn in outcome.drawings:
@@ -398,7 +415,7 @@ def draw_synthesis(
 
 
 def draw_problem_synthesis(results: Results) -> Iterable[tuple[str, Drawing]]:
-    """Yield the drawings of the synthesis of a problem, if it has one."""
+    """Yield the drawings of the synthesis in a problem file; nothing if there is none."""
     synthesis = results.problem.synthesis
     if synthesis is not None:
         yield from draw_synthesis(
@@ -407,7 +424,7 @@ def draw_problem_synthesis(results: Results) -> Iterable[tuple[str, Drawing]]:
 
 
 def synthesis_diagram(title: str, drawn: Diagram, units: UnitSystem) -> Drawing:
-    """Draw curves over one quantity, in the units of the file."""
+    """Draw a diagram of a synthesis, in the units of the file."""
     sheet = DrawingSheet(title, translated(drawn.title), paper=LANDSCAPE)
     words, kind = drawn.x
     wide = DIMENSIONS[kind].dimension
@@ -425,7 +442,7 @@ def synthesis_diagram(title: str, drawn: Diagram, units: UnitSystem) -> Drawing:
 
 
 def _diagram_plot(lines: Iterable[DiagramLine], y: tuple[str, str], wide: Dimension, units: UnitSystem) -> PlotContent:
-    """Return the curves of a panel, those in the background first."""
+    """Return a panel with these lines; those in the background are drawn first."""
     words, kind = y
     high = DIMENSIONS[kind].dimension
     colours = cycle((DARK_COLOUR, LOAD_COLOUR, INERTIA_COLOUR, REACTION_COLOUR))
@@ -444,7 +461,7 @@ def _diagram_plot(lines: Iterable[DiagramLine], y: tuple[str, str], wide: Dimens
 
 
 def extreme_positions_sheet(results: Results) -> DrawingSheet:
-    """Draw the mechanism at both ends of its working stroke, the start in full, with the paths of its points."""
+    """Draw the mechanism at the start of its working stroke and, in blue, at its end, with the trajectories."""
     strokes, linkage = results.strokes, results.linkage
     assert strokes is not None
     ends = [stroke.start for stroke in strokes.strokes]

@@ -1,4 +1,4 @@
-"""Plans of forces, velocities and accelerations to scale, each with a table of its vectors."""
+"""Force, velocity and acceleration plans to scale, each with a table of its vectors."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ LEAST_DIFFERENCE = 0.03  # of the plan: vectors that differ by less are drawn on
 
 
 def draw_force_plans(position: Position) -> Iterable[tuple[str, Drawing]]:
-    """Yield a sheet with the force polygon of each group and of the driving link."""
+    """Yield the force plan of each group and of the driving link, as (stem of the file name, drawing)."""
     if position.results.reactions is None:
         return
     for plan in force_plans(position.results.reactions, position.k, position.motion):
@@ -95,13 +95,13 @@ def _force_plan_sheet(position: Position, plan: ForcePlan, title: str) -> Drawin
 
 
 def _force_sum(plan: ForcePlan) -> Words:
-    """Return the equation that the sum of all vectors is zero."""
+    """Return the text of the equation that the sum of all forces is zero."""
     symbols = [v.symbol for v in plan.plan.vectors if v.kind != "inner"]
     return (*(piece for symbol in symbols[:-1] for piece in (symbol, " + ")), *symbols[-1:], " = 0")
 
 
 def distinct_reactions(plan: ForcePlan) -> list[NamedVector]:
-    """Return the total reactions that differ visibly from their components."""
+    """Return the total reactions that differ visibly from each of their components."""
     least = LEAST_DIFFERENCE * plan.plan.size
     return [
         full
@@ -111,7 +111,10 @@ def distinct_reactions(plan: ForcePlan) -> list[NamedVector]:
 
 
 def force_plan_rows(plan: ForcePlan, mu: float) -> list[TableRow]:
-    """Return the table of a force plan: magnitude, length on paper, direction; then the total reactions."""
+    """Return the table of a force plan: magnitude, length on paper and direction of each force, total reactions last.
+
+    mu: scale, N per mm.
+    """
     rows = [TableRow((_("vector"), spelt("N"), spelt("mm"), _("angle")), head=True)]
     least = NO_FORCE * plan.plan.size
     for vector in (*plan.plan.vectors, *plan.full):
@@ -122,9 +125,9 @@ def force_plan_rows(plan: ForcePlan, mu: float) -> list[TableRow]:
 
 
 def lane_offsets(vectors: Sequence[NamedVector], size: float) -> list[complex]:
-    """Return the offsets (mm, across the vectors) at which no vector coincides with another.
+    """Return offsets (mm, perpendicular to the vectors) with which no vector of a polygon lies on another.
 
-    Long vectors of the polygon stay in place; the others move outwards.
+    Long vectors stay in place; the others are moved outwards.
     """
     middle = extent([p for v in vectors for p in (v.start, v.end)] or [0j])[3]
     taken: dict[int, int] = {}
@@ -141,7 +144,7 @@ def lane_offsets(vectors: Sequence[NamedVector], size: float) -> list[complex]:
 
 
 def _overlaps(first: NamedVector, other: NamedVector, size: float) -> bool:
-    """Return True if two vectors would look like one line."""
+    """Return True if two vectors would look like one line. size: size of the plan."""
     short, long = sorted((first, other), key=lambda vector: abs(vector.value))
     along = long.value / abs(long.value)
     if max(abs(cross(along, p - long.start)) for p in (short.start, short.end)) > OVERLAP_WITHIN * size:
@@ -151,7 +154,7 @@ def _overlaps(first: NamedVector, other: NamedVector, size: float) -> bool:
 
 
 def _join_corners(sheet: DrawingSheet, vectors: Sequence[NamedVector], aside: Sequence[complex]) -> None:
-    """Draw thin lines between the parts of a corner of the polygon that are drawn apart."""
+    """Connect ends of vectors that coincide in the polygon, but are drawn apart, by thin lines."""
     ends = [(sheet.on(p), sheet.on(p) + off) for v, off in zip(vectors, aside, strict=True) for p in (v.start, v.end)]
     for _at, corner_points in gather_coincident(ends):
         apart = [place for place in corner_points if abs(place - corner_points[0]) > 0.1 * LANE_WIDTH]
@@ -179,7 +182,18 @@ NAME_CLEARANCE = 0.02  # of the plan: least distance of a name from other vector
 
 @dataclass(frozen=True)
 class MotionPlanKind:
-    """Velocity plan or acceleration plan; unit, turning: units of its vectors and of angular quantities."""
+    """Description of a velocity or acceleration plan.
+
+    Attributes:
+        stem: Stem of the file name.
+        title: Title with the field {caption}.
+        plan: Function that builds the plan for position k of a motion.
+        pole: Letter of the pole.
+        letter: Letter in the scale factor.
+        unit: Unit of the vectors.
+        what: Angular quantity listed in the table.
+        turning: Unit of that quantity.
+    """
 
     stem: str
     title: str
@@ -192,7 +206,7 @@ class MotionPlanKind:
 
 
 def motion_plan_kinds() -> tuple[MotionPlanKind, MotionPlanKind]:
-    """Return the velocity plan and the acceleration plan."""
+    """Return the descriptions of the velocity plan and of the acceleration plan."""
     return (
         MotionPlanKind("velocity", _("Velocity plan. {caption}"), velocity_plan, "p", "v", "m/s", "omega", "rad/s"),
         MotionPlanKind(
@@ -209,7 +223,7 @@ def motion_plan_kinds() -> tuple[MotionPlanKind, MotionPlanKind]:
 
 
 def draw_motion_plans(position: Position) -> Iterable[tuple[str, Drawing]]:
-    """Yield the velocity plan and the acceleration plan of a position, with the components for each link."""
+    """Yield the velocity plan and the acceleration plan of a position, as (stem of the file name, drawing)."""
     for sort in motion_plan_kinds():
         plan = sort.plan(position.motion, position.k)
         figure = FigureExtent()
@@ -244,7 +258,7 @@ def draw_motion_plans(position: Position) -> Iterable[tuple[str, Drawing]]:
 
 
 def corners_on_paper(plan: Plan, mu: float) -> dict[str, complex]:
-    """Return the corners of a plan, moved to a lettered end with which they coincide on paper."""
+    """Return the unlettered corners of a plan; those that coincide with a lettered point on paper are moved there."""
     nearest = {
         letter: min(plan.ends.values(), key=lambda end: abs(end - place)) for letter, place in plan.corners.items()
     }
@@ -255,7 +269,7 @@ def corners_on_paper(plan: Plan, mu: float) -> dict[str, complex]:
 
 
 def name_position(vector: NamedVector, plan: Plan) -> complex:
-    """Return a point near the middle of a vector, clear of other vectors, for its name."""
+    """Return the point at which the name of a vector is written: near its middle and clear of other vectors."""
     others = [v for v in plan.drawn() if v is not vector and v.kind != "absolute"]
     candidates = [vector.start + share * vector.value for share in NAME_SHARES]
     room = [
@@ -268,7 +282,10 @@ def name_position(vector: NamedVector, plan: Plan) -> complex:
 
 
 def motion_plan_rows(position: Position, sort: MotionPlanKind, plan: Plan, mu: float) -> list[TableRow]:
-    """Return the table of a plan: segment, length on paper and value of every vector; angular quantities of links."""
+    """Return the table of a plan: letters, length on paper and value of each vector, then angular quantities of links.
+
+    mu: scale, SI units per mm.
+    """
     rows = [TableRow((_("vector"), _("segment"), spelt("mm"), spelt(sort.unit)), head=True)]
     for reading in plan_readings(plan):
         first, *others = reading.symbols

@@ -1,4 +1,4 @@
-"""Cylinders and springs in a position of the mechanism."""
+"""Symbols of hydraulic cylinders and springs."""
 
 from __future__ import annotations
 
@@ -24,13 +24,20 @@ SPRING_BODY = "{}|spring"  # name of the body of a spring, which is stretched
 
 
 def cylinder_drivers(linkage: Linkage) -> dict[str, Driver]:
-    """Return the drivers that slide between two moving links, by their prismatic pair."""
+    """Return the drivers that are drawn as cylinders, by prismatic pair: those that slide between two moving links."""
     return {d.joint: d for d in linkage.drivers if d.kind == "slide" and d.base != FRAME}
 
 
 @dataclass(frozen=True)
 class Cylinder:
-    """A cylinder between two links (mm): barrel from `back` to `front`, rod from `piston` to `end`."""
+    """A cylinder that drives one moving link relative to another.
+
+    Attributes:
+        slide: Its prismatic pair.
+        back, front: Ends of the barrel, mm.
+        piston: Position of the piston, mm.
+        end: Outer end of the piston rod, mm.
+    """
 
     slide: Slide
     back: complex
@@ -40,10 +47,10 @@ class Cylinder:
 
     @staticmethod
     def of(sheet: DrawingSheet, scene: MechanismScene, slide: Slide) -> Cylinder:
-        """Return the cylinder of a prismatic pair.
+        """Return the cylinder for a prismatic pair.
 
-        The barrel begins at the last point of its link behind the end of the rod, or else one stroke before it. If
-        the barrel cannot hold the stroke, the piston is drawn to move slower than the rod.
+        The barrel begins at the last point of its link behind the rod end, or else one stroke before it. If the barrel is
+        too short for the stroke, the piston is drawn with a shorter one.
         """
         low, high = (run / sheet.mu for run in scene.travel(slide))
         foot, end = sheet.on(scene.place(slide.carrier, slide.through)), sheet.on(scene.place(slide.runner, slide.at))
@@ -59,11 +66,11 @@ class Cylinder:
         return Cylinder(slide, foot + along * start, foot + along * (start + length), foot + along * piston, end)
 
     def part(self, link: str) -> tuple[complex, complex]:
-        """Return the ends of the barrel or of the rod, whichever belongs to the link."""
+        """Return the ends (mm) of the part that belongs to this link: the barrel or the rod."""
         return (self.back, self.front) if link == self.slide.carrier else (self.piston, self.end)
 
     def draw(self, sheet: DrawingSheet, hue: Mapping[str, str]) -> None:
-        """Draw the barrel cut open, with piston and rod."""
+        """Draw the barrel in section, with piston and rod."""
         side = 1j * (self.front - self.back) / abs(self.front - self.back) * BARREL_HALF_WIDTH
         corners = [self.back + side, self.front + side, self.front - side, self.back - side]
         with sheet.part(self.slide.carrier):
@@ -75,7 +82,7 @@ class Cylinder:
 
 
 def driver_symbol(driver: Driver, letter: str) -> Symbol:
-    """Return the symbol of a driver: ω1, or ω21 for link 2 relative to a moving link 1."""
+    """Return the symbol of the speed of a driver: ω1, or ω21 for link 2 relative to moving link 1."""
     return Symbol(letter, driver.link + ("" if driver.base == FRAME else driver.base))
 
 
@@ -104,7 +111,7 @@ def draw_springs(sheet: DrawingSheet, scene: MechanismScene) -> None:
 
 
 def draw_coil_spring(sheet: DrawingSheet, start: complex, end: complex) -> None:
-    """Draw a zigzag between two straight ends."""
+    """Draw a coil spring as a zigzag line between two points, mm."""
     length = abs(end - start)
     along = (end - start) / length
     stub = min(SPRING_END, 0.15 * length)
@@ -116,7 +123,7 @@ def draw_coil_spring(sheet: DrawingSheet, start: complex, end: complex) -> None:
 
 
 def draw_gas_spring(sheet: DrawingSheet, start: complex, end: complex) -> None:
-    """Draw a cylinder for a gas spring or a constant force."""
+    """Draw a gas spring or a constant force as a cylinder between two points, mm."""
     along = (end - start) / abs(end - start)
     neck, side = start + 0.6 * (end - start), 1j * along * 1.6
     sheet.line([start, end], SPRING_COLOUR, 1.1, z=3.7)
@@ -124,7 +131,7 @@ def draw_gas_spring(sheet: DrawingSheet, start: complex, end: complex) -> None:
 
 
 def draw_torsion_spring(sheet: DrawingSheet, scene: MechanismScene, spring: Spring) -> None:
-    """Draw a spiral about the common hinge of two links, or about its point on the second link if there is none."""
+    """Draw a torsion spring as a spiral about the hinge of its two links, or else about its end on the second link."""
     point = scene.linkage.shared(spring.i, spring.j)
     centre = sheet.on(scene.place(spring.j, spring.at_j) if point is None else scene.point(point))
     if not np.isfinite(centre):

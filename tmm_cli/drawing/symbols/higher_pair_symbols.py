@@ -1,4 +1,4 @@
-"""Symbols of gears, racks and cams, and the marks that join them to the bars of their links."""
+"""Symbols of gears, racks and cams, and marks that show their rigid connection to the bars of their links."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ def draw_higher_pair(
     span: tuple[float, float] | None = None,
     rods: Sequence[Segment] = (),
 ) -> None:
-    """Draw the gears, rack or cam of a higher pair that belong to links with a colour; cams always.
+    """Draw a higher pair. Only gears and racks of links that have a colour are drawn; a cam is always drawn.
 
     Args:
         sheet: Sheet to draw on.
         outline: Geometry of the pair.
         hue: Colours of links.
-        span: Range (m) of the rack on both sides of the pitch point; None: a short piece.
-        rods: Bars (mm) that interrupt hatching.
+        span: Range of the rack from the pitch point (m); None: a short piece.
+        rods: Bars (mm) at which hatching is interrupted.
     """
     if isinstance(outline, CamOutline):
         _draw_cam(sheet, outline, hue)
@@ -61,7 +61,7 @@ def draw_higher_pair(
 
 
 def _draw_in_field(sheet: DrawingSheet, points: Vector, colour: str, width: float, style: Style, z: float) -> None:
-    """Draw a curve within the field of the sheet."""
+    """Draw the part of a curve that is inside the field of the sheet."""
     low, high = sheet.canvas.low, sheet.canvas.high
     inside = (points.real > low.real) & (points.real < high.real) & (points.imag > low.imag) & (points.imag < high.imag)
     if bool(np.any(inside)):
@@ -69,7 +69,7 @@ def _draw_in_field(sheet: DrawingSheet, points: Vector, colour: str, width: floa
 
 
 def _draw_pitch_circle(sheet: DrawingSheet, disc: GearDisc, colour: str) -> None:
-    """Draw a pitch circle, and the rim of a gear with internal teeth."""
+    """Draw the pitch circle of a gear, and the rim if its teeth are internal."""
     centre, radius = sheet.on(disc.centre), disc.radius / sheet.mu
     number = int(np.clip(2 * np.pi * radius / 1.5, 48, 3000))
     directions = unit(np.linspace(0, 2 * np.pi, number + 1))
@@ -79,7 +79,7 @@ def _draw_pitch_circle(sheet: DrawingSheet, disc: GearDisc, colour: str) -> None
 
 
 def _hatch_fixed_gear(sheet: DrawingSheet, disc: GearDisc, rods: Sequence[Segment]) -> None:
-    """Draw hatching about a fixed gear, except under bars."""
+    """Draw hatching along the rim of a fixed gear, except at bars."""
     centre, out = sheet.on(disc.centre), 1.0 if disc.ring else -1.0
     rim = disc.radius / sheet.mu + (RIM_DEPTH if disc.ring else 0.0)
     number = int(np.clip(2 * np.pi * rim / 3.2, 12, 900))
@@ -91,12 +91,12 @@ def _hatch_fixed_gear(sheet: DrawingSheet, disc: GearDisc, rods: Sequence[Segmen
 
 
 def _tooth_wave(run: Any) -> Any:
-    """Return the tooth profile along a pitch line: +1 at tips, -1 at roots."""
+    """Return the height of the tooth profile along a pitch line: +1 at the tips, -1 at the roots."""
     return np.clip(2.6 * np.sin(2 * np.pi * run / TOOTH_PITCH), -1, 1)
 
 
 def _draw_teeth(sheet: DrawingSheet, disc: GearDisc, pitch: complex, along: complex, colour: str) -> None:
-    """Draw some teeth at the pitch point; both gears use one wave, so that their teeth mesh."""
+    """Draw some teeth of a gear at the pitch point. Both gears have the same wave profile, so that their teeth mesh."""
     centre, radius, reach = sheet.on(disc.centre), disc.radius / sheet.mu, TEETH_SHOWN / 2 * TOOTH_PITCH
     if radius < reach or not np.isfinite(pitch):
         return
@@ -108,7 +108,7 @@ def _draw_teeth(sheet: DrawingSheet, disc: GearDisc, pitch: complex, along: comp
 
 
 def _draw_rack(sheet: DrawingSheet, mesh: MeshOutline, colour: str, span: tuple[float, float] | None) -> None:
-    """Draw a toothed bar, joined to the sliding point of the rack; hatched if it is the frame."""
+    """Draw a toothed bar connected to the sliding point of the rack; hatched if the rack is fixed."""
     pitch, along, side = sheet.on(mesh.pitch), mesh.along, mesh.side
     low, high = (-16.0, 16.0) if span is None else (span[0] / sheet.mu - 8, span[1] / sheet.mu + 8)
     run = np.linspace(low, high, int(np.clip(30 * (high - low) / TOOTH_PITCH, 60, 20_000)))
@@ -127,7 +127,7 @@ def _draw_rack(sheet: DrawingSheet, mesh: MeshOutline, colour: str, span: tuple[
 
 
 def _draw_cam(sheet: DrawingSheet, cam: CamOutline, hue: Mapping[str, str]) -> None:
-    """Draw the cam disk and the roller; the other parts of the follower are bars of its link."""
+    """Draw the cam disk and the roller. The rest of the follower is drawn with its link."""
     disk = [sheet.on(complex(p)) for p in cam.disk]
     if cam.mesh.i in hue:
         with sheet.part(cam.mesh.i):
@@ -152,7 +152,7 @@ SPOKE_WIDTH, THROUGH_WIDTH = 1.2, 2.0  # points
 def draw_rigid_marks(
     sheet: DrawingSheet, outline: HigherPairOutline, form: LinkForm, link: str, colour: str, hinge: float
 ) -> None:
-    """Mark the parts of a link of a higher pair as rigidly joined."""
+    """Draw marks that show that a gear or a follower is rigidly connected to the bars of its link."""
     if not isinstance(outline, CamOutline):
         for disc in outline.discs:
             if disc.link == link:
@@ -163,7 +163,7 @@ def draw_rigid_marks(
 
 
 def _arms_at(form: LinkForm, at: complex) -> list[complex]:
-    """Return the vectors from a point to the ends of the straight parts on which it lies."""
+    """Return vectors (mm) from a point to the ends of the bars of the link on which it lies."""
     arms = []
     for start, end in form.edges:
         along = (end - start) / (abs(end - start) or 1.0)
@@ -173,7 +173,7 @@ def _arms_at(form: LinkForm, at: complex) -> list[complex]:
 
 
 def _draw_spoke(sheet: DrawingSheet, disc: GearDisc, form: LinkForm, colour: str) -> None:
-    """Extend the longest bar from the axis of a gear to its rim, with a weld mark there."""
+    """Extend the longest bar at the axis of a gear to the rim of the gear, with a weld mark there."""
     centre, radius = sheet.on(disc.centre), disc.radius / sheet.mu
     arm = max(_arms_at(form, centre), key=abs, default=0j)
     if abs(arm) < ON_LINE or radius < 2 * WELD_LEG:
@@ -186,7 +186,7 @@ def _draw_spoke(sheet: DrawingSheet, disc: GearDisc, form: LinkForm, colour: str
 
 
 def _draw_corner(sheet: DrawingSheet, at: complex, arm: complex, form: LinkForm, colour: str, hinge: float) -> None:
-    """Join the arm of a follower to the nearest bar at the same hinge."""
+    """Mark the arm of a follower as rigidly connected to the nearest bar of its link at the same hinge."""
     others = [other for other in _arms_at(form, at) if abs(arm) > ON_LINE and abs(np.angle(other / arm)) > SAME_ANGLE]
     if not others:
         return

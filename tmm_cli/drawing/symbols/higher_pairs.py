@@ -1,8 +1,7 @@
-"""Geometry of gears, racks and cams (m).
+"""Geometry of gears, racks and cams, in metres.
 
-Gears are drawn as pitch circles, with the pitch point marked. A cam is given only by the law of its follower: for a
-sliding follower its disk is drawn for a flat face (as the force plan assumes), for a swinging one for a roller on an
-arm of suitable length.
+Gears are drawn as pitch circles with the pitch point. A cam is given only by the motion of its follower. Its disk is
+that for a flat face if the follower slides (as in the force plan), or for a roller on an arm if it swings.
 """
 
 from __future__ import annotations
@@ -30,7 +29,14 @@ LARGE_GEAR = 3.0  # times the size of the mechanism or the centre distance: larg
 
 @dataclass(frozen=True)
 class GearDisc:
-    """Pitch circle of a gear (m); ring: it has internal teeth."""
+    """Pitch circle of a gear.
+
+    Attributes:
+        link: Link to which the gear belongs.
+        centre: Centre, m.
+        radius: Pitch radius, m.
+        ring: True for internal teeth.
+    """
 
     link: str
     centre: complex
@@ -40,9 +46,15 @@ class GearDisc:
 
 @dataclass(frozen=True)
 class MeshOutline:
-    """Mesh of a gear with a gear or a rack: pitch point, direction of the pitch line, pitch circles.
+    """Mesh of a gear with another gear or a rack.
 
-    For racks: side, the unit vector from the pitch point to the rack; start, the sliding point of the rack.
+    Attributes:
+        mesh: The pair.
+        pitch: Pitch point, m.
+        along: Unit vector along the pitch line, the common tangent of the pitch circles.
+        discs: Pitch circles.
+        side: Unit vector from the gear axis to the rack; 0 for two gears.
+        start: Sliding point of the rack, m.
     """
 
     mesh: Mesh
@@ -55,9 +67,17 @@ class MeshOutline:
 
 @dataclass(frozen=True)
 class CamOutline:
-    """Cam disk, its axis and point of contact; face, stem and roller radius of the follower (m).
+    """Cam with its follower.
 
-    true: the disk is that of this flat-faced follower at its sliding point; otherwise only a symbol of a cam.
+    Attributes:
+        mesh: The pair.
+        axis: Axis of the cam, m.
+        disk: Profile of the cam, m.
+        touch: Point of contact, m.
+        face: Ends of the flat face of the follower; both at the roller centre if it has a roller, m.
+        stem: Ends of the stem or arm of the follower, m.
+        roller: Radius of the roller, m; 0 for a flat face.
+        true: True if the profile produces the prescribed motion; False if it is only a symbol.
     """
 
     mesh: Mesh
@@ -74,7 +94,7 @@ HigherPairOutline = MeshOutline | CamOutline
 
 
 def higher_pair_outline(scene: MechanismScene, mesh: Mesh) -> HigherPairOutline:
-    """Return the geometry of a higher pair in a position."""
+    """Return the geometry of a higher pair in the position of the scene."""
     if mesh.kind == "cam":
         return _flat_faced_cam(scene, mesh) if mesh.slide else _roller_cam(scene, mesh)
     return _gear_outline(scene, mesh) if mesh.kind == "gear" else _rack_outline(scene, mesh)
@@ -96,7 +116,7 @@ def contact_point(outline: HigherPairOutline) -> complex:
 
 
 def follower_segments(outline: HigherPairOutline) -> list[tuple[complex, complex]]:
-    """Return the straight parts of a cam follower (m): its stem, and its face unless it has a roller."""
+    """Return the ends (m) of the straight parts of a cam follower: stem and flat face."""
     return (
         []
         if isinstance(outline, MeshOutline)
@@ -107,11 +127,11 @@ def follower_segments(outline: HigherPairOutline) -> list[tuple[complex, complex
 def outline_extent(
     outlines: Iterable[HigherPairOutline], size: float, links: Collection[str] | None = None
 ) -> list[complex]:
-    """Return points (m) that must be on the sheet.
+    """Return points (m) of gears, racks and cams that must be on the sheet.
 
     Args:
         outlines: Geometries of higher pairs.
-        size: Size (m) of the rest of the mechanism; much larger gears do not count.
+        size: Size (m) of the rest of the mechanism; much larger gears are disregarded.
         links: Links whose gears are drawn; None: all.
     """
     points: list[complex] = []
@@ -141,7 +161,7 @@ def _gear_outline(scene: MechanismScene, mesh: Mesh) -> MeshOutline:
 
 
 def _guide_direction(scene: MechanismScene, mesh: Mesh) -> tuple[complex, complex]:
-    """Return the direction of motion and the sliding point of a rack or sliding follower."""
+    """Return the direction of motion of a rack or sliding follower, and its sliding point (m)."""
     slide = scene.linkage.slide(mesh.slide)
     if slide.runner == mesh.j:
         return scene.along(slide), scene.place(slide.runner, slide.at)
@@ -157,7 +177,10 @@ def _rack_outline(scene: MechanismScene, mesh: Mesh) -> MeshOutline:
 
 
 def _flat_faced_cam(scene: MechanismScene, mesh: Mesh) -> CamOutline:
-    """Return the cam of a flat-faced follower: the envelope (h - i h')u of its face, u along the guide, h = c + s."""
+    """Return the cam of a sliding follower with a flat face.
+
+    Its profile is the envelope of the face: (h - i h') u, with h = c + s and the unit vector u along the guide.
+    """
     assert mesh.law is not None
     forward, runs = _guide_direction(scene, mesh)
     centre, angle = _axis_point(scene, mesh, mesh.i), _cam_angle(scene, mesh)
@@ -205,9 +228,12 @@ def _roller_cam(scene: MechanismScene, mesh: Mesh) -> CamOutline:
 
 @dataclass(frozen=True)
 class ReplacementLink:
-    """The link that replaces a higher pair (m): between the centres of curvature of the profiles of i and j.
+    """Link that replaces a higher pair. It connects the centres of curvature of both profiles.
 
-    slides: the profile of j is straight, so the link slides along it at `end`.
+    Attributes:
+        start: Centre of curvature of the profile of the first link, m.
+        end: Centre of curvature of the profile of the second link, or the point of contact if it is straight, m.
+        slides: True if the second profile is straight, so that the replacement link slides along it.
     """
 
     start: complex
@@ -218,7 +244,7 @@ class ReplacementLink:
 def replacement_link(outline: HigherPairOutline) -> ReplacementLink:
     """Return the link that replaces a higher pair (I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 2).
 
-    Involute teeth touch on a common tangent of their base circles, where their centres of curvature lie.
+    The centres of curvature of involute teeth lie on the line of action, a common tangent of the base circles.
     """
     if isinstance(outline, MeshOutline):
         mesh = outline.mesh
@@ -232,7 +258,9 @@ def replacement_link(outline: HigherPairOutline) -> ReplacementLink:
 
 
 def _curvature_centre(disk: Vector, touch: complex) -> complex:
-    """Return the centre of curvature of a closed outline near a point: that of a circle through three of its points."""
+    """Return the centre of curvature of a closed profile near a point: centre of the circle through three of its
+    points.
+    """
     size = len(disk)
     at, step = int(np.argmin(np.abs(disk - touch))), max(1, size // 120)
     a, b, c = (complex(disk[(at + k * step) % size]) for k in (-1, 0, 1))

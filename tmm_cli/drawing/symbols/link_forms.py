@@ -1,6 +1,7 @@
-"""Forms in which links are drawn: a bar between two points, a plate between more, a bar along every guide.
+"""Shapes in which links are drawn: a bar between two pairs, a plate between more pairs, a bar along each guide.
 
-A form by pairs is schematic; a form by points is to scale, with guides as long as the travel on them.
+In a structural diagram the shape follows from the pairs. In a drawing to scale it follows from the named points, and
+guides are as long as the travel along them.
 """
 
 from __future__ import annotations
@@ -26,7 +27,14 @@ GUIDE_OVERHANG = 7.0  # mm by which a guide extends beyond the travel of the mid
 
 @dataclass
 class LinkBar:
-    """A straight bar from `low` to `high` (mm) of its base, along a unit vector; holds: pairs of the link on it."""
+    """A straight bar of a link.
+
+    Attributes:
+        base: A point of the bar, mm.
+        along: Unit vector along the bar.
+        low, high: Coordinates of its ends along this vector from `base`, mm.
+        holds: Pairs of the link that lie on it, mm.
+    """
 
     base: complex
     along: complex
@@ -38,7 +46,7 @@ class LinkBar:
         return bool(abs(cross(self.along, place - self.base)) < ON_LINE)
 
     def take(self, place: complex) -> None:
-        """Extend the bar to a point on its line."""
+        """Extend the bar to a point on its line, mm."""
         run = float(dot(self.along, place - self.base))
         self.low, self.high = min(self.low, run), max(self.high, run)
 
@@ -52,9 +60,15 @@ class LinkBar:
 
 @dataclass(frozen=True)
 class LinkForm:
-    """A link on paper: corners of its plate (or two ends of a bar), bars along guides, struts, rigid corners.
+    """Shape of a link on paper; all points are in mm.
 
-    joints: its pairs except the blocks on its bars; boxes: those of them in which the link is the block itself.
+    Attributes:
+        joints: Pairs of the link, except blocks on its bars.
+        boxes: Those of them at which the link itself is a sliding block.
+        hull: Corners of its plate, or both ends of a bar.
+        bars: Bars along its guides.
+        struts: Ends of the bars that connect separate parts of the link.
+        welds: Rigid corners: vertex and vectors along both sides.
     """
 
     joints: Sequence[complex] = ()
@@ -66,7 +80,7 @@ class LinkForm:
 
     @property
     def lines(self) -> list[Segment]:
-        """Straight parts: bars, struts and a two-point hull."""
+        """Ends of all bars and struts."""
         lines = [bar.tips for bar in self.bars] + list(self.struts)
         if len(self.hull) == 2:
             lines.append((self.hull[0], self.hull[1]))
@@ -74,12 +88,14 @@ class LinkForm:
 
     @property
     def edges(self) -> list[Segment]:
-        """Straight parts and the sides of the plate."""
+        """Ends of all bars and struts and of the sides of the plate."""
         return self.lines + (list(pairwise([*self.hull, self.hull[0]])) if len(self.hull) > 2 else [])
 
     @property
     def middle(self) -> complex:
-        """Position of the link number: middle of the plate, or of the longest free part of its longest line."""
+        """Point for the number of the link: middle of the plate, or middle of the longest free piece of its longest
+        bar.
+        """
         if len(self.hull) > 2:
             return sum(self.hull) / len(self.hull)
         if not self.lines:
@@ -95,7 +111,7 @@ class LinkForm:
         return start + along * (runs[gap] + runs[gap + 1]) / 2
 
     def through(self, place: complex) -> complex | None:
-        """Return the direction of a bar that continues on both sides of a hinge, or None."""
+        """Return the direction of a bar that continues on both sides of a hinge; None if there is none."""
         for start, end in self.lines:
             length = abs(end - start)
             if length < 2:
@@ -108,9 +124,9 @@ class LinkForm:
 
 
 def form_by_points(sheet: DrawingSheet, scene: MechanismScene, link: str, *, whole: bool = True) -> LinkForm:
-    """Return the form of a link to scale, from its named points and pairs, with guides as long as their travel.
+    """Return the shape of a link in a drawing to scale, from its named points and pairs.
 
-    If not `whole`, guides end at their blocks, as in the thin lines of many positions.
+    whole: True if guides are as long as the travel; False if they end at their blocks, as in thin lines.
     """
     joints = drop_coincident(sheet.on(p) for p in (*scene.ends(link), *scene.joints(link)))
     bars: list[LinkBar] = []
@@ -126,7 +142,7 @@ def form_by_points(sheet: DrawingSheet, scene: MechanismScene, link: str, *, who
 
 
 def form_by_pairs(sheet: DrawingSheet, scene: MechanismScene, link: str) -> LinkForm:
-    """Return the schematic form of a link from its pairs."""
+    """Return the shape of a link in a structural diagram, from its pairs."""
     joints = drop_coincident(sheet.on(p) for p in scene.joints(link))
     bars: list[LinkBar] = []
     for slide in _carried_guides(scene, link):
@@ -142,13 +158,13 @@ def form_by_pairs(sheet: DrawingSheet, scene: MechanismScene, link: str) -> Link
 
 
 def _carried_guides(scene: MechanismScene, link: str) -> list[Slide]:
-    """Return the guides that a link carries, except those in its cylinders."""
+    """Return the guides on a link, except those of cylinders."""
     slides = [pair.slide for pair in scene.of(link) if pair.slide is not None and pair.slide.carrier == link]
     return [slide for slide in slides if slide.name not in cylinder_drivers(scene.linkage)]
 
 
 def _bar_through(bars: list[LinkBar], at: complex, along: complex) -> LinkBar:
-    """Return the bar on a line through a point, an existing one or a new one."""
+    """Return the bar on the line through a point in this direction. If there is none, it is added to `bars`."""
     same = next((b for b in bars if abs(cross(b.along, along)) < 1e-6 and b.meets(at)), None)
     if same is None:
         same = LinkBar(at, along, 0.0, 0.0)
@@ -157,7 +173,7 @@ def _bar_through(bars: list[LinkBar], at: complex, along: complex) -> LinkBar:
 
 
 def _lay_bar(bars: list[LinkBar], start: complex, end: complex) -> None:
-    """Add a bar between two points (mm), or extend the bar on their line to them."""
+    """Add a bar between two points (mm), or extend the bar on their line."""
     if abs(end - start) > ON_LINE:
         bar = _bar_through(bars, start, (end - start) / abs(end - start))
         bar.take(start)
@@ -167,7 +183,7 @@ def _lay_bar(bars: list[LinkBar], start: complex, end: complex) -> None:
 def _join_parts(
     sheet: DrawingSheet, scene: MechanismScene, link: str, joints: Sequence[complex], bars: list[LinkBar]
 ) -> LinkForm:
-    """Join the pairs and bars of a link into one body: pairs off the bars form a plate or get a strut."""
+    """Connect the pairs and bars of a link into one shape. Pairs that are not on a bar form a plate or get a strut."""
     driven, boxes = cylinder_drivers(scene.linkage), []
     for pair in scene.of(link):
         if pair.slide is not None and pair.name in driven:
@@ -201,7 +217,7 @@ def _join_parts(
 
 
 def _flatten_hull(hull: Sequence[complex]) -> Sequence[complex]:
-    """Return the corners of a plate, or its two ends if the corners are collinear."""
+    """Return the corners of a plate, or its two ends if it is so narrow that it is a line."""
     if len(hull) < 3:
         return hull
     start, end = max(((p, q) for p in hull for q in hull), key=lambda ends: abs(ends[1] - ends[0]))
@@ -210,7 +226,11 @@ def _flatten_hull(hull: Sequence[complex]) -> Sequence[complex]:
 
 
 def _nearest_joint(bars: Sequence[LinkBar], loose: Sequence[complex]) -> tuple[LinkBar, complex, complex]:
-    """Return the shortest connection between bars and pairs off them: bar, pair, point of the bar."""
+    """Find the shortest connection between the bars and the pairs that are not on a bar.
+
+    Returns:
+        The bar, the pair (mm), and the point of the bar (mm).
+    """
 
     def foot(bar: LinkBar, place: complex) -> complex:
         return min(bar.holds, key=lambda hold: abs(hold - place)) if bar.holds else bar.foot(place)
@@ -229,7 +249,7 @@ def _join_bars(
     struts: list[Segment],
     welds: list[tuple[complex, complex, complex]],
 ) -> None:
-    """Join a guide of a link to the others, by extending them to their intersection or by a strut."""
+    """Connect a guide of a link to its other guides: extend both to their intersection, or add a strut."""
     for other in others:
         turn = float(cross(other.along, bar.along))
         if abs(turn) > 0.05:

@@ -26,12 +26,14 @@ class SymbolStyle:
     """Sizes of symbols (mm) and widths of lines (points).
 
     Attributes:
-        measured: To scale: links by their points, guides as long as their travel.
+        measured: True for a drawing to scale, False for a structural diagram.
+        hinge: Radius of a hinge.
         box: Length and width of a slider on the frame.
         block: Length and width of a block on a moving link.
-        support: Height and half base of the triangle of a support.
-        sides: Offsets (mm) from the middle line of a bar at which labels are kept off.
-        moves: For animation: each body is drawn once and then moved.
+        support: Height and half the base of the triangle of a support.
+        bar: Width of a bar.
+        sides: Offsets from the centre line of a bar that labels must not cover.
+        moves: True for an animation, in which each body is drawn once and then moved.
     """
 
     measured: bool
@@ -44,14 +46,14 @@ class SymbolStyle:
     moves: bool = False
 
     def sized(self, size: float) -> SymbolStyle:
-        """Return the style with symbols scaled by `size`, for pairs close to each other."""
+        """Return the style with symbols scaled by a factor, for pairs close to each other."""
         length, width = self.box
         height, half = self.support
         box = (size * length, size * width)
         return replace(self, hinge=size * self.hinge, box=box, block=box, support=(size * height, size * half))
 
     def raised(self) -> SymbolStyle:
-        """Return the style with supports that extend beyond a block on their hinge."""
+        """Return the style with higher supports, for a hinge in a sliding block that would cover the support."""
         height, half = self.support
         return replace(self, support=(height + self.block[1] / 2, half))
 
@@ -63,13 +65,13 @@ PLATE_COLOUR = "#eceff3"  # in drawings to scale
 
 
 def tint_colour(colour: str, share: float = 0.16) -> str:
-    """Return a colour mixed with white, for areas."""
+    """Mix a colour with white. share: fraction of the colour."""
     parts = (int(colour[n : n + 2], 16) for n in (1, 3, 5))
     return "#" + "".join(f"{round(255 - share * (255 - channel)):02x}" for channel in parts)
 
 
 def draw_mass_centre(sheet: DrawingSheet, at: complex) -> None:
-    """Draw a centre of mass: a circle with two dark quarters."""
+    """Draw the symbol of a centre of mass: a circle with two black quarters."""
     sheet.circle(at, MASS_RADIUS, "white", DARK_COLOUR, 0.8, 6.2)
     for first in (0.0, np.pi):
         arc = at + MASS_RADIUS * unit(first + np.linspace(0, np.pi / 2, 9))
@@ -77,7 +79,7 @@ def draw_mass_centre(sheet: DrawingSheet, at: complex) -> None:
 
 
 def draw_body(sheet: DrawingSheet, form: LinkForm, colour: str, look: SymbolStyle) -> None:
-    """Draw a link as bars and plates."""
+    """Draw the bars, plate and rigid corners of a link."""
     if len(form.hull) > 2:
         sheet.area(form.hull, PLATE_COLOUR if look.measured else tint_colour(colour), colour, 1.5, 2.2)
     guides = [bar.tips for bar in form.bars]
@@ -97,7 +99,15 @@ def draw_body(sheet: DrawingSheet, form: LinkForm, colour: str, look: SymbolStyl
 def draw_weld(
     sheet: DrawingSheet, at: complex, first_leg: complex, other: complex, colour: str, hidden: float = 0.0
 ) -> None:
-    """Draw the mark of a rigid corner between two legs; a circle of radius `hidden` (mm) covers its tip."""
+    """Draw the mark of a rigid corner.
+
+    Args:
+        sheet: Sheet to draw on.
+        at: Vertex of the corner, mm.
+        first_leg, other: Vectors along its sides, mm.
+        colour: Colour of the link.
+        hidden: Radius (mm) of a hinge that covers the vertex.
+    """
     if min(abs(first_leg), abs(other)) > 0.5:
         legs = [min(WELD_LEG + hidden, abs(leg)) * leg / abs(leg) for leg in (first_leg, other)]
         sheet.area([at, at + legs[0], at + legs[1]], colour, colour, 0.5, 3.1)
@@ -112,7 +122,10 @@ def draw_box(
     look: SymbolStyle,
     style: Style = "-",
 ) -> None:
-    """Draw a slider or block; dashed if it only indicates the link to which an external pair is joined."""
+    """Draw the box of a slider or sliding block.
+
+    A dashed box only indicates the link to which an external pair connects the group.
+    """
     length, width = size
     corners = [at + along * complex(sx * length / 2, sy * width / 2) for sx, sy in BOX_CORNERS]
     for share in (0.25, -0.25):  # keeps labels out of the box
@@ -127,7 +140,13 @@ def draw_box(
 
 
 def draw_rails(sheet: DrawingSheet, start: complex, end: complex, width: float) -> None:
-    """Draw two dashed lines along the travel of a box of this width, as the guide of a free prismatic pair."""
+    """Draw two dashed lines as the guide of a prismatic external pair.
+
+    Args:
+        sheet: Sheet to draw on.
+        start, end: Ends of the guide, mm.
+        width: Width of the box between the lines, mm.
+    """
     along = (end - start) / abs(end - start)
     for side in (1j * along, -1j * along):
         shift = side * (width / 2 + RAIL_GAP)
@@ -137,7 +156,16 @@ def draw_rails(sheet: DrawingSheet, start: complex, end: complex, width: float) 
 def quiet_direction(
     sheet: DrawingSheet, at: complex, wish: complex, reach: float, choices: Iterable[complex] = (), from_: float = 1.8
 ) -> complex:
-    """Return the direction from a point in which least is drawn, as near to `wish` as possible."""
+    """Return the direction from a point in which the drawing is emptiest, as near to `wish` as possible.
+
+    Args:
+        sheet: The sheet.
+        at: The point, mm.
+        wish: Preferred direction.
+        reach: Length that should be empty, mm.
+        choices: Directions to choose from; empty: sixteen directions.
+        from_: Distance from the point at which this length begins, mm.
+    """
     crowd = sheet.canvas.line_points
     crowd = crowd[np.abs(crowd - at) < 2 * reach] - at
 
@@ -153,7 +181,7 @@ def quiet_direction(
 def draw_rotation_arrow(
     sheet: DrawingSheet, pivot: complex, start: float, sense: int, name: Words, colour: str
 ) -> None:
-    """Draw an arrow of rotation about a pivot, beginning beside the link or where there is more room."""
+    """Draw the arrow of the sense of rotation of a driver about its pivot, where it covers least."""
     radius, crowd = 8.5, sheet.canvas.line_points
 
     def arc(first: float) -> list[complex]:
@@ -171,7 +199,7 @@ def draw_rotation_arrow(
 def draw_sliding_arrow(
     sheet: DrawingSheet, at: complex, along: complex, width: float, name: Words, colour: str
 ) -> None:
-    """Draw the direction of motion of a driving slider beside its box of this width."""
+    """Draw the arrow of the direction of motion of a driving slider, beside its box of this width (mm)."""
     side = quiet_direction(sheet, at, 1j * along, 14, (1j * along, -1j * along), from_=5)
     foot = at + side * (width / 2 + 8)
     sheet.arrow(foot - 6 * along, foot + 8 * along, colour, 1.3)
@@ -179,14 +207,14 @@ def draw_sliding_arrow(
 
 
 def symbol_scale(sheet: DrawingSheet, scene: MechanismScene, links: Iterable[str]) -> float:
-    """Return 1, or less if pairs are so close on paper that symbols would overlap."""
+    """Return the factor for the sizes of symbols: 1, or less if pairs are so close that symbols would overlap."""
     points = drop_coincident(sheet.on(scene.at(p)) for link in links for p in scene.of(link))
     gaps = [abs(p - q) for n, p in enumerate(points) for q in points[:n]]
     return float(np.clip(min(gaps, default=10.0) / 6.5, 0.5, 1.0))
 
 
 def draw_link_numbers(sheet: DrawingSheet, forms: Mapping[str, LinkForm], hue: Mapping[str, str]) -> None:
-    """Write the numbers of links in the middle of empty plates, or beside the links."""
+    """Write the numbers of links in the middle of their plates or beside them."""
     for link, form in forms.items():
         if len(form.hull) > 2 and np.all(np.abs(sheet.canvas.line_points - form.middle) > NUMBER_CLEARANCE):
             sheet.text(form.middle, link, 11, colour=hue[link], ha="center", style="italic")
@@ -204,11 +232,14 @@ ROD_STEP = 0.4  # mm between sample points of a rod
 
 
 def support_side(sheet: DrawingSheet, at: complex, rods: Sequence[Segment], look: SymbolStyle = MEASURED) -> complex:
-    """Return the direction of the support of a fixed hinge: downwards, else upwards, else where no bar crosses it."""
+    """Choose the direction of the support of a fixed hinge.
+
+    It points down if no bar crosses it there, otherwise up, otherwise in the direction that bars cross least.
+    """
     height, half = look.support
 
     def lost(out: complex) -> float:
-        """Return the length (mm) of ground lost to bars, plus a penalty for a bar through the triangle."""
+        """Return the length of hatching (mm) that bars would interrupt, with a penalty for bars across the triangle."""
         ground = free_runs(
             -GROUND_HALF_WIDTHS * half, GROUND_HALF_WIDTHS * half, _covered_runs(rods, at + height * out, 1j * out, out)
         )
@@ -236,7 +267,18 @@ def support_side(sheet: DrawingSheet, at: complex, rods: Sequence[Segment], look
 def draw_support(
     sheet: DrawingSheet, at: complex, out: complex, look: SymbolStyle = MEASURED, rods: Sequence[Segment] = ()
 ) -> complex:
-    """Draw the support of a fixed hinge: a triangle on hatched ground; return the position of its number."""
+    """Draw the support of a fixed hinge: a triangle on a hatched line.
+
+    Args:
+        sheet: Sheet to draw on.
+        at: The hinge, mm.
+        out: Direction from the hinge to the hatched line.
+        look: Style of the symbols.
+        rods: Bars at which the hatching is interrupted, mm.
+
+    Returns:
+        The point for the number of the frame, mm.
+    """
     side = 1j * out
     height, half = look.support
     foot = at + height * out
@@ -250,7 +292,16 @@ def draw_support(
 def draw_guide(
     sheet: DrawingSheet, middle: complex, along: complex, look: SymbolStyle, reach: float, rods: Sequence[Segment] = ()
 ) -> None:
-    """Draw a piece of a guide on the frame, `reach` mm to both sides: hatched rails, open where bars pass."""
+    """Draw a guide on the frame as two hatched rails, interrupted where bars pass.
+
+    Args:
+        sheet: Sheet to draw on.
+        middle: Middle of the guide, mm.
+        along: Unit vector along it.
+        look: Style of the symbols.
+        reach: Half its length, mm.
+        rods: Bars, mm.
+    """
     for side in (1j * along, -1j * along):
         draw_hatched_line(sheet, middle + side * (look.box[1] / 2 + RAIL_GAP), along, side, reach, rods)
 
@@ -258,7 +309,7 @@ def draw_guide(
 def draw_hatched_line(
     sheet: DrawingSheet, middle: complex, along: complex, out: complex, reach: float, rods: Sequence[Segment]
 ) -> None:
-    """Draw a line with hatching on its outer side, open where bars pass."""
+    """Draw a line of the frame with hatching on its outer side, interrupted where bars pass."""
     for low, high in free_runs(-reach, reach, _covered_runs(rods, middle, along, out)):
         start, end = middle + low * along, middle + high * along
         with sheet.on_layer("supports"):
@@ -267,7 +318,7 @@ def draw_hatched_line(
 
 
 def _covered_runs(rods: Sequence[Segment], rail: complex, along: complex, out: complex) -> list[tuple[float, float]]:
-    """Return the intervals (mm) of a rail at which bars run through its hatching."""
+    """Return the intervals (mm along a rail) in which bars cross its hatching."""
     intervals = []
     for rod in rods:
         points = _rod_points(rod) - rail
@@ -285,7 +336,7 @@ def _rod_points(rod: Segment) -> Vector:
 
 
 def free_runs(low: float, high: float, covered: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Return the intervals from low to high that are not covered; pieces too short for hatching are omitted."""
+    """Return the parts of the interval from `low` to `high` that are not covered. Very short parts are omitted."""
     edges = [low]
     for first, last in sorted(covered):
         edges += [max(first, edges[-1]), max(last, edges[-1])]

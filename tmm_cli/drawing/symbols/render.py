@@ -1,6 +1,6 @@
-"""Rendering of a mechanism: guides, gears and cams, links, sliders, springs, hinges and supports, in that order.
+"""Drawing of a mechanism in one position with the symbols of its parts, to scale or as a structural diagram.
 
-Drawings to scale and structural schemes are drawn by the same code in two styles.
+Parts that cover others are drawn last: guides, gears and cams, links, sliders, springs, hinges, supports.
 """
 
 from __future__ import annotations
@@ -39,7 +39,13 @@ MESH_COLOUR = "#404040"
 
 @dataclass
 class RenderedLinks:
-    """Forms of the links drawn and the scene used; middles of the cylinders (mm) by their prismatic pair."""
+    """What was drawn of a mechanism.
+
+    Attributes:
+        forms: Shapes of the links.
+        scene: Position that was drawn; some boxes may have been moved along their guides.
+        cylinders: Middles of the cylinders (mm), by prismatic pair.
+    """
 
     forms: Mapping[str, LinkForm]
     scene: MechanismScene
@@ -64,7 +70,7 @@ def render_scene(
         pairs: Pairs to draw.
         look: Style of the symbols.
         hue: Colours of links.
-        external: Pairs with links that are not drawn.
+        external: Pairs with links that are not drawn; only their hinges are drawn.
     """
     with sheet.on_layer("links"):
         return _render_links(sheet, scene, links, pairs, look, hue, external)
@@ -127,7 +133,7 @@ def _render_links(
 def _draw_frame_guide(
     sheet: DrawingSheet, scene: MechanismScene, pair: Pair, look: SymbolStyle, rods: Sequence[Segment]
 ) -> None:
-    """Draw a guide on the frame: hatched rails about its box; to scale, also its axis along the travel.
+    """Draw a guide on the frame as hatched rails beside its box; in a drawing to scale, also its axis.
 
     In an animation the rails are as long as the travel.
     """
@@ -163,7 +169,7 @@ def _draw_higher_pair(
     hue: Mapping[str, str],
     rods: Sequence[Segment],
 ) -> None:
-    """Draw gears, or a cam with its follower; of a rack to scale, the whole part that comes into mesh."""
+    """Draw gears, a rack, or a cam with its follower. To scale, a rack is as long as the part that comes into mesh."""
     outline, span = scene.higher(pair), None
     if look.measured and outline.mesh.slide:
         slide = scene.linkage.slide(outline.mesh.slide)
@@ -180,7 +186,7 @@ def _draw_higher_pair(
 def draw_slider(
     sheet: DrawingSheet, scene: MechanismScene, pair: Pair, look: SymbolStyle, colour: str, rods: Sequence[Segment] = ()
 ) -> None:
-    """Draw the box of a prismatic pair, hatched if it is the frame."""
+    """Draw the box of a prismatic pair; hatched if it belongs to the frame."""
     slide = pair.slide
     assert slide is not None
     at, along = sheet.on(scene.at(pair)), scene.along(slide)
@@ -203,7 +209,7 @@ def _draw_hinge(
     look: SymbolStyle,
     hue: Mapping[str, str],
 ) -> None:
-    """Draw the revolute pairs at one point, a circle for each; continuous bars cross it."""
+    """Draw the revolute pairs at one point, each as a circle. A bar that continues on both sides crosses them."""
     order = {link: number for number, link in enumerate((FRAME, *hue))}
     step = 0.95 * look.hinge / STRUCTURAL.hinge
     links = list(dict.fromkeys(link for pair in pairs_there for link in (pair.i, pair.j)))
@@ -219,13 +225,16 @@ def _draw_hinge(
 
 
 def draw_names(sheet: DrawingSheet, named: Iterable[tuple[complex, str, str]]) -> None:
-    """Write names beside their points; names at one point share a label."""
+    """Write names beside their points. Names of coincident points share a label.
+
+    named: point (mm), name and colour.
+    """
     for at, names_there in gather_coincident((at, (name, colour)) for at, name, colour in named):
         sheet.label(", ".join(dict.fromkeys(name for name, __ in names_there)), at, 10, names_there[0][1])
 
 
 def name_anchor(sheet: DrawingSheet, scene: MechanismScene, pair: Pair, look: SymbolStyle) -> complex:
-    """Return the point (mm) for the name of a pair: its hinge, or the end of its box, fixed guide or cylinder."""
+    """Return the point (mm) at which the name of a pair is written: a hinge, or the end of a box, guide or cylinder."""
     at = sheet.on(scene.at(pair))
     if pair.slide is None:
         return at
@@ -238,7 +247,7 @@ def name_anchor(sheet: DrawingSheet, scene: MechanismScene, pair: Pair, look: Sy
 def draw_driver_arrows(
     sheet: DrawingSheet, scene: MechanismScene, drawn: RenderedLinks, look: SymbolStyle, hue: Mapping[str, str]
 ) -> None:
-    """Draw the directions of motion of the drivers."""
+    """Draw arrows for the sense of rotation or the direction of motion of the drivers."""
     for driver in scene.linkage.drivers:
         if driver.link not in drawn.forms:
             continue

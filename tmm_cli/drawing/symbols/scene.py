@@ -1,4 +1,4 @@
-"""Positions of all parts of a linkage in one position (m), and their scale on paper."""
+"""Positions of links, points and pairs in one position of a mechanism, and their scale on paper."""
 
 from __future__ import annotations
 
@@ -31,9 +31,14 @@ FRAME_POSE = Pose(np.zeros(1, complex), np.ones(1, complex), np.zeros(1))  # of 
 
 @dataclass(frozen=True)
 class MechanismScene:
-    """A linkage with its structure at index `k` of the poses of its links.
+    """A mechanism in one position.
 
-    moved: displacements (m) of boxes along their guides, for boxes that would overlap.
+    Attributes:
+        linkage: The linkage.
+        structure: Its structure.
+        poses: Positions and angles of its links, by link.
+        k: Index of the position in `poses`.
+        moved: Displacements (m) of boxes along their guides, by pair; they prevent boxes from overlapping.
     """
 
     linkage: Linkage
@@ -43,7 +48,7 @@ class MechanismScene:
     moved: Mapping[str, complex] = field(default_factory=dict)
 
     def place(self, link: str, local: complex) -> complex:
-        """Return a point of a link (local coordinates, m) in global coordinates, m."""
+        """Convert a point from the axes of a link to global coordinates, m."""
         if link == FRAME:
             return complex(local)
         return self._now(self.poses[link].x) + local * self._now(self.poses[link].z)
@@ -53,28 +58,28 @@ class MechanismScene:
         return float(np.angle(self.place(link, 1 + 0j) - self.place(link, 0j)))
 
     def along(self, slide: Slide) -> complex:
-        """Return the unit vector of a guide."""
+        """Return the unit vector along a guide."""
         turned = 1.0 if slide.carrier == FRAME else self._now(self.poses[slide.carrier].z)
         return complex(turned * unit(slide.direction))
 
     def run(self, slide: Slide) -> float:
-        """Return the displacement of a runner along its guide, m."""
+        """Return the displacement of the block along its guide, m."""
         foot = self.place(slide.carrier, slide.through)
         return float(dot(self.along(slide), self.place(slide.runner, slide.at) - foot))
 
     def travel(self, slide: Slide) -> tuple[float, float]:
-        """Return the least and the largest displacement along a guide over all positions, m."""
+        """Return the smallest and the largest displacement of the block along its guide over all positions, m."""
         carrier, runner = (self.poses.get(link, FRAME_POSE) for link in (slide.carrier, slide.runner))
         runs = dot(carrier.z * unit(slide.direction), runner.at(slide.at) - carrier.at(slide.through))
         return float(np.nanmin(runs)), float(np.nanmax(runs))
 
     def point(self, name: str) -> complex:
-        """Return a named point, m."""
+        """Return the position of a named point, m."""
         link = self.linkage.owner(name)
         return self.place(link, self.linkage.local(link, name))
 
     def at(self, pair: Pair) -> complex:
-        """Return the point of a pair (m): its hinge, the sliding point of its runner, or the point of contact."""
+        """Return the position of a pair (m): its hinge, its sliding block, or its point of contact."""
         if pair.slide is not None:
             return self.place(pair.slide.runner, pair.slide.at) + self.moved.get(pair.name, 0j)
         if pair.kind == "R":
@@ -92,7 +97,9 @@ class MechanismScene:
         return tuple(p for p in self.structure.pairs if link in (p.i, p.j) and p.kind in ("R", "P"))
 
     def joints(self, link: str) -> list[complex]:
-        """Return the hinges and sliding points of a link (m); if there is only one, also its named points."""
+        """Return the positions (m) of the hinges and sliding blocks of a link; if there is only one, also of its named
+        points.
+        """
         points = [self.at(p) for p in self.of(link) if p.slide is None or p.slide.runner == link]
         disk = any(mesh.kind == "cam" and mesh.i == link for mesh in self.linkage.meshes)
         if len(points) + len(self.guides(link)) < 2 and not disk:
@@ -100,16 +107,16 @@ class MechanismScene:
         return points
 
     def guides(self, link: str) -> list[tuple[complex, complex]]:
-        """Return the guides that a link carries: point of the block (m), and direction."""
+        """Return the guides on a link, each as the position of its block (m) and a unit vector."""
         carried = [p for p in self.of(link) if p.slide is not None and p.slide.carrier == link]
         return [(self.at(p), self.along(p.slide)) for p in carried if p.slide is not None]
 
     def ends(self, link: str) -> list[complex]:
-        """Return the named points of a link; those on its guide show its length."""
+        """Return the positions of the named points of a link, m."""
         return [self.place(link, local) for local in self.linkage.links[link].points.values()]
 
     def extent(self, links: Iterable[str]) -> list[complex]:
-        """Return points (m) that must be on paper when these links are drawn."""
+        """Return the points (m) that must be on the paper when these links are drawn."""
         links = tuple(links)
         points: list[complex] = []
         for link in links:
@@ -130,7 +137,18 @@ class MechanismScene:
 def fit_links(
     sheet: DrawingSheet, scene: MechanismScene, links: Sequence[str], pad: float, most: float
 ) -> MechanismScene:
-    """Fit links to the field of the sheet, with sliders moved so that none overlaps another."""
+    """Choose scale and origin of the sheet so that links fill its field, and move boxes so that none overlaps another.
+
+    Args:
+        sheet: Sheet to draw on.
+        scene: The position.
+        links: Links to be drawn.
+        pad: Margin on each side, mm.
+        most: Largest size of the drawing, mm.
+
+    Returns:
+        The position with the moved boxes.
+    """
     fit_points(sheet, scene.extent(links), pad, most)
     parted = spread_boxes(sheet, scene, links)
     if parted is not scene:
@@ -141,7 +159,7 @@ def fit_links(
 
 
 def spread_boxes(sheet: DrawingSheet, scene: MechanismScene, links: Sequence[str]) -> MechanismScene:
-    """Move boxes along guides on the frame (their position there is arbitrary) so that they do not overlap."""
+    """Move boxes along guides on the frame so that they do not overlap; their position on such a guide is arbitrary."""
     boxes = {p.name: sheet.on(scene.at(p)) for link in links for p in scene.of(link) if p.slide is not None}
     all_points = drop_coincident(sheet.on(scene.at(p)) for link in links for p in scene.of(link))
     moved = {}
@@ -160,24 +178,33 @@ def spread_boxes(sheet: DrawingSheet, scene: MechanismScene, links: Sequence[str
 
 
 def scale_to_fit(points: Sequence[complex], room: complex, most: float) -> float:
-    """Return the scale (m per mm) at which points (m) fit into a room (mm) and are not larger than `most` (mm)."""
+    """Return the scale (m per mm) at which points fit into a space.
+
+    Args:
+        points: Points, m.
+        room: Width + i height of the space, mm.
+        most: Largest size of the drawing, mm.
+    """
     larger, across, up, __ = extent(points or [0j])
     return max(across / room.real, up / room.imag, larger / most) or 1.0
 
 
 def fit_points(sheet: DrawingSheet, points: Sequence[complex], pad: float, most: float) -> None:
-    """Centre points (m) on the sheet, as large as the pad and `most` (mm) allow."""
+    """Choose scale and origin of the sheet so that points (m) fill its field.
+
+    pad: margin on each side, mm; most: largest size of the drawing, mm.
+    """
     sheet.mu = scale_to_fit(points, sheet.canvas.high - sheet.canvas.low - 2 * pad * (1 + 1j), most)
     centre_points(sheet, points)
 
 
 def centre_points(sheet: DrawingSheet, points: Sequence[complex]) -> None:
-    """Centre points (m) on the sheet at its scale."""
+    """Choose the origin of the sheet so that points (m) are in the middle of its field."""
     sheet.origin = (sheet.canvas.low + sheet.canvas.high) / 2 - extent(points or [0j])[3] / sheet.mu
 
 
 def drop_coincident(points: Iterable[complex]) -> list[complex]:
-    """Return the points without those that coincide with an earlier one."""
+    """Return the points (mm) without those that coincide with an earlier one on paper."""
     distinct: list[complex] = []
     for place in points:
         if np.isfinite(place) and all(abs(place - other) > ON_LINE for other in distinct):
@@ -186,7 +213,7 @@ def drop_coincident(points: Iterable[complex]) -> list[complex]:
 
 
 def points_to_scale(scene: MechanismScene, points: Sequence[complex]) -> list[complex]:
-    """Return the points (m), and those of gears, cams and springs that must also be on the sheet."""
+    """Return the given points (m), and those of gears, cams and springs that must also be on the sheet."""
     size = extent([p for p in points if np.isfinite(p)] or [0j])[0]
     all_points = [*points, *wheels_extent((higher_pair_outline(scene, mesh) for mesh in scene.linkage.meshes), size)]
     for spring in scene.linkage.springs:
@@ -196,5 +223,5 @@ def points_to_scale(scene: MechanismScene, points: Sequence[complex]) -> list[co
 
 
 def frame_pivots(linkage: Linkage) -> list[complex]:
-    """Return the fixed hinges, m."""
+    """Return the positions of the fixed hinges, m."""
     return [complex(linkage.local(FRAME, hinge.point)) for hinge in linkage.hinges if FRAME in hinge.links]
