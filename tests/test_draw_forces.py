@@ -111,13 +111,13 @@ def test_tables_flow_side_by_side_and_long_equations_are_wrapped():
 
 def test_tables_aside_leave_all_of_the_height():
     table = CaptionTable(("name", "N"), [(f"R{n}", "100") for n in range(10)])
-    below, aside = (DrawingCaption((), (table,), aside=aside).left(0j, 100 + 100j) for aside in (False, True))
+    below, aside = (DrawingCaption((), (table,), aside=aside).space_left(0j, 100 + 100j) for aside in (False, True))
     assert aside.imag > below.imag and aside.real < below.real == 100
 
 
 def left(written, across):
     """The height that a text leaves of 500 mm, mm."""
-    return written.left(0j, complex(across, 500)).imag
+    return written.space_left(0j, complex(across, 500)).imag
 
 
 @pytest.mark.parametrize("name", ["shaper", "engine-four", "press-class-iii"])

@@ -85,7 +85,7 @@ def assemblies_sheet(
     title = _("Real assemblies of {group}, {place}").format(group=group.group.title, place=where)
     sheet = DrawingSheet(results.problem.title, title, paper=paper)
     sheet.mu = mu
-    look = STRUCTURAL.sized(max(LEAST_SYMBOLS, min(symbol_scale(sheet, scene, links) for scene in scenes.values())))
+    look = STRUCTURAL.scaled(max(LEAST_SYMBOLS, min(symbol_scale(sheet, scene, links) for scene in scenes.values())))
     for (n, assembly), (low, high) in zip(numbered, corners, strict=False):
         sheet.canvas = OccupiedArea(low + 1j * CAPTION_HEIGHT, high)
         sheet.origin = (low + 1j * CAPTION_HEIGHT + high) / 2 - boxes[n][0] / sheet.mu

@@ -81,7 +81,7 @@ class DrawingCaption:
     tables: Sequence[CaptionTable] = ()
     aside: bool = False
 
-    def left(self, low: complex, high: complex) -> complex:
+    def space_left(self, low: complex, high: complex) -> complex:
         """Return the space that a field leaves for the drawing, width + i height, mm.
 
         The height is negative if the caption does not fit.
@@ -94,9 +94,9 @@ class DrawingCaption:
         room = high - low - 1j * lines - (max((size.real for size in sizes), default=0.0) + TABLE_GAP)
         return room if sum(size.imag for size in sizes) <= room.imag else complex(room.real, -1.0)
 
-    def put(self, sheet: DrawingSheet, low: complex, high: complex) -> None:
+    def write(self, sheet: DrawingSheet, low: complex, high: complex) -> None:
         """Write the caption into a field, given by its lower left and upper right corner (mm)."""
-        room, across = self.left(low, high), (high - low).real
+        room, across = self.space_left(low, high), (high - low).real
         top = low + 1j * (CAPTION_LINE * len(self._wrapped(across)))
         if not self.aside:
             top = complex(low.real, high.imag - room.imag - CAPTION_GAP)
@@ -158,8 +158,8 @@ def captioned_sheets(
     Args:
         position: The position that is drawn.
         title: Title with the field {caption}, and further fields from `words`.
-        points: Points that must be on the sheet (SI units), each with an offset on paper (mm) that does not depend on the
-            scale.
+        points: Points that must be on the sheet (SI units), each with an offset on paper (mm), which is the same at
+            any scale.
         beneath: Returns the caption for a scale (SI units per mm).
         words: Values of further fields of the title.
 
@@ -179,11 +179,11 @@ def captioned_sheets(
     best = _best_layout(points, beneath, with_tables_aside)
     if (
         best.mu < OWN_SHEET_GROWTH * alone.mu
-        and beneath(1.0).left(low, high).imag > (1 - MOST_CAPTION_SHARE) * (high - low).imag
+        and beneath(1.0).space_left(low, high).imag > (1 - MOST_CAPTION_SHARE) * (high - low).imag
     ):
         return _captioned_sheet(name, subject, points, best), None
     written, further = beneath(alone.mu), DrawingSheet(name, subject, paper=PORTRAIT)
-    written.put(further, low + 1j * written.left(low, high).imag, high)
+    written.write(further, low + 1j * written.space_left(low, high).imag, high)
     return _captioned_sheet(name, subject, points, alone), further
 
 
@@ -229,7 +229,7 @@ def _large_sheet_layout(
     low, edge = drawing_area((0.0, 0.0))
 
     def height(wide: float) -> float:
-        return most - written.left(low, low + complex(wide, most)).imag
+        return most - written.space_left(low, low + complex(wide, most)).imag
 
     sizes = [
         (wide, up + 2 * DRAWING_PAD + height(wide))
@@ -250,8 +250,8 @@ def _captioned_sheet(
     low, high = drawing_area(placed.paper)
     _, across, up, __ = extent([place for place, __ in points])
     on = PaperLayout(placed.paper, placed.mu, 0j, (across / placed.mu, up / placed.mu))
-    sheet, room = DrawingSheet(name, subject, room=on), placed.written.left(low, high)
-    placed.written.put(sheet, low, high)
+    sheet, room = DrawingSheet(name, subject, room=on), placed.written.space_left(low, high)
+    placed.written.write(sheet, low, high)
     sheet.canvas = OccupiedArea(complex(low.real, high.imag - room.imag), complex(low.real + room.real, high.imag))
     sheet.origin = (sheet.canvas.low + sheet.canvas.high) / 2 - placed.middle
     return sheet
@@ -265,7 +265,7 @@ def _fit_layout(
     size, across, up, __ = extent([place for place, __ in points])
     mu = round_scale(across, up, (high - low).real, (high - low).imag)
     while True:
-        room = written(mu).left(low, high) - 2 * DRAWING_PAD * (1 + 1j)
+        room = written(mu).space_left(low, high) - 2 * DRAWING_PAD * (1 + 1j)
         _, across, up, middle = extent([place / mu + away for place, away in points])
         if (across <= room.real and up <= room.imag) or size / mu < LEAST_DRAWING:
             return _CaptionedLayout(paper, mu, middle, written(mu))

@@ -83,13 +83,13 @@ def draw_reaction_hodographs(results: Results) -> Iterable[tuple[str, Drawing]]:
         curve = Hodograph("", cycle.force, reaction.force, REACTION_COLOUR, leaps=borders)
         if np.nanmax(np.abs(cycle.force)) > 0:
             yield file_safe_name(f"hodograph-{pair}"), hodograph_sheet(results, title, [curve], "R")
-            yield from _turned_hodographs(results, whole, reaction, cycle, borders)
+            yield from _hodographs_in_rotating_axes(results, whole, reaction, cycle, borders)
             over = _("Reaction {name} in pair {pair} over the cycle").format(name=symbol.name, pair=pair)
             parts = _force_components(cycle.force, reaction.force)
             yield from plot_over_driver(results, file_safe_name(f"reaction-{pair}"), over, coordinates, borders, parts)
 
 
-def _turned_hodographs(
+def _hodographs_in_rotating_axes(
     results: Results, whole: Results, reaction: Reaction, cycle: Reaction, leaps: Sequence[int]
 ) -> Iterable[tuple[str, Drawing]]:
     """Yield the hodograph of a reaction in the axes of each rotating link of the pair, and its magnitude as a polar

@@ -243,13 +243,13 @@ def sketch_scene(results: Results) -> tuple[str, MechanismScene] | None:
     if not bool(motion.placed[0]):
         return None
     scenes = [MechanismScene(linkage, structure, motion.poses, k) for k in range(len(motion.q))]
-    clear = np.where(motion.placed, np.nan_to_num(_clearness(scenes), nan=-1.0), -1.0)
+    clear = np.where(motion.placed, np.nan_to_num(_pair_clearances(scenes), nan=-1.0), -1.0)
     best = int(np.argmax(clear))
     k = best if clear[0] < HIDDEN_WITHIN and clear[best] > 2 * clear[0] else 0
     return driver_caption(results, float(motion.q[k])), scenes[k]
 
 
-def _clearness(scenes: Sequence[MechanismScene]) -> Real:
+def _pair_clearances(scenes: Sequence[MechanismScene]) -> Real:
     """Return for each position the smallest distance of a pair from another pair or from a bar of another link.
 
     Distances are relative to the size of the mechanism. Pairs that always coincide do not count.

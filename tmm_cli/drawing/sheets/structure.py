@@ -1,4 +1,4 @@
-"""Structural diagram with its legend, and the Assur groups drawn separately with class, order and type."""
+"""Structural scheme with its legend, and the Assur groups drawn separately with class, order and type."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def link_colours(structure: Structure) -> dict[str, str]:
 
 
 def draw_scheme(results: Results) -> Iterator[tuple[str, Drawing]]:
-    """Yield the structural diagram, as (stem of the file name, drawing).
+    """Yield the structural scheme, as (stem of the file name, drawing).
 
     Nothing if the linkage cannot be assembled in the sketched position.
     """
@@ -113,7 +113,7 @@ def draw_scheme(results: Results) -> Iterator[tuple[str, Drawing]]:
 
 
 def scheme_sheet(title: str, place: str, scene: MechanismScene) -> DrawingSheet:
-    """Draw the structural diagram with its legend below.
+    """Draw the structural scheme with its legend below.
 
     Args:
         title: Title of the project.
@@ -138,7 +138,7 @@ def scheme_sheet(title: str, place: str, scene: MechanismScene) -> DrawingSheet:
         sheet = DrawingSheet(title, subject, paper=paper)
     sheet.canvas.low += 1j * legend.height(sheet.paper[0])
     scene = fit_links(sheet, scene, links, SCHEME_PAD, most)
-    look = STRUCTURAL.sized(symbol_scale(sheet, scene, links))
+    look = STRUCTURAL.scaled(symbol_scale(sheet, scene, links))
     drawn = render_scene(sheet, scene, links, pairs, look, hue)
     draw_driver_arrows(sheet, scene, drawn, look, hue)
     _draw_replacements(sheet, scene)
@@ -170,7 +170,7 @@ def _draw_replacements(sheet: DrawingSheet, scene: MechanismScene) -> None:
 
 
 class Legend:
-    """Legend below the structural diagram: colours of the parts, structural formula, mobility and class."""
+    """Legend below the structural scheme: colours of the parts, structural formula, mobility and class."""
 
     def __init__(self, structure: Structure) -> None:
         self.structure, self.parts = structure, mechanism_parts(structure)
@@ -206,18 +206,18 @@ class Legend:
         if compound:
             self.facts.append(_("Compound hinge {points}: one circle for each pair").format(points=", ".join(compound)))
 
-    def split(self, paper: float) -> tuple[float, list[str]]:
+    def columns(self, paper: float) -> tuple[float, list[str]]:
         """Return the left edge of the right-hand column (mm) and its lines.
 
         paper: width of the paper, mm.
         """
         width = paper - 2 * MARGIN
-        left = min(0.5 * width, 14 + max(text_extent(self.words(part), 9)[0] for part in self.parts))
+        left = min(0.5 * width, 14 + max(text_extent(self.entry(part), 9)[0] for part in self.parts))
         chars = int((width - left - 6) / 1.75)
         wrapped = (textwrap.wrap(fact, chars, subsequent_indent="   ", max_lines=4) for fact in self.facts)
         return left, [line for lines in wrapped for line in lines]
 
-    def words(self, part: MechanismPart) -> str:
+    def entry(self, part: MechanismPart) -> str:
         """Return the legend entry of a part."""
         if part.redundant is not None:
             return _("{title}: redundant; redundant constraints: q = {q}").format(
@@ -231,12 +231,12 @@ class Legend:
         )
 
     def height(self, paper: float) -> float:
-        __, lines = self.split(paper)
+        __, lines = self.columns(paper)
         return LEGEND_ROW * min(max(len(self.parts), len(lines)), 14) + 4
 
     def draw(self, sheet: DrawingSheet) -> None:
         """Draw the legend at the bottom of the sheet."""
-        rows, (left, lines) = len(self.parts), self.split(sheet.paper[0])
+        rows, (left, lines) = len(self.parts), self.columns(sheet.paper[0])
         top = MARGIN + self.height(sheet.paper[0])
         sheet.line([complex(MARGIN, top), complex(sheet.paper[0] - MARGIN, top)], DARK_COLOUR, 0.6, blocks=False)
         most = int((top - MARGIN - 4) / LEGEND_ROW + 0.5)
@@ -244,7 +244,7 @@ class Legend:
             at = complex(MARGIN, top - 4 - LEGEND_ROW * row)
             sheet.line([at, at + 9], part.colour, 3.2, blocks=False)
             hidden = row == most - 1 and rows > most
-            text = _("... further parts: {count}").format(count=rows - most + 1) if hidden else self.words(part)
+            text = _("... further parts: {count}").format(count=rows - most + 1) if hidden else self.entry(part)
             sheet.text(at + 12, text, 9, colour=part.colour)
         for row, line in enumerate(lines[:most]):
             sheet.text(complex(MARGIN + left + 4, top - 4 - LEGEND_ROW * row), line, 9)
@@ -379,7 +379,7 @@ def _draw_part(sheet: DrawingSheet, scene: MechanismScene, part: MechanismPart, 
     inner = tuple(p for p in pairs if {p.i, p.j} <= {*links, *frame})
     most = math.inf if on_large_sheet() else GROUP_BASE_SIZE + GROUP_SIZE_PER_LINK * len(links)
     scene = fit_links(sheet, scene, links, pad, most)
-    look = STRUCTURAL.sized(symbol_scale(sheet, scene, links))
+    look = STRUCTURAL.scaled(symbol_scale(sheet, scene, links))
     part_colours = dict.fromkeys(links, part.colour)
     for pair in pairs:  # higher pairs shared with other parts: draw only the side of this part
         if not pair.lower and pair not in inner and {pair.i, pair.j} & set(links):
@@ -439,7 +439,7 @@ def _mark_later_pairs(
     """Mark the pairs to which later groups are connected with dots and grey names."""
     drawn_names = {p.name for p in drawn}
     circled = [sheet.on(scene.at(p)) for p in drawn if p.kind == "R"]
-    later = [p for link in part.links for p in scene.of(link) if p.name not in drawn_names]
+    later = [p for link in part.links for p in scene.lower_pairs(link) if p.name not in drawn_names]
     fresh = [p for p in later if all(abs(sheet.on(scene.at(p)) - at) > 0.5 for at in circled)]
     for pair in fresh:
         at = sheet.on(scene.at(pair))

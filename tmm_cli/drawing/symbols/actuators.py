@@ -49,8 +49,8 @@ class Cylinder:
     def of(sheet: DrawingSheet, scene: MechanismScene, slide: Slide) -> Cylinder:
         """Return the cylinder for a prismatic pair.
 
-        The barrel begins at the last point of its link behind the rod end, or else one stroke before it. If the barrel is
-        too short for the stroke, the piston is drawn with a shorter one.
+        The barrel begins at the last point of its link behind the rod end, or else one stroke before it. If the barrel
+        is too short for the stroke, the piston is drawn with a shorter one.
         """
         low, high = (run / sheet.mu for run in scene.travel(slide))
         foot, end = sheet.on(scene.place(slide.carrier, slide.through)), sheet.on(scene.place(slide.runner, slide.at))

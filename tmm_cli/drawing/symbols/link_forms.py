@@ -1,6 +1,6 @@
 """Shapes in which links are drawn: a bar between two pairs, a plate between more pairs, a bar along each guide.
 
-In a structural diagram the shape follows from the pairs. In a drawing to scale it follows from the named points, and
+In a structural scheme the shape follows from the pairs. In a drawing to scale it follows from the named points, and
 guides are as long as the travel along them.
 """
 
@@ -45,7 +45,7 @@ class LinkBar:
     def meets(self, place: complex) -> bool:
         return bool(abs(cross(self.along, place - self.base)) < ON_LINE)
 
-    def take(self, place: complex) -> None:
+    def extend_to(self, place: complex) -> None:
         """Extend the bar to a point on its line, mm."""
         run = float(dot(self.along, place - self.base))
         self.low, self.high = min(self.low, run), max(self.high, run)
@@ -137,29 +137,29 @@ def form_by_points(sheet: DrawingSheet, scene: MechanismScene, link: str, *, who
         for end, side in ((low - displacement, -along), (high - displacement, along)) if whole else ():
             tip = block + end / sheet.mu * along
             if not any(bar.meets(j) and dot(side, j - tip) > BLOCK_HALF_LENGTH for j in joints):
-                bar.take(leave_field(block, tip + GUIDE_OVERHANG * side, *sheet.field))
+                bar.extend_to(leave_field(block, tip + GUIDE_OVERHANG * side, *sheet.field))
     return _join_parts(sheet, scene, link, joints, bars)
 
 
 def form_by_pairs(sheet: DrawingSheet, scene: MechanismScene, link: str) -> LinkForm:
-    """Return the shape of a link in a structural diagram, from its pairs."""
+    """Return the shape of a link in a structural scheme, from its pairs."""
     joints = drop_coincident(sheet.on(p) for p in scene.joints(link))
     bars: list[LinkBar] = []
     for slide in _carried_guides(scene, link):
         at, along = sheet.on(scene.place(slide.runner, slide.at)), scene.along(slide)
         bar = _bar_through(bars, at, along)
-        bar.take(at - GUIDE_REACH * along)
-        bar.take(at + GUIDE_REACH * along)
+        bar.extend_to(at - GUIDE_REACH * along)
+        bar.extend_to(at + GUIDE_REACH * along)
     for bar in bars:
         for end in scene.ends(link):
             if bar.meets(sheet.on(end)):
-                bar.take(sheet.on(end))
+                bar.extend_to(sheet.on(end))
     return _join_parts(sheet, scene, link, joints, bars)
 
 
 def _carried_guides(scene: MechanismScene, link: str) -> list[Slide]:
     """Return the guides on a link, except those of cylinders."""
-    slides = [pair.slide for pair in scene.of(link) if pair.slide is not None and pair.slide.carrier == link]
+    slides = [pair.slide for pair in scene.lower_pairs(link) if pair.slide is not None and pair.slide.carrier == link]
     return [slide for slide in slides if slide.name not in cylinder_drivers(scene.linkage)]
 
 
@@ -176,8 +176,8 @@ def _lay_bar(bars: list[LinkBar], start: complex, end: complex) -> None:
     """Add a bar between two points (mm), or extend the bar on their line."""
     if abs(end - start) > ON_LINE:
         bar = _bar_through(bars, start, (end - start) / abs(end - start))
-        bar.take(start)
-        bar.take(end)
+        bar.extend_to(start)
+        bar.extend_to(end)
 
 
 def _join_parts(
@@ -185,7 +185,7 @@ def _join_parts(
 ) -> LinkForm:
     """Connect the pairs and bars of a link into one shape. Pairs that are not on a bar form a plate or get a strut."""
     driven, boxes = cylinder_drivers(scene.linkage), []
-    for pair in scene.of(link):
+    for pair in scene.lower_pairs(link):
         if pair.slide is not None and pair.name in driven:
             _lay_bar(bars, *Cylinder.of(sheet, scene, pair.slide).part(link))
         elif pair.slide is not None and pair.slide.runner == link:
@@ -196,7 +196,7 @@ def _join_parts(
     for bar in bars:
         bar.holds += [j for j in joints if bar.meets(j)]
         for place in bar.holds:
-            bar.take(place)
+            bar.extend_to(place)
     struts: list[Segment] = []
     welds: list[tuple[complex, complex, complex]] = []
     for number, bar in enumerate(bars[1:], 1):
@@ -204,7 +204,7 @@ def _join_parts(
     loose = [j for j in joints if not any(bar.meets(j) for bar in bars)]
     if loose and bars:
         bar, near, foot = _nearest_joint(bars, loose)
-        bar.take(foot)
+        bar.extend_to(foot)
         if len(loose) > 1 and bar.holds:
             loose.append(foot)
         else:
@@ -255,8 +255,8 @@ def _join_bars(
         if abs(turn) > 0.05:
             meet = other.base + other.along * float(cross(bar.base - other.base, bar.along)) / turn
             if abs(meet - bar.base) < 150 and abs(meet - other.base) < 150:
-                bar.take(meet)
-                other.take(meet)
+                bar.extend_to(meet)
+                other.extend_to(meet)
                 welds.append((meet, _longer_arm(bar, meet), _longer_arm(other, meet)))
                 return
     start, end = min(((p, q) for p in bar.tips for other in others for q in other.tips), key=lambda w: abs(w[1] - w[0]))

@@ -26,7 +26,7 @@ class SymbolStyle:
     """Sizes of symbols (mm) and widths of lines (points).
 
     Attributes:
-        measured: True for a drawing to scale, False for a structural diagram.
+        measured: True for a drawing to scale, False for a structural scheme.
         hinge: Radius of a hinge.
         box: Length and width of a slider on the frame.
         block: Length and width of a block on a moving link.
@@ -45,14 +45,14 @@ class SymbolStyle:
     sides: tuple[complex, ...]
     moves: bool = False
 
-    def sized(self, size: float) -> SymbolStyle:
+    def scaled(self, size: float) -> SymbolStyle:
         """Return the style with symbols scaled by a factor, for pairs close to each other."""
         length, width = self.box
         height, half = self.support
         box = (size * length, size * width)
         return replace(self, hinge=size * self.hinge, box=box, block=box, support=(size * height, size * half))
 
-    def raised(self) -> SymbolStyle:
+    def with_raised_support(self) -> SymbolStyle:
         """Return the style with higher supports, for a hinge in a sliding block that would cover the support."""
         height, half = self.support
         return replace(self, support=(height + self.block[1] / 2, half))
@@ -208,7 +208,7 @@ def draw_sliding_arrow(
 
 def symbol_scale(sheet: DrawingSheet, scene: MechanismScene, links: Iterable[str]) -> float:
     """Return the factor for the sizes of symbols: 1, or less if pairs are so close that symbols would overlap."""
-    points = drop_coincident(sheet.on(scene.at(p)) for link in links for p in scene.of(link))
+    points = drop_coincident(sheet.on(scene.at(p)) for link in links for p in scene.lower_pairs(link))
     gaps = [abs(p - q) for n, p in enumerate(points) for q in points[:n]]
     return float(np.clip(min(gaps, default=10.0) / 6.5, 0.5, 1.0))
 

@@ -1,4 +1,4 @@
-"""Drawing of a mechanism in one position with the symbols of its parts, to scale or as a structural diagram.
+"""Drawing of a mechanism in one position with the symbols of its parts, to scale or as a structural scheme.
 
 Parts that cover others are drawn last: guides, gears and cams, links, sliders, springs, hinges, supports.
 """
@@ -122,7 +122,7 @@ def _render_links(
         if FRAME not in joined:
             continue
         blocks = [place for link in joined if link in forms for place in forms[link].boxes]
-        here_look = look.raised() if any(abs(at - place) < ON_LINE for place in blocks) else look
+        here_look = look.with_raised_support() if any(abs(at - place) < ON_LINE for place in blocks) else look
         with sheet.part(FRAME):
             end = draw_support(sheet, at, support_side(sheet, at, rods, here_look), here_look, rods)
         if not look.measured:

@@ -92,7 +92,7 @@ class MechanismScene:
         assert pair.mesh is not None
         return higher_pair_outline(self, pair.mesh)
 
-    def of(self, link: str) -> tuple[Pair, ...]:
+    def lower_pairs(self, link: str) -> tuple[Pair, ...]:
         """Return the lower pairs of a link."""
         return tuple(p for p in self.structure.pairs if link in (p.i, p.j) and p.kind in ("R", "P"))
 
@@ -100,7 +100,7 @@ class MechanismScene:
         """Return the positions (m) of the hinges and sliding blocks of a link; if there is only one, also of its named
         points.
         """
-        points = [self.at(p) for p in self.of(link) if p.slide is None or p.slide.runner == link]
+        points = [self.at(p) for p in self.lower_pairs(link) if p.slide is None or p.slide.runner == link]
         disk = any(mesh.kind == "cam" and mesh.i == link for mesh in self.linkage.meshes)
         if len(points) + len(self.guides(link)) < 2 and not disk:
             points += self.ends(link)
@@ -108,7 +108,7 @@ class MechanismScene:
 
     def guides(self, link: str) -> list[tuple[complex, complex]]:
         """Return the guides on a link, each as the position of its block (m) and a unit vector."""
-        carried = [p for p in self.of(link) if p.slide is not None and p.slide.carrier == link]
+        carried = [p for p in self.lower_pairs(link) if p.slide is not None and p.slide.carrier == link]
         return [(self.at(p), self.along(p.slide)) for p in carried if p.slide is not None]
 
     def ends(self, link: str) -> list[complex]:
@@ -160,10 +160,10 @@ def fit_links(
 
 def spread_boxes(sheet: DrawingSheet, scene: MechanismScene, links: Sequence[str]) -> MechanismScene:
     """Move boxes along guides on the frame so that they do not overlap; their position on such a guide is arbitrary."""
-    boxes = {p.name: sheet.on(scene.at(p)) for link in links for p in scene.of(link) if p.slide is not None}
-    all_points = drop_coincident(sheet.on(scene.at(p)) for link in links for p in scene.of(link))
+    boxes = {p.name: sheet.on(scene.at(p)) for link in links for p in scene.lower_pairs(link) if p.slide is not None}
+    all_points = drop_coincident(sheet.on(scene.at(p)) for link in links for p in scene.lower_pairs(link))
     moved = {}
-    for pair in (p for link in links for p in scene.of(link)):
+    for pair in (p for link in links for p in scene.lower_pairs(link)):
         if pair.slide is None or pair.slide.carrier != FRAME:
             continue
         at = boxes[pair.name]
