@@ -104,7 +104,7 @@ def _join_letters(letters: list[str]) -> str:
 
 
 def chart_quantities(results: Results, whole: Results) -> Iterable[QuantityPlot]:
-    """Yield the diagrams of the page: motion of the first two outputs, and balancing moments or forces of the drivers."""
+    """Yield the diagrams of the page: motion of the first two outputs, balancing moments or forces of the drivers."""
     assert whole.motion is not None
     for link in results.mechanism.outputs[:2]:
         yield from output_plots(results, whole.motion, link)

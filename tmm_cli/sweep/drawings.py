@@ -189,7 +189,7 @@ class _Grid:
         return self.panel.at(x, y)
 
     def border_fraction(self, start: tuple[int, int], end: tuple[int, int]) -> float:
-        """Return where the boundary crosses a grid edge, as a fraction of its length; 0.5 if the boundary is not known."""
+        """Return where the boundary crosses a grid edge, as a fraction of its length; 0.5 if this is not known."""
         along = 0 if start[0] != end[0] else 1
         values = (self.x, self.y)[along]
         low, high = float(values[start[along]]), float(values[end[along]])

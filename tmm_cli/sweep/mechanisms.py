@@ -242,7 +242,7 @@ class SweptMechanisms:
         ]
 
     def _read_traced_quantities(self, columns: Real, scanned: ScanResults, varied: Any) -> tuple[Real, Real]:
-        """Return the requested quantities of feasible variants, (variants, quantities), and the result of `_load_table_reach`."""
+        """Return the requested quantities of feasible variants, (variants, quantities), and their load table reach."""
         crank_variants = self.crank_variants
         assert crank_variants is not None
         strokes = variant_strokes(crank_variants, columns, scanned, varied)
@@ -263,7 +263,9 @@ class SweptMechanisms:
         return table, self._load_table_reach(varied.linkage, strokes, len(columns))
 
     def _load_table_reach(self, linkage: Linkage, strokes: Strokes | None, count: int) -> Real:
-        """Return the last argument of each load table against the stroke, and that stroke, (variants, loads, 2)."""
+        """Return the load table reach: last argument of each load table against the stroke, and the stroke, (variants,
+        loads, 2).
+        """
         reach = np.full((count, len(self.tables), 2), np.nan)
         for load, last, stroke in table_lengths(linkage, strokes):
             k = self.tables.index(load.name)
@@ -271,9 +273,7 @@ class SweptMechanisms:
         return reach
 
     def _solve_point(self, point: Real) -> tuple[int, str, Real, Real]:
-        """Solve one point without the trace and return its state, the reason, its quantities and the result of
-        `_load_table_reach`.
-        """
+        """Solve one point without the trace and return its state, the reason, its quantities and its load table reach."""
         nothing = np.full(len(self.shown), np.nan), np.full((len(self.tables), 2), np.nan)
         texts = {axis.name: axis.text(float(value)) for axis, value in zip(self.axes, point, strict=True)}
         forces = any(check.forces for check in self.shown)

@@ -169,7 +169,7 @@ class ShownQuantity:
         return self.quantity is not None and self.quantity.against in ("range", "angle")
 
     def at_positions(self, solved: SolvedState) -> Any:
-        """Return the quantity at each position of a solved mechanism, or its magnitude if the largest value is shown."""
+        """Return the quantity at each position of a solved mechanism; its magnitude if the largest value is shown."""
         assert self.quantity is not None
         samples = self.quantity.read(solved)
         return samples if self.ranges else np.abs(samples)

@@ -442,7 +442,6 @@ def synthesis_diagram(title: str, drawn: Diagram, units: UnitSystem) -> Drawing:
 
 
 def _diagram_plot(lines: Iterable[DiagramLine], y: tuple[str, str], wide: Dimension, units: UnitSystem) -> PlotContent:
-    """Return a panel with these lines; those in the background are drawn first."""
     words, kind = y
     high = DIMENSIONS[kind].dimension
     colours = cycle((DARK_COLOUR, LOAD_COLOUR, INERTIA_COLOUR, REACTION_COLOUR))
