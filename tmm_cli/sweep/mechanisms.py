@@ -242,7 +242,7 @@ class SweptMechanisms:
         ]
 
     def _read_traced_quantities(self, columns: Real, scanned: ScanResults, varied: Any) -> tuple[Real, Real]:
-        """Return the requested quantities of feasible variants, (variants, quantities), and the reach of their load tables."""
+        """Return the requested quantities, (variants, quantities), and the reach of the load tables, of feasible variants."""
         crank_variants = self.crank_variants
         assert crank_variants is not None
         strokes = variant_strokes(crank_variants, columns, scanned, varied)
@@ -273,7 +273,7 @@ class SweptMechanisms:
         return reach
 
     def _solve_point(self, point: Real) -> tuple[int, str, Real, Real]:
-        """Solve one point without the trace and return its state, the reason, its quantities and the reach of its load tables."""
+        """Solve one point without the trace: state, reason, quantities, reach of the load tables."""
         nothing = np.full(len(self.shown), np.nan), np.full((len(self.tables), 2), np.nan)
         texts = {axis.name: axis.text(float(value)) for axis, value in zip(self.axes, point, strict=True)}
         forces = any(check.forces for check in self.shown)

@@ -119,7 +119,7 @@ EDGE, LEAST = 4.0, 110.0  # mm: about the scheme, and its least width
 
 
 def draw_chain(chain: SpatialChain) -> MovingPicture:
-    """Draw a spatial chain as a diagram with the frame at the bottom. Each pair has its number of degrees of freedom."""
+    """Draw a spatial chain as a diagram with the frame at the bottom. Each pair shows its degrees of freedom."""
     centres = chain_places(chain)
     marks: list[Mark] = []
     between = Counter[frozenset[str]]()
