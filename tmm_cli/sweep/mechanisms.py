@@ -242,7 +242,7 @@ class SweptMechanisms:
         ]
 
     def _read_traced_quantities(self, columns: Real, scanned: ScanResults, varied: Any) -> tuple[Real, Real]:
-        """Return the requested quantities, (variants, quantities), and the reach of the load tables, of feasible variants."""
+        """Return requested quantities, (variants, quantities), and the reach of load tables, for feasible variants."""
         crank_variants = self.crank_variants
         assert crank_variants is not None
         strokes = variant_strokes(crank_variants, columns, scanned, varied)
