@@ -161,7 +161,7 @@ def test_a_table_of_other_parameters_is_refused_before_the_work():
 
 def test_no_scheduler_is_one_line(monkeypatch):
     monkeypatch.setattr(workers, "ANSWER_TIMEOUT", 0.2)
-    with pytest.raises(ProblemError, match="no scheduler answers at this address"):
+    with pytest.raises(ProblemError, match="no Dask scheduler answers at this address"):
         grade_group(task(), TABLE, GROUP, on_cluster("tcp://127.0.0.1:9"))
 
 
@@ -207,7 +207,7 @@ def test_a_scheduler_without_workers_and_a_worker_with_another_program_are_one_l
     try:
         address = address_of(tmp_path)
         monkeypatch.setattr(workers, "ANSWER_TIMEOUT", 0.5)
-        with pytest.raises(ProblemError, match="the scheduler has no workers") as refused:
+        with pytest.raises(ProblemError, match="the Dask scheduler has no workers") as refused:
             grade_group(task(), TABLE, GROUP, on_cluster(address))
         assert refused.value.allowed == f"dask worker {address}"
         monkeypatch.setattr(workers, "ANSWER_TIMEOUT", 60)
@@ -273,5 +273,5 @@ def test_a_cluster_that_loses_all_its_workers_is_one_line(dask, monkeypatch):
             for one in processes_of_dask:
                 one.kill()
 
-    with pytest.raises(ProblemError, match="the scheduler has no workers"):
+    with pytest.raises(ProblemError, match="the Dask scheduler has no workers"):
         grade_group(task(), TABLE, GROUP, on_cluster(address), None, lose)

@@ -127,13 +127,13 @@ MESSAGES = {
     "a number": ("n2: 3", "expected [low, high], {from, to, step} or {among: [...]}", "found:   3"),
     "too many": (
         "l: {from: 1, to: 3e9, step: 1}",
-        "the number of steps between the bounds must be 1 to 9999",
+        "the number of steps between the bounds must be from 1 to 9999",
         "found:   1",
     ),
     "endless": ("l: {from: 1, to: 1e15, step: 1e-9}", "between the bounds must be 1 to 9999", "found:   1e-9"),
     "too large a step": (
         "l: {from: 1, to: 3, step: 5}",
-        "the number of steps between the bounds must be 1 to 9999",
+        "the number of steps between the bounds must be from 1 to 9999",
         "found:   5",
     ),
     "the wrong way": (

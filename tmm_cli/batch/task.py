@@ -132,10 +132,10 @@ class Grading(Strict):
     from_: Literal["task", "either"] = Field(
         default="task",
         alias="from",
-        description="counting of positions: as in the task, or from either extreme position of the output",
+        description="where positions are counted from: as in the task, or from either extreme position of the output link",
     )
     drawn: bool = Field(default=True, description="true: answers are measured on drawings; false: they are computed")
-    reveal: bool = Field(default=False, description="true: the feedback shows the right values")
+    reveal: bool = Field(default=False, description="true: the feedback shows the correct values")
 
 
 class Blocks(Strict):
@@ -260,7 +260,9 @@ class Task:
         if quantity is None:
             one_of_each = {_quantity_kind(name): name for name in reversed(self.quantities)}.values()
             some = _("e.g. {names}").format(names=", ".join(reversed(one_of_each)))
-            raise unknown_name_error(rule.of, self.quantities, _("no such quantity"), some, path=(*path, "of"))
+            raise unknown_name_error(
+                rule.of, self.quantities, _("there is no quantity with this name"), some, path=(*path, "of")
+            )
         drawn = rules.drawn if rule.drawn is None else rule.drawn
         drawn = drawn and quantity.against != "exact"
         usual = DRAWN_FORCES_TOLERANCE if quantity.order >= 4 else DRAWN_KINEMATICS_TOLERANCE
@@ -283,7 +285,7 @@ class Task:
         for k, number in enumerate(rule.at):
             if not rules.count <= number < last + rules.count:
                 raise ProblemError(
-                    _("no such position"),
+                    _("there is no position with this number"),
                     path=(*path, "at", k),
                     found=str(number),
                     allowed=_("{first} to {last}").format(first=rules.count, last=last - 1 + rules.count),
@@ -311,7 +313,7 @@ class Task:
         parameters = self._parameters({})
         for name in names:
             if name not in parameters:
-                none = None if parameters else _("none: the file has no block `parameters`")
+                none = None if parameters else _("none, since the file has no block `parameters`")
                 raise unknown_name_error(name, parameters, _("no parameter has this name"), none)
         return tuple(parameters[name] for name in names)
 
@@ -421,7 +423,7 @@ def _free_parameters(task: Task, blocks: Blocks) -> tuple[FreeParameter, ...]:
     ranges = blocks.variants
     if not ranges:
         raise ProblemError(
-            _("the task has no free parameters"),
+            _("the task has no parameters that differ between variants"),
             path=("variants",),
             allowed=_("variants: {OA: {from: 80, to: 140, step: 5}}; or --vary OA=80..140:5"),
         )
@@ -467,10 +469,10 @@ def _step_texts(
     count = (high - low) / step + STEP_TOLERANCE if step > 0 else math.inf
     if not 1 <= count < MOST_VALUES:
         raise ProblemError(
-            _("the number of steps between the bounds must be 1 to {most}").format(most=MOST_VALUES - 1),
+            _("the number of steps between the bounds must be from 1 to {most}").format(most=MOST_VALUES - 1),
             path=("step",),
             found=quote(values[2]),
-            allowed=_("another step; or bounds without a step: [low, high]"),
+            allowed=_("give another step, or bounds without a step: [low, high]"),
         )
     return [f"{(low + step * k) / scale:.12g} {unit}".strip() for k in range(int(count) + 1)]
 

@@ -84,18 +84,20 @@ def _cluster(address: str, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tu
         distributed: Any = import_module("distributed")  # typed in part alone
     except ImportError:
         raise ProblemError(
-            _("a cluster requires the package distributed"), allowed="pip install 'tmm-cli[cluster]'"
+            _("running on a cluster requires the package `distributed`"), allowed="pip install 'tmm-cli[cluster]'"
         ) from None
     for library in ("distributed", "asyncio"):
         logging.getLogger(library).setLevel(logging.CRITICAL)  # what fails is reported here
     if not SCHEDULER.fullmatch(address):  # distributed would wait, and complain at the end of the program
-        raise ProblemError(_("not an address of a scheduler"), found=quote(address), allowed="tcp://host:8786")
+        raise ProblemError(
+            _("this is not the address of a Dask scheduler"), found=quote(address), allowed="tcp://host:8786"
+        )
     try:
         _wait_for_greeting(address)
         client = distributed.Client(address, timeout=ANSWER_TIMEOUT, set_as_default=False)
     except (OSError, ValueError, OverflowError):
         raise ProblemError(
-            _("no scheduler answers at this address"), found=quote(address), allowed="tcp://host:8786"
+            _("no Dask scheduler answers at this address"), found=quote(address), allowed="tcp://host:8786"
         ) from None
     with client:
         _refuse_other_programs(client, address)
@@ -183,16 +185,22 @@ def _refuse_other_programs(client: Any, address: str) -> None:
     other = next(((worker, reported) for worker, reported in versions.items() if reported != expected), None)
     if other is not None:
         worker, (version, digest) = other
-        installed = f"tmm {version} ({digest[:8]})" if version else _("no tmm, or a version older than this check")
+        installed = (
+            f"tmm {version} ({digest[:8]})"
+            if version
+            else _("tmm is not installed, or its version is too old to be checked")
+        )
         raise ProblemError(
             _("a worker of the cluster has a different version of tmm"),
             found=f"{worker}: {installed}",
-            allowed=_("{version} on each worker").format(version=f"tmm {expected[0]} ({expected[1][:8]})"),
+            allowed=_("{version} on each worker of the cluster").format(
+                version=f"tmm {expected[0]} ({expected[1][:8]})"
+            ),
         )
 
 
 def _no_workers_error(address: str) -> ProblemError:
-    return ProblemError(_("the scheduler has no workers"), found=quote(address), allowed=f"dask worker {address}")
+    return ProblemError(_("the Dask scheduler has no workers"), found=quote(address), allowed=f"dask worker {address}")
 
 
 def _run_with_same_program(program: str, spoken: CourseNotation, job: Job) -> Any:

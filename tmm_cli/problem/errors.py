@@ -276,7 +276,7 @@ def unknown_name_error(
 def unknown_position_error(number: int, count: int, *path: str | int) -> ProblemError:
     """Return the error for a position number beyond the last of `count` positions."""
     allowed = _("0 to {last}").format(last=count - 1)
-    return ProblemError(_("no such position"), path=path, found=str(number), allowed=allowed)
+    return ProblemError(_("there is no position with this number"), path=path, found=str(number), allowed=allowed)
 
 
 def parse_names(text: str, known: Iterable[str], option: str, reason: str) -> list[str]:

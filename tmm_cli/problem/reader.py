@@ -442,7 +442,7 @@ def apply_settings(tree: Tree, settings: Sequence[str]) -> Tree:
         if not sign or not name:
             raise ProblemError(_("expected a name and a value"), allowed="--set OA=120", file=words)
         if name not in parameters:
-            none = None if parameters else _("none: the file has no block `parameters`")
+            none = None if parameters else _("none, since the file has no block `parameters`")
             raise unknown_name_error(name, parameters, _("no parameter has this name"), none, path=path, file=words)
         if path in settings_by_path:
             raise ProblemError(

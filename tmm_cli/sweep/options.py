@@ -219,7 +219,9 @@ def read_shown(task: Task, texts: Sequence[str]) -> tuple[ShownQuantity, ...]:
         for name in _split_names(text, names):
             if name not in names:
                 some = _("e.g. {names}").format(names=", ".join(_example_names(available)))
-                raise unknown_name_error(name, names, _("no such quantity"), some, file=f"--show {text}")
+                raise unknown_name_error(
+                    name, names, _("there is no quantity with this name"), some, file=f"--show {text}"
+                )
             chosen.append(available[names[name]])
     chosen = list(dict.fromkeys(chosen)) or [
         available[name] for name in DEFAULT_QUANTITIES if name in available and not (name == "H" and "psi" in available)

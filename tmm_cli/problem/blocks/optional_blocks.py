@@ -309,7 +309,7 @@ def _build_setting(
                 path=(*path, name),
                 found=quote(name),
                 key=True,
-                allowed=", ".join(parameters) or _("none: the file has no block `parameters`"),
+                allowed=", ".join(parameters) or _("none, since the file has no block `parameters`"),
                 near=nearest_name(name, parameters),
             )
     if not keys:

@@ -84,10 +84,10 @@ def _read_parameter(name: str, bounds: Range, kind: str, reader: ValueReader) ->
     count = (high - low) / step + STEP_TOLERANCE
     if not 1 <= count < MOST_VALUES:
         raise ProblemError(
-            _("the number of steps between the bounds must be 1 to {most}").format(most=MOST_VALUES - 1),
+            _("the number of steps between the bounds must be from 1 to {most}").format(most=MOST_VALUES - 1),
             path=(*at, "step"),
             found=quote(bounds.step),
-            allowed=_("another step; or bounds without a step: [low, high]"),
+            allowed=_("give another step, or bounds without a step: [low, high]"),
         )
     values = [float(f"{low + step * k:.15g}") for k in range(int(count) + 1)]  # without rounding errors of the sum
     return Parameter(name, values[0], values[-1], kind, tuple(values))
