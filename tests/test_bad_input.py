@@ -165,7 +165,7 @@ CASES = {
         "detail: [3]",
         "detail: [37]",
         "37]",
-        ("positions.detail[0]: no such position\n  found:   37\n  allowed: 0 to 11"),
+        ("positions.detail[0]: there is no position with this number\n  found:   37\n  allowed: 0 to 11"),
     ),
 }
 

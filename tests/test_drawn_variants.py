@@ -114,7 +114,7 @@ def test_ranges_of_the_command_take_the_place_of_those_of_the_file(vary, texts):
         (
             "OA=80..90:0",
             (
-                "--vary OA=80..90:0: variants.OA.step: the number of steps between the bounds must be 1 to 9999\n"
+                "--vary OA=80..90:0: variants.OA.step: the number of steps between the bounds must be from 1 to 9999\n"
                 "  found:   0\n"
                 "  allowed: give another step, or bounds without a step: [low, high]"
             ),

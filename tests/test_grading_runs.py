@@ -172,14 +172,17 @@ def test_an_address_that_is_none_is_one_line(address):
     pytest.importorskip("distributed")
     with pytest.raises(ProblemError) as refused:
         grade_group(task(), TABLE, GROUP, on_cluster(address))
-    told = f"not an address of a scheduler\n  found:   '{address}'\n  allowed: tcp://host:8786"
+    told = f"this is not the address of a Dask scheduler\n  found:   '{address}'\n  allowed: tcp://host:8786"
     assert str(refused.value) == told
 
 
 def test_a_server_that_says_nothing_is_one_line(monkeypatch):
     pytest.importorskip("distributed")
     monkeypatch.setattr(workers, "ANSWER_TIMEOUT", 0.2)
-    with socket.create_server(("127.0.0.1", 0)) as server, pytest.raises(ProblemError, match="no scheduler answers"):
+    with (
+        socket.create_server(("127.0.0.1", 0)) as server,
+        pytest.raises(ProblemError, match="no Dask scheduler answers"),
+    ):
         grade_group(task(), TABLE, GROUP, on_cluster(f"127.0.0.1:{server.getsockname()[1]}"))
 
 

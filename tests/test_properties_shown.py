@@ -136,7 +136,7 @@ def test_a_chain_without_dimensions_shows_its_counts(tmp_path):
     "block, message",
     [
         ("{of: v of Q, at: 1}", ("shows.it.of: unknown quantity\n  found:   'v of Q'\n")),
-        ("{of: v of A, at: 99}", "shows.it.at: no such position\n  found:   99\n  allowed: 0 to "),
+        ("{of: v of A, at: 99}", "shows.it.at: there is no position with this number\n  found:   99\n  allowed: 0 to "),
         (
             "{of: v of A}",
             (
@@ -145,7 +145,10 @@ def test_a_chain_without_dimensions_shows_its_counts(tmp_path):
             ),
         ),
         ("{of: H, per: k}", ("shows.it.per: expected a quantity of the same dimension\n  found:   'k'")),
-        ("{of: v of A, between: [0, 99]}", "shows.it.between[1]: no such position\n  found:   99\n"),
+        (
+            "{of: v of A, between: [0, 99]}",
+            "shows.it.between[1]: there is no position with this number\n  found:   99\n",
+        ),
         (
             "{of: H, over: range}",
             ("shows.it.over: this is a property of the whole mechanism, not of a position\n  found:   'H'"),

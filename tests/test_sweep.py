@@ -266,7 +266,7 @@ def test_the_nearest_quantity_is_proposed():
     with pytest.raises(ProblemError) as refused:
         read_shown(task, ["psi,presure"])
     assert str(refused.value).splitlines()[:2] == [
-        "--show psi,presure: no such quantity",
+        "--show psi,presure: there is no quantity with this name",
         "  found:   'presure'",
     ]
     assert refused.value.near == "pressure"

@@ -130,7 +130,7 @@ MESSAGES = {
         "the number of steps between the bounds must be from 1 to 9999",
         "found:   1",
     ),
-    "endless": ("l: {from: 1, to: 1e15, step: 1e-9}", "between the bounds must be 1 to 9999", "found:   1e-9"),
+    "endless": ("l: {from: 1, to: 1e15, step: 1e-9}", "between the bounds must be from 1 to 9999", "found:   1e-9"),
     "too large a step": (
         "l: {from: 1, to: 3, step: 5}",
         "the number of steps between the bounds must be from 1 to 9999",

@@ -132,7 +132,9 @@ class Grading(Strict):
     from_: Literal["task", "either"] = Field(
         default="task",
         alias="from",
-        description="where positions are counted from: as in the task, or from either extreme position of the output link",
+        description=(
+            "where positions are counted from: as in the task, or from either extreme position of the output link"
+        ),
     )
     drawn: bool = Field(default=True, description="true: answers are measured on drawings; false: they are computed")
     reveal: bool = Field(default=False, description="true: the feedback shows the correct values")
