@@ -15,7 +15,7 @@ import tmm_cli.mechanics.plans.lever_drawing as drawn_plans
 from tmm_cli.mechanics.forces import list_free_bodies
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.plans import balance_drawings, drawn_check
-from tmm_cli.note import by_moments
+from tmm_cli.note import solve_moment_equation
 
 COURSE = Path("problems/course-1.yaml").read_text(encoding="utf-8")
 DRIVEN = ("course-1", "course-2", "course-3", "course-4", "shaper", "crank-slider", "six-bar", "cylinder", "whitworth")
@@ -109,7 +109,7 @@ def test_arms_on_paper_are_metres_over_the_scale_and_couples_are_divided_by_it()
     results, k, mu = solved("course-1"), 3, 0.0025
     motion = results.motion
     equation = list_free_bodies(motion, results.reactions, k)[0].equations[0]
-    found = by_moments(equation, mu=mu)
+    found = solve_moment_equation(equation, mu=mu)
     e, s, d = (complex(z[k]) for z in (motion.named("E").x, motion.centre("4").x, motion.named("D").x))
     inertia = -3.0 * complex(motion.centre("4").a[k])
     couple = -0.02 * float(motion.link("4").epsilon[k])
@@ -142,7 +142,7 @@ def test_every_equation_gives_the_same_with_arms_on_paper_as_in_metres(name):
     results = solved(name)
     equations = [e for part in list_free_bodies(results.motion, results.reactions, 2) for e in part.equations]
     for equation in equations:
-        metres, paper = by_moments(equation), by_moments(equation, mu=0.002)
+        metres, paper = solve_moment_equation(equation), solve_moment_equation(equation, mu=0.002)
         assert (metres is None) == (paper is None)
         if metres is not None:
             length = paper.unit == "mm"

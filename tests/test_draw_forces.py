@@ -36,7 +36,7 @@ from tmm_cli.drawing.sheets import (
 )
 from tmm_cli.mechanics.forces import ForceOrCouple, Symbol, list_free_bodies
 from tmm_cli.mechanics.plans import NamedVector, force_plans
-from tmm_cli.note import fixed, rounded
+from tmm_cli.note import format_fixed, round_figures
 
 
 def sheets_of(name, kind):
@@ -217,7 +217,10 @@ def test_a_unit_is_not_left_alone_on_a_line():
 
 def test_a_half_is_rounded_up_on_whichever_side_of_it_binary_numbers_are():
     assert format_figures(1.5 * 9.81) == format_figures(14.715000000000002) == "14.72"
-    assert fixed(35 * 9.81, 4) == fixed(343.35000000000002, 4) == "343.4" and rounded(31384.6, 4) == 31385
+    assert (
+        format_fixed(35 * 9.81, 4) == format_fixed(343.35000000000002, 4) == "343.4"
+        and round_figures(31384.6, 4) == 31385
+    )
 
 
 def test_small_numbers_are_written_out():

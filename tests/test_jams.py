@@ -19,7 +19,7 @@ from test_commands import tmm
 from tmm_cli.mechanics.forces import FrictionSolution, LockedRange, find_locked_ranges
 from tmm_cli.mechanics.groups import CamLaw, CamLawPiece
 from tmm_cli.mechanics.numerics import solve as solve_linear, to_double_double
-from tmm_cli.note import Paragraph, Subject, losses
+from tmm_cli.note import Paragraph, Subject, write_losses
 from tmm_cli.reports import collect_warnings as words, find_slips, to_json
 
 # ---------------------------------------------------------------- wheels
@@ -235,7 +235,7 @@ def test_self_locking_between_the_positions_is_told_with_its_range(tmp_path, tur
         done = tmm(command, file, *(["--no-drawings", "-o", tmp_path / "out"] if command == "run" else []))
         assert f"the mechanism locks by friction {told}" in done.stderr
     assert f"self-locking {told}" in tmm("forces", file).stdout
-    note = [block for block in losses(Subject(results, drawn=False)) if isinstance(block, Paragraph)]
+    note = [block for block in write_losses(Subject(results, drawn=False)) if isinstance(block, Paragraph)]
     assert told in str(note[0].line)
 
 

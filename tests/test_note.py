@@ -25,7 +25,7 @@ from tmm_cli.mechanics.quantities import DIMENSIONS
 from tmm_cli.note import (
     EXACT,
     MOST_FIGURES,
-    Found,
+    ComputedQuantity,
     Function,
     Heading,
     Leaf,
@@ -54,13 +54,15 @@ def test_every_formula_gives_its_printed_result_within_its_last_digit(name):
     wrong = ["".join(re.sub(r"<[^>]+>", " ", one.source).split()) for one in read if not one.true]
     assert not wrong
     alone = [one for one in maths(page(name)) if formula(one) is None and re.search(r"<mo>=</mo><mn>[^=]*</math>", one)]
-    substituted = [block for block in written(name).blocks if isinstance(block, Found)]
+    substituted = [block for block in written(name).blocks if isinstance(block, ComputedQuantity)]
     assert len(read) + len(alone) >= len(substituted) > 0, "each of them was read, or has a result only"
 
 
 def test_a_formula_with_a_sign_changed_is_not_written():
     changed = [
-        block for block in written("shaper").blocks if isinstance(block, Found) and isinstance(block.expression, Sum)
+        block
+        for block in written("shaper").blocks
+        if isinstance(block, ComputedQuantity) and isinstance(block.expression, Sum)
     ]
     assert changed
     for found in changed:
@@ -86,10 +88,10 @@ G, ARM = Leaf(Symbol("G"), 1234.5678), Leaf(Symbol("h"), 0.31)
 def test_what_cancels_but_for_rounding_is_printed_as_zero(expression):
     """Wherever in the expression: with 8 figures put in, all digits of its value may be wrong."""
     for result in (evaluate(expression, EXACT), 2.6e-14, 0.0):
-        figures, text = Found(Symbol("M"), expression, result).printed()
+        figures, text = ComputedQuantity(Symbol("M"), expression, result).printed()
         assert abs(float(text)) <= 1e-6 * largest_term(expression) and figures <= MOST_FIGURES
     with pytest.raises(ValueError, match=r"M: .* is not 100\.0"):
-        Found(Symbol("M"), expression, 100.0).printed()
+        ComputedQuantity(Symbol("M"), expression, 100.0).printed()
 
 
 def test_a_sign_changed_in_the_page_is_seen():

@@ -9,7 +9,7 @@ from formulas import formulas
 from models import PROBLEMS
 
 from tmm_cli import solve
-from tmm_cli.note import Figure, Found, Heading, Note, Subject, balancing, centres, html, note
+from tmm_cli.note import ComputedQuantity, Figure, Heading, Note, Subject, balancing, centres, html, note
 from tmm_cli.problem import build_problem, read_text
 
 HEADINGS = {"Balancing", "Instantaneous centres"}
@@ -28,7 +28,7 @@ def written(name: str, block: str) -> Note:
 def found(blocks: Note) -> Iterator[tuple[str, float]]:
     """Quantities that are found, with their results."""
     for block in blocks.blocks:
-        if isinstance(block, Found):
+        if isinstance(block, ComputedQuantity):
             yield block.name.plain, block.result
 
 

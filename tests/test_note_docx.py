@@ -11,10 +11,10 @@ from tmm_cli.drawing.paper import Drawing, LineMark, TextMark
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.note import (
     FORMATS,
+    ComputedQuantity,
     Contents,
     Equation,
     Figure,
-    Found,
     Function,
     Heading,
     Leaf,
@@ -56,9 +56,9 @@ def leaf(letter, value, below="", above=""):
 TERMS = tuple((1, leaf("G", 100.0 + k, str(k)) * leaf("h", 0.01 * k, str(k))) for k in range(1, 12))
 MOMENTS = Sum(TERMS) / leaf("l", 0.65, "CD")
 SIDES = leaf("R", 3.0, "34", "n") ** 2 + leaf("R", 4.0, "34", "τ") ** 2
-FORCE = Found(Symbol("R", "34"), Function("sqrt", SIDES), 5.0, "N")
-WIDE = Found(Symbol("R", "34", "τ"), MOMENTS, sum((100.0 + k) * 0.01 * k for k in range(1, 12)) / 0.65, "N")
-TURNED = Found(Symbol("x"), 2 * Function("cos", Leaf(Symbol("φ"), 1.0471975511965976, angle=True)), 1.0, "m")
+FORCE = ComputedQuantity(Symbol("R", "34"), Function("sqrt", SIDES), 5.0, "N")
+WIDE = ComputedQuantity(Symbol("R", "34", "τ"), MOMENTS, sum((100.0 + k) * 0.01 * k for k in range(1, 12)) / 0.65, "N")
+TURNED = ComputedQuantity(Symbol("x"), 2 * Function("cos", Leaf(Symbol("φ"), 1.0471975511965976, angle=True)), 1.0, "m")
 DRAWING = Drawing(
     (80.0, 60.0),
     (

@@ -13,7 +13,7 @@ from models import PROBLEMS, solved_text
 from tmm_cli import load, solve
 from tmm_cli.language import spoken
 from tmm_cli.mechanics.forces import Symbol, load_symbols, reaction_symbol
-from tmm_cli.note import Block, Equation, Expression, Found, Heading, Leaf, Letter, Paragraph, Row, Subject
+from tmm_cli.note import Block, ComputedQuantity, Equation, Expression, Heading, Leaf, Letter, Paragraph, Row, Subject
 from tmm_cli.note.forces import chapter as forces
 
 FRICTION = "friction: {coefficient: 0.1, radius: 15}"
@@ -60,7 +60,7 @@ def test_no_reaction_is_put_in_before_it_is_found(name):
     for block in chapter(name):
         if isinstance(block, Heading) and block.text.startswith("Loads on the links"):
             known = set()
-        if not isinstance(block, Found) or block.name.letter == "ΣM":
+        if not isinstance(block, ComputedQuantity) or block.name.letter == "ΣM":
             continue
         found, expression = block.name, block.expression
         for leaf in leaves(expression):
@@ -81,7 +81,7 @@ def at_one_position(name: str, *, at: str) -> list[Block]:
 @pytest.mark.parametrize("at", ["0", "30", "90"])
 def test_a_sine_mechanism_has_a_force_analysis_at_any_one_position(at):
     """At 0 deg all its moving points coincide, and nothing has a moment about the hinge of the sliding block."""
-    found = [b for b in at_one_position("sine", at=at) if isinstance(b, Found)]
+    found = [b for b in at_one_position("sine", at=at) if isinstance(b, ComputedQuantity)]
     assert all(block.printed()[1] for block in found)
 
 
@@ -90,7 +90,7 @@ def test_moments_that_cancel_are_written_out():
     driving = section(at_one_position("engine-four", at="0"), "Input link 1")
     (equation,) = [b for b in driving if isinstance(b, Equation) and "ΣM" in repr(b)]
     assert [name for name in ("R₂₁", "R₄₁", "R₆₁", "R₈₁") if name in names(equation)] == ["R₂₁", "R₄₁", "R₆₁", "R₈₁"]
-    (moment,) = [b for b in driving if isinstance(b, Found) and b.name.letter == "M"]
+    (moment,) = [b for b in driving if isinstance(b, ComputedQuantity) and b.name.letter == "M"]
     assert moment.result == 0
     assert not any("Nothing has a moment" in str(b.line) for b in driving if isinstance(b, Paragraph))
 
@@ -134,7 +134,7 @@ def test_nothing_is_written_where_nothing_acts():
 def test_links_whose_reactions_are_found_together_are_said_to_be():
     said = " ".join(str(block.line) for block in chapter("class-iv") if isinstance(block, Paragraph))
     assert "solved together" in said
-    checks = [b for b in chapter("class-iv") if isinstance(b, Found) and b.name.letter == "ΣM"]
+    checks = [b for b in chapter("class-iv") if isinstance(b, ComputedQuantity) and b.name.letter == "ΣM"]
     assert len(checks) == 4 and all(check.result == 0 for check in checks)
 
 
@@ -149,7 +149,9 @@ def rubbing(tmp_path_factory):
 
 
 def test_friction_is_told_pair_by_pair_with_what_it_costs(rubbing):
-    found = [block for block in forces.write_forces(Subject(rubbing, drawn=False)) if isinstance(block, Found)]
+    found = [
+        block for block in forces.write_forces(Subject(rubbing, drawn=False)) if isinstance(block, ComputedQuantity)
+    ]
     rubbed = {s.name.below for s in found if s.name.letter == "T"}
     assert rubbed == {one.pair + rubbing.reactions.of(one.pair).on for one in rubbing.linkage.friction}
     without = [s.result for s in found if s.name == Symbol("M", "b", "0")]
@@ -183,7 +185,7 @@ def test_a_couple_may_have_the_name_of_another_quantity(load, language):
     text = (Path(__file__).parent / "data" / "couple-named-m3.yaml").read_text().replace("M3:", f"{load}:")
     results = solved_text(text)
     with spoken(language):
-        found = [b for b in forces.write_forces(Subject(results, drawn=False)) if isinstance(b, Found)]
+        found = [b for b in forces.write_forces(Subject(results, drawn=False)) if isinstance(b, ComputedQuantity)]
         for block in found:
             block.printed()
     inertia = next(a for a in results.loads if a.link == "3" and a.kind == "inertia")

@@ -10,7 +10,7 @@ from test_jams import planets
 
 from tmm_cli import load, solve
 from tmm_cli.drawing.paper import SheetPicture
-from tmm_cli.note import Equation, Found, Heading, Here, Letter, Paragraph, Row, Subject
+from tmm_cli.note import ComputedQuantity, Equation, Heading, Letter, Paragraph, PositionPlans, Row, Subject
 from tmm_cli.note.kinematics import chapter as kinematics
 
 
@@ -25,7 +25,7 @@ def chapter(name):
 
 
 def found(name):
-    return [block for block in chapter(name) if isinstance(block, Found)]
+    return [block for block in chapter(name) if isinstance(block, ComputedQuantity)]
 
 
 def sentences(name):
@@ -84,14 +84,18 @@ def test_scales_are_those_of_the_drawings(name):
     for stem in ("velocity", "acceleration"):
         (drawing,) = subject(name, drawn=True).drawings(stem, k).values()
         assert isinstance(drawing, SheetPicture)
-        here = Here(subject(name), k, first=True)
+        here = PositionPlans(subject(name), k, first=True)
         assert (here.v if stem == "velocity" else here.a).mu == drawing.mu
 
 
 def test_wheels_that_turn_evenly_have_no_accelerations_made_of_rounding():
     """Three planets hold one another twice: least squares leave 1e-31 rad/s2 where nothing accelerates."""
     results = solved_text(planets(3, "h"))
-    told = [block for block in kinematics.write_kinematics(Subject(results, drawn=False)) if isinstance(block, Found)]
+    told = [
+        block
+        for block in kinematics.write_kinematics(Subject(results, drawn=False))
+        if isinstance(block, ComputedQuantity)
+    ]
     rates = {block.name.name: block.result for block in told if block.name.name.startswith(("ω", "ε"))}
     assert rates["ωs"] == pytest.approx(3.0)  # Willis: 1 + 80/40
     assert all(value == 0 for name, value in rates.items() if name.startswith("ε"))

@@ -18,21 +18,21 @@ from .blocks import (
 from .expression import (
     EXACT as EXACT,
     MOST_FIGURES as MOST_FIGURES,
+    ComputedQuantity as ComputedQuantity,
     Expression as Expression,
-    Found as Found,
     Function as Function,
     Leaf as Leaf,
     Sum as Sum,
     evaluate as evaluate,
-    fixed as fixed,
+    format_fixed as format_fixed,
     largest_term as largest_term,
-    rounded as rounded,
+    round_figures as round_figures,
 )
-from .forces.equations import by_moments as by_moments
-from .forces.loads import losses as losses
+from .forces.equations import solve_moment_equation as solve_moment_equation
+from .forces.loads import write_losses as write_losses
 from .formats import FORMATS as FORMATS, formats_of as formats_of
 from .formats.html import html as html
 from .formula_tree import Letter as Letter, Row as Row, row as row
-from .kinematics.on_paper import Here as Here
+from .kinematics.on_paper import PositionPlans as PositionPlans
 from .register import note as note
 from .subject import Subject as Subject

@@ -25,9 +25,9 @@ from tmm_cli.mechanics.dynamics import (
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.numerics import NO_VECTOR, Vector, cross, dot
-from tmm_cli.note.blocks import Block, Heading, Inline, said
-from tmm_cli.note.expression import EXACT, Expression, Found, Function, Leaf, added, evaluate, signed
-from tmm_cli.note.subject import Subject, rows_of
+from tmm_cli.note.blocks import Block, Heading, Inline, write_sentence
+from tmm_cli.note.expression import EXACT, ComputedQuantity, Expression, Function, Leaf, apply_sign, evaluate, sum_terms
+from tmm_cli.note.subject import Subject, note_table
 from tmm_cli.reports import walk
 
 FORCE, MOMENT = Symbol("F"), Symbol("M")
@@ -40,17 +40,17 @@ def write_balancing(subject: Subject) -> Iterable[Block]:
     if found is not None and (found.task.rotor is not None or found.cycle.shakes):
         yield Heading(_("Balancing"))
         if found.cycle.shakes:
-            yield from _of_links(subject, found)
+            yield from _write_shaking_and_counterweights(subject, found)
         if found.task.rotor is not None:
             yield Heading(_("Rotating masses"), 2)
             yield from write_rotor_balancing(subject, found.task.rotor, found.corrections)
 
 
-def _of_links(subject: Subject, found: BalancingResults) -> Iterable[Block]:
+def _write_shaking_and_counterweights(subject: Subject, found: BalancingResults) -> Iterable[Block]:
     yield Heading(_("Shaking force and moment"), 2)
-    yield from _explained(found)
+    yield from _explain_symbols(found)
     for k in subject.detail:
-        yield from _position(subject, found, k)
+        yield from _write_shaking_force(subject, found, k)
     if found.cycle.counterweights:
         yield Heading(_("Counterweights"), 2)
         yield from write_counterweights(subject, found.cycle, found.task)
@@ -58,13 +58,13 @@ def _of_links(subject: Subject, found: BalancingResults) -> Iterable[Block]:
     if found.cycle.counterweights:
         text = _("The hodographs of the shaking force before and after balancing are shown in figure {figure}.")
     yield from subject.figures("shaking", text, _("Hodograph of the shaking force"))
-    yield from (rows_of(subject, table) for table in walk(subject.results, ("shaking",)))
+    yield from (note_table(subject, table) for table in walk(subject.results, ("shaking",)))
 
 
-def _explained(found: BalancingResults) -> Iterable[Block]:
+def _explain_symbols(found: BalancingResults) -> Iterable[Block]:
     """Explain the symbols of the shaking force and the shaking moment."""
     pivot: Inline = Symbol(found.pivot) if found.pivot else _("the origin")
-    yield said(
+    yield write_sentence(
         _(
             "At constant speed of the input link the inertia forces of the links act on the frame with the "
             "resultant force {F} and, about {pivot}, the resultant moment {M}. Here {m} is the mass of a link, "
@@ -84,7 +84,7 @@ def _explained(found: BalancingResults) -> Iterable[Block]:
     )
 
 
-def _position(subject: Subject, found: BalancingResults, k: int) -> Iterable[Block]:
+def _write_shaking_force(subject: Subject, found: BalancingResults, k: int) -> Iterable[Block]:
     """Write the components of the shaking force (N), its magnitude and the shaking moment (N m) in one position."""
     results = subject.results
     motion = constant_speed_motion(results.mechanism, subject.motion.q[k : k + 1])
@@ -106,13 +106,13 @@ def _position(subject: Subject, found: BalancingResults, k: int) -> Iterable[Blo
             moments.append(Leaf(Symbol("J", f"S{name}"), inertia) * Leaf(Symbol("ε", name), epsilon))
     if not moments:
         return
-    yield said(_("Position {number}:"), number=subject.called(k))
+    yield write_sentence(_("Position {number}:"), number=subject.position_number(k))
     force = complex(found.before.force[k])
     x, y = Leaf(X, force.real), Leaf(Y, force.imag)
-    yield Found(X, -added(along), x.value, _("N"))
-    yield Found(Y, -added(across), y.value, _("N"))
-    yield Found(FORCE, Function("sqrt", x**2 + y**2), abs(force), _("N"))
-    yield Found(MOMENT, -added(moments), float(found.before.moment[k]), _("N·m"))
+    yield ComputedQuantity(X, -sum_terms(along), x.value, _("N"))
+    yield ComputedQuantity(Y, -sum_terms(across), y.value, _("N"))
+    yield ComputedQuantity(FORCE, Function("sqrt", x**2 + y**2), abs(force), _("N"))
+    yield ComputedQuantity(MOMENT, -sum_terms(moments), float(found.before.moment[k]), _("N·m"))
 
 
 ON_LINE = 1e-9  # of a length: what is nearer to a line lies on it
@@ -123,9 +123,9 @@ MASS_RADIUS, SHARE = Symbol("D"), Symbol("k")
 
 def write_counterweights(subject: Subject, found: BalancedCycle, task: BalancingTask) -> Iterable[Block]:
     """Write each counterweight with its mass-radius product, its mass if the radius is given, the remaining force."""
-    replaced = _Replaced(subject.results.linkage, found, task)
-    if replaced.solved():
-        yield said(
+    replacement = _StaticReplacement(subject.results.linkage, found, task)
+    if replacement.explain_counterweights():
+        yield write_sentence(
             _(
                 "The mass-radius product of a counterweight is {D} = m·r. A link without a counterweight is "
                 "replaced by point masses at its hinges, chosen so that the common centre of mass does not change. "
@@ -133,9 +133,9 @@ def write_counterweights(subject: Subject, found: BalancedCycle, task: Balancing
             ),
             D=MASS_RADIUS,
         )
-        yield from replaced.told
+        yield from replacement.explanation
     else:
-        yield said(
+        yield write_sentence(
             _(
                 "The mass-radius product {D} = m·r of each counterweight and its angle are chosen so that the mean "
                 "square of the shaking force over the cycle is least; the force depends on them linearly."
@@ -146,66 +146,66 @@ def write_counterweights(subject: Subject, found: BalancedCycle, task: Balancing
         link, own = weight.place.link, Leaf(Symbol("D", weight.place.link), weight.size)
         size, angle = subject.text(weight.size), subject.text(float(np.degrees(weight.angle)))
         text = _("Link {link}: {D} = {size} kg·m, {angle}° from the x axis of the link.")
-        yield said(text, link=link, D=own.symbol, size=size, angle=angle)
+        yield write_sentence(text, link=link, D=own.symbol, size=size, angle=angle)
         if weight.mass is not None and weight.size:
             mass = own / Leaf(Symbol("r", link), weight.place.radius)
-            yield Found(Symbol("m", f"c{link}"), mass, weight.mass, _("kg"))
+            yield ComputedQuantity(Symbol("m", f"c{link}"), mass, weight.mass, _("kg"))
     before, after = (float(np.nanmax(np.abs(one.force))) for one in (found.before, found.after))
     if found.left < ON_LINE:
-        yield said(
+        yield write_sentence(
             _("With the counterweights no shaking force remains: the common centre of mass of the links does not move.")
         )
         return
-    yield said(
+    yield write_sentence(
         _("The largest shaking force is {F} without counterweights and {Fb} with them; the remaining fraction is"),
         F=Symbol("F", "max"),
         Fb=Symbol("F", "max").primed,
     )
     share = Leaf(Symbol("F", "max").primed, after) / Leaf(Symbol("F", "max"), before)
-    yield Found(Symbol("λ"), share, found.left)
+    yield ComputedQuantity(Symbol("λ"), share, found.left)
 
 
 @dataclass
-class _Replaced:
+class _StaticReplacement:
     """Static replacement of links by masses at their hinges, which counterweights balance."""
 
     linkage: Linkage
-    found: BalancedCycle
+    cycle: BalancedCycle
     task: BalancingTask
-    told: list[Block] = field(default_factory=list)
+    explanation: list[Block] = field(default_factory=list)
     lumps: dict[str, list[Leaf]] = field(default_factory=dict)
 
-    def solved(self) -> bool:
+    def explain_counterweights(self) -> bool:
         """Return True if the replacement gives all counterweights; `told` then holds the blocks that explain it."""
-        weights = {weight.place.link: weight for weight in self.found.counterweights}
-        if len(weights) < len(self.found.counterweights):
+        weights = {weight.place.link: weight for weight in self.cycle.counterweights}
+        if len(weights) < len(self.cycle.counterweights):
             return False
-        if not all(self._replace(link) for link in self.linkage.moving if link not in weights):
+        if not all(self._replace_link(link) for link in self.linkage.moving if link not in weights):
             return False
-        moved = [link for link in weights if self._fixed(weights[link].place) is None]
-        return all(self._balance(weights[link]) for link in [*moved, *(n for n in weights if n not in moved)])
+        moved = [link for link in weights if self._find_fixed_pivot(weights[link].place) is None]
+        return all(self._balance_link(weights[link]) for link in [*moved, *(n for n in weights if n not in moved)])
 
-    def _fixed(self, place: CounterweightPlace) -> str | None:
+    def _find_fixed_pivot(self, place: CounterweightPlace) -> str | None:
         """Return the hinge on the frame about which a counterweight rotates, or None if its pivot moves."""
         points = self.linkage.links[place.link].points
-        return next((p for p in self._hinges(place.link, FRAME) if points[p] == place.about), None)
+        return next((p for p in self._find_hinges(place.link, FRAME) if points[p] == place.about), None)
 
-    def _hinges(self, link: str, *others: str) -> list[str]:
+    def _find_hinges(self, link: str, *others: str) -> list[str]:
         """Return the points in which the link is hinged to the given links, by default to any moving link."""
         named = others or tuple(name for name in self.linkage.moving if name != link)
         return [h.point for h in self.linkage.hinges if link in h.links and set(named) & set(h.links)]
 
-    def _replace(self, name: str) -> bool:
+    def _replace_link(self, name: str) -> bool:
         """Replace a link without a counterweight by masses at its hinges; return False if that is impossible."""
         link = self.linkage.links[name]
         mass = float(np.ravel(link.mass)[0])
         if not mass:
             return True
-        own, hinges = Leaf(Symbol("m", name), mass), list(dict.fromkeys(self._hinges(name)))
+        own, hinges = Leaf(Symbol("m", name), mass), list(dict.fromkeys(self._find_hinges(name)))
         if self.linkage.slides_on_frame(name) and len(hinges) == 1:
             self.lumps.setdefault(hinges[0], []).append(own)
             return True
-        if self._hinges(name, FRAME) or len(hinges) != 2:
+        if self._find_hinges(name, FRAME) or len(hinges) != 2:
             return False
         a, b = (complex(link.points[p]) for p in hinges)
         line, centre = b - a, complex(link.centre) - a
@@ -215,17 +215,19 @@ class _Replaced:
         length = Leaf(Symbol("l", "".join(hinges)), abs(line))
         if not 0 <= share <= 1:
             return False
-        self.told.append(
-            said(_("Link {link} is replaced by masses at points {a} and {b}:"), link=name, a=hinges[0], b=hinges[1])
+        self.explanation.append(
+            write_sentence(
+                _("Link {link} is replaced by masses at points {a} and {b}:"), link=name, a=hinges[0], b=hinges[1]
+            )
         )
         for (point, part), other in (((hinges[0], 1 - share), hinges[1]), ((hinges[1], share), hinges[0])):
             symbol, value = Symbol("m", f"{name}{point}"), mass * part
             arm = Leaf(Symbol("l", f"S{name}{other}"), abs(line) * part)
-            self.told.append(Found(symbol, own * (arm / length), value, _("kg")))
+            self.explanation.append(ComputedQuantity(symbol, own * (arm / length), value, _("kg")))
             self.lumps.setdefault(point, []).append(Leaf(symbol, value))
         return True
 
-    def _balance(self, weight: CounterweightSolution) -> bool:
+    def _balance_link(self, weight: CounterweightSolution) -> bool:
         """Balance the masses of a link and those at its points; return False if its counterweight does not follow from
         them.
         """
@@ -238,7 +240,7 @@ class _Replaced:
         if mass and link.centre != place.about:
             arm = complex(link.centre) - place.about
             masses.append((Leaf(own, mass), Leaf(Symbol("l", f"{pivot}S{name}"), abs(arm)), arm))
-        for point in self._hinges(name):
+        for point in self._find_hinges(name):
             if point == pivot or point not in self.lumps:
                 continue
             arm = complex(link.points[point]) - place.about
@@ -248,36 +250,36 @@ class _Replaced:
         along = masses[-1][2] / abs(masses[-1][2])
         if any(abs(cross(along, arm)) > ON_LINE * abs(arm) for *__, arm in masses):
             return False
-        moments = [signed(dot(along, arm), one * length) for one, length, arm in masses]
-        expression = added((*moments, *self._shared(name, pivot, along)))
+        moments = [apply_sign(dot(along, arm), one * length) for one, length, arm in masses]
+        expression = sum_terms((*moments, *self._reciprocating_moments(name, pivot, along)))
         if abs(abs(evaluate(expression, EXACT)) - weight.size) > SAME * weight.size:
             return False
         if evaluate(expression, EXACT) < 0:
             expression = -expression
         text = _("The counterweight of link {link} balances the masses of the link about {pivot}:")
-        self.told.append(said(text, link=name, pivot=pivot))
-        self.told.append(Found(Symbol("D", name), expression, weight.size, _("kg·m")))
-        if self._fixed(place) is None:
-            self._carry(weight, pivot, [Leaf(own, mass), *(one for one, *__ in masses if one.symbol != own)])
+        self.explanation.append(write_sentence(text, link=name, pivot=pivot))
+        self.explanation.append(ComputedQuantity(Symbol("D", name), expression, weight.size, _("kg·m")))
+        if self._find_fixed_pivot(place) is None:
+            self._merge_into_pivot(weight, pivot, [Leaf(own, mass), *(one for one, *__ in masses if one.symbol != own)])
         return True
 
-    def _carry(self, weight: CounterweightSolution, pivot: str, masses: list[Leaf]) -> None:
+    def _merge_into_pivot(self, weight: CounterweightSolution, pivot: str, masses: list[Leaf]) -> None:
         """Replace a link and its counterweight by a point mass at the moving pivot of the link."""
         name = weight.place.link
         every = [*(one for one in masses if one.value), Leaf(Symbol("m", f"c{name}"), weight.mass or 0.0)]
         total = Leaf(Symbol("m", f"{name}{pivot}"), sum(one.value for one in every))
-        self.told.append(
-            said(
+        self.explanation.append(
+            write_sentence(
                 _("The link with its counterweight of mass {m} is replaced by one mass at {pivot}:"),
                 m=every[-1].symbol,
                 pivot=pivot,
             )
         )
         own = Leaf(Symbol("D", name), weight.size) / Leaf(Symbol("r", name), weight.place.radius)
-        self.told.append(Found(total.symbol, added((*every[:-1], own)), total.value, _("kg")))
+        self.explanation.append(ComputedQuantity(total.symbol, sum_terms((*every[:-1], own)), total.value, _("kg")))
         self.lumps.setdefault(pivot, []).append(total)
 
-    def _shared(self, name: str, pivot: str, along: complex) -> Iterator[Expression]:
+    def _reciprocating_moments(self, name: str, pivot: str, along: complex) -> Iterator[Expression]:
         """Yield the moments of the fraction of reciprocating masses that a counterweight on the crank balances."""
         points = self.linkage.links[name].points
         for point in list(self.lumps):
@@ -288,15 +290,15 @@ class _Replaced:
                 for link in h.links
                 if link != FRAME
             )
-            pins = [p for p in self._hinges(name) if p in points and p != pivot]
+            pins = [p for p in self._find_hinges(name) if p in points and p != pivot]
             if sliding and len(pins) == 1:
                 arm = complex(points[pins[0]]) - complex(points[pivot])
                 length = Leaf(Symbol("l", f"{pivot}{pins[0]}"), abs(arm))
                 share = Leaf(SHARE, self.task.share)
                 for one in self.lumps.pop(point):
-                    yield signed(dot(along, arm), share * one * length)
-                self.told.append(
-                    said(
+                    yield apply_sign(dot(along, arm), share * one * length)
+                self.explanation.append(
+                    write_sentence(
                         _("The fraction {k} of the reciprocating masses at {point} is balanced:"),
                         point=point,
                         k=SHARE,
@@ -316,43 +318,45 @@ def write_rotor_balancing(subject: Subject, rotor: UnbalancedShaft, corrections:
         "their moments about one of the correction planes; {alpha} is the angle of a mass, {z} its "
         "coordinate along the axis."
     )
-    yield said(dynamic if two else static, D=Symbol("D"), alpha=Symbol("α"), z=Symbol("z"))
+    yield write_sentence(dynamic if two else static, D=Symbol("D"), alpha=Symbol("α"), z=Symbol("z"))
     if two:
-        yield from _mass(subject, rotor, corrections, 1)
-    yield from _mass(subject, rotor, corrections, 0)
+        yield from _write_correction_mass(subject, rotor, corrections, 1)
+    yield from _write_correction_mass(subject, rotor, corrections, 0)
 
 
-def _mass(subject: Subject, rotor: UnbalancedShaft, corrections: Vector, k: int) -> Iterable[Block]:
+def _write_correction_mass(subject: Subject, rotor: UnbalancedShaft, corrections: Vector, k: int) -> Iterable[Block]:
     found, name = complex(corrections[k]), PLANES[k]
     own = Symbol("D", name)
-    yield said(_("Correction mass in plane {plane}:"), plane=name)
+    yield write_sentence(_("Correction mass in plane {plane}:"), plane=name)
     parts = []
     for axis, function, take in (("x", "cos", np.real), ("y", "sin", np.imag)):
-        whole: Expression = -added(_share(rotor, number, function, moment=k > 0) for number in range(len(rotor.sizes)))
+        whole: Expression = -sum_terms(
+            _unbalance_term(rotor, number, function, moment=k > 0) for number in range(len(rotor.sizes))
+        )
         if k:
-            whole = whole / _gap(Symbol("z", name), rotor.planes[k].at, rotor)
+            whole = whole / _distance_from_first_plane(Symbol("z", name), rotor.planes[k].at, rotor)
         elif len(rotor.planes) > 1:
             whole = whole - Leaf(Symbol("D", f"{PLANES[1]}{axis}"), float(take(corrections[1])))
         parts.append(Leaf(Symbol("D", f"{name}{axis}"), float(take(found))))
-        yield Found(parts[-1].symbol, whole, parts[-1].value, _("kg·m"))
-    yield Found(own, Function("sqrt", added(part**2 for part in parts)), abs(found), _("kg·m"))
+        yield ComputedQuantity(parts[-1].symbol, whole, parts[-1].value, _("kg·m"))
+    yield ComputedQuantity(own, Function("sqrt", sum_terms(part**2 for part in parts)), abs(found), _("kg·m"))
     if abs(found):
         direction = subject.text(float(np.degrees(np.angle(found) % (2 * np.pi))))
-        yield said(_("Its angle is {angle}°."), angle=direction)
+        yield write_sentence(_("Its angle is {angle}°."), angle=direction)
     radius = rotor.planes[k].radius
     if radius:
         mass = Leaf(own, abs(found)) / Leaf(Symbol("r", name), radius)
-        yield Found(Symbol("m", name), mass, abs(found) / radius, _("kg"))
+        yield ComputedQuantity(Symbol("m", name), mass, abs(found) / radius, _("kg"))
 
 
-def _share(rotor: UnbalancedShaft, number: int, function: str, *, moment: bool) -> Expression:
+def _unbalance_term(rotor: UnbalancedShaft, number: int, function: str, *, moment: bool) -> Expression:
     """Return the component of m·r of a mass along an axis, or with `moment` its moment about the first plane."""
     size, index = complex(rotor.sizes[number]), str(number + 1)
     angle = Leaf(Symbol("α", index), float(np.angle(size) % (2 * np.pi)), angle=True)
     share = Leaf(Symbol("D", index), abs(size)) * Function(function, angle)
-    return share * _gap(Symbol("z", index), float(rotor.at[number]), rotor) if moment else share
+    return share * _distance_from_first_plane(Symbol("z", index), float(rotor.at[number]), rotor) if moment else share
 
 
-def _gap(symbol: Symbol, at: float, rotor: UnbalancedShaft) -> Expression:
+def _distance_from_first_plane(symbol: Symbol, at: float, rotor: UnbalancedShaft) -> Expression:
     """Return the distance (m) of a plane beyond the first correction plane."""
     return Leaf(symbol, at) - Leaf(Symbol("z", PLANES[0]), rotor.planes[0].at)

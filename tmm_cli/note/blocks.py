@@ -9,7 +9,7 @@ from functools import cached_property
 from tmm_cli.drawing.paper import Drawing
 from tmm_cli.language import filled
 from tmm_cli.mechanics.forces import Symbol
-from tmm_cli.note.expression import Found
+from tmm_cli.note.expression import ComputedQuantity
 from tmm_cli.note.formula_tree import Node
 
 
@@ -116,7 +116,7 @@ class Sources:
     sources: tuple[Source, ...]
 
 
-Block = Heading | Paragraph | Items | Equation | Found | Rows | Figure | Contents | Title | Sources
+Block = Heading | Paragraph | Items | Equation | ComputedQuantity | Rows | Figure | Contents | Title | Sources
 
 
 @dataclass(frozen=True)
@@ -161,30 +161,30 @@ def cells(*parts: Inline | Line) -> tuple[Line, ...]:
     return tuple(part if isinstance(part, tuple) else (part,) for part in parts)
 
 
-def listed(parts: Iterable[Inline | Line], between: str = ", ") -> Line:
+def join_inline(parts: Iterable[Inline | Line], between: str = ", ") -> Line:
     """Join texts and symbols into one line with a separator."""
     return tuple(one for k, line in enumerate(cells(*parts)) for one in ((between, *line) if k else line))
 
 
-def listed_below(lines: Sequence[Line]) -> Items:
+def bulleted_list(lines: Sequence[Line]) -> Items:
     """Return a bulleted list with a semicolon after each item and a full stop after the last."""
     last = len(lines) - 1
     return Items(tuple((*each, "." if k == last else ";") for k, each in enumerate(lines)))
 
 
-def several(one: str, two: str, more: str, keys: Sequence[str]) -> Paragraph:
+def refer_to_blocks(one: str, two: str, more: str, keys: Sequence[str]) -> Paragraph:
     """Return the sentence for one, two or more keys; it refers to {first} and {last} of them."""
-    return said((one, two, more)[min(len(keys), 3) - 1], first=Ref(keys[0]), last=Ref(keys[-1]))
+    return write_sentence((one, two, more)[min(len(keys), 3) - 1], first=Ref(keys[0]), last=Ref(keys[-1]))
 
 
-def said(sentence: str, **parts: Inline | Line) -> Paragraph:
+def write_sentence(sentence: str, **parts: Inline | Line) -> Paragraph:
     """Return a paragraph from a translated sentence, with its fields filled by texts, symbols or references."""
     return Paragraph(filled(sentence, **parts))
 
 
-def tabled(sentence: str, rows: Rows, **parts: Inline | Line) -> Iterable[Block]:
+def write_table(sentence: str, rows: Rows, **parts: Inline | Line) -> Iterable[Block]:
     """Yield a sentence that refers to a table by {table}, then the table."""
-    yield said(sentence, table=Ref(rows.key), **parts)
+    yield write_sentence(sentence, table=Ref(rows.key), **parts)
     yield rows
 
 

@@ -9,9 +9,9 @@ from tmm_cli.mechanics.forces import Symbol, subscript
 from tmm_cli.mechanics.kinematics import InstantCentre, LinkPair
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import NO_VECTOR
-from tmm_cli.note.blocks import Block, Heading, said
-from tmm_cli.note.expression import Found, Leaf
-from tmm_cli.note.subject import Subject, rows_of
+from tmm_cli.note.blocks import Block, Heading, write_sentence
+from tmm_cli.note.expression import ComputedQuantity, Leaf
+from tmm_cli.note.subject import Subject, note_table
 from tmm_cli.reports import centre_name, walk
 
 ALL, LINKS = Symbol("N"), Symbol("k")
@@ -23,7 +23,7 @@ def write_centres(subject: Subject) -> Iterable[Block]:
     if not results.centres:
         return
     yield Heading(_("Instantaneous centres"))
-    yield said(
+    yield write_sentence(
         _(
             "Any two links have an instantaneous centre: the point at which both have the same velocity. The "
             "number of instantaneous centres of {k} links, including the frame, is"
@@ -32,8 +32,8 @@ def write_centres(subject: Subject) -> Iterable[Block]:
     )
     count = len(results.linkage.links)
     own = Leaf(LINKS, float(count))
-    yield Found(ALL, own * (own - 1) / 2, count * (count - 1) / 2, whole=True)
-    yield said(
+    yield ComputedQuantity(ALL, own * (own - 1) / 2, count * (count - 1) / 2, whole=True)
+    yield write_sentence(
         _(
             "The instantaneous centre of two links joined by a hinge is the hinge; that of two links joined by "
             "a prismatic pair is at infinity, perpendicular to the guide. By Kennedy's theorem the three "
@@ -41,17 +41,17 @@ def write_centres(subject: Subject) -> Iterable[Block]:
             "lines; the table names these lines."
         )
     )
-    yield from (rows_of(subject, table) for table in walk(results, ("centres",)))
+    yield from (note_table(subject, table) for table in walk(results, ("centres",)))
     yield from subject.figures(
         "centres",
         _("The instantaneous centres are shown in figure {figure}."),
         further=_("The instantaneous centres in another position are shown in figure {figure}."),
     )
     if results.linkage.driver.kind == "turn" and not results.linkage.others:
-        yield from _speeds(subject)
+        yield from _write_speeds(subject)
 
 
-def _speeds(subject: Subject) -> Iterable[Block]:
+def _write_speeds(subject: Subject) -> Iterable[Block]:
     results = subject.results
     assert results.centres is not None
     text = _(
@@ -60,14 +60,14 @@ def _speeds(subject: Subject) -> Iterable[Block]:
         "rotate, its velocity. Position {number}:"
     )
     for k, found in results.centres.items():
-        told = list(_of_position(subject, k, {centre.links: centre for centre in found}))
+        told = list(_compute_speeds(subject, k, {centre.links: centre for centre in found}))
         if told:
-            yield said(text, number=subject.called(k))
+            yield write_sentence(text, number=subject.position_number(k))
             yield from told
             text = _("Position {number}:")
 
 
-def _of_position(subject: Subject, k: int, found: Mapping[LinkPair, InstantCentre]) -> Iterable[Found]:
+def _compute_speeds(subject: Subject, k: int, found: Mapping[LinkPair, InstantCentre]) -> Iterable[ComputedQuantity]:
     motion = subject.motion
     driver = motion.linkage.driver.link
     own = abs(subject.rate(k))
@@ -82,11 +82,11 @@ def _of_position(subject: Subject, k: int, found: Mapping[LinkPair, InstantCentr
         reached = rate * _distance(pivot, both)
         if here.place is None and here.direction is not None:
             speed = abs(complex(motion.point(link, 0j).v[k]))
-            yield Found(Symbol("v", link), reached, speed, _("m/s"))
+            yield ComputedQuantity(Symbol("v", link), reached, speed, _("m/s"))
         elif here.place is not None:
             other, turning = _distance(here, both), abs(float(motion.link(link).omega[k]))
             if turning > NO_VECTOR * own and other.value:
-                yield Found(Symbol("ω", link), reached / other, turning, _("rad/s"))
+                yield ComputedQuantity(Symbol("ω", link), reached / other, turning, _("rad/s"))
 
 
 def _distance(one: InstantCentre, other: InstantCentre) -> Leaf:

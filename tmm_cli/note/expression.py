@@ -25,43 +25,43 @@ NOTHING = 1e-9  # of the largest term: a sum that is less is zero
 CANCELLED = 1e-6  # of the largest term: a sum that is less, and has no digit in common with its numbers, is zero
 
 
-class Joined:
+class ExpressionOperators:
     """Operators that build expressions as on paper: 2 * a - b / c; nested sums and products are flattened."""
 
     def __add__(self, other: Expression | float) -> Sum:
         return Sum((*_terms(self), *_terms(other)))
 
     def __radd__(self, number: float) -> Sum:
-        return _own(number) + _own(self)
+        return _as_expression(number) + _as_expression(self)
 
     def __sub__(self, other: Expression | float) -> Sum:
-        return Sum((*_terms(self), *_terms(-_own(other))))
+        return Sum((*_terms(self), *_terms(-_as_expression(other))))
 
     def __rsub__(self, number: float) -> Sum:
-        return _own(number) - _own(self)
+        return _as_expression(number) - _as_expression(self)
 
     def __neg__(self) -> Sum:
         return Sum(tuple((-sign, term) for sign, term in _terms(self)))
 
     def __mul__(self, other: Expression | float) -> Product:
-        own = self.factors if isinstance(self, Product) else (_own(self),)
-        return Product((*own, _own(other)))
+        own = self.factors if isinstance(self, Product) else (_as_expression(self),)
+        return Product((*own, _as_expression(other)))
 
     def __rmul__(self, number: float) -> Product:
-        return _own(number) * _own(self)
+        return _as_expression(number) * _as_expression(self)
 
     def __truediv__(self, other: Expression | float) -> Quotient:
-        return Quotient(_own(self), _own(other))
+        return Quotient(_as_expression(self), _as_expression(other))
 
     def __rtruediv__(self, number: float) -> Quotient:
-        return _own(number) / _own(self)
+        return _as_expression(number) / _as_expression(self)
 
-    def __pow__(self, over: int) -> Raised:
-        return Raised(_own(self), over)
+    def __pow__(self, over: int) -> PowerOf:
+        return PowerOf(_as_expression(self), over)
 
 
 @dataclass(frozen=True)
-class Leaf(Joined):
+class Leaf(ExpressionOperators):
     """Quantity with its value in SI (radians for angles); no value is needed for symbols only.
 
     angle: print the value in degrees. of: expression substituted instead of the value, e.g. 2·π.
@@ -74,7 +74,7 @@ class Leaf(Joined):
 
 
 @dataclass(frozen=True)
-class Constant(Joined):
+class Constant(ExpressionOperators):
     """Number written as it is, or as `text` (π)."""
 
     value: float
@@ -82,21 +82,21 @@ class Constant(Joined):
 
 
 @dataclass(frozen=True)
-class Sum(Joined):
+class Sum(ExpressionOperators):
     """Sum of terms with their signs, +1 or -1."""
 
     terms: tuple[tuple[int, Expression], ...]
 
 
 @dataclass(frozen=True)
-class Product(Joined):
+class Product(ExpressionOperators):
     """Product of factors."""
 
     factors: tuple[Expression, ...]
 
 
 @dataclass(frozen=True)
-class Quotient(Joined):
+class Quotient(ExpressionOperators):
     """Fraction of two expressions."""
 
     over: Expression
@@ -104,7 +104,7 @@ class Quotient(Joined):
 
 
 @dataclass(frozen=True)
-class Raised(Joined):
+class PowerOf(ExpressionOperators):
     """Power with an integer exponent `over`, or with `under` a root written as the exponent over/under."""
 
     of: Expression
@@ -113,14 +113,14 @@ class Raised(Joined):
 
 
 @dataclass(frozen=True)
-class Function(Joined):
+class Function(ExpressionOperators):
     """Function of an expression: cos, sin, sqrt or abs."""
 
     name: str
     of: Expression
 
 
-Expression = Leaf | Constant | Sum | Product | Quotient | Raised | Function
+Expression = Leaf | Constant | Sum | Product | Quotient | PowerOf | Function
 FUNCTIONS: dict[str, Callable[[float], float]] = {
     "cos": math.cos,
     "sin": math.sin,
@@ -130,7 +130,7 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
 
 
 @dataclass(frozen=True)
-class Found:
+class ComputedQuantity:
     """Computed quantity on a line of its own: name = symbols = numbers = result with its unit.
 
     result: computed value in SI, independent of the expression, so that a wrong formula is detected. unit: printed
@@ -165,30 +165,30 @@ class Found:
             return MOST_FIGURES, str(round(result))
         for value in (shown, 0.0) if cancelled else (shown,):
             for own in range(self.most, 0, -1):
-                text = fixed(value, own, terms)
-                unit = last_digit(text)
+                text = format_fixed(value, own, terms)
+                unit = last_digit_unit(text)
                 for figures in range(FIGURES, MOST_FIGURES + 1):
                     if abs(self.value(figures) - float(text)) <= unit:
                         return figures, text
         raise ValueError(f"{self.name.name}: {self.value(MOST_FIGURES)} is not {result}")
 
 
-def read(name: Symbol, value: float, unit: str) -> Found:
+def state_value(name: Symbol, value: float, unit: str) -> ComputedQuantity:
     """Return a quantity that is read off a plan: its symbol and its value."""
-    return Found(name, Leaf(name, value), value, unit)
+    return ComputedQuantity(name, Leaf(name, value), value, unit)
 
 
-def added(terms: Iterable[Expression]) -> Sum:
+def sum_terms(terms: Iterable[Expression]) -> Sum:
     """Return the sum of the terms; nested sums are flattened."""
     return Sum(tuple(chain.from_iterable(map(_terms, terms))))
 
 
-def signed(sense: float, expression: Expression) -> Expression:
+def apply_sign(sense: float, expression: Expression) -> Expression:
     """Return the expression, negated if `sense` is not positive."""
     return expression if sense > 0 else -expression
 
 
-def _own(part: object) -> Expression:
+def _as_expression(part: object) -> Expression:
     if isinstance(part, Expression):
         return part
     assert isinstance(part, int | float)
@@ -196,7 +196,7 @@ def _own(part: object) -> Expression:
 
 
 def _terms(part: object) -> tuple[tuple[int, Expression], ...]:
-    own = _own(part)
+    own = _as_expression(part)
     return own.terms if isinstance(own, Sum) else ((1, own),)
 
 
@@ -207,7 +207,7 @@ def evaluate(expression: Expression, figures: int) -> float:
         case Leaf(_, value, angle, instead):
             if instead is not None:
                 return of(instead)
-            return math.radians(rounded(math.degrees(value), figures)) if angle else rounded(value, figures)
+            return math.radians(round_figures(math.degrees(value), figures)) if angle else round_figures(value, figures)
         case Constant(value):
             return value
         case Sum(terms):
@@ -216,7 +216,7 @@ def evaluate(expression: Expression, figures: int) -> float:
             return math.prod(of(factor) for factor in factors)
         case Quotient(over, under):
             return of(over) / of(under)
-        case Raised(base, over, under):
+        case PowerOf(base, over, under):
             return float(of(base) ** (over / under))
         case Function(name, argument):
             return FUNCTIONS[name](of(argument))
@@ -235,7 +235,7 @@ def largest_term(expression: Expression) -> float:
         case Quotient(over, under):
             divisor = abs(evaluate(under, EXACT))
             return largest_term(over) / divisor if divisor else 0.0
-        case Raised(base, over, under):
+        case PowerOf(base, over, under):
             return float(largest_term(base) ** (over / under)) if over > 0 else abs(evaluate(expression, EXACT))
         case Function("cos" | "sin"):
             return 1.0
@@ -245,38 +245,38 @@ def largest_term(expression: Expression) -> float:
             return abs(evaluate(expression, EXACT))
 
 
-def letters(expression: Expression) -> paper.Node:
+def symbolic_formula(expression: Expression) -> paper.Node:
     """Return the formula of an expression in symbols."""
-    return _written(expression, lambda leaf: paper.Letter(leaf.symbol))
+    return _build_formula(expression, lambda leaf: paper.Letter(leaf.symbol))
 
 
-def numbers(expression: Expression, figures: int, text: Callable[[str], str]) -> paper.Node:
+def numeric_formula(expression: Expression, figures: int, text: Callable[[str], str]) -> paper.Node:
     """Return the formula of an expression with numbers substituted; `text` writes figures in the language."""
 
     def number(leaf: Leaf) -> paper.Node:
         if leaf.of is not None:
-            return numbers(leaf.of, figures, text)
+            return numeric_formula(leaf.of, figures, text)
         value = math.degrees(leaf.value) if leaf.angle else leaf.value
-        digits = plain(rounded(value, figures), figures)
-        shown = _figures(digits, text)
+        digits = format_plain(round_figures(value, figures), figures)
+        shown = _number_formula(digits, text)
         if digits.startswith("-"):
             return paper.Brackets(shown)
         return paper.row(shown, paper.Words("°")) if leaf.angle else shown
 
-    return _written(expression, number)
+    return _build_formula(expression, number)
 
 
-def _figures(digits: str, text: Callable[[str], str]) -> paper.Node:
+def _number_formula(digits: str, text: Callable[[str], str]) -> paper.Node:
     """Return a number in scientific notation as a formula: -1.2e-5 gives −1.2·10^−5."""
     if digits.startswith("-"):
-        return paper.row("−", _figures(digits[1:], text))
+        return paper.row("−", _number_formula(digits[1:], text))
     mantissa, _, power = digits.partition("e")
     shown = paper.Number(text(mantissa))
-    return paper.row(shown, "·", paper.Power(paper.Number("10"), _figures(power, text))) if power else shown
+    return paper.row(shown, "·", paper.Power(paper.Number("10"), _number_formula(power, text))) if power else shown
 
 
-def _written(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -> paper.Node:
-    of = partial(_written, leaf=leaf)
+def _build_formula(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -> paper.Node:
+    of = partial(_build_formula, leaf=leaf)
     match expression:
         case Leaf():
             return leaf(expression)
@@ -300,7 +300,7 @@ def _written(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -> pape
             return paper.row(*shown)
         case Quotient(over, under):
             return paper.Fraction(of(over), of(under))
-        case Raised(base, over, under):
+        case PowerOf(base, over, under):
             node, power = of(base), paper.Number(str(over))
             if not isinstance(node, paper.Number | paper.Letter | paper.Brackets):
                 node = paper.Brackets(node)
@@ -314,45 +314,45 @@ def _written(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -> pape
             return paper.row(name, node if isinstance(argument, Leaf) else paper.Brackets(node))
 
 
-def rounded(value: float, figures: int) -> float:
+def round_figures(value: float, figures: int) -> float:
     """Round to this many significant figures, but keep all digits before the point of numbers below 10^7."""
     text = f"{half_up(value):.{figures - 1}e}"
     return float(f"{half_up(value):.0f}") if figures <= int(text.partition("e")[2]) < WHOLE else float(text)
 
 
-def fixed(value: float, figures: int, terms: float = 0.0) -> str:
+def format_fixed(value: float, figures: int, terms: float = 0.0) -> str:
     """Format a value with this many significant figures, keeping trailing zeros.
 
     terms: for a zero, magnitude of the terms that cancel; it sets the number of decimals.
     """
     if value == 0:
         return "0" if not terms else f"{0.0:.{max(figures - 1 - math.floor(math.log10(terms)), 0)}f}"
-    power = math.floor(math.log10(abs(rounded(value, figures))))
+    power = math.floor(math.log10(abs(round_figures(value, figures))))
     if -4 <= power < WHOLE:
         return f"{half_up(value):.{max(figures - 1 - power, 0)}f}"
     mantissa, _, exponent = f"{half_up(value):.{figures - 1}e}".partition("e")
     return f"{mantissa}e{int(exponent)}"
 
 
-def plain(value: float, figures: int) -> str:
+def format_plain(value: float, figures: int) -> str:
     """Format a value without trailing zeros: 1234.5, 0.00123, 1.2e-5."""
-    mantissa, *power = fixed(value, figures).split("e")
+    mantissa, *power = format_fixed(value, figures).split("e")
     return "e".join((mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa, *power))
 
 
-def last_digit(text: str) -> float:
+def last_digit_unit(text: str) -> float:
     """Return the value of one unit in the last digit of a printed number."""
     mantissa, _, power = text.partition("e")
     return 10.0 ** (int(power or 0) - len(mantissa.partition(".")[2]))
 
 
-def result_node(text: str, unit: str, say: Callable[[str], str]) -> paper.Node:
+def result_formula(text: str, unit: str, say: Callable[[str], str]) -> paper.Node:
     """Return the formula of a result with its unit."""
-    shown = _figures(text, say)
+    shown = _number_formula(text, say)
     return paper.row(shown, paper.Words(unit if unit == "°" else f" {unit}")) if unit else shown
 
 
-def formula(found: Found, say: Callable[[str], str]) -> paper.Node:
+def formula(found: ComputedQuantity, say: Callable[[str], str]) -> paper.Node:
     """Return the line symbols = numbers = result of a computed quantity; `say` writes figures in the language.
 
     Raises:
@@ -361,5 +361,5 @@ def formula(found: Found, say: Callable[[str], str]) -> paper.Node:
     figures, text = found.printed()
     own = found.expression
     plain = isinstance(own, Leaf)  # read off: what would be put in is the result
-    put_in = () if plain else (letters(own), numbers(own, figures, say))
-    return chain_of_equalities((paper.Letter(found.name), *put_in, result_node(text, found.unit, say)))
+    put_in = () if plain else (symbolic_formula(own), numeric_formula(own, figures, say))
+    return chain_of_equalities((paper.Letter(found.name), *put_in, result_formula(text, found.unit, say)))

@@ -123,10 +123,10 @@ def chain_of_equalities(sides: Sequence[Node], most: float = LINE) -> Node:
         if not lines or width(joined) <= most:
             lines[-1:] = [joined]
         elif width(lines[-1]) < SHORT:
-            lines[-1:] = _in_terms(joined, most)
+            lines[-1:] = _break_at_terms(joined, most)
         else:
-            lines += _in_terms(row("=", side), most)
-    lines = _evened(lines, most)
+            lines += _break_at_terms(row("=", side), most)
+    lines = _fill_last_line(lines, most)
     return lines[0] if len(lines) == 1 else Lines(tuple(lines))
 
 
@@ -153,7 +153,7 @@ def width(node: Node) -> float:
             return max(width(n) for n in lines)
 
 
-def _evened(lines: list[Node], most: float) -> list[Node]:
+def _fill_last_line(lines: list[Node], most: float) -> list[Node]:
     """Move the term before a result that stands alone on the last line down to it."""
     if len(lines) < 2 or width(lines[-1]) > 1.5 * SHORT or not isinstance(lines[-2], Row):
         return lines
@@ -164,19 +164,19 @@ def _evened(lines: list[Node], most: float) -> list[Node]:
     return [*lines[:-2], row(*nodes[: breaks[-1]]), end]
 
 
-def _in_terms(node: Node, most: float) -> list[Node]:
+def _break_at_terms(node: Node, most: float) -> list[Node]:
     """Break a row into lines, each but the first beginning with the sign of a term."""
     if width(node) <= most or not isinstance(node, Row):
         return [node]
     lines: list[list[Node]] = [[]]
-    for term in _terms(_opened(node.nodes, most)):
+    for term in _split_terms(_unfold_wide_fractions(node.nodes, most)):
         if lines[-1] and width(Row((*lines[-1], *term))) > most:
             lines.append([])
         lines[-1] += term
-    return [_bracketed(line) for line in lines]
+    return [_group_brackets(line) for line in lines]
 
 
-def _bracketed(line: Sequence[Node]) -> Node:
+def _group_brackets(line: Sequence[Node]) -> Node:
     """Return a line with the contents of brackets that open or close on it as one node."""
     first = line.index(OPEN) + 1 if OPEN in line else None
     last = line.index(CLOSE) if CLOSE in line else None
@@ -186,7 +186,7 @@ def _bracketed(line: Sequence[Node]) -> Node:
     return row(*before, Brackets(row(*line[first:last]), first is not None, last is not None), *after)
 
 
-def _terms(nodes: Sequence[Node]) -> list[list[Node]]:
+def _split_terms(nodes: Sequence[Node]) -> list[list[Node]]:
     """Split a formula into its terms, each with its sign."""
     terms: list[list[Node]] = [[]]
     for node in nodes:
@@ -196,7 +196,7 @@ def _terms(nodes: Sequence[Node]) -> list[list[Node]]:
     return terms
 
 
-def _opened(nodes: Sequence[Node], most: float) -> list[Node]:
+def _unfold_wide_fractions(nodes: Sequence[Node], most: float) -> list[Node]:
     """Replace fractions that are too wide by one over the denominator times the numerator."""
     found: list[Node] = []
     for node in nodes:

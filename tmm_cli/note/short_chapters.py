@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tmm_cli.language import _
-from tmm_cli.note.blocks import Block, Contents, Heading, Items, Source, Sources, Title, paragraph, tabled
-from tmm_cli.note.subject import Subject, rows_of, with_degrees
+from tmm_cli.note.blocks import Block, Contents, Heading, Items, Source, Sources, Title, paragraph, write_table
+from tmm_cli.note.subject import Subject, note_table, with_degrees
 from tmm_cli.reports import collect_warnings, walk
 
 
@@ -37,7 +37,7 @@ def write_checks(subject: Subject) -> Iterable[Block]:
     yield Heading(_("Checks"))
     for table in tables:
         text = _("The results are checked: table {table} compares each quantity with its limit.")
-        yield from tabled(text, rows_of(subject, table, _("Checks"), "checks"))
+        yield from write_table(text, note_table(subject, table, _("Checks"), "checks"))
     if told:
         yield paragraph(_("The following deserves attention:"))
         yield Items(tuple((with_degrees(text),) for text in told))

@@ -19,13 +19,13 @@ from tmm_cli.note.blocks import (
     Rows,
     cells,
     paragraph,
-    said,
-    several,
-    tabled,
+    refer_to_blocks,
+    write_sentence,
+    write_table,
 )
-from tmm_cli.note.expression import Expression, Found, Leaf
+from tmm_cli.note.expression import ComputedQuantity, Expression, Leaf
 from tmm_cli.note.formula_tree import Words
-from tmm_cli.note.subject import NONE, Subject, unbroken
+from tmm_cli.note.subject import NONE, Subject, join_with_no_break_spaces
 from tmm_cli.reports import (
     PAIRS,
     ROLES,
@@ -52,18 +52,18 @@ def write_structure(subject: Subject) -> Iterable[Block]:
     yield from subject.figures(
         "structure", _("The structural scheme is shown in figure {figure}."), _("Structural scheme of the mechanism")
     )
-    yield said(
+    yield write_sentence(
         _("The moving links are listed in table {links}, the kinematic pairs in table {pairs}."),
         links=Ref("links"),
         pairs=Ref("pairs"),
     )
-    yield _links(subject)
-    yield _pairs(structure)
-    yield from _mobility(structure)
-    yield from _groups(subject)
+    yield _link_table(subject)
+    yield _pair_table(structure)
+    yield from _write_mobility(structure)
+    yield from _write_groups(subject)
 
 
-def _links(subject: Subject) -> Rows:
+def _link_table(subject: Subject) -> Rows:
     linkage, roles = subject.results.linkage, subject.results.roles
     rows = tuple(
         cells(
@@ -77,7 +77,7 @@ def _links(subject: Subject) -> Rows:
     return Rows(_("Moving links"), cells(_("link"), _("kind"), _("motion"), _("points")), rows, "links")
 
 
-def _pairs(structure: Structure) -> Rows:
+def _pair_table(structure: Structure) -> Rows:
     rows = tuple(
         cells(
             p.name,
@@ -97,11 +97,11 @@ def _pairs(structure: Structure) -> Rows:
     )
 
 
-def _mobility(structure: Structure) -> Iterable[Block]:
+def _write_mobility(structure: Structure) -> Iterable[Block]:
     higher = structure.higher
     n, lower = len(structure.links), len(structure.pairs) - structure.higher
     turning = sum(pair.kind == "R" for pair in structure.pairs)
-    yield said(
+    yield write_sentence(
         _(
             "The mobility {w} of the mechanism is found by Chebyshev's formula {source}, in which {n} is the "
             "number of moving links, {lower} the number of lower pairs (revolute: {turning}, prismatic: "
@@ -115,7 +115,7 @@ def _mobility(structure: Structure) -> Iterable[Block]:
         turning=str(turning),
         sliding=str(lower - turning),
     )
-    yield Found(W, chebyshev(n, lower, higher), structure.mobility, whole=True)
+    yield ComputedQuantity(W, chebyshev_formula(n, lower, higher), structure.mobility, whole=True)
     classes = _("In terms of the classes of pairs, W = 3n - 2 p5 - p4 = {count}.")
     yield paragraph(typeset(classes.format(count=mobility_by_classes((n, lower, higher)))))
     general = _("The generalised formula W = Hn - sum((H - i) p_i) with H = 3 gives {count}.")
@@ -127,7 +127,7 @@ def _mobility(structure: Structure) -> Iterable[Block]:
         text = _("If rollers are counted as links, W = {count}.").format(count=mobility_with_rollers(structure))
         yield paragraph(typeset(text))
     if structure.passive:
-        yield said(
+        yield write_sentence(
             _(
                 "The rank of the equations shows redundant constraints (number: {count}; {pairs}), which only "
                 "repeat other constraints because of the special dimensions of the mechanism; its true mobility is "
@@ -139,27 +139,27 @@ def _mobility(structure: Structure) -> Iterable[Block]:
             true=str(structure.mobility + structure.redundant),
         )
     if structure.reduction:
-        yield said(
+        yield write_sentence(
             _("For the structural formula: {what}. The remaining links and pairs give:"),
             what="; ".join(reduction_sentences(structure)),
         )
-        yield Found(W, chebyshev(*structure.count), len(structure.drivers), whole=True)
+        yield ComputedQuantity(W, chebyshev_formula(*structure.count), len(structure.drivers), whole=True)
 
 
-def chebyshev(n: int, lower: int, higher: int) -> Expression:
+def chebyshev_formula(n: int, lower: int, higher: int) -> Expression:
     """Return Chebyshev's formula 3n − 2p₁ − p₂ with its values."""
     held = 2 * Leaf(LOWER, lower)
     return 3 * Leaf(N, n) - held - Leaf(HIGHER, higher)
 
 
-def _groups(subject: Subject) -> Iterable[Block]:
+def _write_groups(subject: Subject) -> Iterable[Block]:
     structure = subject.results.structure
     if structure.groups:
         head = cells(
             _("group"), _("class"), _("order"), _("type"), _("internal pairs"), _("external pairs"), _("mobility")
         )
-        rows = tuple(_group(group) for group in structure.groups)
-        yield from tabled(
+        rows = tuple(_group_row(group) for group in structure.groups)
+        yield from write_table(
             _(
                 "When the input links and the frame are removed, the Assur groups of table {table} remain; the "
                 "mobility of each group is zero."
@@ -177,18 +177,18 @@ def _groups(subject: Subject) -> Iterable[Block]:
     text = _(
         "The class of a mechanism is the highest class of its groups {source}; this mechanism is of class {number}."
     )
-    yield said(text, source=Link("frolov"), number=structure.roman)
+    yield write_sentence(text, source=Link("frolov"), number=structure.roman)
     schemes = describe_schemes(structure)
     if schemes:
         yield paragraph(_("Basic mechanisms it contains: {schemes}.").format(schemes=schemes))
-    yield from _apart(subject)
+    yield from _draw_parts(subject)
 
 
-def _apart(subject: Subject) -> Iterable[Block]:
+def _draw_parts(subject: Subject) -> Iterable[Block]:
     """Write the drawings of the primary mechanisms and groups."""
     drawn = subject.drawings("groups")
     if drawn:
-        yield several(
+        yield refer_to_blocks(
             _("The only part of the mechanism is shown in figure {first}."),
             _("The parts of the mechanism are shown in figures {first} and {last}."),
             _("The parts of the mechanism are shown in figures {first} to {last}."),
@@ -200,11 +200,13 @@ def _apart(subject: Subject) -> Iterable[Block]:
         yield Figure(text.format(title=part.title), drawing, stem)
 
 
-def _group(group: Group) -> tuple[Line, ...]:
+def _group_row(group: Group) -> tuple[Line, ...]:
     n, lower, higher = group.count
     own = f"3·{n} − 2·{lower}" + (f" − {higher}" if higher else "") + f" = {group.mobility}"
     known = [(pair.name, pair.other(group.own(pair))) for pair in group.outer]
-    outer = ", ".join(unbroken(_("{pair} (to {link})").format(pair=pair, link=printed(link))) for pair, link in known)
+    outer = ", ".join(
+        join_with_no_break_spaces(_("{pair} (to {link})").format(pair=pair, link=printed(link))) for pair, link in known
+    )
     inner = ", ".join(pair.name for pair in group.inner) or NONE
     roman, order = group.roman, str(group.order)
     kind = count_pair_letters(group.type) + (f" ({group.letters}, {group.type_number})" if group.type_number else "")

@@ -37,8 +37,8 @@ from tmm_cli.mechanics.forces import Reactions, ZhukovskyLever, subscript
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.plans import extent, round_scale
 from tmm_cli.mechanics.quantities import Dimension
-from tmm_cli.note.blocks import Block, Figure, Line, Ref, Rows, cells, said
-from tmm_cli.note.expression import FIGURES, fixed, plain, rounded
+from tmm_cli.note.blocks import Block, Figure, Line, Ref, Rows, cells, write_sentence
+from tmm_cli.note.expression import FIGURES, format_fixed, format_plain, round_figures
 from tmm_cli.problem import UnitSystem, typeset_unit
 from tmm_cli.reports import Column, Table, printed_figures, terminal_cells as cells_of
 
@@ -107,21 +107,21 @@ class Subject:
         """Return a position in the form that drawings take."""
         return Position(self.results, self.motion, k)
 
-    def called(self, k: int) -> str:
+    def position_number(self, k: int) -> str:
         """Return the number of a position."""
         return str(self.results.numbers[k])
 
-    def at_position(self, k: int) -> str:
+    def describe_position(self, k: int) -> str:
         """Return the number of a position with its driver coordinate."""
         place = with_degrees(driver_caption(self.results, float(self.motion.q[k]), 4))
-        return _("position {number}, {place}").format(number=self.called(k), place=place)
+        return _("position {number}, {place}").format(number=self.position_number(k), place=place)
 
     def rate(self, k: int) -> float:
         """Return the velocity of the first driver in a position, in SI."""
         return float(np.broadcast_to(self.motion.rate, self.motion.q.shape)[k])
 
     @property
-    def acts(self) -> bool:
+    def has_loads(self) -> bool:
         """True if any load acts on the links."""
         return self.results.reactions is not None and bool(self.results.reactions.applied)
 
@@ -139,11 +139,11 @@ class Subject:
 
     def text(self, value: float, digits: int = 4) -> str:
         """Return a number as text in the current language, without trailing zeros."""
-        return self.figures_of(plain(rounded(value, digits), digits))
+        return self.localise(format_plain(round_figures(value, digits), digits))
 
-    def shown(self, value: float) -> str:
+    def format_result(self, value: float) -> str:
         """Return a result as text with all its significant figures."""
-        return self.figures_of(fixed(value, FIGURES))
+        return self.localise(format_fixed(value, FIGURES))
 
     def angle(self, radians: float) -> str:
         """Return an angle (rad) from the x axis in degrees, 0 to 360, without the degree sign."""
@@ -153,7 +153,7 @@ class Subject:
         """Return the angle of a vector from the x axis with the degree sign."""
         return f"{self.angle(float(np.angle(vector)))}°"
 
-    def figures_of(self, text: str) -> str:
+    def localise(self, text: str) -> str:
         """Return a formatted number in the style of the current language."""
         return localise_figures(text, language())
 
@@ -165,7 +165,7 @@ class Subject:
         if (draw, k) not in self._drawings:
             with drawing_within(PictureSpace(longest, (WIDTH, HEIGHT), written=False)):
                 subject: Any = self.results if k is None else self.position(k)
-                self._drawings[draw, k] = {stem: edged(drawing) for stem, drawing in draw(subject)}
+                self._drawings[draw, k] = {stem: add_margin(drawing) for stem, drawing in draw(subject)}
         several = draw is draw_motion_plans
         return {stem: d for stem, d in self._drawings[draw, k].items() if not several or stem.startswith(name)}
 
@@ -195,12 +195,12 @@ class Subject:
         for stem, drawing in self.drawings(name, k).items():
             if only and not re.fullmatch(rf"{re.escape(only)}(-sheet)?(-\d+)?", stem):
                 continue
-            yield said(sentence, figure=Ref(stem))
-            yield Figure(caption or by_hand(getattr(drawing, "title", "")), drawing, stem)
+            yield write_sentence(sentence, figure=Ref(stem))
+            yield Figure(caption or typeset_formulas(getattr(drawing, "title", "")), drawing, stem)
             sentence = further or sentence
 
 
-def edged(drawing: Drawing) -> Drawing:
+def add_margin(drawing: Drawing) -> Drawing:
     """Return a drawing with a narrow margin, so that its outer lines are not cut."""
     width, height = drawing.paper
     marks = tuple(mark.moved(EDGE * (1 + 1j)) for mark in drawing.marks)
@@ -234,7 +234,7 @@ GREEK = {
 }
 
 
-def by_hand(text: str) -> str:
+def typeset_formulas(text: str) -> str:
     """Return a text with its formulas in handwriting style: psi1 = pi - phi_2 gives ψ1 = π − φ₂."""
     text = re.sub(rf"\b({'|'.join(GREEK)})(?=[\W\d_]|$)", lambda found: GREEK[found[0]], text)
     return re.sub(r"_(\d+)\b", lambda index: subscript(index[1]), signed(typeset(text))).replace(" - ", " − ")
@@ -244,7 +244,7 @@ DIGITS = 4
 NONE = "—"
 
 
-def rows_of(
+def note_table(
     subject: Subject, table: Table, caption: str = "", key: str = "", digits: int = DIGITS, *, zeros: bool = False
 ) -> Rows:
     """Return a table of results as a table of the note, in the units of the file.
@@ -260,35 +260,40 @@ def rows_of(
     units = subject.results.problem.units
     columns = [
         (
-            by_hand(typeset_unit(c.heading(units))),
-            _texts(replace(_on_paper(c), digits=digits), units, zeros),
+            typeset_formulas(typeset_unit(c.heading(units))),
+            _format_cells(replace(_typeset_units(c), digits=digits), units, zeros),
             c.dimension,
         )
         for c in table.columns
     ]
     kept = [(head, texts, dimension) for head, texts, dimension in columns if any(texts)]
     shown = [
-        [_cell(by_hand(with_degrees(t)) if dimension is None else subject.figures_of(t)) for t in texts]
+        [
+            _fill_empty_cell(typeset_formulas(with_degrees(t)) if dimension is None else subject.localise(t))
+            for t in texts
+        ]
         for __, texts, dimension in kept
     ]
-    _told_apart(table, shown)
+    _move_units(table, shown)
     rows = tuple(cells(*row) for row in zip(*shown, strict=True))
     return Rows(caption or table.title, cells(*(head for head, *__ in kept)), rows, key)
 
 
-def over_positions(subject: Subject, caption: str, columns: Sequence[tuple[Line, Sequence[str]]], key: str) -> Rows:
+def table_over_positions(
+    subject: Subject, caption: str, columns: Sequence[tuple[Line, Sequence[str]]], key: str
+) -> Rows:
     """Return a table with a row per position from columns of heading and texts."""
     rows = zip(map(str, subject.results.numbers), *(texts for __, texts in columns), strict=True)
     head = cells(_("position"), *(head for head, __ in columns))
     return Rows(caption, head, tuple(cells(*row) for row in rows), key)
 
 
-def unbroken(text: str) -> str:
+def join_with_no_break_spaces(text: str) -> str:
     """Replace spaces by no-break spaces."""
     return text.replace(" ", "\N{NO-BREAK SPACE}")
 
 
-def _told_apart(table: Table, shown: list[list[str]]) -> None:
+def _move_units(table: Table, shown: list[list[str]]) -> None:
     """Move units written after names of quantities into the column of units: "time, s" gives "time" and "s"."""
     headers = [column.header for column in table.columns]
     if headers != ["what", "value", "unit"] or len(shown) != len(headers):
@@ -300,19 +305,21 @@ def _told_apart(table: Table, shown: list[list[str]]) -> None:
             names[k], units[k] = quantity, unit
 
 
-def _texts(column: Column, units: UnitSystem, zeros: bool) -> list[str]:
+def _format_cells(column: Column, units: UnitSystem, zeros: bool) -> list[str]:
     """Return the cells of a column as texts, in scientific notation only for very large or small numbers."""
     if column.dimension is None:
         return cells_of(column, units, range(len(column.values)))
-    write = fixed if zeros else plain
+    write = format_fixed if zeros else format_plain
     told = zip(column.numbers(units).tolist(), printed_figures(column, units).tolist(), strict=True)
-    return [write(rounded(value, count), count) if count > 0 else "0" if count == 0 else NONE for value, count in told]
+    return [
+        write(round_figures(value, count), count) if count > 0 else "0" if count == 0 else NONE for value, count in told
+    ]
 
 
-def _cell(text: str) -> str:
+def _fill_empty_cell(text: str) -> str:
     return NONE if text in ("", "-", "−") else text
 
 
-def _on_paper(column: Column) -> Column:
+def _typeset_units(column: Column) -> Column:
     """Return a column of units in printed form; other columns unchanged."""
     return replace(column, values=[typeset_unit(unit) for unit in column.values]) if column.header == "unit" else column

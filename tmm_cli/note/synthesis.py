@@ -7,9 +7,9 @@ from collections.abc import Iterable
 
 from tmm_cli.language import _, translated
 from tmm_cli.mechanics.forces import Symbol
-from tmm_cli.note.blocks import Block, Heading, paragraph, said, tabled
-from tmm_cli.note.expression import Constant, Found, Function, Leaf
-from tmm_cli.note.subject import Subject, by_hand, rows_of
+from tmm_cli.note.blocks import Block, Heading, paragraph, write_sentence, write_table
+from tmm_cli.note.expression import ComputedQuantity, Constant, Function, Leaf
+from tmm_cli.note.subject import Subject, note_table, typeset_formulas
 from tmm_cli.problem import Synthesised
 from tmm_cli.reports import tables_of_synthesis
 from tmm_cli.synthesis import Diagram, measure_problem, theta_of
@@ -31,20 +31,20 @@ def write_synthesis(subject: Subject) -> Iterable[Block]:
     if asked is None:
         yield paragraph(_("The dimensions of the mechanism are determined from the requirements."))
     else:
-        rows = rows_of(subject, asked, _("Requirements"), "asked", FOUND)
-        yield from tabled(
+        rows = note_table(subject, asked, _("Requirements"), "asked", FOUND)
+        yield from write_table(
             _("The dimensions of the mechanism are determined from the requirements (table {table})."), rows
         )
-    source = by_hand(translated(task.outcome.source).rstrip("."))
+    source = typeset_formulas(translated(task.outcome.source).rstrip("."))
     yield paragraph(_("Method of solution: {source}.").format(source=source))
-    yield from _formulas(task)
+    yield from _write_formulas(task)
     found = tables.pop("synthesis-found", None)
     measured = tables.pop("synthesis-measured", None)
     if found is not None:
-        rows = rows_of(subject, found, _("Results of the synthesis"), "found", FOUND)
-        yield from tabled(_("The results are given in table {table}."), rows)
-        yield from (paragraph(by_hand(translated(note))) for note in task.outcome.notes)
-    yield from (rows_of(subject, t, digits=FOUND) for t in tables.values() if not t.long)
+        rows = note_table(subject, found, _("Results of the synthesis"), "found", FOUND)
+        yield from write_table(_("The results are given in table {table}."), rows)
+        yield from (paragraph(typeset_formulas(translated(note))) for note in task.outcome.notes)
+    yield from (note_table(subject, t, digits=FOUND) for t in tables.values() if not t.long)
     diagrams = [drawn for drawn in task.outcome.drawings if isinstance(drawn, Diagram)]
     for drawn in task.outcome.drawings:
         sentence = _("The construction is drawn in figure {figure}.")
@@ -57,29 +57,29 @@ def write_synthesis(subject: Subject) -> Iterable[Block]:
     yield from subject.figures("synthesis", sentence, only="synthesis-extremes")
     if measured is not None:
         text = _("Table {table} gives the same quantities measured on the mechanism with these dimensions.")
-        rows = rows_of(subject, measured, _("Requirements, measured on the mechanism"), "measured", FOUND)
-        yield from tabled(text, rows)
+        rows = note_table(subject, measured, _("Requirements, measured on the mechanism"), "measured", FOUND)
+        yield from write_table(text, rows)
 
 
-def _formulas(task: Synthesised) -> Iterable[Block]:
+def _write_formulas(task: Synthesised) -> Iterable[Block]:
     """Write the formulas of the task that fit on one line, with numbers substituted."""
     values = {
         value.name: float(value.value) for value in (*task.outcome.asked, *task.outcome.found) if value.name in USED
     }
     if "k" in values:
         theta = float(theta_of(values["k"]))
-        yield said(
+        yield write_sentence(
             _("The angle {theta} follows from the time ratio {k} (coefficient of change of mean speed):"),
             theta=THETA,
             k=K,
         )
         ratio = Leaf(K, values["k"])
         share = (ratio - 1) / (ratio + 1)
-        yield Found(THETA, Constant(math.pi, "180°") * share, theta, "°", angle=True)
+        yield ComputedQuantity(THETA, Constant(math.pi, "180°") * share, theta, "°", angle=True)
         half = Function("sin", Leaf(THETA, theta, angle=True) / 2)
         if task.task == "shaper":
             length = Leaf(H, values["stroke"]) / (2 * half)
-            yield Found(Symbol("l", "CD"), length, values["CD"], "m")
+            yield ComputedQuantity(Symbol("l", "CD"), length, values["CD"], "m")
         if task.task in ("shaper", "slotted-lever"):
             crank = Leaf(Symbol("l", "OC"), values["OC"]) * half
-            yield Found(Symbol("l", "OA"), crank, values["OA"], "m")
+            yield ComputedQuantity(Symbol("l", "OA"), crank, values["OA"], "m")

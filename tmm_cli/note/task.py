@@ -11,8 +11,21 @@ from tmm_cli.language import _
 from tmm_cli.mechanics.forces import Symbol, symbol_of_name
 from tmm_cli.mechanics.linkage import FRAME, Link, Load
 from tmm_cli.mechanics.quantities import ANGLE, FORCE, INERTIA, LENGTH, MASS, MOMENT
-from tmm_cli.note.blocks import Block, Heading, Items, Line, Ref, Rows, cells, listed, paragraph, said, several, tabled
-from tmm_cli.note.subject import NONE, Subject, rows_of, unbroken, with_degrees
+from tmm_cli.note.blocks import (
+    Block,
+    Heading,
+    Items,
+    Line,
+    Ref,
+    Rows,
+    cells,
+    join_inline,
+    paragraph,
+    refer_to_blocks,
+    write_sentence,
+    write_table,
+)
+from tmm_cli.note.subject import NONE, Subject, join_with_no_break_spaces, note_table, with_degrees
 from tmm_cli.reports import (
     ROLES,
     describe_driver_motion,
@@ -40,57 +53,57 @@ def write_task(subject: Subject) -> Iterable[Block]:
             "The dimensions of the links are given in table {table}; those not given in the problem statement "
             "are found by synthesis."
         )
-    yield from tabled(sentence, _sizes(subject))
+    yield from write_table(sentence, _dimension_table(subject))
     sentence = _("The coordinates of the fixed points are given in table {table}.")
-    if _guided(subject):
+    if _has_fixed_guides(subject):
         sentence = _("The coordinates of the fixed points and guides are given in table {table}.")
-    yield from tabled(sentence, _fixed(subject))
+    yield from write_table(sentence, _fixed_point_table(subject))
     for driver in linkage.drivers:
         yield paragraph(
             _("Link {link} is an input link: {motion}.").format(link=driver.link, motion=describe_driver_motion(driver))
         )
     if any(np.any(linkage.links[name].mass != 0) for name in linkage.moving):
-        yield from tabled(
+        yield from write_table(
             _(
                 "Table {table} gives the masses {m} of the links, their moments of inertia {J} about the centres "
                 "of mass and the coordinates of the centres of mass. The local axes of a link have their origin at "
                 "its first point; the x axis points to the second point or as the coordinates in table {sizes} "
                 "indicate. A slider with one point has axes parallel to those of the link on which it slides."
             ),
-            _masses(subject),
+            _mass_table(subject),
             m=Symbol("m"),
             J=Symbol("J", "S"),
             sizes=Ref("sizes"),
         )
-        yield from _gravity(subject)
+        yield from _write_gravity(subject)
     if linkage.loads:
-        yield from tabled(_("The loads are given in table {table}."), _loads(subject))
+        yield from write_table(_("The loads are given in table {table}."), _load_table(subject))
     further = [
         table
         for table in input_data_tables(problem)
         if table.name not in IN_WORDS and not (table.name == "drivers" and not linkage.others)
     ]
     if further:
-        yield several(
+        yield refer_to_blocks(
             _("Further data are given in table {first}."),
             _("Further data are given in tables {first} and {last}."),
             _("Further data are given in tables {first} to {last}."),
             [table.name for table in further],
         )
         for table in further:
-            yield rows_of(subject, table, key=table.name)
+            yield note_table(subject, table, key=table.name)
             yield from (paragraph(with_degrees(note)) for note in table.notes)
     yield paragraph(_("To be found:"))
-    yield Items(tuple((text,) for text in _wanted(subject)))
+    yield Items(tuple((text,) for text in _list_requirements(subject)))
 
 
-def _gravity(subject: Subject) -> Iterable[Block]:
+def _write_gravity(subject: Subject) -> Iterable[Block]:
     pull = subject.results.linkage.gravity
     size = abs(pull)
     if not size:
         yield paragraph(_("The weights of the links are not taken into account."))
         return
-    yield said(
+    yield write_sentence(
         _("The acceleration of gravity is {g} = {size} m/s²; it is directed at {angle} to the x axis."),
         g=Symbol("g"),
         size=subject.text(size),
@@ -98,17 +111,17 @@ def _gravity(subject: Subject) -> Iterable[Block]:
     )
 
 
-def _sizes(subject: Subject) -> Rows:
+def _dimension_table(subject: Subject) -> Rows:
     linkage, roles = subject.results.linkage, subject.results.roles
     rows = tuple(
-        cells(name, translate_label(link.label) or _(ROLES[roles[name]]), _lengths(subject, link) or NONE)
+        cells(name, translate_label(link.label) or _(ROLES[roles[name]]), _describe_dimensions(subject, link) or NONE)
         for name, link in linkage.links.items()
         if name != FRAME
     )
     return Rows(_("Links and their dimensions"), cells(_("link"), _("name of the link"), _("sizes")), rows, "sizes")
 
 
-def _lengths(subject: Subject, link: Link) -> Line:
+def _describe_dimensions(subject: Subject, link: Link) -> Line:
     """Return the lengths of a link (l_AB = 110 mm), then the coordinates of its points if any lies off the x axis."""
     points = list(link.points)
     pairs = combinations(points, 2) if len(points) <= SIDES else ((points[0], other) for other in points[1:])
@@ -119,42 +132,42 @@ def _lengths(subject: Subject, link: Link) -> Line:
             found.append((Symbol("l", a + b), f" = {subject.value(length, LENGTH)}"))
     if any(np.any(np.imag(place) != 0) for place in link.points.values()):
         for point, place in link.points.items():
-            x, y = _place(subject, place)
-            found.append((unbroken(f"{point} ({x}; {y}) {subject.unit(LENGTH)}"),))
-    return listed(found)
+            x, y = _format_point(subject, place)
+            found.append((join_with_no_break_spaces(f"{point} ({x}; {y}) {subject.unit(LENGTH)}"),))
+    return join_inline(found)
 
 
-def _fixed(subject: Subject) -> Rows:
+def _fixed_point_table(subject: Subject) -> Rows:
     """Return the table of fixed points and guides; the last column is the direction of guides."""
     linkage, unit = subject.results.linkage, subject.unit(LENGTH)
-    rows = [cells(point, *_place(subject, place), NONE) for point, place in linkage.links[FRAME].points.items()]
+    rows = [cells(point, *_format_point(subject, place), NONE) for point, place in linkage.links[FRAME].points.items()]
     for slide in linkage.slides:
         if slide.carrier == FRAME:
             angle = subject.value(float(np.ravel(slide.direction)[0]), ANGLE)
-            rows.append(cells(_("guide {name}").format(name=slide.name), *_place(subject, slide.through), angle))
+            rows.append(cells(_("guide {name}").format(name=slide.name), *_format_point(subject, slide.through), angle))
     head = cells(_("point"), f"x, {unit}", f"y, {unit}", _("direction"))
-    if _guided(subject):
+    if _has_fixed_guides(subject):
         return Rows(_("Fixed points and guides"), head, tuple(rows), "fixed")
     return Rows(_("Fixed points"), head[:-1], tuple(row[:-1] for row in rows), "fixed")
 
 
-def _guided(subject: Subject) -> bool:
+def _has_fixed_guides(subject: Subject) -> bool:
     return any(slide.carrier == FRAME for slide in subject.results.linkage.slides)
 
 
-def _place(subject: Subject, place: complex) -> tuple[str, str]:
+def _format_point(subject: Subject, place: complex) -> tuple[str, str]:
     value = complex(np.ravel(place)[0])
     return subject.number(value.real, LENGTH), subject.number(value.imag, LENGTH)
 
 
-def _masses(subject: Subject) -> Rows:
+def _mass_table(subject: Subject) -> Rows:
     linkage, unit = subject.results.linkage, subject.unit
     rows = []
     for name in links_with_inertia(linkage):
         link = linkage.links[name]
         mass, inertia = (float(np.ravel(value)[0]) for value in (link.mass, link.inertia))
         own = (subject.number(mass, MASS), subject.number(inertia, INERTIA))
-        rows.append(cells(name, *own, *_place(subject, link.centre)))
+        rows.append(cells(name, *own, *_format_point(subject, link.centre)))
     quantities = (
         (Symbol("m"), MASS),
         (Symbol("J", "S"), INERTIA),
@@ -166,16 +179,16 @@ def _masses(subject: Subject) -> Rows:
     return Rows(caption, head, tuple(rows), "masses")
 
 
-def _loads(subject: Subject) -> Rows:
+def _load_table(subject: Subject) -> Rows:
     linkage = subject.results.linkage
     head = cells(_("load"), _("on link"), _("point of action"), _("magnitude"), _("acts"))
-    return Rows(_("Loads"), head, tuple(_load(subject, load) for load in linkage.loads), "loads")
+    return Rows(_("Loads"), head, tuple(_load_row(subject, load) for load in linkage.loads), "loads")
 
 
-def _load(subject: Subject, load: Load) -> tuple[Line, ...]:
+def _load_row(subject: Subject, load: Load) -> tuple[Line, ...]:
     place = load.point
     if load.force and not place:
-        x, y = _place(subject, load.at)
+        x, y = _format_point(subject, load.at)
         place = _("({x}; {y}) {unit}").format(x=x, y=y, unit=subject.unit(LENGTH))
     size = subject.value(load.moment, MOMENT)
     if load.force:
@@ -196,7 +209,7 @@ def _load(subject: Subject, load: Load) -> tuple[Line, ...]:
     return cells(name, link_name(load.link), place if load.force else NONE, size, when)
 
 
-def _wanted(subject: Subject) -> Iterable[str]:
+def _list_requirements(subject: Subject) -> Iterable[str]:
     results = subject.results
     if results.problem.synthesis is not None:
         yield _("the dimensions of the mechanism from the requirements;")
@@ -209,7 +222,7 @@ def _wanted(subject: Subject) -> Iterable[str]:
         if count == 1
         else _("positions, velocities and accelerations of points and links in {count} positions;").format(count=count)
     )
-    if subject.acts:
+    if subject.has_loads:
         yield _(
             "the reactions in the pairs and the balancing moment or force on the input link, checked by the "
             "Zhukovsky lever."

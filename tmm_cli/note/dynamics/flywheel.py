@@ -10,9 +10,19 @@ import numpy as np
 from tmm_cli.language import _, symbol
 from tmm_cli.mechanics.dynamics import Tangent
 from tmm_cli.mechanics.forces import CourseSymbol, Symbol
-from tmm_cli.note.blocks import Block, said
-from tmm_cli.note.dynamics.reduced_model import DELTA, FLYWHEEL, INERTIA, LARGEST, LEAST, MEAN, START, WORK, Here
-from tmm_cli.note.expression import Constant, Found, Leaf, Raised, letters
+from tmm_cli.note.blocks import Block, write_sentence
+from tmm_cli.note.dynamics.reduced_model import (
+    DELTA,
+    FLYWHEEL,
+    INERTIA,
+    LARGEST,
+    LEAST,
+    MEAN,
+    START,
+    WORK,
+    SteadyPosition,
+)
+from tmm_cli.note.expression import ComputedQuantity, Constant, Leaf, PowerOf, symbolic_formula
 from tmm_cli.note.formula_tree import Letter, row
 
 OFFSETS = Symbol("E", "a"), Symbol("E", "b")
@@ -22,12 +32,12 @@ DENSITY, SHARE, HEIGHT = Symbol("ρ"), Symbol("β"), Symbol("η")
 DIAMETER, WIDTH, MASS = Symbol("D"), Symbol("b"), CourseSymbol("m_f")
 
 
-def write_extreme_speeds(here: Here) -> Iterable[Block]:
+def write_extreme_speeds(here: SteadyPosition) -> Iterable[Block]:
     """Write the largest and the smallest angular velocity from their mean and the coefficient of fluctuation."""
     steady = here.steady
     low, high = steady.speeds
     middle, half = Leaf(MEAN, (low + high) / 2), Leaf(DELTA, steady.delta) / 2
-    yield said(
+    yield write_sentence(
         _(
             "The largest and the smallest angular velocity of the input link follow from the mean angular "
             "velocity {mean} and the coefficient of fluctuation of speed {delta}:"
@@ -35,15 +45,15 @@ def write_extreme_speeds(here: Here) -> Iterable[Block]:
         mean=MEAN,
         delta=DELTA,
     )
-    yield Found(LARGEST, middle * (1 + half), high, _("rad/s"))
-    yield Found(LEAST, middle * (1 - half), low, _("rad/s"))
+    yield ComputedQuantity(LARGEST, middle * (1 + half), high, _("rad/s"))
+    yield ComputedQuantity(LEAST, middle * (1 - half), low, _("rad/s"))
 
 
-def write_energy_mass_diagram(here: Here) -> Iterable[Block]:
+def write_energy_mass_diagram(here: SteadyPosition) -> Iterable[Block]:
     """Write the energy-mass diagram and the energies cut off by its tangents."""
     upper, lower = Leaf(LARGEST) ** 2 / 2, Leaf(LEAST) ** 2 / 2
     slope = Leaf(Symbol("μ", "J")) * Leaf(Symbol("ω")) ** 2 / (2 * Leaf(Symbol("μ", "A")))
-    yield said(
+    yield write_sentence(
         _(
             "The kinetic energy of the machine is {T} in position 0 and then increases by the work {A} of all "
             "moments. This work, plotted against the reduced moment of inertia {J}, gives the energy-mass "
@@ -54,19 +64,19 @@ def write_energy_mass_diagram(here: Here) -> Iterable[Block]:
         T=START,
         A=WORK,
         J=INERTIA,
-        up=letters(upper),
-        low=letters(lower),
+        up=symbolic_formula(upper),
+        low=symbolic_formula(lower),
         Ea=OFFSETS[0],
         Eb=OFFSETS[1],
-        psi=row(symbol("tan"), Letter(Symbol("ψ")), "=", letters(slope)),
+        psi=row(symbol("tan"), Letter(Symbol("ψ")), "=", symbolic_formula(slope)),
     )
     for tangent, name, speed, point in zip(here.tangents, OFFSETS, (LARGEST, LEAST), ("a", "b"), strict=True):
         energy, work = tangent_speed(tangent, speed) ** 2 / 2, Leaf(Symbol(WORK.letter, point), tangent.energy)
         cut = work - energy * Leaf(Symbol(INERTIA.letter, point), tangent.inertia)
-        yield Found(name, cut, tangent.offset, _("J"))
+        yield ComputedQuantity(name, cut, tangent.offset, _("J"))
 
 
-def write_flywheel_by_tangents(here: Here) -> Iterable[Block]:
+def write_flywheel_by_tangents(here: SteadyPosition) -> Iterable[Block]:
     """Write the moment of inertia of the flywheel from the energies cut off by the tangents."""
     steady = here.steady
     upper, lower = here.tangents
@@ -79,13 +89,13 @@ def write_flywheel_by_tangents(here: Here) -> Iterable[Block]:
             "drawn for the machine with the flywheel. The moment of inertia of the flywheel, reduced to the "
             "input link:"
         )
-    yield said(text)
+    yield write_sentence(text)
     cut = Leaf(OFFSETS[0], upper.offset) - Leaf(OFFSETS[1], lower.offset)
     squares = tangent_speed(upper, LARGEST) ** 2 - tangent_speed(lower, LEAST) ** 2
-    yield Found(FLYWHEEL, 2 * cut / squares, steady.law.flywheel, _("kg·m²"))
+    yield ComputedQuantity(FLYWHEEL, 2 * cut / squares, steady.law.flywheel, _("kg·m²"))
 
 
-def write_flywheel_by_mertsalov(here: Here) -> Iterable[Block]:
+def write_flywheel_by_mertsalov(here: SteadyPosition) -> Iterable[Block]:
     """Write the flywheel by Mertsalov's method and by the approximate tangents of a course, for a constant driving
     moment.
     """
@@ -97,17 +107,17 @@ def write_flywheel_by_mertsalov(here: Here) -> Iterable[Block]:
     square, delta = Leaf(MEAN, steady.task.mean) ** 2, Leaf(DELTA, steady.task.delta or 0.0)
     constant = steady.machine.constant
     second = Leaf(INERTIA) - Leaf(CONSTANT) if constant else Leaf(INERTIA)
-    yield said(
+    yield write_sentence(
         _(
             "If the squares of the speeds are taken approximately as {plus} and {minus}, as is usual in a "
             "course, the same tangents give {found} kg·m²."
         ),
-        plus=letters(square * (1 + delta)),
-        minus=letters(square * (1 - delta)),
+        plus=symbolic_formula(square * (1 + delta)),
+        minus=symbolic_formula(square * (1 - delta)),
         found=here.subject.text(steady.wittenbauer),
     )
     if constant:
-        yield said(
+        yield write_sentence(
             _(
                 "By Mertsalov's method the flywheel and the links with a constant velocity ratio to the input link "
                 "form the first group; the moment of inertia of these links is {constant} = {value} kg·m². The "
@@ -118,36 +128,36 @@ def write_flywheel_by_mertsalov(here: Here) -> Iterable[Block]:
             value=here.subject.text(constant),
             most=most.symbol,
             least=least.symbol,
-            rest=letters(Leaf(WORK) - second * (Leaf(MEAN) ** 2 / 2)),
+            rest=symbolic_formula(Leaf(WORK) - second * (Leaf(MEAN) ** 2 / 2)),
         )
     else:
-        yield said(
+        yield write_sentence(
             _(
                 "By Mertsalov's method the energy of the links is taken at the mean speed. The energy of the "
                 "flywheel then varies between {most} and {least}, the largest and the smallest value of {rest}:"
             ),
             most=most.symbol,
             least=least.symbol,
-            rest=letters(Leaf(WORK) - second * (Leaf(MEAN) ** 2 / 2)),
+            rest=symbolic_formula(Leaf(WORK) - second * (Leaf(MEAN) ** 2 / 2)),
         )
     gain = most.value - least.value
-    yield Found(GAIN, most - least, gain, _("J"))
+    yield ComputedQuantity(GAIN, most - least, gain, _("J"))
     inertia = Leaf(GAIN, gain) / (delta * square)
     if not constant:
-        yield Found(FLYWHEEL.primed, inertia, steady.mertsalov, _("kg·m²"))
+        yield ComputedQuantity(FLYWHEEL.primed, inertia, steady.mertsalov, _("kg·m²"))
         return
-    yield Found(FIRST_GROUP, inertia, steady.first_group, _("kg·m²"))
-    yield said(_("Without the links of the first group, the moment of inertia of the flywheel is"))
+    yield ComputedQuantity(FIRST_GROUP, inertia, steady.first_group, _("kg·m²"))
+    yield write_sentence(_("Without the links of the first group, the moment of inertia of the flywheel is"))
     flywheel = Leaf(FIRST_GROUP, steady.first_group) - Leaf(CONSTANT, constant)
-    yield Found(FLYWHEEL.primed, flywheel, steady.mertsalov, _("kg·m²"))
+    yield ComputedQuantity(FLYWHEEL.primed, flywheel, steady.mertsalov, _("kg·m²"))
 
 
-def write_flywheel_on_its_shaft(here: Here) -> Iterable[Block]:
+def write_flywheel_on_its_shaft(here: SteadyPosition) -> Iterable[Block]:
     """Write the moment of inertia on the flywheel's own shaft, if that is not the shaft of the input link."""
     steady = here.steady
     if steady.task.ratio == 1:
         return
-    yield said(
+    yield write_sentence(
         _(
             "The flywheel is mounted on a shaft that rotates {u} times as fast as the input link; its moment "
             "of inertia on this shaft is"
@@ -155,10 +165,10 @@ def write_flywheel_on_its_shaft(here: Here) -> Iterable[Block]:
         u=RATIO,
     )
     own = Leaf(FLYWHEEL, steady.law.flywheel) / Leaf(RATIO, steady.task.ratio) ** 2
-    yield Found(ON_SHAFT, own, steady.on_shaft, _("kg·m²"))
+    yield ComputedQuantity(ON_SHAFT, own, steady.on_shaft, _("kg·m²"))
 
 
-def write_flywheel_size(here: Here) -> Iterable[Block]:
+def write_flywheel_size(here: SteadyPosition) -> Iterable[Block]:
     """Write the diameter, width and mass of a disk or a rim."""
     steady = here.steady
     form, inertia = steady.task.size, Leaf(FLYWHEEL if steady.task.ratio == 1 else ON_SHAFT, steady.on_shaft)
@@ -166,18 +176,18 @@ def write_flywheel_size(here: Here) -> Iterable[Block]:
     section = Constant(math.pi, "π") * Leaf(DENSITY, form.density) * share
     moment = Leaf(MASS) * Leaf(DIAMETER) ** 2
     if form.shape == "disk":
-        yield said(
+        yield write_sentence(
             _(
                 "The flywheel is a solid disk of density {rho}. Its width is {beta} times its diameter and its "
                 "moment of inertia is {J}, so its diameter is"
             ),
             rho=DENSITY,
             beta=SHARE,
-            J=letters(moment / 8),
+            J=symbolic_formula(moment / 8),
         )
         numbers = 32, 4
     else:
-        yield said(
+        yield write_sentence(
             _(
                 "The flywheel is a rim of density {rho}. The width and the height of its section are {beta} and "
                 "{eta} times the mean diameter; spokes and hub are neglected. Its moment of inertia is {J}, so its "
@@ -186,15 +196,15 @@ def write_flywheel_size(here: Here) -> Iterable[Block]:
             rho=DENSITY,
             beta=SHARE,
             eta=HEIGHT,
-            J=letters(moment / 4),
+            J=symbolic_formula(moment / 4),
         )
         section = section * Leaf(HEIGHT, form.height)
         numbers = 4, 1
-    yield Found(DIAMETER, Raised(numbers[0] * inertia / section, 1, 5), diameter.value, _("m"))
-    yield said(_("The width and the mass of the flywheel:"))
-    yield Found(WIDTH, share * diameter, steady.width, _("m"))
+    yield ComputedQuantity(DIAMETER, PowerOf(numbers[0] * inertia / section, 1, 5), diameter.value, _("m"))
+    yield write_sentence(_("The width and the mass of the flywheel:"))
+    yield ComputedQuantity(WIDTH, share * diameter, steady.width, _("m"))
     mass = section * diameter**3
-    yield Found(MASS, mass if numbers[1] == 1 else mass / numbers[1], steady.mass, _("kg"))
+    yield ComputedQuantity(MASS, mass if numbers[1] == 1 else mass / numbers[1], steady.mass, _("kg"))
 
 
 def tangent_speed(tangent: Tangent, name: Symbol) -> Leaf:

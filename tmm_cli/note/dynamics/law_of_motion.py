@@ -9,13 +9,23 @@ import numpy as np
 from tmm_cli.language import _
 from tmm_cli.mechanics.dynamics import SingleRun
 from tmm_cli.mechanics.forces import CourseSymbol, Symbol
-from tmm_cli.note.blocks import Block, Equation, Heading, paragraph, said, tabled
+from tmm_cli.note.blocks import Block, Equation, Heading, paragraph, write_sentence, write_table
 from tmm_cli.note.dynamics import flywheel, reduced_model
 from tmm_cli.note.dynamics.flywheel import OFFSETS, tangent_speed
-from tmm_cli.note.dynamics.reduced_model import DRIVING, FLYWHEEL, INERTIA, LARGEST, MOMENT, SLOPE, START, WORK, Here
-from tmm_cli.note.expression import Expression, Found, Function, Leaf, added
+from tmm_cli.note.dynamics.reduced_model import (
+    DRIVING,
+    FLYWHEEL,
+    INERTIA,
+    LARGEST,
+    MOMENT,
+    SLOPE,
+    START,
+    WORK,
+    SteadyPosition,
+)
+from tmm_cli.note.expression import ComputedQuantity, Expression, Function, Leaf, sum_terms
 from tmm_cli.note.formula_tree import Fraction, Letter, Sign, row
-from tmm_cli.note.subject import Subject, rows_of
+from tmm_cli.note.subject import Subject, note_table
 from tmm_cli.reports import sign_convention, walk
 
 TABLES = ("dynamics", "law-of-motion")
@@ -23,7 +33,7 @@ TABLES = ("dynamics", "law-of-motion")
 
 def write_steady_running(subject: Subject) -> Iterable[Block]:
     """Write the chapter on the law of motion of steady running."""
-    every = [Here(subject, k) for k in subject.detail]
+    every = [SteadyPosition(subject, k) for k in subject.detail]
     here = every[0]
     yield Heading(_("Law of motion"))
     yield Heading(_("Reduced moments"), 2)
@@ -57,10 +67,10 @@ def write_steady_running(subject: Subject) -> Iterable[Block]:
         ):
             yield from part(here)
     yield Heading(_("Velocity and acceleration of the input link"), 2)
-    yield from _energy_at_start(here)
+    yield from _write_initial_energy(here)
     for one in every:
-        yield from _position(one, explained=one is here)
-    yield from _time(here)
+        yield from _write_input_motion(one, explained=one is here)
+    yield from _write_time(here)
     yield from subject.figures(
         "law",
         _("The law of motion is shown in figure {figure}."),
@@ -69,28 +79,28 @@ def write_steady_running(subject: Subject) -> Iterable[Block]:
     )
     if here.running.sense < 0:
         yield paragraph(sign_convention(subject.results.linkage))
-    yield from tables(subject)
+    yield from write_tables(subject)
 
 
-def tables(subject: Subject) -> Iterable[Block]:
+def write_tables(subject: Subject) -> Iterable[Block]:
     """Write the tables of the results and of the law of motion in all positions."""
     found = list(walk(subject.results, TABLES))
     sentences = _("The results are summarised in table {table}."), _("The law of motion is given in table {table}.")
     for table, sentence in zip(found, sentences, strict=True):
-        rows = rows_of(subject, table, key=table.name, zeros=table.name == "law-of-motion")
-        yield from tabled(sentence, rows)
+        rows = note_table(subject, table, key=table.name, zeros=table.name == "law-of-motion")
+        yield from write_table(sentence, rows)
 
 
-def _energy_at_start(here: Here) -> Iterable[Block]:
+def _write_initial_energy(here: SteadyPosition) -> Iterable[Block]:
     """Write the kinetic energy in position 0 from the tangent of the largest speed."""
     upper, __ = here.tangents
-    yield said(_("The kinetic energy of the machine in position 0:"))
+    yield write_sentence(_("The kinetic energy of the machine in position 0:"))
     flywheel, offset = Leaf(FLYWHEEL, here.steady.law.flywheel), Leaf(OFFSETS[0], upper.offset)
     own = tangent_speed(upper, LARGEST) ** 2 / 2 * flywheel - offset if flywheel.value else -offset
-    yield Found(START, own, here.start, _("J"))
+    yield ComputedQuantity(START, own, here.initial_energy, _("J"))
 
 
-def _position(here: Here, *, explained: bool) -> Iterable[Block]:
+def _write_input_motion(here: SteadyPosition, *, explained: bool) -> Iterable[Block]:
     """Write the angular velocity and acceleration of the input link in one position."""
     text = _("Position {number}:")
     if explained:
@@ -99,27 +109,27 @@ def _position(here: Here, *, explained: bool) -> Iterable[Block]:
             "from the equation of motion, in which {slope} is the derivative of the reduced moment of inertia "
             "with respect to the angle of the input link. Position {number}:"
         )
-    yield said(text, slope=SLOPE, number=here.number)
+    yield write_sentence(text, slope=SLOPE, number=here.number)
     steady, link = here.steady, here.motion.linkage.driver.link
     law, speed = steady.law, here.speed
-    inertia = Leaf(INERTIA, here.of(steady.machine.inertia))
+    inertia = Leaf(INERTIA, here.value_of(steady.machine.inertia))
     every = Leaf(FLYWHEEL, law.flywheel) + inertia if law.flywheel else inertia
-    energy = Leaf(START, here.start) + Leaf(WORK, here.of(steady.work))
-    yield Found(speed.symbol, Function("sqrt", 2 * energy / every), speed.value, _("rad/s"))
-    moments = Leaf(DRIVING, here.of(law.driving)) + Leaf(MOMENT, here.of(steady.machine.moment))
-    turned = Leaf(SLOPE, here.of(steady.machine.slope)) * (speed**2 / 2)
+    energy = Leaf(START, here.initial_energy) + Leaf(WORK, here.value_of(steady.work))
+    yield ComputedQuantity(speed.symbol, Function("sqrt", 2 * energy / every), speed.value, _("rad/s"))
+    moments = Leaf(DRIVING, here.value_of(law.driving)) + Leaf(MOMENT, here.value_of(steady.machine.moment))
+    turned = Leaf(SLOPE, here.value_of(steady.machine.slope)) * (speed**2 / 2)
     found = here.running.sense * float(np.broadcast_to(here.motion.acceleration, here.motion.q.shape)[here.k])
-    yield Found(Symbol("ε", link), (moments - turned) / every, found, _("rad/s²"))
+    yield ComputedQuantity(Symbol("ε", link), (moments - turned) / every, found, _("rad/s²"))
 
 
-def _time(here: Here) -> Iterable[Block]:
+def _write_time(here: SteadyPosition) -> Iterable[Block]:
     """Write the time as the integral of the reciprocal angular velocity, and the period."""
     omega = Letter(Symbol("ω", here.motion.linkage.driver.link))
-    yield said(
+    yield write_sentence(
         _("The time from position 0 is the integral of the reciprocal angular velocity over the angle of rotation:")
     )
     yield Equation(row(Letter(Symbol("t")), "=", Sign("∫"), Fraction(row("d", Letter(Symbol("φ"))), omega)))
-    yield said(_("A cycle takes {time} s."), time=here.subject.text(here.steady.law.period))
+    yield write_sentence(_("A cycle takes {time} s."), time=here.subject.text(here.steady.law.period))
 
 
 DRIVEN, LOADED, BRAKED, END = CourseSymbol("A_d"), CourseSymbol("A_l"), CourseSymbol("A_b"), Symbol("T", "1")
@@ -130,17 +140,17 @@ def write_single_run(subject: Subject) -> Iterable[Block]:
     single = subject.results.single
     assert single is not None
     yield Heading(_("Law of motion"))
-    yield from _energies(single, crank=subject.results.linkage.driver.kind == "turn")
+    yield from _write_energy_balance(single, crank=subject.results.linkage.driver.kind == "turn")
     yield from subject.figures(
         "run", _("The motion of the machine is shown in figure {figure}."), _("Law of motion of the input link")
     )
-    yield from tables(subject)
+    yield from write_tables(subject)
 
 
-def _energies(single: SingleRun, *, crank: bool) -> Iterable[Block]:
+def _write_energy_balance(single: SingleRun, *, crank: bool) -> Iterable[Block]:
     """Write the energy balance of the whole run and the final velocity."""
     run = single.run
-    yield said(
+    yield write_sentence(
         _(
             "The machine is replaced by its input link, to which all masses and all loads are reduced; the "
             "equation of motion of this link is integrated from the beginning of the run."
@@ -157,15 +167,15 @@ def _energies(single: SingleRun, *, crank: bool) -> Iterable[Block]:
             "The kinetic energy at the end of the run is the sum of the initial kinetic energy {T0}, the work "
             "{Ad} of the driving forces, the work {Al} of the loads and the work {Ab} of the brake:"
         )
-    yield said(text, T0=START, Ad=DRIVEN, Al=LOADED, Ab=BRAKED)
+    yield write_sentence(text, T0=START, Ad=DRIVEN, Al=LOADED, Ab=BRAKED)
     end = Leaf(END, float(run.kinetic[-1]))
-    yield Found(END, added(Leaf(symbol, float(value)) for symbol, value in parts), end.value, _("J"))
+    yield ComputedQuantity(END, sum_terms(Leaf(symbol, float(value)) for symbol, value in parts), end.value, _("J"))
     inertia = float(single.machine.inertia(np.array([run.way[-1]]))[0])
     every: Expression = Leaf(INERTIA if crank else Symbol("m"), inertia)
     if single.task.flywheel:
         every = Leaf(FLYWHEEL, single.task.flywheel) + every
     if run.speed[-1] > 0:
-        yield said(_("With the reduced inertia at the end of the run, the final velocity is"))
+        yield write_sentence(_("With the reduced inertia at the end of the run, the final velocity is"))
         root = Function("sqrt", 2 * end / every)
         unit = _("rad/s") if crank else _("m/s")
-        yield Found(Symbol("ω" if crank else "v", "1"), root, float(run.speed[-1]), unit)
+        yield ComputedQuantity(Symbol("ω" if crank else "v", "1"), root, float(run.speed[-1]), unit)

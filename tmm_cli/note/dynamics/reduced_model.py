@@ -14,8 +14,19 @@ from tmm_cli.mechanics.dynamics import KlossMotor, LinearMotor, PanelCurve, Stea
 from tmm_cli.mechanics.forces import AppliedLoad, CourseSymbol, Symbol, load_symbols
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.numerics import NO_VECTOR
-from tmm_cli.note.blocks import Block, said
-from tmm_cli.note.expression import EXACT, Constant, Expression, Found, Function, Leaf, Sum, added, evaluate, signed
+from tmm_cli.note.blocks import Block, write_sentence
+from tmm_cli.note.expression import (
+    EXACT,
+    ComputedQuantity,
+    Constant,
+    Expression,
+    Function,
+    Leaf,
+    Sum,
+    apply_sign,
+    evaluate,
+    sum_terms,
+)
 from tmm_cli.note.subject import Subject
 
 INERTIA, SLOPE, MOMENT, DRIVING, WORK = Symbol("J"), Symbol("J′"), Symbol("M"), CourseSymbol("M_d"), Symbol("A")
@@ -24,7 +35,7 @@ LARGEST, LEAST = Symbol("ω", "max"), Symbol("ω", "min")
 
 
 @dataclass(frozen=True)
-class Here:
+class SteadyPosition:
     """A position of a machine in steady running; signs follow the sense of rotation of the input link."""
 
     subject: Subject
@@ -45,7 +56,7 @@ class Here:
 
     @property
     def number(self) -> str:
-        return self.subject.called(self.k)
+        return self.subject.position_number(self.k)
 
     @property
     def speed(self) -> Leaf:
@@ -57,12 +68,12 @@ class Here:
         return self.steady.tangents
 
     @cached_property
-    def start(self) -> float:
+    def initial_energy(self) -> float:
         """Kinetic energy in position 0, J."""
         upper, __ = self.tangents
         return upper.slope * self.steady.law.flywheel - upper.offset
 
-    def of(self, curve: PanelCurve) -> float:
+    def value_of(self, curve: PanelCurve) -> float:
         """Return the value of a curve over the input angle at this position."""
         return float(curve(self.running.way(self.motion.q))[self.k])
 
@@ -70,10 +81,10 @@ class Here:
 # The reduced inertia and the reduced moment of a position, link by link and load by load.
 
 
-def explain_reduction(here: Here) -> Iterable[Block]:
+def explain_reduction(here: SteadyPosition) -> Iterable[Block]:
     """Explain the reduction of masses and loads to the input link."""
     link = here.motion.linkage.driver.link
-    yield said(
+    yield write_sentence(
         _(
             "The machine is replaced by its input link {link}, to which all masses and all loads are reduced; "
             "quantities in its sense of rotation are positive. With the reduced moment of inertia {J} the "
@@ -86,12 +97,12 @@ def explain_reduction(here: Here) -> Iterable[Block]:
     )
 
 
-def write_reduced_inertia(here: Here) -> Iterable[Block]:
+def write_reduced_inertia(here: SteadyPosition) -> Iterable[Block]:
     """Write the reduced moment of inertia: inertias times squared velocity ratios."""
-    terms = [term for link in here.motion.linkage.moving for term in _of_link(here, link)]
+    terms = [term for link in here.motion.linkage.moving for term in _inertia_terms(here, link)]
     if not terms:
         return
-    yield said(
+    yield write_sentence(
         _(
             "Position {number}: the reduced moment of inertia, where {m} is the mass of a link, {v} the "
             "velocity of its centre of mass, {J} its moment of inertia about the centre of mass and {omega} "
@@ -103,10 +114,12 @@ def write_reduced_inertia(here: Here) -> Iterable[Block]:
         J=Symbol("J", "S"),
         omega=Symbol("ω"),
     )
-    yield Found(INERTIA, _sum(terms), here.of(here.steady.machine.inertia), _("kg·m²"))
+    yield ComputedQuantity(
+        INERTIA, _sum_without_negligible(terms), here.value_of(here.steady.machine.inertia), _("kg·m²")
+    )
 
 
-def _of_link(here: Here, name: str) -> Iterable[Expression]:
+def _inertia_terms(here: SteadyPosition, name: str) -> Iterable[Expression]:
     motion, link, omega = here.motion, here.motion.linkage.links[name], here.speed
     speed = Leaf(Symbol("v", f"S{name}"), abs(complex(motion.centre(name).v[here.k])))
     turned = Leaf(Symbol("ω", name), abs(float(motion.link(name).omega[here.k])))
@@ -115,12 +128,12 @@ def _of_link(here: Here, name: str) -> Iterable[Expression]:
     yield inertia if turned.symbol == omega.symbol else inertia * (turned / omega) ** 2
 
 
-def write_reduced_moment(here: Here) -> Iterable[Block]:
+def write_reduced_moment(here: SteadyPosition) -> Iterable[Block]:
     """Write the reduced moment: power of all loads divided by the speed of the input link."""
-    terms = [term for load in here.subject.results.loads if load.kind != "inertia" for term in _of_load(here, load)]
+    terms = [term for load in here.subject.results.loads if load.kind != "inertia" for term in _power_terms(here, load)]
     if not terms:
         return
-    yield said(
+    yield write_sentence(
         _(
             "The reduced moment of the loads, where {v} is the velocity of the point of action of a force and "
             "{alpha} the angle between the force and this velocity; the power of a couple is positive if it "
@@ -129,11 +142,11 @@ def write_reduced_moment(here: Here) -> Iterable[Block]:
         v=Symbol("v"),
         alpha=Symbol("α"),
     )
-    whole = _sum(terms) / here.speed
-    yield Found(MOMENT, whole, here.of(here.steady.machine.moment), _("N·m"))
+    whole = _sum_without_negligible(terms) / here.speed
+    yield ComputedQuantity(MOMENT, whole, here.value_of(here.steady.machine.moment), _("N·m"))
 
 
-def _of_load(here: Here, load: AppliedLoad) -> Iterable[Expression]:
+def _power_terms(here: SteadyPosition, load: AppliedLoad) -> Iterable[Expression]:
     k, motion = here.k, here.motion
     force, couple = load_symbols(load)
     pull, turned = complex(load.force[k]), float(load.moment[k])
@@ -143,20 +156,20 @@ def _of_load(here: Here, load: AppliedLoad) -> Iterable[Expression]:
         own = Leaf(Symbol("v", f"S{load.link}" if in_centre else force.plain), abs(speed))
         angle, factors = abs(float(np.angle(pull / speed))), Leaf(force, abs(pull)) * own
         if min(angle, np.pi - angle) < NO_VECTOR:
-            yield signed(1 - angle, factors)
+            yield apply_sign(1 - angle, factors)
         else:
             cosine = Function("cos", Leaf(Symbol("α", force.plain), angle, angle=True))
             yield factors * cosine
     omega = float(motion.link(load.link).omega[k])
     if turned and omega:
         own = Leaf(Symbol("ω", load.link), abs(omega))
-        yield signed(turned * omega, Leaf(couple, abs(turned)) * own)
+        yield apply_sign(turned * omega, Leaf(couple, abs(turned)) * own)
 
 
-def _sum(terms: list[Expression]) -> Sum:
+def _sum_without_negligible(terms: list[Expression]) -> Sum:
     """Return the sum of the terms without those negligible beside the largest."""
     sizes = [abs(evaluate(term, EXACT)) for term in terms]
-    return added(term for term, size in zip(terms, sizes, strict=True) if size > NO_VECTOR * max(sizes))
+    return sum_terms(term for term, size in zip(terms, sizes, strict=True) if size > NO_VECTOR * max(sizes))
 
 
 # What drives: a moment from zero work over the cycle, or a motor by its characteristic.
@@ -167,11 +180,11 @@ STALL, FREE = CourseSymbol("M_s"), Symbol("ω", "0")
 BREAKDOWN, SLIP, CRITICAL = CourseSymbol("M_k"), Symbol("s"), CourseSymbol("s_k")
 
 
-def write_mean_driving_moment(here: Here) -> Iterable[Block]:
+def write_mean_driving_moment(here: SteadyPosition) -> Iterable[Block]:
     """Write the mean driving moment from the condition of zero total work over the cycle."""
     steady = here.steady
     turns = round(steady.machine.length / (2 * math.pi))
-    yield said(
+    yield write_sentence(
         _(
             "In steady running the machine returns to the same speed after every cycle, so the total work of "
             "all moments over the cycle is zero. The work {A} of the loads is the area under the diagram of "
@@ -186,17 +199,17 @@ def write_mean_driving_moment(here: Here) -> Iterable[Block]:
         text = _("The loads do positive work over the cycle; the driven machine absorbs it with a constant moment:")
     if steady.task.motor is not None:
         text = _("The mean moment of the motor, reduced to the input link:")
-    yield said(text)
+    yield write_sentence(text)
     way = 2 * turns * Constant(math.pi, "π")
     work = Leaf(CYCLE, steady.machine.work_of_cycle) / Leaf(WHOLE, 2 * math.pi * turns, of=way)
-    yield Found(DRIVING, -work, steady.moment, _("N·m"))
+    yield ComputedQuantity(DRIVING, -work, steady.moment, _("N·m"))
 
 
-def write_motor_moment(here: Here) -> Iterable[Block]:
+def write_motor_moment(here: SteadyPosition) -> Iterable[Block]:
     """Write the motor moment at the speed in this position."""
     match here.steady.task.motor:
         case LinearMotor() as found:
-            yield said(
+            yield write_sentence(
                 _(
                     "The characteristic of the motor is a straight line: reduced to the input link, the moment is {M} "
                     "at rest and zero at the speed {omega}. At the speed in position {number}:"
@@ -206,13 +219,13 @@ def write_motor_moment(here: Here) -> Iterable[Block]:
                 number=here.number,
             )
             moment = Leaf(STALL, found.stall) * (1 - here.speed / Leaf(FREE, found.free))
-            yield Found(DRIVING, moment, here.of(here.steady.law.driving), _("N·m"))
+            yield ComputedQuantity(DRIVING, moment, here.value_of(here.steady.law.driving), _("N·m"))
         case KlossMotor() as found:
-            yield from _asynchronous(here, found)
+            yield from _write_kloss_moment(here, found)
 
 
-def _asynchronous(here: Here, motor: KlossMotor) -> Iterable[Block]:
-    yield said(
+def _write_kloss_moment(here: SteadyPosition, motor: KlossMotor) -> Iterable[Block]:
+    yield write_sentence(
         _(
             "The motor is asynchronous; its moment depends on the slip {s} according to Kloss's formula. "
             "Reduced to the input link, the synchronous speed is {omega} and the breakdown torque (the largest "
@@ -225,8 +238,8 @@ def _asynchronous(here: Here, motor: KlossMotor) -> Iterable[Block]:
         number=here.number,
     )
     slip, critical = Leaf(SLIP, 1 - here.speed.value / motor.synchronous), Leaf(CRITICAL, motor.slip)
-    yield Found(SLIP, 1 - here.speed / Leaf(FREE, motor.synchronous), slip.value)
+    yield ComputedQuantity(SLIP, 1 - here.speed / Leaf(FREE, motor.synchronous), slip.value)
     if slip.value:
         moment = 2 * Leaf(BREAKDOWN, motor.breakdown) / (slip / critical + critical / slip)
         found = float(motor.moment(np.array([here.speed.value]))[0])
-        yield Found(DRIVING, moment, found, _("N·m"))
+        yield ComputedQuantity(DRIVING, moment, found, _("N·m"))

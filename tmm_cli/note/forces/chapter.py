@@ -9,21 +9,32 @@ import numpy as np
 from tmm_cli.language import _, filled
 from tmm_cli.mechanics.forces import CourseSymbol, Symbol, balance_symbol, find_transmitted_forces, reaction_symbol
 from tmm_cli.mechanics.numerics import NO_DIFFERENCE, NO_FORCE, Real, Vector, largest_magnitude, without_rounding
-from tmm_cli.note.blocks import Block, Heading, Line, Ref, Rows, cells, paragraph, said, several, tabled
+from tmm_cli.note.blocks import (
+    Block,
+    Heading,
+    Line,
+    Ref,
+    Rows,
+    cells,
+    paragraph,
+    refer_to_blocks,
+    write_sentence,
+    write_table,
+)
 from tmm_cli.note.forces import lever, loads, sections
 from tmm_cli.note.forces.equations import MU
-from tmm_cli.note.forces.sections import parts_of
+from tmm_cli.note.forces.sections import list_bodies
 from tmm_cli.note.formula_tree import Letter, row
-from tmm_cli.note.subject import NONE, Subject, over_positions
+from tmm_cli.note.subject import NONE, Subject, table_over_positions
 from tmm_cli.reports import has_flywheel, indeterminate_reactions
 
 
 def write_forces(subject: Subject) -> Iterable[Block]:
     """Write the chapter on forces; nothing if no load acts on the links."""
-    if not subject.acts:
+    if not subject.has_loads:
         return
     yield Heading(_("Force analysis"))
-    yield said(
+    yield write_sentence(
         _(
             "The reactions in the kinematic pairs and the balancing moment or force on the input link are "
             "found by kinetostatics: if the inertia forces are added to the acting forces (d'Alembert's "
@@ -38,55 +49,55 @@ def write_forces(subject: Subject) -> Iterable[Block]:
     )
     yield from map(paragraph, indeterminate_reactions(subject.results.structure))
     for k in subject.detail:
-        yield from _position(subject, k)
+        yield from _write_position(subject, k)
     yield Heading(_("Forces in all positions"), 2)
-    yield from reactions(subject)
-    yield from balancing(subject)
-    yield from transmission(subject)
-    yield from loads.losses(subject)
+    yield from write_reactions(subject)
+    yield from write_balancing_loads(subject)
+    yield from write_transmission(subject)
+    yield from loads.write_losses(subject)
 
 
-def _position(subject: Subject, k: int) -> Iterable[Block]:
+def _write_position(subject: Subject, k: int) -> Iterable[Block]:
     """Write the sections of one detailed position; headings name the position if there are several."""
     several = len(subject.detail) > 1
 
     def heading(text: str) -> str:
         if not several:
             return text
-        return _("{section}, position {number}").format(section=text, number=subject.called(k))
+        return _("{section}, position {number}").format(section=text, number=subject.position_number(k))
 
     by_steps = subject.results.problem.note_style.sections == "MATI"
-    yield from (_by_steps if by_steps else _by_parts)(subject, k, heading)
-    yield from loads.without_friction(subject, k)
-    yield from lever.written(subject, k, heading(_("Zhukovsky lever")), explained=k == subject.detail[0])
+    yield from (_write_by_guidelines if by_steps else _write_by_groups)(subject, k, heading)
+    yield from loads.write_balance_without_friction(subject, k)
+    yield from lever.write_lever(subject, k, heading(_("Zhukovsky lever")), explained=k == subject.detail[0])
 
 
-def _by_parts(subject: Subject, k: int, heading: Callable[[str], str]) -> Iterable[Block]:
+def _write_by_groups(subject: Subject, k: int, heading: Callable[[str], str]) -> Iterable[Block]:
     """Write all loads, then a section for each group and each input link."""
     first = k == subject.detail[0]
     yield Heading(heading(_("Loads on the links")), 2)
     if first:
-        yield from loads.weights(subject)
-    yield from loads.inertia(subject, k, explained=first)
-    yield from _further_loads(subject, k)
-    yield from _reactions(subject, k, heading, 2)
+        yield from loads.write_weights(subject)
+    yield from loads.write_inertia(subject, k, explained=first)
+    yield from _write_other_loads(subject, k)
+    yield from _write_group_sections(subject, k, heading, 2)
 
 
-def _by_steps(subject: Subject, k: int, heading: Callable[[str], str]) -> Iterable[Block]:
+def _write_by_guidelines(subject: Subject, k: int, heading: Callable[[str], str]) -> Iterable[Block]:
     """Write steps 2.3.1 to 2.3.4 of the force guidelines: plan, weights and loads, inertia forces, groups in turn."""
-    first, caption = k == subject.detail[0], subject.at_position(k)
+    first, caption = k == subject.detail[0], subject.describe_position(k)
     yield Heading(heading(_("Plan of the mechanism")), 2)
     stem = subject.position(k).stem("position")
-    yield said(
+    yield write_sentence(
         _("The plan of the mechanism is drawn for {position}; its scale factor is {mu} = {value} m/mm."),
         position=caption,
         mu=MU,
         value=subject.text(subject.scale("position", k, stem)),
     )
     yield Heading(heading(_("Weights and useful resistance")), 2)
-    yield said(_("They are drawn on the links as arrows of equal length, not to scale."))
+    yield write_sentence(_("They are drawn on the links as arrows of equal length, not to scale."))
     if first:
-        yield from loads.weights(subject)
+        yield from loads.write_weights(subject)
     yield from subject.figures(
         "position",
         _("All forces that act on the links are shown in figure {figure}."),
@@ -96,28 +107,28 @@ def _by_steps(subject: Subject, k: int, heading: Callable[[str], str]) -> Iterab
     yield Heading(heading(_("Acceleration plan and inertia forces")), 2)
     plans = list(subject.drawings("acceleration", k))
     if plans:
-        yield said(_("For the acceleration plan see figure {figure}."), figure=Ref(plans[0]))
-    yield from loads.inertia(subject, k, explained=first)
-    yield from _further_loads(subject, k)
+        yield write_sentence(_("For the acceleration plan see figure {figure}."), figure=Ref(plans[0]))
+    yield from loads.write_inertia(subject, k, explained=first)
+    yield from _write_other_loads(subject, k)
     yield Heading(heading(_("Reactions in the kinematic pairs")), 2)
-    yield from _reactions(subject, k, heading, 3)
+    yield from _write_group_sections(subject, k, heading, 3)
 
 
-def _further_loads(subject: Subject, k: int) -> Iterable[Block]:
-    yield from loads.springs(subject, k)
-    yield from loads.friction(subject, k, explained=k == subject.detail[0])
-    yield from loads.table(subject, k, _("Loads, {position}").format(position=subject.at_position(k)))
+def _write_other_loads(subject: Subject, k: int) -> Iterable[Block]:
+    yield from loads.write_springs(subject, k)
+    yield from loads.write_friction(subject, k, explained=k == subject.detail[0])
+    yield from loads.write_load_table(subject, k, _("Loads, {position}").format(position=subject.describe_position(k)))
 
 
-def _reactions(subject: Subject, k: int, heading: Callable[[str], str], level: int) -> Iterable[Block]:
+def _write_group_sections(subject: Subject, k: int, heading: Callable[[str], str], level: int) -> Iterable[Block]:
     """Write the sections of the groups, last group first, and of the input links."""
-    for number, part in enumerate(parts_of(subject, k)):
+    for number, part in enumerate(list_bodies(subject, k)):
         if part.forces is not None:
             text = _("Group of links {links}") if len(part.links) > 1 else _("Group of link {links}")
         else:
             text = _("Input link {links}")
         text = heading(text.format(links=", ".join(part.links)))
-        yield from sections.written(part, Heading(text, level), first=k == subject.detail[0] and not number)
+        yield from sections.write_section(part, Heading(text, level), first=k == subject.detail[0] and not number)
 
 
 # Tables of all positions: reactions, what balances the drivers by both ways.
@@ -126,12 +137,12 @@ def _reactions(subject: Subject, k: int, heading: Callable[[str], str], level: i
 PAIRS = 4  # reactions in one table
 
 
-def reactions(subject: Subject) -> Iterable[Block]:
+def write_reactions(subject: Subject) -> Iterable[Block]:
     """Write the tables of reactions (N) with angles, and of pin forces of compound hinges."""
     found = subject.reactions
     pairs = [(r.pair.name, reaction_symbol(r.by, r.on), r.force, r.angle) for r in found.directed]
-    tables = list(_sized(subject, _("Reactions in the pairs {names}"), pairs, "reactions"))
-    yield several(
+    tables = list(_force_tables(subject, _("Reactions in the pairs {names}"), pairs, "reactions"))
+    yield refer_to_blocks(
         _("Table {first} gives the reactions in all positions and their angles to the x axis."),
         _("Tables {first} and {last} give the reactions in all positions and their angles to the x axis."),
         _("Tables {first} to {last} give the reactions in all positions and their angles to the x axis."),
@@ -143,8 +154,8 @@ def reactions(subject: Subject) -> Iterable[Block]:
         for pin in found.pins(subject.results.linkage)
     ]
     if pins:
-        tables = list(_sized(subject, _("Forces of the pins {names} on their links"), pins, "pins"))
-        yield several(
+        tables = list(_force_tables(subject, _("Forces of the pins {names} on their links"), pins, "pins"))
+        yield refer_to_blocks(
             _(
                 "In a compound hinge more than two links meet; table {first} gives the force of its pin on each of "
                 "them."
@@ -162,7 +173,7 @@ def reactions(subject: Subject) -> Iterable[Block]:
         yield from tables
 
 
-def transmission(subject: Subject) -> Iterable[Block]:
+def write_transmission(subject: Subject) -> Iterable[Block]:
     """Write the driving force of each driven link and its useful component in the detailed positions."""
     given = find_transmitted_forces(subject.motion, subject.reactions)
     if not given or not subject.reactions.loaded:
@@ -177,10 +188,10 @@ def transmission(subject: Subject) -> Iterable[Block]:
         cells(
             force.link,
             force.pair,
-            subject.called(k),
-            subject.shown(float(force.driving[k])),
+            subject.position_number(k),
+            subject.format_result(float(force.driving[k])),
             subject.angle(float(np.arccos(min(1.0, float(force.useful[k] / force.driving[k]))))),
-            subject.shown(float(force.useful[k])),
+            subject.format_result(float(force.useful[k])),
         )
         for force, k in moving
     ]
@@ -195,7 +206,7 @@ def transmission(subject: Subject) -> Iterable[Block]:
         (angle, ", °"),
         (Q, ", ", _("N")),
     )
-    yield from tabled(
+    yield from write_table(
         _(
             "Only the component of the driving force {P} along the velocity of its point of action moves the "
             "driven link: {Q} = {P} cos {angle}, where {angle} is the angle between force and velocity with "
@@ -208,7 +219,7 @@ def transmission(subject: Subject) -> Iterable[Block]:
     )
 
 
-def _sized(
+def _force_tables(
     subject: Subject, caption: str, forces: Sequence[tuple[str, Symbol, Vector, Real | None]], key: str
 ) -> Iterable[Rows]:
     """Yield tables of at most PAIRS forces with their angles.
@@ -221,13 +232,13 @@ def _sized(
         for __, symbol, force, told in some:
             way, size = np.angle(force) if told is None else told, np.abs(force)
             size = np.where(np.isnan(way) & np.isfinite(size), 0.0, size)
-            columns.append(((symbol, ", ", _("N")), _texts(subject, size, Subject.shown)))
-            columns.append(((_("angle, °"),), _texts(subject, way, Subject.angle)))
+            columns.append(((symbol, ", ", _("N")), _format_column(subject, size, Subject.format_result)))
+            columns.append(((_("angle, °"),), _format_column(subject, way, Subject.angle)))
         names = ", ".join(dict.fromkeys(name for name, *__ in some))
-        yield over_positions(subject, caption.format(names=names), columns, f"{key}-{first // PAIRS}")
+        yield table_over_positions(subject, caption.format(names=names), columns, f"{key}-{first // PAIRS}")
 
 
-def balancing(subject: Subject) -> Iterable[Block]:
+def write_balancing_loads(subject: Subject) -> Iterable[Block]:
     """Write the table of balancing moments or forces by the force plan and by the Zhukovsky lever."""
     results, balances, lever = subject.results, subject.reactions.balances, subject.lever
     several = len(balances) > 1
@@ -239,7 +250,7 @@ def balancing(subject: Subject) -> Iterable[Block]:
     head.append(filled(_("{symbol}, {unit}, by the Zhukovsky lever"), symbol=of_all, unit=units[0]))
     columns = [*(b.generalized for b in balances), lever.balancing]
     if several:
-        yield said(
+        yield write_sentence(
             _("The Zhukovsky lever gives the combined effect of all drivers, reduced to the input link {link}."),
             link=balances[0].driver.link,
         )
@@ -258,12 +269,12 @@ def balancing(subject: Subject) -> Iterable[Block]:
             "{balance} is positive in the positive direction of the guide of the input link, whatever the "
             "direction of motion of this link."
         )
-    yield said(text, balance=of_all)
-    texts = [_texts(subject, column, Subject.shown) for column in columns]
-    rows = over_positions(subject, caption, list(zip(head, texts, strict=True)), "balance")
-    yield from tabled(_("The values found by both methods are given in table {table}."), rows)
+    yield write_sentence(text, balance=of_all)
+    texts = [_format_column(subject, column, Subject.format_result) for column in columns]
+    rows = table_over_positions(subject, caption, list(zip(head, texts, strict=True)), "balance")
+    yield from write_table(_("The values found by both methods are given in table {table}."), rows)
     if has_flywheel(results) and balances[0].moment is not None:
-        yield said(
+        yield write_sentence(
             _(
                 "The flywheel is not one of the links: {balance} balances the links alone, and the driving moment "
                 "is {whole}."
@@ -281,7 +292,7 @@ def balancing(subject: Subject) -> Iterable[Block]:
         )
 
 
-def _texts(subject: Subject, column: Real, write: Callable[[Subject, float], str]) -> list[str]:
+def _format_column(subject: Subject, column: Real, write: Callable[[Subject, float], str]) -> list[str]:
     """Return the values in all positions as texts, a dash where the mechanism cannot move."""
     values = without_rounding(column, largest_magnitude(column))
     there = np.isfinite(values) & subject.motion.moving

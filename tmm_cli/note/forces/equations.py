@@ -7,14 +7,14 @@ from collections.abc import Sequence
 
 from tmm_cli.language import _
 from tmm_cli.mechanics.forces import ForceSum, GuideComponent, MomentEquation, MomentTerm, Symbol
-from tmm_cli.note.expression import Expression, Found, Leaf, Product, added, letters, signed
+from tmm_cli.note.expression import ComputedQuantity, Expression, Leaf, Product, apply_sign, sum_terms, symbolic_formula
 from tmm_cli.note.formula_tree import Letter, Node, Number, chain_of_equalities, row
 
 MU = Symbol("μ", "l")
 ALONG = 1e-12  # one less the cosine: a force with less is along the guide
 
 
-def moments(equation: MomentEquation, mu: float | None = None) -> Node:
+def moment_equation(equation: MomentEquation, mu: float | None = None) -> Node:
     """Return the equation ΣM_E = −R·h₃ + G·h₁ − ... = 0, the unknown first.
 
     mu: scale (m/mm) for arms measured on paper; couples are then written as M/μ_l.
@@ -22,11 +22,15 @@ def moments(equation: MomentEquation, mu: float | None = None) -> Node:
     found = equation.found
     terms = [*([found] if found else []), *(t for t in equation.terms if t is not found)]
     return chain_of_equalities(
-        (Letter(Symbol("ΣM", equation.about)), letters(added(_moment(t, mu) for t in terms)), Number("0"))
+        (
+            Letter(Symbol("ΣM", equation.about)),
+            symbolic_formula(sum_terms(_moment_term(t, mu) for t in terms)),
+            Number("0"),
+        )
     )
 
 
-def by_moments(equation: MomentEquation, unit: str = "", mu: float | None = None) -> Found | None:
+def solve_moment_equation(equation: MomentEquation, unit: str = "", mu: float | None = None) -> ComputedQuantity | None:
     """Return the unknown of a moment equation; without an unknown, the sum itself, which is zero.
 
     Args:
@@ -39,50 +43,52 @@ def by_moments(equation: MomentEquation, unit: str = "", mu: float | None = None
         The computed quantity, or None if nothing has a moment.
     """
     found, sought = equation.found, equation.sought
-    others: Expression = added(_moment(t, mu) for t in equation.terms if t is not found)
+    others: Expression = sum_terms(_moment_term(t, mu) for t in equation.terms if t is not found)
     unit = unit or _("N·m")
     if found is None or sought is None:
         unit = unit if mu is None else _("N·mm")
-        return Found(Symbol("ΣM", equation.about), others, 0.0, unit) if equation.terms and not sought else None
-    others = signed(-found.moment, others)
-    size, arm = Leaf(found.acting.symbol, found.acting.size), _arm(found, mu)
+        return (
+            ComputedQuantity(Symbol("ΣM", equation.about), others, 0.0, unit) if equation.terms and not sought else None
+        )
+    others = apply_sign(-found.moment, others)
+    size, arm = Leaf(found.acting.symbol, found.acting.size), _arm_leaf(found, mu)
     if found.acting.couple:
         if mu is None or not any(term.number for term in equation.terms):
-            couples = signed(-found.moment, added(_moment(t) for t in equation.terms if t is not found))
-            return Found(size.symbol, couples, size.value, unit)
-        return Found(size.symbol, others * Leaf(MU, mu), size.value, unit)
+            couples = apply_sign(-found.moment, sum_terms(_moment_term(t) for t in equation.terms if t is not found))
+            return ComputedQuantity(size.symbol, couples, size.value, unit)
+        return ComputedQuantity(size.symbol, others * Leaf(MU, mu), size.value, unit)
     if sought.arm:
-        return Found(arm.symbol, others / size, arm.value, _("m") if mu is None else _("mm"))
-    return Found(size.symbol, others / arm, size.value, _("N"))
+        return ComputedQuantity(arm.symbol, others / size, arm.value, _("m") if mu is None else _("mm"))
+    return ComputedQuantity(size.symbol, others / arm, size.value, _("N"))
 
 
-def along_guide(forces: ForceSum) -> tuple[Node, Found]:
+def solve_guide_sum(forces: ForceSum) -> tuple[Node, ComputedQuantity]:
     """Return the sum of projections ΣF = R − G·cos α₁ + ... = 0 and the unknown it gives."""
     own = forces.found
     parts = [own, *(part for part in forces.parts if part is not own)]
     shares = [_projection(part, number) for number, part in enumerate(parts)]
-    told = [signed(part.along, share) for part, share in zip(parts, shares, strict=True)]
-    whole = chain_of_equalities((Letter(Symbol("ΣF", forces.guide)), letters(added(told)), Number("0")))
-    rest = signed(-own.along, added(told[1:]))
+    told = [apply_sign(part.along, share) for part, share in zip(parts, shares, strict=True)]
+    whole = chain_of_equalities((Letter(Symbol("ΣF", forces.guide)), symbolic_formula(sum_terms(told)), Number("0")))
+    rest = apply_sign(-own.along, sum_terms(told[1:]))
     if isinstance(shares[0], Product):  # what is sought is not along the guide
         rest = rest / shares[0].factors[1]
-    return whole, Found(own.acting.symbol, rest, own.acting.size, _("N"))
+    return whole, ComputedQuantity(own.acting.symbol, rest, own.acting.size, _("N"))
 
 
-def vector_sum(vectors: Sequence[tuple[Symbol, int]]) -> Node:
+def vector_sum_equation(vectors: Sequence[tuple[Symbol, int]]) -> Node:
     """Return a vector equation with zero sum; each symbol with its number of underlines."""
     parts = [part for symbol, lines in vectors for part in ("+", Letter(symbol, vector=True, lines=lines))]
     return chain_of_equalities((row(*parts[1:]), Number("0")))
 
 
-def _moment(term: MomentTerm, mu: float | None = None) -> Expression:
+def _moment_term(term: MomentTerm, mu: float | None = None) -> Expression:
     force = Leaf(term.acting.symbol, term.acting.size)
     if term.number:
-        return signed(term.moment, force * _arm(term, mu))
-    return signed(term.moment, force if mu is None else force / Leaf(MU, mu))
+        return apply_sign(term.moment, force * _arm_leaf(term, mu))
+    return apply_sign(term.moment, force if mu is None else force / Leaf(MU, mu))
 
 
-def _arm(term: MomentTerm, mu: float | None) -> Leaf:
+def _arm_leaf(term: MomentTerm, mu: float | None) -> Leaf:
     """Return the moment arm of a force in metres, or in millimetres of a drawing with this scale."""
     return Leaf(term.letter, term.arm if mu is None else term.arm / mu)
 

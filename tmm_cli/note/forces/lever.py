@@ -11,42 +11,42 @@ from tmm_cli.language import _
 from tmm_cli.mechanics.forces import AppliedLoad, Symbol, balance_symbol, load_symbols
 from tmm_cli.mechanics.numerics import NO_DIFFERENCE
 from tmm_cli.mechanics.plans import DrawingScales, LeverPlan, balance_drawings, drawn_check, lever_plan
-from tmm_cli.note.blocks import Block, Equation, Heading, said
-from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, added
-from tmm_cli.note.forces.equations import by_moments, moments
+from tmm_cli.note.blocks import Block, Equation, Heading, write_sentence
+from tmm_cli.note.expression import ComputedQuantity, Expression, Function, Leaf, Product, sum_terms
+from tmm_cli.note.forces.equations import moment_equation, solve_moment_equation
 from tmm_cli.note.subject import Subject
 
 
-def written(subject: Subject, k: int, heading: str, *, explained: bool) -> Iterable[Block]:
+def write_lever(subject: Subject, k: int, heading: str, *, explained: bool) -> Iterable[Block]:
     """Write the section on the Zhukovsky lever; with `explained` the method first."""
     plan = lever_plan(subject.motion, subject.reactions, subject.lever, k)
     if not plan.equation.terms:
         return
     yield Heading(heading, 2)
-    unit = _("N·m") if turns_of(subject) else _("N")
+    unit = _("N·m") if driver_rotates(subject) else _("N")
     if explained:
-        yield _explained(turns=turns_of(subject))
-    yield from _couples(subject, plan, k)
+        yield _explain_lever(turns=driver_rotates(subject))
+    yield from _write_couples(subject, plan, k)
     yield from subject.figures(
         "lever",
         _("The Zhukovsky lever is shown in figure {figure}."),
-        _("Zhukovsky lever, {position}").format(position=subject.at_position(k)),
+        _("Zhukovsky lever, {position}").format(position=subject.describe_position(k)),
         k,
     )
-    yield said(_("The equation of moments about the pole {p}:"), p=Symbol("p"))
-    found = by_moments(plan.equation, unit)
+    yield write_sentence(_("The equation of moments about the pole {p}:"), p=Symbol("p"))
+    found = solve_moment_equation(plan.equation, unit)
     if found is None:
-        yield said(_("No force has a moment about the pole, so there is nothing to balance."))
+        yield write_sentence(_("No force has a moment about the pole, so there is nothing to balance."))
     elif plan.equation.sought is None:
         yield found
-        yield from _of_several(subject, k, unit)
+        yield from _write_reduced_balance(subject, k, unit)
     else:
-        yield from (Equation(moments(plan.equation)), found)
-        yield from _compared(subject, k)
-        yield from _on_paper(subject, k)
+        yield from (Equation(moment_equation(plan.equation)), found)
+        yield from _write_difference(subject, k)
+        yield from _write_drawn_check(subject, k)
 
 
-def _explained(*, turns: bool) -> Block:
+def _explain_lever(*, turns: bool) -> Block:
     """Explain the Zhukovsky lever for a rotating or a sliding driver."""
     turning = _(
         "The balancing moment is checked by the Zhukovsky lever: the velocity plan, drawn for an angular "
@@ -60,13 +60,13 @@ def _explained(*, turns: bool) -> Block:
         "about its pole {p}. Each force acts on it at the end of the velocity vector of its point of "
         "action, and the lever is in equilibrium."
     )
-    return said(turning if turns else sliding, p=Symbol("p"))
+    return write_sentence(turning if turns else sliding, p=Symbol("p"))
 
 
-def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
+def _write_couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
     """Write couples as pairs of forces, or multiplied by the velocity ratio of their link."""
     if plan.pairs:
-        yield said(
+        yield write_sentence(
             _(
                 "A couple on a link is replaced by two opposite forces {P} and {Pp} perpendicular to the line "
                 "through two points of the link, at the distance {l} from each other:"
@@ -77,9 +77,9 @@ def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
         )
     for pair in plan.pairs:
         couple, apart = Leaf(pair.couple, abs(pair.moment)), Leaf(Symbol("l", "".join(pair.points)), pair.distance)
-        yield Found(pair.symbol, couple / apart, pair.force, _("N"))
+        yield ComputedQuantity(pair.symbol, couple / apart, pair.force, _("N"))
     if plan.couples:
-        yield said(
+        yield write_sentence(
             _(
                 "The other couples act on the lever multiplied by the ratio of the velocity of their link to that "
                 "of the input link, {M}:"
@@ -87,30 +87,30 @@ def _couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
             M=Symbol("M").primed,
         )
     for load, turned in plan.couples:
-        own = Product((Leaf(load_symbols(load)[1], abs(float(load.moment[k]))), *_ratio(subject, load, k)))
-        yield Found(turned.symbol, own, turned.size, _("N·m") if turns_of(subject) else _("N"))
+        own = Product((Leaf(load_symbols(load)[1], abs(float(load.moment[k]))), *_velocity_ratio(subject, load, k)))
+        yield ComputedQuantity(turned.symbol, own, turned.size, _("N·m") if driver_rotates(subject) else _("N"))
 
 
-def turns_of(subject: Subject) -> bool:
+def driver_rotates(subject: Subject) -> bool:
     """Return True if the first driver rotates."""
     return subject.results.linkage.driver.kind == "turn"
 
 
-def _ratio(subject: Subject, load: AppliedLoad, k: int) -> tuple[Expression, ...]:
+def _velocity_ratio(subject: Subject, load: AppliedLoad, k: int) -> tuple[Expression, ...]:
     """Return the ratio of the link's angular velocity to the driver's: no factor if equal, a number if the driver
     rests.
     """
     motion, driver = subject.motion, subject.results.linkage.driver
     rate = abs(subject.rate(k))
-    if load.link == driver.link and turns_of(subject):
+    if load.link == driver.link and driver_rotates(subject):
         return ()
     if not rate:
         return (Leaf(Symbol("i", load.link), abs(float(motion.link(load.link).first[k]))),)
     omega = Leaf(Symbol("ω", load.link), abs(float(motion.link(load.link).omega[k])))
-    return (omega / Leaf(Symbol("ω" if turns_of(subject) else "v", driver.link), rate),)
+    return (omega / Leaf(Symbol("ω" if driver_rotates(subject) else "v", driver.link), rate),)
 
 
-def _of_several(subject: Subject, k: int, unit: str) -> Iterable[Block]:
+def _write_reduced_balance(subject: Subject, k: int, unit: str) -> Iterable[Block]:
     """Write the combined effect of several drivers, each multiplied by its velocity ratio to the first."""
     motion, reactions, lever = subject.motion, subject.reactions, subject.lever
     first, terms = reactions.balance, list[Expression]()
@@ -121,7 +121,7 @@ def _of_several(subject: Subject, k: int, unit: str) -> Iterable[Block]:
         ratio = Leaf(Symbol("i", driver), float(np.broadcast_to(motion.drives[driver].first, motion.q.shape)[k]))
         terms.append(own if balance is first else own * ratio)
     name = balance_symbol(first.driver.link, several=False, turns=first.moment is not None)
-    yield said(
+    yield write_sentence(
         _(
             "The balancing loads of all drivers enter the equation with their values from the force plan, and "
             "the lever is in equilibrium. Reduced to link {link}, that is multiplied by the ratio {i} of the "
@@ -130,10 +130,10 @@ def _of_several(subject: Subject, k: int, unit: str) -> Iterable[Block]:
         link=first.driver.link,
         i=Symbol("i"),
     )
-    yield Found(name, added(terms), float(lever.balancing[k]), unit)
+    yield ComputedQuantity(name, sum_terms(terms), float(lever.balancing[k]), unit)
 
 
-def _compared(subject: Subject, k: int) -> Iterable[Block]:
+def _write_difference(subject: Subject, k: int) -> Iterable[Block]:
     """Write the difference from the force plan, in per cent of the largest magnitude in all positions."""
     balance, lever = subject.reactions.balance, subject.lever
     moment = balance.kind == "moment"
@@ -144,7 +144,7 @@ def _compared(subject: Subject, k: int) -> Iterable[Block]:
     largest = float(np.nanmax(np.abs(np.where(subject.motion.moving, balance.generalized, 0.0)))) / arm
     if not largest:
         return
-    yield said(
+    yield write_sentence(
         _(
             "The difference {delta} from the value {plan} found by the force plan, in per cent of {largest}, "
             "the largest magnitude in all positions:"
@@ -156,10 +156,10 @@ def _compared(subject: Subject, k: int) -> Iterable[Block]:
     gap = Function("abs", Leaf(Symbol(name.letter, name.below, "R"), plan) - Leaf(name, own))
     whole = gap / Leaf(Symbol(name.letter, "max"), largest) * 100.0
     percent = 100 * float(lever.difference[k])
-    yield Found(Symbol("Δ"), whole, percent if percent > NO_DIFFERENCE else 0.0, "%")
+    yield ComputedQuantity(Symbol("Δ"), whole, percent if percent > NO_DIFFERENCE else 0.0, "%")
 
 
-def _on_paper(subject: Subject, k: int) -> Iterable[Block]:
+def _write_drawn_check(subject: Subject, k: int) -> Iterable[Block]:
     """Write what both methods give with arms and segments measured on the drawings."""
     drawn = balance_drawings(subject.motion, subject.reactions, subject.lever, k)
     if drawn is None:
@@ -172,14 +172,14 @@ def _on_paper(subject: Subject, k: int) -> Iterable[Block]:
         scales = DrawingScales(*(subject.scale(name, k, stem) for name, stem in zip(names, stems, strict=True)))
     check = drawn_check(subject.motion, subject.reactions, drawn, scales)
     moment = subject.reactions.balance.kind == "moment"
-    yield said(
+    yield write_sentence(
         _(
             "If moment arms and segments are measured on the drawings to 0.5 mm, the force plan gives {plan} "
             "{unit} and the lever {lever} {unit}. This difference, {share} % of the largest magnitude, is due "
             "to the accuracy of drawing; the difference above comes from the calculation."
         ),
-        plan=subject.shown(abs(check.plan)),
-        lever=subject.shown(abs(check.lever)),
+        plan=subject.format_result(abs(check.plan)),
+        lever=subject.format_result(abs(check.lever)),
         unit=_("N·m") if moment else _("N"),
         share=subject.text(100 * check.difference, 2),
     )

@@ -20,21 +20,21 @@ from tmm_cli.mechanics.forces import (
 )
 from tmm_cli.mechanics.linkage import Friction, Spring
 from tmm_cli.mechanics.numerics import NO_FORCE, dot
-from tmm_cli.note.blocks import Block, Line, Rows, cells, listed, said, tabled
-from tmm_cli.note.expression import Expression, Found, Function, Leaf, Product, added, read
-from tmm_cli.note.kinematics.equations import equal, sense
+from tmm_cli.note.blocks import Block, Line, Rows, cells, join_inline, write_sentence, write_table
+from tmm_cli.note.expression import ComputedQuantity, Expression, Function, Leaf, Product, state_value, sum_terms
+from tmm_cli.note.kinematics.equations import name_sense, write_equality
 from tmm_cli.note.subject import Subject
 from tmm_cli.reports import describe_locked_ranges
 
 
-def weights(subject: Subject) -> Iterable[Block]:
+def write_weights(subject: Subject) -> Iterable[Block]:
     """Write the weights of the links, the same in every position."""
     linkage = subject.results.linkage
     gravity = Leaf(Symbol("g"), abs(complex(linkage.gravity)))
     own = [load for load in subject.results.loads if load.kind == "weight"]
     if not own or not gravity.value:
         return
-    yield said(
+    yield write_sentence(
         _(
             "The weight {G} of a link is the product of its mass {m} and the acceleration of gravity {g}; it "
             "acts at the centre of mass of the link:"
@@ -46,12 +46,12 @@ def weights(subject: Subject) -> Iterable[Block]:
     for load in own:
         mass = Leaf(Symbol("m", load.link), float(linkage.links[load.link].mass))
         size = float(np.abs(np.ravel(load.force)[0]))
-        yield Found(load_symbols(load)[0], mass * gravity, size, _("N"))
+        yield ComputedQuantity(load_symbols(load)[0], mass * gravity, size, _("N"))
 
 
-def inertia(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
+def write_inertia(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
     """Write the inertia forces and couples of one position; those that are zero are named in words."""
-    found = [one for load in subject.results.loads if load.kind == "inertia" for one in _of_inertia(subject, load, k)]
+    found = [one for load in subject.results.loads if load.kind == "inertia" for one in _inertia_load(subject, load, k)]
     if not found:
         return
     explanation = (
@@ -63,7 +63,9 @@ def inertia(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
         if explained
         else _("Inertia forces and couples:")
     )
-    yield said(explanation, U=course_symbol("U"), M=course_symbol("M"), epsilon=Symbol("ε"), J=Symbol("J", "S"))
+    yield write_sentence(
+        explanation, U=course_symbol("U"), M=course_symbol("M"), epsilon=Symbol("ε"), J=Symbol("J", "S")
+    )
     units = {one.unit for one in found}
     largest = {unit: max(one.result for one in found if one.unit == unit) for unit in units}
     there = [one for one in found if one.result > NO_FORCE * largest[one.unit]]
@@ -73,31 +75,31 @@ def inertia(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
         text = _("These are zero because the accelerations are zero: {names}.")
         if len(nothing) == 1:
             text = _("This is zero because the acceleration is zero: {names}.")
-        yield said(text, names=listed(nothing))
+        yield write_sentence(text, names=join_inline(nothing))
 
 
-def _of_inertia(subject: Subject, load: AppliedLoad, k: int) -> Iterable[Found]:
+def _inertia_load(subject: Subject, load: AppliedLoad, k: int) -> Iterable[ComputedQuantity]:
     motion, link = subject.motion, subject.results.linkage.links[load.link]
     force, couple = load_symbols(load)
     if np.any(link.mass != 0):
         mass = Leaf(Symbol("m", load.link), float(link.mass))
         a = Leaf(Symbol("a", f"S{load.link}"), abs(complex(motion.centre(load.link).a[k])))
-        yield Found(force, mass * a, abs(complex(load.force[k])), _("N"))
+        yield ComputedQuantity(force, mass * a, abs(complex(load.force[k])), _("N"))
     if np.any(link.inertia != 0):
         moment = Leaf(Symbol("J", f"S{load.link}"), float(link.inertia))
         epsilon = Leaf(Symbol("ε", load.link), abs(float(motion.link(load.link).epsilon[k])))
-        yield Found(couple, moment * epsilon, abs(float(load.moment[k])), _("N·m"))
+        yield ComputedQuantity(couple, moment * epsilon, abs(float(load.moment[k])), _("N·m"))
 
 
-def springs(subject: Subject, k: int) -> Iterable[Block]:
+def write_springs(subject: Subject, k: int) -> Iterable[Block]:
     """Write the force or moment of each spring from its length or angle and their rate of change."""
     for spring in subject.results.linkage.springs:
         load = next((one for one in subject.results.loads if one.name == spring.name), None)
         if load is not None:
-            yield from _spring(subject, spring, load, k)
+            yield from _write_spring(subject, spring, load, k)
 
 
-def _spring(subject: Subject, spring: Spring, load: AppliedLoad, k: int) -> Iterable[Block]:
+def _write_spring(subject: Subject, spring: Spring, load: AppliedLoad, k: int) -> Iterable[Block]:
     motion = subject.motion
     if spring.turns:
         now, free = Leaf(Symbol("θ"), float(twist_angle(spring, motion)[k])), Leaf(Symbol("θ", "0"), 0.0)
@@ -123,11 +125,11 @@ def _spring(subject: Subject, spring: Spring, load: AppliedLoad, k: int) -> Iter
         whole = Leaf(Symbol(letter, "0"), float(spring.preload)) + whole
     if spring.damping:
         whole = whole + Leaf(Symbol("b"), float(spring.damping)) * rate
-    yield said(text, name=load_symbols(load)[0], now=now.symbol, c=c.symbol, free=free.symbol)
-    yield Found(load_symbols(load)[0], Function("abs", whole), size, unit)
+    yield write_sentence(text, name=load_symbols(load)[0], now=now.symbol, c=c.symbol, free=free.symbol)
+    yield ComputedQuantity(load_symbols(load)[0], Function("abs", whole), size, unit)
 
 
-def friction(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
+def write_friction(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
     """Write the friction force or moment in each pair, for the reactions determined with it."""
     given = subject.results.linkage.friction
     if not given:
@@ -143,12 +145,12 @@ def friction(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
         if explained
         else _("Friction for the reactions given below:")
     )
-    yield said(explanation, T=Symbol("T"), r=Symbol("r"), f=Symbol("f"))
+    yield write_sentence(explanation, T=Symbol("T"), r=Symbol("r"), f=Symbol("f"))
     for one in given:
-        yield from _rubbing(subject, one, k)
+        yield from _write_pair_friction(subject, one, k)
 
 
-def _rubbing(subject: Subject, given: Friction, k: int) -> Iterable[Block]:
+def _write_pair_friction(subject: Subject, given: Friction, k: int) -> Iterable[Block]:
     reaction = subject.reactions.of(given.pair)
     own = [f"T{given.pair}{link}" for link in (reaction.on, reaction.by)]  # on the frame it is left out
     loads = [x for x in subject.results.loads if x.kind == "friction" and x.name in own]
@@ -161,26 +163,26 @@ def _rubbing(subject: Subject, given: Friction, k: int) -> Iterable[Block]:
     size = abs(complex(load.force[k])) if slides else abs(float(load.moment[k]))
     if size:
         factors = (f, normal) if slides else (f, r, normal)
-        yield Found(load_symbols(load)[0], Product(factors), size, _("N") if slides else _("N·m"))
+        yield ComputedQuantity(load_symbols(load)[0], Product(factors), size, _("N") if slides else _("N·m"))
         if len(loads) > 1:
-            yield equal(*(load_symbols(one)[0] for one in reversed(loads)))
+            yield write_equality(*(load_symbols(one)[0] for one in reversed(loads)))
 
 
-def without_friction(subject: Subject, k: int) -> Iterable[Block]:
+def write_balance_without_friction(subject: Subject, k: int) -> Iterable[Block]:
     """Write the balancing moment or force without friction."""
     if not subject.results.linkage.friction:
         return
     loads = tuple(load for load in subject.results.loads if load.kind != "friction")
     free = solve_reactions(subject.motion, subject.results.structure, loads)
-    yield said(_("Without friction the balancing load would be:"))
+    yield write_sentence(_("Without friction the balancing load would be:"))
     for balance in free.balances:
         turns = balance.moment is not None
         symbol = balance_symbol(balance.driver.link, len(free.balances) > 1, turns=turns)
         size = abs(float(balance.generalized[k]))
-        yield read(replace(symbol, above="0"), size, _("N·m") if turns else _("N"))
+        yield state_value(replace(symbol, above="0"), size, _("N·m") if turns else _("N"))
 
 
-def table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
+def write_load_table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
     """Write the table of loads in one position: magnitudes, and angles of forces or senses of couples."""
     rows: list[tuple[Line, ...]] = []
     loads = subject.results.loads
@@ -189,18 +191,18 @@ def table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
     for load in loads:
         (force, couple), push, moment = load_symbols(load), complex(load.force[k]), float(load.moment[k])
         if abs(push) > least:
-            told = f"{subject.shown(abs(push))} {_('N')}"
+            told = f"{subject.format_result(abs(push))} {_('N')}"
             rows.append(cells(force, load.link, told, subject.direction(push)))
         if abs(moment) > still:
-            told = f"{subject.shown(abs(moment))} {_('N·m')}"
-            rows.append(cells(couple, load.link, told, sense(moment)))
+            told = f"{subject.format_result(abs(moment))} {_('N·m')}"
+            rows.append(cells(couple, load.link, told, name_sense(moment)))
     if rows:
         text = _("Table {table} lists everything that acts on the links in this position except the reactions.")
         head = cells(_("force or couple"), _("on link"), _("magnitude"), _("angle to the x axis, or sense"))
-        yield from tabled(text, Rows(caption, head, tuple(rows), f"loads-{k}"))
+        yield from write_table(text, Rows(caption, head, tuple(rows), f"loads-{k}"))
 
 
-def losses(subject: Subject) -> Iterable[Block]:
+def write_losses(subject: Subject) -> Iterable[Block]:
     """Write the work of drivers and friction over the cycle (J) and the efficiency, or where the mechanism is self-
     locking.
     """
@@ -208,7 +210,7 @@ def losses(subject: Subject) -> Iterable[Block]:
     if lost is None or lost.locked:
         ranges = describe_locked_ranges(subject.results)
         if ranges:
-            yield said(
+            yield write_sentence(
                 _(
                     "The mechanism is self-locking because of friction {ranges}: no driving force moves it there, so "
                     "the efficiency over the cycle is not defined."
@@ -218,12 +220,12 @@ def losses(subject: Subject) -> Iterable[Block]:
         return
     work = Leaf(Symbol("A", "d"), lost.drivers)
     taken = [Leaf(Symbol("A", pair), value) for pair, value in lost.pairs.items()]
-    yield said(
+    yield write_sentence(
         _("The work {work} of the driving forces and the work of friction in the pairs over the cycle:"),
         work=work.symbol,
     )
     for one in (work, *taken):
-        yield read(one.symbol, one.value, _("J"))
+        yield state_value(one.symbol, one.value, _("J"))
     if lost.efficiency is not None:
-        yield said(_("The efficiency of the mechanism is:"))
-        yield Found(Symbol("η"), added((work, *taken)) / work, lost.efficiency)
+        yield write_sentence(_("The efficiency of the mechanism is:"))
+        yield ComputedQuantity(Symbol("η"), sum_terms((work, *taken)) / work, lost.efficiency)

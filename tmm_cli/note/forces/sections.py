@@ -26,71 +26,77 @@ from tmm_cli.mechanics.forces import (
 )
 from tmm_cli.mechanics.numerics import NO_FORCE
 from tmm_cli.mechanics.plans import ForcePlan, NamedVector, force_plans
-from tmm_cli.note.blocks import Block, Equation, Heading, Line, listed, listed_below, said
-from tmm_cli.note.expression import Found, Function, Leaf, read
-from tmm_cli.note.forces.equations import MU, along_guide, by_moments, moments, vector_sum
-from tmm_cli.note.kinematics.equations import sense
+from tmm_cli.note.blocks import Block, Equation, Heading, Line, bulleted_list, join_inline, write_sentence
+from tmm_cli.note.expression import ComputedQuantity, Function, Leaf, state_value
+from tmm_cli.note.forces.equations import (
+    MU,
+    moment_equation,
+    solve_guide_sum,
+    solve_moment_equation,
+    vector_sum_equation,
+)
+from tmm_cli.note.kinematics.equations import name_sense
 from tmm_cli.note.subject import Subject
 
 
 @dataclass(frozen=True)
-class Part:
+class AnalysedBody:
     """Group or input link in one position, with its external reactions (for an input link, that of the frame)."""
 
     subject: Subject
-    here: LoadedPosition
-    loaded: FreeBody
+    position: LoadedPosition
+    free_body: FreeBody
     plan: ForcePlan
-    outer: tuple[Reaction, ...]
+    external: tuple[Reaction, ...]
     forces: GroupForces | None
 
     @property
     def links(self) -> tuple[str, ...]:
-        return self.loaded.links
+        return self.free_body.links
 
     @property
-    def sought(self) -> frozenset[Symbol]:
+    def unknown_reactions(self) -> frozenset[Symbol]:
         """Symbols of the external reactions and their components."""
-        names = [(r.by, r.on) for r in self.outer]
+        names = [(r.by, r.on) for r in self.external]
         return frozenset(
             reaction_symbol(*n, part, letter) for n in names for part in ("", "n", "τ") for letter in ("R", "M")
         )
 
     @property
-    def given(self) -> list[ForceOrCouple]:
+    def known_loads(self) -> list[ForceOrCouple]:
         """Forces and couples known before the part is solved."""
-        return [one for one in self.loaded.acting if one.symbol not in self.sought and one.pair != DRIVE]
+        return [one for one in self.free_body.acting if one.symbol not in self.unknown_reactions and one.pair != DRIVE]
 
     @property
-    def by_moments(self) -> frozenset[Symbol]:
+    def solved_by_moments(self) -> frozenset[Symbol]:
         """Symbols found from equations of moments."""
-        return frozenset(e.sought.symbol for e in self.loaded.equations if e.sought and not e.sought.arm)
+        return frozenset(e.sought.symbol for e in self.free_body.equations if e.sought and not e.sought.arm)
 
     @property
-    def calculated(self) -> frozenset[Symbol]:
+    def known_before_plan(self) -> frozenset[Symbol]:
         """Symbols found before the force plan is drawn."""
-        return self.by_moments | {s.found.acting.symbol for s in self.sums[0]}
+        return self.solved_by_moments | {s.found.acting.symbol for s in self.guide_sums[0]}
 
     @property
-    def borne(self) -> frozenset[Symbol]:
+    def loads_of_plan(self) -> frozenset[Symbol]:
         """Symbols of the plan known in advance, without balancing loads of drivers."""
-        drives = {one.symbol for one in self.loaded.acting if one.pair == DRIVE}
-        return frozenset(v.symbol for v in self.plan.plan.vectors) - self.sought - drives
+        drives = {one.symbol for one in self.free_body.acting if one.pair == DRIVE}
+        return frozenset(v.symbol for v in self.plan.plan.vectors) - self.unknown_reactions - drives
 
     @property
-    def guided(self) -> frozenset[Symbol]:
+    def known_lines(self) -> frozenset[Symbol]:
         """Symbols of forces with a known line of action: reactions of guides and teeth, forces of drivers."""
-        outer = {reaction_symbol(r.by, r.on) for r in self.outer if r.pair.slide is not None or not r.pair.lower}
-        return frozenset(outer | {one.symbol for one in self.loaded.acting if one.pair == DRIVE})
+        outer = {reaction_symbol(r.by, r.on) for r in self.external if r.pair.slide is not None or not r.pair.lower}
+        return frozenset(outer | {one.symbol for one in self.free_body.acting if one.pair == DRIVE})
 
     @property
-    def sums(self) -> tuple[list[ForceSum], list[ForceSum]]:
+    def guide_sums(self) -> tuple[list[ForceSum], list[ForceSum]]:
         """Sums along guides that have one unknown before the force plan is drawn, and the other sums."""
         inner = () if self.forces is None else self.forces.inner
         both = {reaction_symbol(*names) for r in inner for names in ((r.by, r.on), (r.on, r.by))}
-        unknown = (self.sought | both) - self.by_moments
+        unknown = (self.unknown_reactions | both) - self.solved_by_moments
         found: tuple[list[ForceSum], list[ForceSum]] = [], []
-        for one in self.loaded.sums:
+        for one in self.free_body.sums:
             others = {part.acting.symbol for part in one.parts if part is not one.found}
             found[bool(others & unknown)].append(one)
         return found
@@ -101,42 +107,44 @@ class Part:
         return self.forces is not None and self.forces.group.type == "RPP" and len(self.links) == 2
 
     @property
-    def at_once(self) -> bool:
+    def needs_common_solution(self) -> bool:
         """True if no equation has a single unknown."""
-        return any(e.sought is None for e in self.loaded.equations)
+        return any(e.sought is None for e in self.free_body.equations)
 
     @property
     def caption(self) -> str:
         """Position of the mechanism in words."""
-        return self.subject.at_position(self.here.k)
+        return self.subject.describe_position(self.position.k)
 
     @property
     def vectors(self) -> list[NamedVector]:
         """Vectors of the plan without the internal reaction and without negligible loads."""
         least = NO_FORCE * self.plan.plan.size
         return [
-            v for v in self.plan.plan.vectors if v.kind != "inner" and (v.symbol in self.sought or abs(v.value) > least)
+            v
+            for v in self.plan.plan.vectors
+            if v.kind != "inner" and (v.symbol in self.unknown_reactions or abs(v.value) > least)
         ]
 
-    def size(self, reaction: Reaction) -> float:
+    def magnitude(self, reaction: Reaction) -> float:
         """Return the magnitude (N) of a reaction in this position."""
-        return abs(complex(reaction.force[self.here.k]))
+        return abs(complex(reaction.force[self.position.k]))
 
-    def on_paper(self, equation: MomentEquation) -> float | None:
+    def arm_scale(self, equation: MomentEquation) -> float | None:
         """Return the scale (m/mm) of the drawing with the arms of an equation; None if arms are in metres."""
         if self.subject.results.problem.note_style.arms != "paper":
             return None
-        number = next(n for n, few in enumerate(split_equations(self.loaded.equations)) if equation in few)
-        stem = self.stem("group-loads") + (f"-sheet-{number + 1}" if number else "")
-        return self.subject.scale("group-loads", self.here.k, stem)
+        number = next(n for n, few in enumerate(split_equations(self.free_body.equations)) if equation in few)
+        stem = self.drawing_name("group-loads") + (f"-sheet-{number + 1}" if number else "")
+        return self.subject.scale("group-loads", self.position.k, stem)
 
-    def stem(self, name: str) -> str:
+    def drawing_name(self, name: str) -> str:
         """Return the name of the part's drawing."""
         kind = "links" if len(self.links) > 1 else "link"
-        return file_safe_name("-".join([self.subject.position(self.here.k).stem(name), kind, *self.links]))
+        return file_safe_name("-".join([self.subject.position(self.position.k).stem(name), kind, *self.links]))
 
 
-def parts_of(subject: Subject, k: int) -> Iterable[Part]:
+def list_bodies(subject: Subject, k: int) -> Iterable[AnalysedBody]:
     """Yield the groups in one position, last group first, then the input links."""
     motion, reactions = subject.motion, subject.reactions
     here = LoadedPosition.at(motion, reactions, k)
@@ -144,7 +152,7 @@ def parts_of(subject: Subject, k: int) -> Iterable[Part]:
     owners: list[tuple[tuple[Reaction, ...], GroupForces | None]] = [(g.outer, g) for g in reversed(reactions.groups)]
     owners += [((frame,), None) for frame in reactions.frames]
     for part, plan, (outer, forces) in zip(loaded, plans, owners, strict=True):
-        yield Part(subject, here, part, plan, outer, forces)
+        yield AnalysedBody(subject, here, part, plan, outer, forces)
 
 
 # The section of a group, or of a driving link: what is sought, equations of moments, force plan, whole reactions.
@@ -153,48 +161,50 @@ def parts_of(subject: Subject, k: int) -> Iterable[Part]:
 SIZES = 2  # that a closed polygon gives
 
 
-def written(part: Part, heading: Heading, *, first: bool) -> Iterable[Block]:
+def write_section(part: AnalysedBody, heading: Heading, *, first: bool) -> Iterable[Block]:
     """Write the section of a group or an input link.
 
     first: the first section of the note, which explains how to read the vector sum.
     """
     yield heading
-    if not part.loaded.acting:
-        yield said(_("No loads act here ({links}): all reactions are zero."), links=_links(part.links))
+    if not part.free_body.acting:
+        yield write_sentence(_("No loads act here ({links}): all reactions are zero."), links=_name_links(part.links))
         return
-    yield from _taken_apart(part)
-    if part.at_once:
-        yield said(
+    yield from _write_free_body(part)
+    if part.needs_common_solution:
+        yield write_sentence(
             _(
                 "There is no point about which only one unknown has a moment, so the equilibrium equations of all "
                 "these links are solved together. As a check, the sum of the moments on each link is zero:"
             )
         )
-    ready, later = part.sums
-    equations = [e for e in part.loaded.equations if e.sought is None or not e.sought.arm]
-    yield from chain.from_iterable(_moments(part, e) for e in equations if not e.special)
-    yield from chain.from_iterable(map(_projections, ready))
+    ready, later = part.guide_sums
+    equations = [e for e in part.free_body.equations if e.sought is None or not e.sought.arm]
+    yield from chain.from_iterable(_write_moments(part, e) for e in equations if not e.special)
+    yield from chain.from_iterable(map(_write_projections, ready))
     # what the sums give has moments there
-    yield from chain.from_iterable(_moments(part, e) for e in equations if e.special)
+    yield from chain.from_iterable(_write_moments(part, e) for e in equations if e.special)
     if part.inner_first:
-        yield from _guide_between(part)
-    yield from _force_plan(part, explained=first)
+        yield from _write_guide_polygon(part)
+    yield from _write_force_plan(part, explained=first)
     if not part.inner_first:
-        yield from _inner(part)
-    yield from chain.from_iterable(map(_projections, later))
-    yield from chain.from_iterable(_moments(part, e) for e in part.loaded.equations if e.sought and e.sought.arm)
-    yield from _balance(part)
+        yield from _write_internal_reactions(part)
+    yield from chain.from_iterable(map(_write_projections, later))
+    yield from chain.from_iterable(
+        _write_moments(part, e) for e in part.free_body.equations if e.sought and e.sought.arm
+    )
+    yield from _write_balancing_direction(part)
 
 
-def _links(names: Sequence[str]) -> str:
+def _name_links(names: Sequence[str]) -> str:
     """Return "link 4" or "links 4, 5"."""
     return (_("links {links}") if len(names) > 1 else _("link {links}")).format(links=", ".join(names))
 
 
-def _projections(forces: ForceSum) -> Iterable[Block]:
+def _write_projections(forces: ForceSum) -> Iterable[Block]:
     """Write a sum of projections onto a guide."""
-    node, found = along_guide(forces)
-    yield said(
+    node, found = solve_guide_sum(forces)
+    yield write_sentence(
         _(
             "The sum of the projections of the forces onto the guide {guide} (link {link}) gives {symbol}; {angles} "
             "are the acute angles between the forces and the guide:"
@@ -207,25 +217,27 @@ def _projections(forces: ForceSum) -> Iterable[Block]:
     yield from (Equation(node), found)
 
 
-def _taken_apart(part: Part) -> Iterable[Block]:
+def _write_free_body(part: AnalysedBody) -> Iterable[Block]:
     """Write the known loads, the unknown external reactions, and the figure of the part."""
-    given = listed(dict.fromkeys(one.symbol for one in part.given))
+    given = join_inline(dict.fromkeys(one.symbol for one in part.known_loads))
     group = "" if part.forces is None else part.forces.group.title
     text = _("The input link is considered last. Known: {given}. To be found:")
     if group:
         text = _("Group {group} is separated from the mechanism. Known: {given}. To be found:")
     if group and not given:
         text = _("Group {group} is separated from the mechanism. To be found:")
-    yield said(text, group=group, given=given or _("nothing"))
-    leads = [] if part.forces is None else external_pairs(part.here, part.forces.group)
-    unknown = [_unknown(r, next((lead for lead in leads if lead.pair == r.pair), None)) for r in part.outer]
+    yield write_sentence(text, group=group, given=given or _("nothing"))
+    leads = [] if part.forces is None else external_pairs(part.position, part.forces.group)
+    unknown = [
+        _describe_unknowns(r, next((lead for lead in leads if lead.pair == r.pair), None)) for r in part.external
+    ]
     moment, force = _("the balancing moment {symbol}"), _("the balancing force {symbol}")
-    balances = [one for one in part.loaded.acting if one.pair == DRIVE]
+    balances = [one for one in part.free_body.acting if one.pair == DRIVE]
     drives = [filled(moment if one.couple else force, symbol=one.symbol) for one in balances]
-    yield listed_below((*unknown, *drives))
-    if part.subject.results.problem.note_style.arms == "paper" and part.loaded.equations:
-        mu = part.on_paper(part.loaded.equations[0])
-        yield said(
+    yield bulleted_list((*unknown, *drives))
+    if part.subject.results.problem.note_style.arms == "paper" and part.free_body.equations:
+        mu = part.arm_scale(part.free_body.equations[0])
+        yield write_sentence(
             _(
                 "The moment arms are given in millimetres of the drawing, whose scale factor is {mu} = {value} "
                 "m/mm; couples are divided by this factor."
@@ -236,14 +248,14 @@ def _taken_apart(part: Part) -> Iterable[Block]:
     yield from part.subject.figures(
         "group-loads",
         _("All loads and reactions are shown in figure {figure}: the forces not to scale, their moment arms to scale."),
-        _("Loads and reactions: {links}; {position}").format(links=_links(part.links), position=part.caption),
-        part.here.k,
-        part.stem("group-loads"),
+        _("Loads and reactions: {links}; {position}").format(links=_name_links(part.links), position=part.caption),
+        part.position.k,
+        part.drawing_name("group-loads"),
         further=_("The other moment arms are shown in figure {figure}."),
     )
 
 
-def _unknown(reaction: Reaction, lead: ExternalPair | None) -> Line:
+def _describe_unknowns(reaction: Reaction, lead: ExternalPair | None) -> Line:
     """Return the sentence on the unknowns of an external reaction."""
     pair, line = reaction.pair, ""
     if not pair.lower:
@@ -270,10 +282,10 @@ def _unknown(reaction: Reaction, lead: ExternalPair | None) -> Line:
     return filled(text, **places, R=whole, n=n, t=t)
 
 
-def _moments(part: Part, equation: MomentEquation) -> Iterable[Block]:
+def _write_moments(part: AnalysedBody, equation: MomentEquation) -> Iterable[Block]:
     """Write a moment equation and its unknown: a force, a couple, or the point of action of a guide's reaction."""
-    mu = part.on_paper(equation)
-    found, sought = by_moments(equation, mu=mu), equation.sought
+    mu = part.arm_scale(equation)
+    found, sought = solve_moment_equation(equation, mu=mu), equation.sought
     if sought is None:
         yield from () if found is None else (found,)
         return
@@ -298,23 +310,23 @@ def _moments(part: Part, equation: MomentEquation) -> Iterable[Block]:
         )
     else:
         text = _("The equation of moments about point {point} ({links}) gives {symbol}:")
-    yield said(text, point=equation.about, links=_links(equation.links), symbol=sought.symbol)
+    yield write_sentence(text, point=equation.about, links=_name_links(equation.links), symbol=sought.symbol)
     if found is not None:
-        yield from (Equation(moments(equation, mu)), found)
+        yield from (Equation(moment_equation(equation, mu)), found)
     elif not sought.arm:
         if equation.terms:  # they cancel
-            yield Equation(moments(equation, mu))
-        yield read(sought.symbol, 0.0, _("N·m") if sought.symbol.letter == "M" else _("N"))
+            yield Equation(moment_equation(equation, mu))
+        yield state_value(sought.symbol, 0.0, _("N·m") if sought.symbol.letter == "M" else _("N"))
 
 
-def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
+def _write_force_plan(part: AnalysedBody, *, explained: bool) -> Iterable[Block]:
     """Write the closed polygon, the values read off it and the total reactions."""
-    known = part.calculated | part.borne
+    known = part.known_before_plan | part.loads_of_plan
     if part.inner_first:
-        known |= {reaction_symbol(r.by, r.on) for r in part.outer if r.pair.slide is not None}
+        known |= {reaction_symbol(r.by, r.on) for r in part.external if r.pair.slide is not None}
     vectors = part.vectors
-    lines = part.guided | {v.symbol for v in vectors if v.kind in ("normal", "tangential")}
-    yield said(
+    lines = part.known_lines | {v.symbol for v in vectors if v.kind in ("normal", "tangential")}
+    yield write_sentence(
         _(
             "The forces form a closed polygon. Vectors known in magnitude and direction are underlined twice, "
             "vectors with a known line of action once:"
@@ -322,96 +334,100 @@ def _force_plan(part: Part, *, explained: bool) -> Iterable[Block]:
         if explained
         else _("The forces form a closed polygon:")
     )
-    yield Equation(vector_sum([(v.symbol, 2 if v.symbol in known else 1 if v.symbol in lines else 0) for v in vectors]))
+    yield Equation(
+        vector_sum_equation([(v.symbol, 2 if v.symbol in known else 1 if v.symbol in lines else 0) for v in vectors])
+    )
     yield from part.subject.figures(
         "forces",
         _("The force plan is drawn to scale in figure {figure}."),
-        _("Force plan: {links}; {position}").format(links=_links(part.links), position=part.caption),
-        part.here.k,
-        part.stem("forces"),
+        _("Force plan: {links}; {position}").format(links=_name_links(part.links), position=part.caption),
+        part.position.k,
+        part.drawing_name("forces"),
     )
     unknown = [v for v in vectors if v.symbol not in known]
     if sum(1 if v.symbol in lines else 2 for v in unknown) > SIZES:
-        yield said(
+        yield write_sentence(
             _("The polygon closes with the following reactions, with which each link is also in equilibrium by itself:")
         )
     elif unknown:
         text = _("The lengths of its sides, multiplied by the scale factor {mu}, give the remaining unknowns:")
-        yield said(text, mu=Symbol("μ", "F"))
+        yield write_sentence(text, mu=Symbol("μ", "F"))
     else:
-        yield said(_("All its vectors are already known; the closure of the polygon serves as a check."))
+        yield write_sentence(_("All its vectors are already known; the closure of the polygon serves as a check."))
     least = NO_FORCE * part.plan.plan.size
     for vector in unknown:
         size = abs(vector.value)
-        yield read(vector.symbol, size if size > least else 0.0, _("N"))
+        yield state_value(vector.symbol, size if size > least else 0.0, _("N"))
     if part.plan.full:
-        yield said(_("The total reactions are:"))
-    for reaction in part.outer:
-        yield from _whole(part, reaction)
+        yield write_sentence(_("The total reactions are:"))
+    for reaction in part.external:
+        yield from _write_total_reaction(part, reaction)
 
 
-def _whole(part: Part, reaction: Reaction) -> Iterable[Block]:
+def _write_total_reaction(part: AnalysedBody, reaction: Reaction) -> Iterable[Block]:
     """Write a total reaction from its normal and tangential components."""
     names = reaction.by, reaction.on
     parts = {v.symbol: abs(v.value) for v in part.plan.plan.vectors}
     along, across = reaction_symbol(*names, "n"), reaction_symbol(*names, "τ")
     if along in parts and across in parts:
         root = Function("sqrt", Leaf(along, parts[along]) ** 2 + Leaf(across, parts[across]) ** 2)
-        yield Found(reaction_symbol(*names), root, part.size(reaction), _("N"))
+        yield ComputedQuantity(reaction_symbol(*names), root, part.magnitude(reaction), _("N"))
 
 
-def _guide_between(part: Part) -> Iterable[Block]:
+def _write_guide_polygon(part: AnalysedBody) -> Iterable[Block]:
     """Write the force polygon of the link on which both guides act."""
     assert part.forces is not None
     inner = part.forces.inner[0]
-    outer = next(r for r in part.outer if r.pair.slide is not None)
+    outer = next(r for r in part.external if r.pair.slide is not None)
     link = outer.on
     own = reaction_symbol(inner.pair.other(link), link)
-    yield said(
+    yield write_sentence(
         _(
             "The reaction in the internal pair {pair} is perpendicular to the guide of this pair, so the "
             "polygon of the forces on one link ({links}) has only two unknown magnitudes and determines them:"
         ),
         pair=inner.pair.name,
-        links=_links([link]),
+        links=_name_links([link]),
     )
     sought = {own: inner, reaction_symbol(outer.by, link): outer}
-    yield _polygon(part, link, dict.fromkeys(sought, 1))
+    yield _polygon_of_link(part, link, dict.fromkeys(sought, 1))
     for symbol, reaction in sought.items():
-        yield read(symbol, part.size(reaction), _("N"))
+        yield state_value(symbol, part.magnitude(reaction), _("N"))
 
 
-def _polygon(part: Part, link: str, sought: Mapping[Symbol, int]) -> Equation:
+def _polygon_of_link(part: AnalysedBody, link: str, sought: Mapping[Symbol, int]) -> Equation:
     """Return the force polygon of one link; each unknown with its number of underlines."""
-    acting = part.here.acting([link], {})
+    acting = part.position.acting([link], {})
     known = [one.symbol for one in acting if not one.couple and one.symbol not in sought]
-    return Equation(vector_sum([*((symbol, 2) for symbol in known), *sought.items()]))
+    return Equation(vector_sum_equation([*((symbol, 2) for symbol in known), *sought.items()]))
 
 
-def _inner(part: Part) -> Iterable[Block]:
+def _write_internal_reactions(part: AnalysedBody) -> Iterable[Block]:
     """Write the internal reactions from the equilibrium of one link of each internal pair."""
     inner = () if part.forces is None else part.forces.inner
     if len(inner) == 1:
         (reaction,) = inner
-        yield said(
+        yield write_sentence(
             _(
                 "The reaction in the internal pair {pair} closes the polygon of the forces on one of its links "
                 "({links}):"
             ),
             pair=reaction.pair.name,
-            links=_links([reaction.on]),
+            links=_name_links([reaction.on]),
         )
-        yield _polygon(part, reaction.on, {reaction_symbol(reaction.by, reaction.on): 0})
+        yield _polygon_of_link(part, reaction.on, {reaction_symbol(reaction.by, reaction.on): 0})
     elif inner:
-        yield said(_("The reactions in the internal pairs follow from the equilibrium of the individual links:"))
+        yield write_sentence(
+            _("The reactions in the internal pairs follow from the equilibrium of the individual links:")
+        )
     for reaction in inner:
-        yield read(reaction_symbol(reaction.by, reaction.on), part.size(reaction), _("N"))
+        yield state_value(reaction_symbol(reaction.by, reaction.on), part.magnitude(reaction), _("N"))
 
 
-def _balance(part: Part) -> Iterable[Block]:
+def _write_balancing_direction(part: AnalysedBody) -> Iterable[Block]:
     """Write the sense or direction of each balancing load."""
-    for one in part.loaded.acting:
+    for one in part.free_body.acting:
         if one.pair == DRIVE:
-            way = sense(one.moment) if one.couple else part.subject.direction(one.force)
+            way = name_sense(one.moment) if one.couple else part.subject.direction(one.force)
             text = _("{symbol} acts {way}.") if one.couple else _("{symbol} acts at {way} to the x axis.")
-            yield said(text, symbol=one.symbol, way=way)
+            yield write_sentence(text, symbol=one.symbol, way=way)

@@ -25,7 +25,7 @@ from tmm_cli.language import _
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.note import blocks
 from tmm_cli.note.blocks import Block, Inline, Line, Note, Title
-from tmm_cli.note.expression import Found, formula
+from tmm_cli.note.expression import ComputedQuantity, formula
 from tmm_cli.note.formula_tree import (
     Brackets,
     Fraction,
@@ -48,32 +48,32 @@ PLAIN, UPRIGHT, ITALIC = '<m:rPr><m:sty m:val="p"/></m:rPr>', "<m:rPr><m:nor/></
 NOT_XML = dict.fromkeys((*range(9), 11, 12, *range(14, 32), *range(0xD800, 0xE000), 65534, 65535), "�")
 
 
-def data(text: str) -> str:
+def escape_xml(text: str) -> str:
     """Escape a text for XML; characters that XML forbids are replaced."""
     return escape(text.translate(NOT_XML))
 
 
-def omath(node: Node, size: float = 0.0) -> str:
+def inline_omml(node: Node, size: float = 0.0) -> str:
     """Return an inline formula as OMML; `size` is its font size in points if it differs from the text."""
-    shown = _of(node)
+    shown = _omml(node)
     if size:
         shown = shown.replace(FONT, FONT.replace("</w:rPr>", f'<w:sz w:val="{round(2 * size)}"/></w:rPr>'))
     return f"<m:oMath {SPACES}>{shown}</m:oMath>"
 
 
-def display(node: Node) -> list[str]:
+def display_omml(node: Node) -> list[str]:
     """Return a displayed formula as OMML, a paragraph for each line."""
     lines = node.lines if isinstance(node, Lines) else (node,)
     jc = '<m:oMathParaPr><m:jc m:val="left"/></m:oMathParaPr>'
-    return [f"<m:oMathPara {SPACES}>{jc}{omath(_begun(line))}</m:oMathPara>" for line in lines]
+    return [f"<m:oMathPara {SPACES}>{jc}{inline_omml(_add_empty_operand(line))}</m:oMathPara>" for line in lines]
 
 
-def _begun(line: Node) -> Node:
+def _add_empty_operand(line: Node) -> Node:
     """Put an empty operand before a line that begins with an equals sign; some programs require two operands."""
     return Row((Words("\u200b"), *line.nodes)) if isinstance(line, Row) and line.nodes[0] == Sign("=") else line
 
 
-def _of(node: Node) -> str:
+def _omml(node: Node) -> str:
     match node:
         case Number(text) | Sign(text):
             return _run(text)
@@ -85,17 +85,17 @@ def _of(node: Node) -> str:
                 shown = _bar(shown, "bot")
             return shown
         case Row(nodes) | Lines(nodes):
-            return "".join(_of(n) for n in nodes)
+            return "".join(_omml(n) for n in nodes)
         case Fraction(over, under):
-            return f"<m:f><m:num>{_of(over)}</m:num><m:den>{_of(under)}</m:den></m:f>"
+            return f"<m:f><m:num>{_omml(over)}</m:num><m:den>{_omml(under)}</m:den></m:f>"
         case Power(base, exponent):
-            return f"<m:sSup><m:e>{_of(base)}</m:e><m:sup>{_of(exponent)}</m:sup></m:sSup>"
+            return f"<m:sSup><m:e>{_omml(base)}</m:e><m:sup>{_omml(exponent)}</m:sup></m:sSup>"
         case Root(of):
-            return f'<m:rad><m:radPr><m:degHide m:val="1"/></m:radPr><m:deg/><m:e>{_of(of)}</m:e></m:rad>'
+            return f'<m:rad><m:radPr><m:degHide m:val="1"/></m:radPr><m:deg/><m:e>{_omml(of)}</m:e></m:rad>'
         case Brackets(inside, opens, closes, bars):
             own = {"begChr": "|" if bars else "(" if opens else "", "endChr": "|" if bars else ")" if closes else ""}
             marks = "".join(f'<m:{kind} m:val="{mark}"/>' for kind, mark in own.items() if mark not in ("(", ")"))
-            return f"<m:d>{f'<m:dPr>{marks}</m:dPr>' if marks else ''}<m:e>{_of(inside)}</m:e></m:d>"
+            return f"<m:d>{f'<m:dPr>{marks}</m:dPr>' if marks else ''}<m:e>{_omml(inside)}</m:e></m:d>"
 
 
 def _symbol(symbol: Symbol, vector: bool) -> str:
@@ -117,7 +117,7 @@ def _bar(inside: str, place: str) -> str:
 
 
 def _run(text: str, style: str = PLAIN) -> str:
-    return f'<m:r>{style}{FONT}<m:t xml:space="preserve">{data(text)}</m:t></m:r>'
+    return f'<m:r>{style}{FONT}<m:t xml:space="preserve">{escape_xml(text)}</m:t></m:r>'
 
 
 # Parts of a file of Word for which python-docx has no call: numbered styles, fields, bookmarks, pictures.
@@ -130,12 +130,12 @@ TEXT = 210 - 25 - 10  # mm, width of a line
 EMU = 36000  # a millimetre
 
 
-def plain(text: str) -> str:
+def replace_forbidden(text: str) -> str:
     """Replace characters that XML forbids."""
     return text.translate(NOT_XML)
 
 
-def prepared(document: Any, title: str, language: str) -> None:
+def prepare_document(document: Any, title: str, language: str) -> None:
     """Set paper, styles, page numbers and properties of a new document."""
     section = document.sections[0]
     section.page_width, section.page_height = Mm(210), Mm(297)
@@ -144,25 +144,25 @@ def prepared(document: Any, title: str, language: str) -> None:
     section.different_first_page_header_footer = True  # the title page has no number
     footer = section.footer.paragraphs[0]
     footer.alignment = WD_ALIGN_PARAGRAPH.CENTER
-    field(footer, "PAGE", "2")
+    add_field(footer, "PAGE", "2")
     properties = document.core_properties
-    properties.title, properties.author, properties.comments = plain(title)[:250], "", ""
-    _styles(document, LANGUAGES[language])
-    _numbers(document)
+    properties.title, properties.author, properties.comments = replace_forbidden(title)[:250], "", ""
+    _set_styles(document, LANGUAGES[language])
+    _number_headings(document)
 
 
-def _styles(document: Any, language: str) -> None:
+def _set_styles(document: Any, language: str) -> None:
     styles = document.styles
-    normal = _font(styles["Normal"], 12)
+    normal = _set_font(styles["Normal"], 12)
     normal.paragraph_format.space_after = Pt(4)
     (spoken,) = styles.element.xpath("w:docDefaults//w:lang")
     for kind in ("val", "eastAsia"):
         spoken.set(qn(f"w:{kind}"), language)
     for name, size, before, after in (("Heading 1", 16, 18, 8), ("Heading 2", 13, 12, 6), ("Heading 3", 12, 8, 4)):
-        heading = _font(styles[name], size, bold=True)
+        heading = _set_font(styles[name], size, bold=True)
         heading.paragraph_format.space_before, heading.paragraph_format.space_after = Pt(before), Pt(after)
-    _font(styles["Caption"], 11).paragraph_format.alignment = WD_ALIGN_PARAGRAPH.CENTER
-    _font(styles["Title"], 22, bold=True).paragraph_format.alignment = WD_ALIGN_PARAGRAPH.CENTER
+    _set_font(styles["Caption"], 11).paragraph_format.alignment = WD_ALIGN_PARAGRAPH.CENTER
+    _set_font(styles["Title"], 22, bold=True).paragraph_format.alignment = WD_ALIGN_PARAGRAPH.CENTER
     for border in styles["Title"].element.xpath(".//w:pBdr"):
         border.getparent().remove(border)
     for name in ("Formula", "Picture", "Table Text", "Contents Heading", "TOC 1", "TOC 2"):
@@ -175,14 +175,14 @@ def _styles(document: Any, language: str) -> None:
     table = styles["Table Text"]
     table.font.size = Pt(10)
     table.paragraph_format.space_before = table.paragraph_format.space_after = Pt(1.5)
-    _font(styles["Contents Heading"], 16, bold=True)
+    _set_font(styles["Contents Heading"], 16, bold=True)
     for level in (1, 2):
         entry = styles[f"TOC {level}"].paragraph_format
         entry.left_indent = Mm(6 * (level - 1))
         entry.tab_stops.add_tab_stop(Mm(TEXT), WD_TAB_ALIGNMENT.RIGHT, WD_TAB_LEADER.DOTS)
 
 
-def _font(style: Any, size: float, *, bold: bool = False) -> Any:
+def _set_font(style: Any, size: float, *, bold: bool = False) -> Any:
     style.font.name, style.font.size, style.font.color.rgb = SERIF, Pt(size), RGBColor(0, 0, 0)
     style.font.bold, style.font.italic = bold, False
     fonts = style.element.get_or_add_rPr().get_or_add_rFonts()
@@ -193,7 +193,7 @@ def _font(style: Any, size: float, *, bold: bool = False) -> Any:
     return style
 
 
-def _numbers(document: Any) -> None:
+def _number_headings(document: Any) -> None:
     """Number the headings decimally: 2, 2.1."""
     numbering = document.part.numbering_part.element
     own = "90"
@@ -213,27 +213,27 @@ def _numbers(document: Any) -> None:
         numbered.get_or_add_numId().val = int(own)
 
 
-def field(paragraph: Any, code: str, shown: str, *, dirty: bool = False) -> None:
+def add_field(paragraph: Any, code: str, shown: str, *, dirty: bool = False) -> None:
     """Add a Word field with its code and displayed text; `dirty` makes Word update it on opening."""
-    _open(paragraph, code, dirty=dirty)
+    _open_field(paragraph, code, dirty=dirty)
     paragraph.add_run(shown)
-    _mark(paragraph, "end")
+    _add_field_mark(paragraph, "end")
 
 
-def _open(paragraph: Any, code: str, *, dirty: bool) -> None:
-    _mark(paragraph, "begin", dirty=dirty)
+def _open_field(paragraph: Any, code: str, *, dirty: bool) -> None:
+    _add_field_mark(paragraph, "begin", dirty=dirty)
     text = OxmlElement("w:instrText", {qn("xml:space"): "preserve"})
     text.text = f" {code} "
     paragraph.add_run()._r.append(text)
-    _mark(paragraph, "separate")
+    _add_field_mark(paragraph, "separate")
 
 
-def _mark(paragraph: Any, kind: str, *, dirty: bool = False) -> None:
+def _add_field_mark(paragraph: Any, kind: str, *, dirty: bool = False) -> None:
     told = {"w:fldCharType": kind} | ({"w:dirty": "true"} if dirty else {})
     paragraph.add_run()._r.append(OxmlElement("w:fldChar", {qn(name): value for name, value in told.items()}))
 
 
-class Parts:
+class WordParts:
     """Bookmarks and pictures of a document, numbered through the file."""
 
     def __init__(self, document: Any) -> None:
@@ -241,14 +241,14 @@ class Parts:
         self.marks = 0
         self.pictures = 0
 
-    def marked(self, paragraph: Any, name: str, first: int) -> None:
+    def add_bookmark(self, paragraph: Any, name: str, first: int) -> None:
         """Bookmark a paragraph from its child number `first` to its end."""
         self.marks += 1
         own = {qn("w:id"): str(self.marks)}
         paragraph._p.insert(first, OxmlElement("w:bookmarkStart", own | {qn("w:name"): name}))
         paragraph._p.append(OxmlElement("w:bookmarkEnd", own))
 
-    def picture(self, paragraph: Any, drawing: Drawing, share: float, told: str) -> None:
+    def add_picture(self, paragraph: Any, drawing: Drawing, share: float, told: str) -> None:
         """Add a drawing at a fraction `share` of its size, with `told` as its alternative text."""
         self.pictures += 1
         uri = PackURI(f"/word/media/drawing{self.pictures}.emf")
@@ -256,7 +256,7 @@ class Parts:
         link = self.document.part.relate_to(part, RELATIONSHIP_TYPE.IMAGE)
         wide, high = (round(side * share * EMU) for side in drawing.paper)
         size = f'cx="{wide}" cy="{high}"'
-        name = f'id="{self.pictures}" name="drawing {self.pictures}" descr="{data(told)}"'
+        name = f'id="{self.pictures}" name="drawing {self.pictures}" descr="{escape_xml(told)}"'
         paragraph.add_run()._r.append(
             parse_xml(
                 f'<w:drawing {nsdecls("w", "wp", "a", "pic", "r")}><wp:inline distT="0" distB="0" distL="0" distR="0">'
@@ -269,20 +269,20 @@ class Parts:
             )
         )
 
-    def contents(self, entries: Iterable[tuple[int, str, str]]) -> None:
+    def add_contents(self, entries: Iterable[tuple[int, str, str]]) -> None:
         """Add the table of contents: a field that Word updates, filled with entries of level, number and text."""
         paragraph = None
         for k, (level, number, text) in enumerate(entries):
             paragraph = self.document.add_paragraph(style=f"TOC {min(level, 2)}")
             if k == 0:
-                _open(paragraph, 'TOC \\o "1-2" \\h \\z \\u', dirty=True)
+                _open_field(paragraph, 'TOC \\o "1-2" \\h \\z \\u', dirty=True)
             paragraph.add_run(f"{number} {text}\t")
-            field(paragraph, f"PAGEREF _Toc{k + 1} \\h", "", dirty=True)
+            add_field(paragraph, f"PAGEREF _Toc{k + 1} \\h", "", dirty=True)
         if paragraph is not None:
-            _mark(paragraph, "end")
+            _add_field_mark(paragraph, "end")
 
 
-def unbroken(row: Any, *, head: bool) -> None:
+def keep_on_page(row: Any, *, head: bool) -> None:
     """Keep a table row on one page; a heading row is repeated on every page."""
     properties = row._tr.get_or_add_trPr()
     properties.append(OxmlElement("w:cantSplit"))
@@ -290,19 +290,19 @@ def unbroken(row: Any, *, head: bool) -> None:
         properties.append(OxmlElement("w:tblHeader"))
 
 
-def title_page(document: Any, block: Title) -> None:
+def add_title_page(document: Any, block: Title) -> None:
     """Add the lines of the title page from top to bottom."""
 
     def centred(text: str, before: Length | None = None) -> Any:
-        paragraph = document.add_paragraph(plain(text))
+        paragraph = document.add_paragraph(replace_forbidden(text))
         paragraph.alignment, paragraph.paragraph_format.space_before = WD_ALIGN_PARAGRAPH.CENTER, before
         return paragraph
 
     centred(block.institution)
     centred(block.heading, Pt(170)).runs[0].font.size = Pt(15)
-    document.add_paragraph(plain(block.title), style="Title")
+    document.add_paragraph(replace_forbidden(block.title), style="Title")
     for k, (role, name) in enumerate(block.people):
-        line = document.add_paragraph(f"{plain(role)}: {plain(name) or '_' * 30}")
+        line = document.add_paragraph(f"{replace_forbidden(role)}: {replace_forbidden(name) or '_' * 30}")
         line.paragraph_format.left_indent = Mm(80)
         line.paragraph_format.space_before = Pt(110 if k == 0 else 4)
     centred(block.foot, Pt(150))
@@ -319,123 +319,127 @@ WIDE = 0.19  # mm, of a letter, a point of its size
 
 def docx(note: Note) -> bytes:
     """A file of Word."""
-    writer = _Writer(note)
+    writer = _DocxWriter(note)
     for block, following in zip(note.blocks, (*note.blocks[1:], None), strict=True):
-        writer.write(block, leads=isinstance(following, blocks.Equation | Found | blocks.Items | blocks.Rows))
+        writer.write(
+            block, leads=isinstance(following, blocks.Equation | ComputedQuantity | blocks.Items | blocks.Rows)
+        )
     file = io.BytesIO()
     writer.document.save(file)
     return file.getvalue()
 
 
-class _Writer:
+class _DocxWriter:
     def __init__(self, note: Note) -> None:
         self.note = note
         self.numbers = note.numbers()
         self.figures = partial(localise_figures, spoken=note.language)
         self.document: Any = Document()
-        prepared(self.document, note.title, note.language)
-        self.parts = Parts(self.document)
+        prepare_document(self.document, note.title, note.language)
+        self.parts = WordParts(self.document)
         self.counted: dict[str, int] = {}
 
     def write(self, block: Block, *, leads: bool = False) -> None:
         """Add a block; `leads` keeps a paragraph on the same page as the next block."""
         match block:
             case blocks.Heading(text, level):
-                heading = self.document.add_heading(plain(text), level)
-                self.parts.marked(heading, f"_Toc{self._next('heading')}", 1)
+                heading = self.document.add_heading(replace_forbidden(text), level)
+                self.parts.add_bookmark(heading, f"_Toc{self._next_number('heading')}", 1)
             case blocks.Paragraph(line):
-                paragraph = self._paragraph()
+                paragraph = self._add_paragraph()
                 paragraph.paragraph_format.keep_with_next = leads or None
-                self._line(paragraph, line)
+                self._add_line(paragraph, line)
             case blocks.Items(lines):
                 for line in lines:
-                    self._line(self._paragraph("ListBullet"), line)
+                    self._add_line(self._add_paragraph("ListBullet"), line)
             case blocks.Equation(node):
-                self._formula(display(node))
-            case Found():
-                self._formula(display(formula(block, self.figures)))
+                self._add_formula(display_omml(node))
+            case ComputedQuantity():
+                self._add_formula(display_omml(formula(block, self.figures)))
             case blocks.Rows():
-                self._rows(block)
+                self._add_table(block)
             case blocks.Figure():
-                self._figure(block)
+                self._add_figure(block)
             case blocks.Contents():
-                self._paragraph("ContentsHeading").add_run(_("Contents"))
+                self._add_paragraph("ContentsHeading").add_run(_("Contents"))
                 headings = self.note.headings()
-                self.parts.contents((heading.level, number, plain(heading.text)) for number, heading in headings)
+                self.parts.add_contents(
+                    (heading.level, number, replace_forbidden(heading.text)) for number, heading in headings
+                )
                 self.document.add_page_break()
             case blocks.Title():
-                title_page(self.document, block)
+                add_title_page(self.document, block)
                 self.document.add_page_break()
             case blocks.Sources(sources):
                 for source in sources:
-                    self._line(self._paragraph("ListNumber"), (source.text,))
+                    self._add_line(self._add_paragraph("ListNumber"), (source.text,))
 
-    def _paragraph(self, style: str = "") -> Any:
+    def _add_paragraph(self, style: str = "") -> Any:
         """Add a paragraph with a style identifier (a lookup by style name is slow)."""
         paragraph = self.document.add_paragraph()
         paragraph._p.style = style or None
         return paragraph
 
-    def _line(self, paragraph: Any, line: Line, **format: Any) -> None:
+    def _add_line(self, paragraph: Any, line: Line, **format: Any) -> None:
         for part in line:
-            self._inline(paragraph, part, **format)
+            self._add_inline(paragraph, part, **format)
 
-    def _inline(self, paragraph: Any, part: Inline, size: float = 0.0, bold: bool = False) -> None:
+    def _add_inline(self, paragraph: Any, part: Inline, size: float = 0.0, bold: bool = False) -> None:
         match part:
             case str():
-                run = paragraph.add_run(plain(part))
+                run = paragraph.add_run(replace_forbidden(part))
                 run.bold = bold or None
                 if size:
                     run.font.size = Pt(size)
             case blocks.Ref(key):
-                field(paragraph, f"REF {self._mark(key)} \\h", self.numbers[key])
+                add_field(paragraph, f"REF {self._bookmark_of(key)} \\h", self.numbers[key])
             case blocks.Link(key):
                 paragraph.add_run(f"[{self.numbers[key]}]")
             case Symbol():
-                paragraph._p.append(parse_xml(omath(Letter(part), size)))
+                paragraph._p.append(parse_xml(inline_omml(Letter(part), size)))
             case _:
-                paragraph._p.append(parse_xml(omath(part, size)))
+                paragraph._p.append(parse_xml(inline_omml(part, size)))
 
-    def _mark(self, key: str) -> str:
+    def _bookmark_of(self, key: str) -> str:
         """Return the bookmark of a number that is referred to."""
         return f"_Ref{list(self.numbers).index(key) + 1}"
 
-    def _formula(self, lines: Sequence[str]) -> None:
+    def _add_formula(self, lines: Sequence[str]) -> None:
         for k, line in enumerate(lines):
-            paragraph = self._paragraph("Formula")
+            paragraph = self._add_paragraph("Formula")
             paragraph.paragraph_format.keep_with_next = k < len(lines) - 1
             paragraph._p.append(parse_xml(line))
 
-    def _caption(self, sentence: str, text: str, key: str, kind: str) -> Any:
+    def _add_caption(self, sentence: str, text: str, key: str, kind: str) -> Any:
         """Add a caption numbered by a Word field; `sentence` has the fields {number} and {text}."""
         before, after = sentence.split("{number}")
-        paragraph = self._paragraph("Caption")
+        paragraph = self._add_paragraph("Caption")
         paragraph.add_run(before)
         first = len(paragraph._p)
-        field(paragraph, f"SEQ {kind} \\* ARABIC", str(self._next(kind)))
+        add_field(paragraph, f"SEQ {kind} \\* ARABIC", str(self._next_number(kind)))
         if key:
-            self.parts.marked(paragraph, self._mark(key), first)
-        paragraph.add_run(after.format(text=plain(text)))
+            self.parts.add_bookmark(paragraph, self._bookmark_of(key), first)
+        paragraph.add_run(after.format(text=replace_forbidden(text)))
         return paragraph
 
-    def _next(self, kind: str) -> int:
+    def _next_number(self, kind: str) -> int:
         self.counted[kind] = self.counted.get(kind, 0) + 1
         return self.counted[kind]
 
-    def _rows(self, block: blocks.Rows) -> None:
-        caption = self._caption(_("Table {number}. {text}"), block.caption, block.key, "Table")
+    def _add_table(self, block: blocks.Rows) -> None:
+        caption = self._add_caption(_("Table {number}. {text}"), block.caption, block.key, "Table")
         caption.paragraph_format.keep_with_next = True
         caption.alignment = WD_ALIGN_PARAGRAPH.LEFT
         table = self.document.add_table(rows=0, cols=len(block.head), style="Table Grid")
         table.alignment = WD_TABLE_ALIGNMENT.CENTER
         size = 10.0 if len(block.head) <= 6 else 8.5
-        widths = _widths(block, size * WIDE)
+        widths = _column_widths(block, size * WIDE)
         for column, wide in zip(table.columns, widths, strict=True):
             column.width = Mm(wide)
         for number, cells in enumerate((block.head, *block.rows)):
             row = table.add_row()
-            unbroken(row, head=number == 0)
-            together = _with_next(number, len(block.rows))
+            keep_on_page(row, head=number == 0)
+            together = _stays_with_next(number, len(block.rows))
             for k, (cell, line) in enumerate(zip(row.cells, cells, strict=True)):
                 cell.width = Mm(widths[k])
                 paragraph = cell.paragraphs[0]
@@ -444,19 +448,19 @@ class _Writer:
                     paragraph.paragraph_format.keep_with_next = True
                 if number and block.numeric[k]:
                     paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT if k else WD_ALIGN_PARAGRAPH.CENTER
-                self._line(paragraph, line, size=size, bold=number == 0)
-        self._paragraph("TableText")
+                self._add_line(paragraph, line, size=size, bold=number == 0)
+        self._add_paragraph("TableText")
 
-    def _figure(self, block: blocks.Figure) -> None:
-        paragraph = self._paragraph("Picture")
+    def _add_figure(self, block: blocks.Figure) -> None:
+        paragraph = self._add_paragraph("Picture")
         width, height = block.drawing.paper
         share = min(1.0, TEXT / width, HIGH / height)
-        self.parts.picture(paragraph, block.drawing, share, block.caption)
-        caption = self._caption(_("Figure {number}. {text}"), block.caption, block.key, "Figure")
+        self.parts.add_picture(paragraph, block.drawing, share, block.caption)
+        caption = self._add_caption(_("Figure {number}. {text}"), block.caption, block.key, "Figure")
         caption.paragraph_format.space_after = Pt(12)
 
 
-def _with_next(number: int, rows: int) -> bool:
+def _stays_with_next(number: int, rows: int) -> bool:
     """Return True if a row (the heading is 0) stays on the page of the next one.
 
     Short tables are not divided; a longer one leaves no single rows at its ends.
@@ -464,7 +468,7 @@ def _with_next(number: int, rows: int) -> bool:
     return number < rows and (rows <= WHOLE or number < ENDS or number > rows - ENDS)
 
 
-def _letters(line: Line) -> float:
+def _count_letters(line: Line) -> float:
     """Return the approximate width of a cell in letters; capitals count more."""
     capitals = sum(letter.isupper() for part in line if isinstance(part, str) for letter in part)
     return 0.3 * capitals + sum(
@@ -474,16 +478,20 @@ def _letters(line: Line) -> float:
     )
 
 
-def _widths(block: blocks.Rows, letter: float) -> list[float]:
+def _column_widths(block: blocks.Rows, letter: float) -> list[float]:
     """Return the column widths (mm): those of the cells, reduced to the page width without breaking words."""
     columns = list(zip(block.head, *block.rows, strict=True))
-    whole = [letter * (3 + max(map(_letters, column))) for column in columns]
-    least = [min(wide, letter * (3 + max(map(_longest, column)))) for column, wide in zip(columns, whole, strict=True)]
+    whole = [letter * (3 + max(map(_count_letters, column))) for column in columns]
+    least = [
+        min(wide, letter * (3 + max(map(_longest_word, column)))) for column, wide in zip(columns, whole, strict=True)
+    ]
     room = (TEXT - sum(least)) / (sum(whole) - sum(least) or 1.0)
     return [low + max(0.0, min(1.0, room)) * (wide - low) for low, wide in zip(least, whole, strict=True)]
 
 
-def _longest(line: Line) -> float:
+def _longest_word(line: Line) -> float:
     """Return the width of the longest word of a cell, in letters."""
     words = [word for part in line if isinstance(part, str) for word in part.split(" ")]
-    return max([_letters((part,)) for part in (*words, *(p for p in line if not isinstance(p, str)))], default=0.0)
+    return max(
+        [_count_letters((part,)) for part in (*words, *(p for p in line if not isinstance(p, str)))], default=0.0
+    )

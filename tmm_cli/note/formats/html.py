@@ -14,17 +14,17 @@ from tmm_cli.language import _
 from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.note import blocks
 from tmm_cli.note.blocks import Block, Inline, Line, Note
-from tmm_cli.note.expression import Found, formula
+from tmm_cli.note.expression import ComputedQuantity, formula
 from tmm_cli.note.formula_tree import Brackets, Fraction, Letter, Lines, Node, Number, Power, Root, Row, Sign, Words
 from tmm_cli.note.subject import localise_figures
 
 
 def mathml(node: Node, *, display: bool = False) -> str:
     """Return a formula as MathML; `display` puts it on a line of its own."""
-    return f"<math{' display=' + chr(34) + 'block' + chr(34) if display else ''}>{_of(node)}</math>"
+    return f"<math{' display=' + chr(34) + 'block' + chr(34) if display else ''}>{_mathml(node)}</math>"
 
 
-def _of(node: Node) -> str:
+def _mathml(node: Node) -> str:
     match node:
         case Number(text):
             return f"<mn>{escape(text)}</mn>"
@@ -36,18 +36,18 @@ def _of(node: Node) -> str:
         case Words(text):
             return f"<mtext>{escape(text).replace(' ', '&#160;')}</mtext>"
         case Row(nodes):
-            return f"<mrow>{''.join(_of(n) for n in nodes)}</mrow>"
+            return f"<mrow>{''.join(_mathml(n) for n in nodes)}</mrow>"
         case Fraction(over, under):
-            return f"<mfrac>{_of(over)}{_of(under)}</mfrac>"
+            return f"<mfrac>{_mathml(over)}{_mathml(under)}</mfrac>"
         case Power(base, exponent):
-            return f"<msup>{_of(base)}{_of(exponent)}</msup>"
+            return f"<msup>{_mathml(base)}{_mathml(exponent)}</msup>"
         case Root(of):
-            return f"<msqrt>{_of(of)}</msqrt>"
+            return f"<msqrt>{_mathml(of)}</msqrt>"
         case Brackets(inside, opens, closes, bars):
             left, right = "||" if bars else "()"
-            return f"<mrow>{f'<mo>{left}</mo>' * opens}{_of(inside)}{f'<mo>{right}</mo>' * closes}</mrow>"
+            return f"<mrow>{f'<mo>{left}</mo>' * opens}{_mathml(inside)}{f'<mo>{right}</mo>' * closes}</mrow>"
         case Lines(lines):
-            rows = "".join(f"<mtr><mtd>{_of(line)}</mtd></mtr>" for line in lines)
+            rows = "".join(f"<mtr><mtd>{_mathml(line)}</mtd></mtr>" for line in lines)
             return f'<mtable columnalign="left" displaystyle="true">{rows}</mtable>'
 
 
@@ -78,89 +78,89 @@ def html(note: Note) -> bytes:
     style = files("tmm_cli.note.formats").joinpath("note.css").read_text(encoding="utf-8")
     digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
     policy = f"default-src 'none';style-src 'sha256-{digest}'"
-    writer = Writer(note)
+    writer = HtmlWriter(note)
     head = (
-        f'<!doctype html>\n<html lang="{data(note.language)}"><head><meta charset="utf-8">\n'
+        f'<!doctype html>\n<html lang="{escape_text(note.language)}"><head><meta charset="utf-8">\n'
         f'<meta name="viewport" content="width=device-width,initial-scale=1">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
-        f"<title>{data(note.title)}</title><style>{style}</style></head>\n<body>\n"
+        f"<title>{escape_text(note.title)}</title><style>{style}</style></head>\n<body>\n"
     )
-    body = "\n".join(writer.block(block) for block in note.blocks)
+    body = "\n".join(writer.write_block(block) for block in note.blocks)
     return f"{head}{body}\n</body></html>\n".encode("utf-8", "replace")
 
 
-def data(text: str) -> str:
+def escape_text(text: str) -> str:
     """Escape an untrusted text."""
     return escape(text.translate(NOT_XML))
 
 
-class Writer:
+class HtmlWriter:
     """Writer of blocks as HTML elements; headings are written in order."""
 
     def __init__(self, note: Note) -> None:
         self.note, self.numbers, self.headings = note, note.numbers(), iter(note.headings())
-        self.places = {key: f"n{place}" for place, key in enumerate(self.numbers)}
+        self.ids = {key: f"n{place}" for place, key in enumerate(self.numbers)}
         self.tables = self.figures = 0
 
-    def block(self, block: Block) -> str:
+    def write_block(self, block: Block) -> str:
         """Return a block as HTML."""
         match block:
             case blocks.Heading():
                 number, __ = next(self.headings)
-                return f'<h{block.level} id="h{number}">{number} {data(block.text)}</h{block.level}>'
+                return f'<h{block.level} id="h{number}">{number} {escape_text(block.text)}</h{block.level}>'
             case blocks.Paragraph(line):
                 leads = ' class="leads"' if str(line[-1]).endswith(":") else ""
-                return f"<p{leads}>{self.line(line)}</p>"
+                return f"<p{leads}>{self.write_line(line)}</p>"
             case blocks.Items(lines):
-                return f"<ul>{''.join(f'<li>{self.line(line)}</li>' for line in lines)}</ul>"
+                return f"<ul>{''.join(f'<li>{self.write_line(line)}</li>' for line in lines)}</ul>"
             case blocks.Equation(node):
                 return f'<div class="equation">{mathml(node, display=True)}</div>'
-            case Found():
+            case ComputedQuantity():
                 shown = formula(block, partial(localise_figures, spoken=self.note.language))
                 return f'<div class="equation found">{mathml(shown, display=True)}</div>'
             case blocks.Rows():
-                return self.table(block)
+                return self.write_table(block)
             case blocks.Figure():
-                return self.figure(block)
+                return self.write_figure(block)
             case blocks.Contents():
-                return self.contents()
+                return self.write_contents()
             case blocks.Title():
-                return title(block)
+                return write_title_page(block)
             case blocks.Sources(sources):
-                listed = "".join(f"<li{self.place(s.key)}>{data(s.text)}</li>" for s in sources)
+                listed = "".join(f"<li{self.id_attribute(s.key)}>{escape_text(s.text)}</li>" for s in sources)
                 return f'<ol class="sources">{listed}</ol>'
 
-    def line(self, line: Line) -> str:
+    def write_line(self, line: Line) -> str:
         """Return texts and formulas as HTML; punctuation stays on the line of the formula before it."""
-        texts = [self.inline(part) for part in line]
+        texts = [self.write_inline(part) for part in line]
         for k, part in enumerate(line[1:], 1):
             if isinstance(part, str) and part[0] in STOPS and not isinstance(line[k - 1], str):
                 texts[k - 1] = f'<span class="joined">{texts[k - 1]}{part[0]}</span>'
-                texts[k] = data(part[1:])
+                texts[k] = escape_text(part[1:])
         return "".join(texts)
 
-    def inline(self, part: Inline) -> str:
+    def write_inline(self, part: Inline) -> str:
         """Return a part of a line as HTML."""
         match part:
             case str():
-                return data(part)
+                return escape_text(part)
             case blocks.Ref(key):
-                return f'<a href="#{self.places[key]}">{self.numbers[key]}</a>'
+                return f'<a href="#{self.ids[key]}">{self.numbers[key]}</a>'
             case blocks.Link(key):
-                return f'[<a href="#{self.places[key]}">{self.numbers[key]}</a>]'
+                return f'[<a href="#{self.ids[key]}">{self.numbers[key]}</a>]'
             case Symbol():
                 return mathml(Letter(part))
         return mathml(part)
 
-    def table(self, rows: blocks.Rows) -> str:
+    def write_table(self, rows: blocks.Rows) -> str:
         """Return a table with its caption above."""
         self.tables += 1
         caption = _("Table {number}. {text}").format(number=self.tables, text=rows.caption)
-        head = "".join(f"<th>{self.heading(cell)}</th>" for cell in rows.head)
+        head = "".join(f"<th>{self.write_heading(cell)}</th>" for cell in rows.head)
         body = "".join(
             "<tr>"
             + "".join(
-                f"<td{kind_of(cell, number)}>{self.line(cell)}</td>"
+                f"<td{cell_class(cell, number)}>{self.write_line(cell)}</td>"
                 for cell, number in zip(row, rows.numeric, strict=True)
             )
             + "</tr>\n"
@@ -168,47 +168,52 @@ class Writer:
         )
         whole = ' class="whole"' if len(rows.rows) <= WHOLE else ""
         return (
-            f'<p class="caption"{self.place(rows.key)}>{data(caption)}</p><table{whole}>\n'
+            f'<p class="caption"{self.id_attribute(rows.key)}>{escape_text(caption)}</p><table{whole}>\n'
             f"<thead><tr>{head}</tr></thead>\n<tbody>{body}</tbody></table>"
         )
 
-    def heading(self, cell: Line) -> str:
+    def write_heading(self, cell: Line) -> str:
         """Return a column heading; units such as rad/s are not broken."""
         if not all(isinstance(part, str) for part in cell):
-            return self.line(cell)
-        return re.sub(r"\S+/\S+", r'<span class="joined">\g<0></span>', data("".join(map(str, cell))))
+            return self.write_line(cell)
+        return re.sub(r"\S+/\S+", r'<span class="joined">\g<0></span>', escape_text("".join(map(str, cell))))
 
-    def figure(self, figure: blocks.Figure) -> str:
+    def write_figure(self, figure: blocks.Figure) -> str:
         """Return a figure with its caption below."""
         self.figures += 1
         caption = _("Figure {number}. {text}").format(number=self.figures, text=figure.caption)
         drawn = write_svg(figure.drawing).decode().partition("\n")[2]
-        return f"<figure{self.place(figure.key)}>{drawn}<figcaption>{data(caption)}</figcaption></figure>"
+        return f"<figure{self.id_attribute(figure.key)}>{drawn}<figcaption>{escape_text(caption)}</figcaption></figure>"
 
-    def contents(self) -> str:
+    def write_contents(self) -> str:
         """Return the table of contents with links to the headings."""
         lines = [
-            f'<p class="level{heading.level}"><a href="#h{number}">{number} {data(heading.text)}</a></p>'
+            f'<p class="level{heading.level}"><a href="#h{number}">{number} {escape_text(heading.text)}</a></p>'
             for number, heading in self.note.headings()
         ]
-        return f'<nav><p class="heading">{data(_("Contents"))}</p>{"".join(lines)}</nav>\n<div class="page"></div>'
+        return (
+            f'<nav><p class="heading">{escape_text(_("Contents"))}</p>{"".join(lines)}</nav>\n<div class="page"></div>'
+        )
 
-    def place(self, key: str) -> str:
+    def id_attribute(self, key: str) -> str:
         """Return the id attribute of a block that is referred to."""
-        return f' id="{self.places[key]}"' if key else ""
+        return f' id="{self.ids[key]}"' if key else ""
 
 
-def kind_of(cell: Line, number: bool) -> str:
+def cell_class(cell: Line, number: bool) -> str:
     """Return the class attribute of a cell: a number, or a short text that is not broken."""
     short = all(isinstance(part, str) for part in cell) and sum(map(len, map(str, cell))) <= SHORT
     return ' class="number"' if number else ' class="short"' if short else ""
 
 
-def title(block: blocks.Title) -> str:
+def write_title_page(block: blocks.Title) -> str:
     """Return the title page."""
-    people = "".join(f"<tr><td>{data(role)}</td><td>{data(name)}</td></tr>" for role, name in block.people)
+    people = "".join(
+        f"<tr><td>{escape_text(role)}</td><td>{escape_text(name)}</td></tr>" for role, name in block.people
+    )
     return (
-        f'<header><p class="institution">{data(block.institution)}</p><div><p class="kind">{data(block.heading)}</p>'
-        f'<p class="title">{data(block.title)}</p></div><table class="people">{people}</table>'
-        f'<p class="foot">{data(block.foot)}</p></header>'
+        f'<header><p class="institution">{escape_text(block.institution)}</p>'
+        f'<div><p class="kind">{escape_text(block.heading)}</p><p class="title">{escape_text(block.title)}</p></div>'
+        f'<table class="people">{people}</table>'
+        f'<p class="foot">{escape_text(block.foot)}</p></header>'
     )

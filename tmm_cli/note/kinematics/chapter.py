@@ -13,24 +13,35 @@ from tmm_cli.mechanics.kinematics import OutputTravel, Strokes
 from tmm_cli.mechanics.linkage import FRAME, Driver
 from tmm_cli.mechanics.numerics import NO_VECTOR, Real, largest_magnitude, without_rounding
 from tmm_cli.mechanics.plans import MovingGuideEquation, SolutionStep, solution_steps
-from tmm_cli.note.blocks import Block, Equation, Figure, Heading, Line, Ref, Rows, listed, said, tabled
-from tmm_cli.note.expression import Constant, Found, Function, Leaf
+from tmm_cli.note.blocks import (
+    Block,
+    Equation,
+    Figure,
+    Heading,
+    Line,
+    Ref,
+    Rows,
+    join_inline,
+    write_sentence,
+    write_table,
+)
+from tmm_cli.note.expression import ComputedQuantity, Constant, Function, Leaf
 from tmm_cli.note.formula_tree import Letter, Number, Words, row
-from tmm_cli.note.kinematics.equations import name_of, sense
-from tmm_cli.note.kinematics.on_paper import Here, unit
-from tmm_cli.note.kinematics.plans import accelerations, velocities
-from tmm_cli.note.subject import Subject, over_positions
+from tmm_cli.note.kinematics.equations import name_sense, point_symbol
+from tmm_cli.note.kinematics.on_paper import PositionPlans, unit_of
+from tmm_cli.note.kinematics.plans import write_accelerations, write_velocities
+from tmm_cli.note.subject import Subject, table_over_positions
 from tmm_cli.reports import describe_interpolation, output_motion, position_states
 
 ROUND = 1e-9  # of a speed in rpm that was given as such
 
 
-def drivers(subject: Subject) -> Iterable[Block]:
+def write_drivers(subject: Subject) -> Iterable[Block]:
     """Write how each input link moves."""
     running = subject.results.running
     for driver in subject.results.linkage.drivers:
         if running is not None:
-            yield said(
+            yield write_sentence(
                 _(
                     "The velocity of input link {link} follows from its law of motion, which is determined below. The "
                     "law of motion requires only velocity ratios, and these are the same at every velocity."
@@ -38,10 +49,12 @@ def drivers(subject: Subject) -> Iterable[Block]:
                 link=driver.link,
             )
             continue
-        yield from _rotating_driver(subject, driver) if driver.kind == "turn" else _sliding_driver(subject, driver)
+        yield from (
+            _write_rotating_driver(subject, driver) if driver.kind == "turn" else _write_sliding_driver(subject, driver)
+        )
 
 
-def _rotating_driver(subject: Subject, driver: Driver) -> Iterable[Block]:
+def _write_rotating_driver(subject: Subject, driver: Driver) -> Iterable[Block]:
     own = driver.link if driver.base == FRAME else driver.link + driver.base
     omega, n = Symbol("ω", "0" if driver.acceleration else own), driver.rate * 30 / np.pi
     rpm = abs(n - float(f"{n:.7g}")) <= ROUND * n
@@ -57,12 +70,12 @@ def _rotating_driver(subject: Subject, driver: Driver) -> Iterable[Block]:
     elif rpm:
         text = _("Input link {link} rotates about point {point} {sense} at {n} = {speed} rpm; its angular velocity is")
     how = "" if driver.law is None else describe_interpolation(driver.law)
-    yield said(
+    yield write_sentence(
         text,
         link=driver.link,
         point=driver.joint,
         base=driver.base,
-        sense=sense(driver.sense),
+        sense=name_sense(driver.sense),
         how=how,
         n=Symbol("n", own),
         speed=subject.text(n, 6),
@@ -70,40 +83,42 @@ def _rotating_driver(subject: Subject, driver: Driver) -> Iterable[Block]:
     if driver.law is not None:
         return
     if rpm:
-        yield Found(omega, Constant(float(np.pi), "π") * Leaf(Symbol("n", own), n) / 30, driver.rate, unit("ω"))
+        yield ComputedQuantity(
+            omega, Constant(float(np.pi), "π") * Leaf(Symbol("n", own), n) / 30, driver.rate, unit_of("ω")
+        )
     else:
-        yield _given(subject, omega, driver.rate)
+        yield _value_equation(subject, omega, driver.rate)
     if driver.acceleration:
-        yield said(_("in position 0 and with the constant angular acceleration"))
-        yield _given(subject, Symbol("ε", own), driver.acceleration)
+        yield write_sentence(_("in position 0 and with the constant angular acceleration"))
+        yield _value_equation(subject, Symbol("ε", own), driver.acceleration)
 
 
-def _sliding_driver(subject: Subject, driver: Driver) -> Iterable[Block]:
+def _write_sliding_driver(subject: Subject, driver: Driver) -> Iterable[Block]:
     slide = subject.results.linkage.slide(driver.joint)
     own = slide.point if driver.base == FRAME else f"{slide.point}{slide.point}{slide.carrier}"
     text = _("Input link {link} slides along its guide on the frame with the velocity")
     if driver.base != FRAME:
         text = _("Input link {link} moves along link {base} (a piston in its cylinder) with the relative velocity")
-    yield said(text, link=driver.link, base=driver.base)
-    yield _given(subject, Symbol("v", "0" if driver.acceleration else own), driver.rate)
+    yield write_sentence(text, link=driver.link, base=driver.base)
+    yield _value_equation(subject, Symbol("v", "0" if driver.acceleration else own), driver.rate)
     if driver.acceleration:
-        yield said(_("in position 0 and with the constant acceleration"))
-        yield _given(subject, Symbol("a", own), driver.acceleration)
+        yield write_sentence(_("in position 0 and with the constant acceleration"))
+        yield _value_equation(subject, Symbol("a", own), driver.acceleration)
 
 
-def _given(subject: Subject, name: Symbol, value: float) -> Block:
-    return Equation(row(Letter(name), "=", Number(subject.text(value)), Words(f" {unit(name.letter)}")))
+def _value_equation(subject: Subject, name: Symbol, value: float) -> Block:
+    return Equation(row(Letter(name), "=", Number(subject.text(value)), Words(f" {unit_of(name.letter)}")))
 
 
-def speed_here(here: Here) -> Iterable[Block]:
+def write_driver_speed(here: PositionPlans) -> Iterable[Block]:
     """Write the velocity of the first driver in a position, if it is not constant."""
     results, motion = here.subject.results, here.motion
     driver, turns = motion.linkage.driver, motion.linkage.driver.kind == "turn"
     if driver.law is not None or results.running is not None:
-        yield said(_("By the law of motion, its velocity and its acceleration in this position are"))
+        yield write_sentence(_("By the law of motion, its velocity and its acceleration in this position are"))
         for letter, values in zip("ωε" if turns else "va", (motion.rate, motion.acceleration), strict=True):
             value = float(np.broadcast_to(values, motion.q.shape)[here.k])
-            yield _given(here.subject, Symbol(letter, driver.link), value)
+            yield _value_equation(here.subject, Symbol(letter, driver.link), value)
         return
     if not driver.acceleration:
         return
@@ -111,7 +126,7 @@ def speed_here(here: Here) -> Iterable[Block]:
     begins = results.linkage.sketch.at if results.linkage.others else results.start
     gone = driver.sense * (float(motion.q[here.k]) - begins)
     run, start, now = Leaf(Symbol(f"Δ{way}"), gone), Leaf(Symbol(letter, "0"), driver.rate), Symbol(letter, driver.link)
-    yield said(
+    yield write_sentence(
         _(
             "The input link has moved through {gone} since position 0; its velocity {speed} follows from the "
             "constant acceleration:"
@@ -120,10 +135,10 @@ def speed_here(here: Here) -> Iterable[Block]:
         speed=now,
     )
     root = Function("sqrt", start**2 + 2 * Leaf(Symbol(rate, driver.link), driver.acceleration) * run)
-    yield Found(now, root, abs(float(motion.rate[here.k])), unit(letter))
+    yield ComputedQuantity(now, root, abs(float(motion.rate[here.k])), unit_of(letter))
 
 
-def positions(subject: Subject) -> Iterable[Block]:
+def write_positions(subject: Subject) -> Iterable[Block]:
     """Write the number of positions, the position plan, and the extreme positions of the output with its stroke."""
     results = subject.results
     request, count = results.inputs.request, len(results.asked)
@@ -136,21 +151,21 @@ def positions(subject: Subject) -> Iterable[Block]:
     elif full:
         text = _("The cycle is divided into {count} equal parts.")
     if count > 1:
-        yield said(text, count=str(count))
+        yield write_sentence(text, count=str(count))
     for drawing in subject.drawings("positions").values():
         if isinstance(drawing, SheetPicture) and drawing.mu is not None:
             text = _("The scale factor of the plan of positions is {mu} = {value} m/mm.")
-            yield said(text, mu=Symbol("μ", "l"), value=subject.text(drawing.mu))
+            yield write_sentence(text, mu=Symbol("μ", "l"), value=subject.text(drawing.mu))
     yield from subject.figures(
         "positions", _("The plan of positions is shown in figure {figure}."), _("Plan of positions of the mechanism")
     )
     for strokes in results.swinging:
-        yield from _extremes(subject, strokes)
+        yield from _write_extremes(subject, strokes)
     for travel in results.travels:
-        yield from _travel(subject, travel)
+        yield from _write_travel(subject, travel)
 
 
-def _extremes(subject: Subject, strokes: Strokes) -> Iterable[Block]:
+def _write_extremes(subject: Subject, strokes: Strokes) -> Iterable[Block]:
     """Write the extreme positions of the output, its stroke and the time ratio."""
     places = ", ".join(f"{subject.text(_degrees(s.start % strokes.cycle))}°" for s in strokes.strokes)
     slides = strokes.kind == "slide"
@@ -165,7 +180,9 @@ def _extremes(subject: Subject, strokes: Strokes) -> Iterable[Block]:
             "The output ({output}) is in its extreme positions at the input angles {phi} = {places}; its "
             "stroke is {size}."
         )
-    yield said(text, output=output(subject, strokes.link), phi=Symbol("φ"), places=places, size=row(*shown))
+    yield write_sentence(
+        text, output=name_output(subject, strokes.link), phi=Symbol("φ"), places=places, size=row(*shown)
+    )
     if not np.isfinite(strokes.k):
         return
     working = sum(s.length for s in strokes.working)
@@ -179,17 +196,17 @@ def _extremes(subject: Subject, strokes: Strokes) -> Iterable[Block]:
             "The input link rotates through {working} during all working strokes of a cycle and through {idle} "
             "during all return strokes; the time ratio {k} (coefficient of change of mean speed) is"
         )
-    yield said(text, k=Symbol("k"), working=Symbol("φ", symbol("w")), idle=Symbol("φ", symbol("i")))
+    yield write_sentence(text, k=Symbol("k"), working=Symbol("φ", symbol("w")), idle=Symbol("φ", symbol("i")))
     ratio = Leaf(Symbol("φ", symbol("w")), working, angle=True) / Leaf(Symbol("φ", symbol("i")), idle, angle=True)
-    yield Found(Symbol("k"), ratio, strokes.k)
+    yield ComputedQuantity(Symbol("k"), ratio, strokes.k)
 
 
-def _travel(subject: Subject, travel: OutputTravel) -> Iterable[Block]:
+def _write_travel(subject: Subject, travel: OutputTravel) -> Iterable[Block]:
     slides = travel.kind == "slide"
     ends = (travel.low, travel.high)
     low, high = (f"{subject.text(end)} {_('m')}" if slides else f"{subject.text(_degrees(end))}°" for end in ends)
     text = _("In this range the output ({output}) moves from {low} to {high}.")
-    yield said(text, output=output(subject, travel.link), low=low, high=high)
+    yield write_sentence(text, output=name_output(subject, travel.link), low=low, high=high)
 
 
 def _degrees(angle: float) -> float:
@@ -198,20 +215,20 @@ def _degrees(angle: float) -> float:
     return 0.0 if abs(found) < NO_VECTOR else found
 
 
-def output(subject: Subject, link: str) -> str:
+def name_output(subject: Subject, link: str) -> str:
     """Return "link 4", or the coordinate of a point that serves as the output."""
     return _("link {link}").format(link=link) if link in subject.results.linkage.links else link
 
 
-def place_here(here: Here) -> Block:
+def write_driver_coordinate(here: PositionPlans) -> Block:
     """Write the angle or displacement of the input link in a position."""
-    driver, q, number = here.motion.linkage.driver, float(here.motion.q[here.k]), here.subject.called(here.k)
+    driver, q, number = here.motion.linkage.driver, float(here.motion.q[here.k]), here.subject.position_number(here.k)
     if driver.kind == "turn":
         text = _("In position {number} the input link is at the angle {phi} = {angle}° to the x axis.")
         angle = here.subject.text(_degrees(q % (2 * np.pi)))
-        return said(text, number=number, phi=Symbol("φ", driver.link), angle=angle)
+        return write_sentence(text, number=number, phi=Symbol("φ", driver.link), angle=angle)
     text = _("In position {number} the displacement of the input link is {run} = {place} m.")
-    return said(text, number=number, run=Symbol("s", driver.link), place=here.subject.text(q))
+    return write_sentence(text, number=number, run=Symbol("s", driver.link), place=here.subject.text(q))
 
 
 BESIDE = 6  # columns of what links turn with in one table
@@ -220,46 +237,46 @@ BESIDE = 6  # columns of what links turn with in one table
 Column = tuple[Line, Real]  # head, values of a quantity in all positions in the unit of its head
 
 
-def tables(subject: Subject) -> Iterable[Block]:
+def write_tables(subject: Subject) -> Iterable[Block]:
     """Write the tables of all positions and the diagrams of motion and pressure angles."""
     results, motion = subject.results, subject.motion
     for link in results.mechanism.outputs:
         letters = ("φ", "ω", "ε") if results.linkage.output_swings(link) else ("s", "v", "a")
-        units = ("°", unit("ω"), unit("ε")) if letters[0] == "φ" else (_("m"), unit("v"), unit("a"))
+        units = ("°", unit_of("ω"), unit_of("ε")) if letters[0] == "φ" else (_("m"), unit_of("v"), unit_of("a"))
         columns = []
         for letter, per, (__, values, ___) in zip(letters, units, output_motion(results, motion, link), strict=True):
             own = without_rounding(values, largest_magnitude(values))
             columns.append(((Symbol(letter, link), f", {per}"), np.degrees(own) if per == "°" else own))
-        caption = _("Motion of the output ({output})").format(output=output(subject, link))
+        caption = _("Motion of the output ({output})").format(output=name_output(subject, link))
         text = _("The motion of the output in all positions is given in table {table}.")
-        yield from tabled(text, _table(subject, caption, columns, f"output-{link}"))
-    yield from _rate_tables(subject)
+        yield from write_table(text, _position_table(subject, caption, columns, f"output-{link}"))
+    yield from _write_rate_tables(subject)
     for stem, drawing in subject.drawings("diagrams").items():
         if stem.startswith("diagrams"):
-            yield said(_("The diagrams of motion are shown in figure {figure}."), figure=Ref(stem))
+            yield write_sentence(_("The diagrams of motion are shown in figure {figure}."), figure=Ref(stem))
             yield Figure(_("Diagrams of motion over the cycle"), drawing, stem)
         elif stem.startswith("pressure"):
-            yield said(_("The pressure angles are shown in figure {figure}."), figure=Ref(stem))
+            yield write_sentence(_("The pressure angles are shown in figure {figure}."), figure=Ref(stem))
             yield Figure(_("Pressure angles over the cycle"), drawing, stem)
 
 
-def _rate_tables(subject: Subject) -> Iterable[Block]:
+def _write_rate_tables(subject: Subject) -> Iterable[Block]:
     """Write the angular velocities and accelerations of the links, in one table if it is not too wide."""
-    velocities, accelerations = _rates(subject, "ω", "omega"), _rates(subject, "ε", "epsilon")
+    velocities, accelerations = _rate_columns(subject, "ω", "omega"), _rate_columns(subject, "ε", "epsilon")
     if velocities and accelerations and len(velocities) + len(accelerations) <= BESIDE:
         text = _("The angular velocities and accelerations of the links are given in table {table}.")
         caption = _("Angular velocities and accelerations of the links")
-        yield from tabled(text, _table(subject, caption, [*velocities, *accelerations], "rates"))
+        yield from write_table(text, _position_table(subject, caption, [*velocities, *accelerations], "rates"))
         return
     if velocities:
-        rows = _table(subject, _("Angular velocities of the links"), velocities, "omega")
-        yield from tabled(_("The angular velocities of the links are given in table {table}."), rows)
+        rows = _position_table(subject, _("Angular velocities of the links"), velocities, "omega")
+        yield from write_table(_("The angular velocities of the links are given in table {table}."), rows)
     if accelerations:
-        rows = _table(subject, _("Angular accelerations of the links"), accelerations, "epsilon")
-        yield from tabled(_("The angular accelerations of the links are given in table {table}."), rows)
+        rows = _position_table(subject, _("Angular accelerations of the links"), accelerations, "epsilon")
+        yield from write_table(_("The angular accelerations of the links are given in table {table}."), rows)
 
 
-def _rates(subject: Subject, letter: str, what: str) -> list[Column]:
+def _rate_columns(subject: Subject, letter: str, what: str) -> list[Column]:
     """Return the columns of a rate of rotation: links that rotate together share one; constant rates are left out."""
     motion = subject.motion
     every = {link: np.asarray(getattr(motion.link(link), what), float) for link in motion.linkage.moving}
@@ -275,22 +292,22 @@ def _rates(subject: Subject, letter: str, what: str) -> list[Column]:
             own.append(link)
     varied = [(links, v) for links, v in together if len(v) == 1 or np.nanmax(v) - np.nanmin(v) > NO_VECTOR * most]
     return [
-        ((*listed((Symbol(letter, link) for link in links), " = "), f", {unit(letter)}"), values)
+        ((*join_inline((Symbol(letter, link) for link in links), " = "), f", {unit_of(letter)}"), values)
         for links, values in varied
     ]
 
 
-def _table(subject: Subject, caption: str, columns: Sequence[Column], key: str) -> Rows:
+def _position_table(subject: Subject, caption: str, columns: Sequence[Column], key: str) -> Rows:
     """Return a table with a row per position, the driver coordinates first and the state of failed positions last."""
-    every, told = (*_places(subject), *columns), position_states(subject.results)
+    every, told = (*_driver_columns(subject), *columns), position_states(subject.results)
     texts = [
-        (head, [subject.shown(float(value)) if np.isfinite(value) else "–" for value in values])
+        (head, [subject.format_result(float(value)) if np.isfinite(value) else "–" for value in values])
         for head, values in every
     ]
-    return over_positions(subject, caption, [*texts, *([((_("state"),), told)] if any(told) else [])], key)
+    return table_over_positions(subject, caption, [*texts, *([((_("state"),), told)] if any(told) else [])], key)
 
 
-def _places(subject: Subject) -> Iterable[Column]:
+def _driver_columns(subject: Subject) -> Iterable[Column]:
     """Yield the columns of the driver coordinates; a rotating crank within one turn or the turns of a load cycle."""
     results = subject.results
     several, cycle = bool(results.linkage.others), 2 * np.pi * results.linkage.turns
@@ -311,20 +328,20 @@ def write_kinematics(subject: Subject) -> Iterable[Block]:
         return
     yield Heading(_("Kinematic analysis"))
     yield Heading(_("Input links and positions"), 2)
-    yield from drivers(subject)
-    yield from positions(subject)
+    yield from write_drivers(subject)
+    yield from write_positions(subject)
     every = solution_steps(results.linkage, results.structure.all_groups)
     for k in subject.detail:
-        yield from _position(Here(subject, k, k == subject.detail[0]), every)
+        yield from _write_position(PositionPlans(subject, k, k == subject.detail[0]), every)
     yield Heading(_("Kinematics of all positions"), 2)
-    yield from tables(subject)
+    yield from write_tables(subject)
 
 
-def _position(here: Here, every: list[SolutionStep]) -> Iterable[Block]:
-    subject, number = here.subject, here.subject.called(here.k)
+def _write_position(here: PositionPlans, every: list[SolutionStep]) -> Iterable[Block]:
+    subject, number = here.subject, here.subject.position_number(here.k)
     yield Heading(_("Velocities, position {number}").format(number=number), 2)
     if here.first:
-        yield said(
+        yield write_sentence(
             _(
                 "Velocities are found from velocity plans: first for the input links, then for the groups in the "
                 "order of the structural formula. A vector underlined twice is known in magnitude and direction, a "
@@ -333,35 +350,35 @@ def _position(here: Here, every: list[SolutionStep]) -> Iterable[Block]:
         )
         slid = next((e for step in every for e in step.equations if isinstance(e, MovingGuideEquation)), None)
         if slid is not None:
-            yield said(
+            yield write_sentence(
                 _(
                     "The point of the guide that coincides with the sliding block in this position is denoted with the "
                     "number of the link of the guide: {under} of link {link} lies at {point}; its distances to other "
                     "points of the link are those in this position."
                 ),
-                under=name_of(slid.base),
+                under=point_symbol(slid.base),
                 link=slid.slide.carrier,
                 point=slid.point.at,
             )
-    yield place_here(here)
-    yield from speed_here(here)
+    yield write_driver_coordinate(here)
+    yield from write_driver_speed(here)
     yield from subject.figures(
         "velocity",
         _("The velocity plan is shown in figure {figure}."),
         _("Velocity plan, position {number}").format(number=number),
         here.k,
     )
-    yield from velocities(here, every)
+    yield from write_velocities(here, every)
     yield Heading(_("Accelerations, position {number}").format(number=number), 2)
     if here.first:
-        yield said(
+        yield write_sentence(
             _(
                 "The acceleration of a point relative to another point of its link has a normal component, directed "
                 "towards that other point, and a tangential one, perpendicular to the line between them."
             )
         )
         if any(isinstance(e, MovingGuideEquation) for step in every for e in step.equations):
-            yield said(
+            yield write_sentence(
                 _(
                     "The acceleration of the sliding block relative to the coincident point of the guide has a "
                     "component along the guide and, if the guide rotates, the Coriolis component; its direction is "
@@ -374,4 +391,4 @@ def _position(here: Here, every: list[SolutionStep]) -> Iterable[Block]:
         _("Acceleration plan, position {number}").format(number=number),
         here.k,
     )
-    yield from accelerations(here, every)
+    yield from write_accelerations(here, every)

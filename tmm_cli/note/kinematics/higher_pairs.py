@@ -9,64 +9,66 @@ from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.mechanics.groups import carrier_axis
 from tmm_cli.mechanics.linkage import FRAME, Mesh
 from tmm_cli.mechanics.plans import FixedGuideEquation, HigherPairRatio, MovingGuideEquation, SolutionStep
-from tmm_cli.note.blocks import Block, Equation, said
-from tmm_cli.note.expression import Expression, Found, Function, Leaf, letters, signed
+from tmm_cli.note.blocks import Block, Equation, write_sentence
+from tmm_cli.note.expression import ComputedQuantity, Expression, Function, Leaf, apply_sign, symbolic_formula
 from tmm_cli.note.formula_tree import Letter, row
-from tmm_cli.note.kinematics.equations import sense
-from tmm_cli.note.kinematics.on_paper import Here, Vector, unit, zero
+from tmm_cli.note.kinematics.equations import name_sense
+from tmm_cli.note.kinematics.on_paper import DrawnVector, PositionPlans, unit_of, zero_equation
 
 
-def begun(here: Here, step: SolutionStep, letter: str) -> Iterable[Block]:
+def write_higher_pairs(here: PositionPlans, step: SolutionStep, letter: str) -> Iterable[Block]:
     """Write the beginning of a group: the angular velocities or accelerations that its higher pairs give."""
     assert step.group is not None
     if step.ratios:
-        yield said(_("The motion of group {group} follows from its higher pairs."), group=step.group.title)
+        yield write_sentence(_("The motion of group {group} follows from its higher pairs."), group=step.group.title)
     elif not here.first:
-        yield said(_("Group {group}:"), group=step.group.title)
+        yield write_sentence(_("Group {group}:"), group=step.group.title)
     for ratio in step.ratios:
-        yield from _by_ratio(here, step, ratio, letter)
+        yield from _write_rate(here, step, ratio, letter)
 
 
-def _by_ratio(here: Here, step: SolutionStep, ratio: HigherPairRatio, letter: str) -> Iterable[Block]:
+def _write_rate(here: PositionPlans, step: SolutionStep, ratio: HigherPairRatio, letter: str) -> Iterable[Block]:
     """Write the rate of rotation, or of sliding, that a higher pair gives."""
     mesh, first = ratio.mesh, here.first and letter == "ω"
     if mesh.kind == "gear":
         if first:
-            yield from _willis(here, mesh)
-        yield _wheel(here, mesh, ratio.link, letter)
+            yield from _write_gear_ratio(here, mesh)
+        yield _gear_rate(here, mesh, ratio.link, letter)
     elif mesh.kind == "rack":
         if first:
             text = _("Gear {wheel} of radius {radius} rolls on the rack without slipping, so")
-            yield said(text, wheel=mesh.i, radius=Symbol("r", mesh.i))
-        yield _rolls(here, step, ratio, letter)
+            yield write_sentence(text, wheel=mesh.i, radius=Symbol("r", mesh.i))
+        yield _rolling_rate(here, step, ratio, letter)
     else:
         if here.first:
-            yield _law(mesh, letter)
-        yield _follower(here, step, ratio, letter)
+            yield _introduce_cam_law(mesh, letter)
+        yield _follower_rate(here, step, ratio, letter)
     if letter == "ω" and here.omega.get(ratio.link):
-        yield said(_("Link {link} rotates {sense}."), link=ratio.link, sense=sense(here.omega[ratio.link]))
+        yield write_sentence(
+            _("Link {link} rotates {sense}."), link=ratio.link, sense=name_sense(here.omega[ratio.link])
+        )
 
 
-def _turning(here: Here, link: str, letter: str) -> Leaf | None:
+def _signed_rate(here: PositionPlans, link: str, letter: str) -> Leaf | None:
     """Return the rate of rotation of a link with its sign; None if it never rotates."""
     rates = here.rates(letter)
     return Leaf(Symbol(letter, link), rates[link]) if link in rates else None
 
 
-def _less(one: Expression | None, other: Expression | None) -> Expression | None:
+def _subtract_rates(one: Expression | None, other: Expression | None) -> Expression | None:
     """Return the difference of two rates, None standing for a link that never rotates."""
     if one is None or other is None:
         return one if other is None else -other
     return one - other
 
 
-def _willis(here: Here, mesh: Mesh) -> Iterable[Block]:
+def _write_gear_ratio(here: PositionPlans, mesh: Mesh) -> Iterable[Block]:
     """Write the ratio of two gears with their carrier at rest."""
     linkage = here.motion.linkage
     a, b = (complex(carrier_axis(linkage, wheel, mesh.carrier)) for wheel in (mesh.i, mesh.j))
     pitch = (a - mesh.ratio * b) / (1 - mesh.ratio)
     radii = Leaf(Symbol("r", mesh.i), abs(pitch - a)) / Leaf(Symbol("r", mesh.j), abs(pitch - b))
-    carried = _turning(here, mesh.carrier, "ω") is not None
+    carried = _signed_rate(here, mesh.carrier, "ω") is not None
     over, under, carrier = (Leaf(Symbol("ω", link)) for link in (mesh.j, mesh.i, mesh.carrier))
     share = over / under
     text = _(
@@ -82,39 +84,39 @@ def _willis(here: Here, mesh: Mesh) -> Iterable[Block]:
             "is then"
         )
     ri, rj = Symbol("r", mesh.i), Symbol("r", mesh.j)
-    yield said(text, i=mesh.i, j=mesh.j, carrier=mesh.carrier, ri=ri, rj=rj)
-    yield Equation(row(Letter(_ratio(mesh)), "=", letters(share)))
-    yield Found(_ratio(mesh), signed(mesh.ratio, radii), mesh.ratio)
-    yield said(_("The required angular velocity is therefore:"))
+    yield write_sentence(text, i=mesh.i, j=mesh.j, carrier=mesh.carrier, ri=ri, rj=rj)
+    yield Equation(row(Letter(_ratio_symbol(mesh)), "=", symbolic_formula(share)))
+    yield ComputedQuantity(_ratio_symbol(mesh), apply_sign(mesh.ratio, radii), mesh.ratio)
+    yield write_sentence(_("The required angular velocity is therefore:"))
 
 
-def _ratio(mesh: Mesh) -> Symbol:
+def _ratio_symbol(mesh: Mesh) -> Symbol:
     return Symbol("u", mesh.j + mesh.i, "" if mesh.carrier == FRAME else f"({mesh.carrier})")
 
 
-def _wheel(here: Here, mesh: Mesh, link: str, letter: str) -> Block:
+def _gear_rate(here: PositionPlans, mesh: Mesh, link: str, letter: str) -> Block:
     """Return the rate of rotation of one of two gears, or of their carrier."""
-    i, j, c = (_turning(here, one, letter) for one in (mesh.i, mesh.j, mesh.carrier))
-    u, found = Leaf(_ratio(mesh), mesh.ratio), _turning(here, link, letter)
+    i, j, c = (_signed_rate(here, one, letter) for one in (mesh.i, mesh.j, mesh.carrier))
+    u, found = Leaf(_ratio_symbol(mesh), mesh.ratio), _signed_rate(here, link, letter)
     if found is None:
-        return zero(Symbol(letter, link))
+        return zero_equation(Symbol(letter, link))
     forward = link == mesh.j
     own = i if forward else j
     if link == mesh.carrier:
-        expression = _less(j, u * i if i else None)
+        expression = _subtract_rates(j, u * i if i else None)
         assert expression is not None
         expression = expression / (1 - u)
     elif own is None and c is not None:
         expression = c * (1 - (u if forward else 1 / u))
     else:
-        relative = _less(own, c)
+        relative = _subtract_rates(own, c)
         assert relative is not None
         share = u * relative if forward else relative / u
         expression = share if c is None else c + share
-    return Found(found.symbol, expression, found.value, unit(letter))
+    return ComputedQuantity(found.symbol, expression, found.value, unit_of(letter))
 
 
-def _sliding(here: Here, step: SolutionStep, ratio: HigherPairRatio, letter: str) -> Vector:
+def _sliding_vector(here: PositionPlans, step: SolutionStep, ratio: HigherPairRatio, letter: str) -> DrawnVector:
     """Return the velocity or acceleration in the prismatic pair of a rack or follower."""
     slide, plan = here.motion.linkage.slide(ratio.mesh.slide), here.plan_of(letter)
     own = next(
@@ -126,26 +128,26 @@ def _sliding(here: Here, step: SolutionStep, ratio: HigherPairRatio, letter: str
         None,
     )
     if isinstance(own, MovingGuideEquation):
-        return plan.relative(own.point, own.base) if letter == "ω" else plan.part(own.point, own.base, "r")
-    return plan.of(own.point if own is not None else slide.point)
+        return plan.relative(own.point, own.base) if letter == "ω" else plan.component(own.point, own.base, "r")
+    return plan.vector_of(own.point if own is not None else slide.point)
 
 
-def _rolls(here: Here, step: SolutionStep, ratio: HigherPairRatio, letter: str) -> Block:
+def _rolling_rate(here: PositionPlans, step: SolutionStep, ratio: HigherPairRatio, letter: str) -> Block:
     mesh = ratio.mesh
-    run, radius = _sliding(here, step, ratio, letter), Leaf(Symbol("r", mesh.i), abs(mesh.ratio))
-    wheel, carrier = (_turning(here, link, letter) for link in (mesh.i, mesh.carrier))
-    turning = _less(wheel, carrier)
+    run, radius = _sliding_vector(here, step, ratio, letter), Leaf(Symbol("r", mesh.i), abs(mesh.ratio))
+    wheel, carrier = (_signed_rate(here, link, letter) for link in (mesh.i, mesh.carrier))
+    turning = _subtract_rates(wheel, carrier)
     if turning is None:
-        return zero(run.symbol if ratio.slide is not None else Symbol(letter, ratio.link))
+        return zero_equation(run.symbol if ratio.slide is not None else Symbol(letter, ratio.link))
     if ratio.slide is not None:
-        own = unit(here.plan_of(letter).sort.letter)
-        return Found(run.symbol, radius * Function("abs", turning), run.size, own)
+        own = unit_of(here.plan_of(letter).kind.letter)
+        return ComputedQuantity(run.symbol, radius * Function("abs", turning), run.size, own)
     alone = Symbol(letter, mesh.i if carrier is None else f"{mesh.i}{mesh.carrier}")
     value = abs((wheel.value if wheel else 0.0) - (carrier.value if carrier else 0.0))
-    return Found(alone, run.leaf / radius, value, unit(letter))
+    return ComputedQuantity(alone, run.leaf / radius, value, unit_of(letter))
 
 
-def _law(mesh: Mesh, letter: str) -> Block:
+def _introduce_cam_law(mesh: Mesh, letter: str) -> Block:
     text = _("The second derivative {second} of the motion law gives")
     if letter == "ω" and mesh.slide:
         text = _(
@@ -157,29 +159,35 @@ def _law(mesh: Mesh, letter: str) -> Block:
             "The motion law of follower {follower} gives the derivative {first} of its angle with respect to "
             "the angle of cam {cam}:"
         )
-    return said(text, follower=mesh.j, cam=mesh.i, first=_derivative(mesh, 1), second=_derivative(mesh, 2))
+    return write_sentence(
+        text, follower=mesh.j, cam=mesh.i, first=_derivative_symbol(mesh, 1), second=_derivative_symbol(mesh, 2)
+    )
 
 
-def _derivative(mesh: Mesh, order: int) -> Symbol:
+def _derivative_symbol(mesh: Mesh, order: int) -> Symbol:
     return Symbol(("s" if mesh.slide else "ψ") + ("′" if order == 1 else "″"))
 
 
-def _follower(here: Here, step: SolutionStep, ratio: HigherPairRatio, letter: str) -> Block:
+def _follower_rate(here: PositionPlans, step: SolutionStep, ratio: HigherPairRatio, letter: str) -> Block:
     mesh = ratio.mesh
     assert mesh.law is not None
     poses, cam, carrier = here.motion.poses, mesh.i, mesh.carrier
     __, first, second = (float(value[here.k]) for value in mesh.law(poses[cam].turned - poses[carrier].turned))
-    omega, epsilon = (_less(_turning(here, cam, letter), _turning(here, carrier, letter)) for letter in "ωε")
+    omega, epsilon = (
+        _subtract_rates(_signed_rate(here, cam, letter), _signed_rate(here, carrier, letter)) for letter in "ωε"
+    )
     omega = Leaf(Symbol("ω", cam), 0.0) if omega is None else omega  # of a driver at rest
-    by_law = Leaf(_derivative(mesh, 1), first)
+    by_law = Leaf(_derivative_symbol(mesh, 1), first)
     expression: Expression = by_law * omega
     if letter == "ε":
-        expression = Leaf(_derivative(mesh, 2), second) * omega**2
+        expression = Leaf(_derivative_symbol(mesh, 2), second) * omega**2
         if epsilon is not None:
             expression = expression + by_law * epsilon
     if mesh.slide:
-        return here.plan_of(letter).found(_sliding(here, step, ratio, letter), Function("abs", expression))
-    found = _turning(here, mesh.j, letter)
+        return here.plan_of(letter).write_magnitude(
+            _sliding_vector(here, step, ratio, letter), Function("abs", expression)
+        )
+    found = _signed_rate(here, mesh.j, letter)
     if found is None or found.value == 0:
-        return zero(Symbol(letter, mesh.j))
-    return Found(found.symbol, expression, found.value, unit(letter))
+        return zero_equation(Symbol(letter, mesh.j))
+    return ComputedQuantity(found.symbol, expression, found.value, unit_of(letter))

@@ -15,7 +15,7 @@ from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.numerics import NO_VECTOR
 from tmm_cli.mechanics.plans import NamedVector, Plan, PlanPoint, angular_values, extent, round_scale, with_subscripts
 from tmm_cli.note.blocks import Block, Equation
-from tmm_cli.note.expression import Expression, Found, Leaf
+from tmm_cli.note.expression import ComputedQuantity, Expression, Leaf
 from tmm_cli.note.formula_tree import Letter, Number, row
 from tmm_cli.note.subject import OF_POSITION, Subject
 
@@ -23,7 +23,7 @@ SMALL = 0.2  # of the largest known vector: a smaller one is not the one by whic
 
 
 @dataclass(frozen=True)
-class Vector:
+class DrawnVector:
     """Vector of a plan: its symbol, magnitude (SI) and segment; a zero vector has no segment."""
 
     symbol: Symbol
@@ -37,7 +37,7 @@ class Vector:
 
 
 @dataclass(frozen=True)
-class OnPaper:
+class DrawnPlan:
     """Velocity or acceleration plan at its scale."""
 
     subject: Subject
@@ -46,14 +46,14 @@ class OnPaper:
     name: Literal["velocity", "acceleration"]
 
     @cached_property
-    def sort(self) -> MotionPlanKind:
+    def kind(self) -> MotionPlanKind:
         """Letters and units of the plan."""
         return next(sort for sort in motion_plan_kinds() if sort.stem == self.name)
 
     @cached_property
     def plan(self) -> Plan:
         """Vectors of the plan."""
-        return self.sort.plan(self.motion, self.k)
+        return self.kind.plan(self.motion, self.k)
 
     @cached_property
     def mu(self) -> float:
@@ -70,62 +70,62 @@ class OnPaper:
         """Vectors of points and centres of mass by name."""
         return {v.symbol.below: v for v in self.plan.vectors if v.kind == "absolute"}
 
-    def of(self, spot: PlanPoint | str) -> Vector:
+    def vector_of(self, spot: PlanPoint | str) -> DrawnVector:
         """Return the vector of a point, or of a centre of mass by name."""
         name = spot if isinstance(spot, str) else spot.name
-        return self._vector(Symbol(self.sort.letter, name), self._end(name), self.sort.pole + self._letter(name))
+        return self._vector(Symbol(self.kind.letter, name), self._end(name), self.kind.pole + self._letter(name))
 
-    def relative(self, point: PlanPoint, base: PlanPoint) -> Vector:
+    def relative(self, point: PlanPoint, base: PlanPoint) -> DrawnVector:
         """Return the velocity of a point relative to another; relative to a fixed point, its absolute velocity."""
         if base.fixed:
-            return self.of(point)
-        symbol = Symbol(self.sort.letter, point.name + base.name)
-        letters = [self._letter(spot.name) or self.sort.pole for spot in (base, point)]
+            return self.vector_of(point)
+        symbol = Symbol(self.kind.letter, point.name + base.name)
+        letters = [self._letter(spot.name) or self.kind.pole for spot in (base, point)]
         return self._vector(symbol, self._end(point.name) - self._end(base.name), "".join(letters))
 
-    def part(self, point: PlanPoint, base: PlanPoint, above: str) -> Vector:
+    def component(self, point: PlanPoint, base: PlanPoint, above: str) -> DrawnVector:
         """Return a component of a relative acceleration: n, τ, k or r."""
-        symbol = Symbol(self.sort.letter, point.name + base.name, above)
+        symbol = Symbol(self.kind.letter, point.name + base.name, above)
         found = next(v for v in self.plan.vectors if v.symbol == symbol)
         return self._vector(symbol, found.value, found.name)
 
-    def same(self, one: str, other: str) -> bool:
+    def moves_alike(self, one: str, other: str) -> bool:
         """Return True if two points have the same velocity or acceleration."""
         return abs(self._end(one) - self._end(other)) <= NO_VECTOR * self.plan.size
 
-    def read(self, vector: Vector) -> Block:
+    def measure(self, vector: DrawnVector) -> Block:
         """Return the value of a vector measured on the plan."""
-        return self.found(vector, Leaf(Symbol("μ", self.sort.letter), self.mu) * self._segment(vector))
+        return self.write_magnitude(vector, Leaf(Symbol("μ", self.kind.letter), self.mu) * self._segment(vector))
 
-    def found(self, vector: Vector, expression: Expression) -> Block:
+    def write_magnitude(self, vector: DrawnVector, expression: Expression) -> Block:
         """Return a vector whose magnitude an expression gives."""
         if not vector.segment:
-            return zero(vector.symbol)
-        return Found(vector.symbol, expression, vector.size, unit(self.sort.letter))
+            return zero_equation(vector.symbol)
+        return ComputedQuantity(vector.symbol, expression, vector.size, unit_of(self.kind.letter))
 
-    def scaled(self, vector: Vector) -> Block:
+    def compute_scale(self, vector: DrawnVector) -> Block:
         """Return the scale of the plan from the vector drawn first."""
-        per_mm = {"v": _("(m/s)/mm"), "a": _("(m/s²)/mm")}[self.sort.letter]
-        name, most = Symbol("μ", self.sort.letter), len(f"{self.mu:e}".partition("e")[0].rstrip("0").replace(".", ""))
-        return Found(name, vector.leaf / self._segment(vector), self.mu, per_mm, most=most)
+        per_mm = {"v": _("(m/s)/mm"), "a": _("(m/s²)/mm")}[self.kind.letter]
+        name, most = Symbol("μ", self.kind.letter), len(f"{self.mu:e}".partition("e")[0].rstrip("0").replace(".", ""))
+        return ComputedQuantity(name, vector.leaf / self._segment(vector), self.mu, per_mm, most=most)
 
-    def _segment(self, vector: Vector) -> Leaf:
-        return Leaf(drawn(vector), vector.size / self.mu)
+    def _segment(self, vector: DrawnVector) -> Leaf:
+        return Leaf(segment_symbol(vector), vector.size / self.mu)
 
     def _end(self, name: str) -> complex:
         return self.ends[name].end if name in self.ends else 0j
 
     def _letter(self, name: str) -> str:
         """Return the letter at the end of a point's vector; none for a fixed point, which is at the pole."""
-        return self.ends[name].name[len(self.sort.pole) :] if name in self.ends else ""
+        return self.ends[name].name[len(self.kind.pole) :] if name in self.ends else ""
 
-    def _vector(self, symbol: Symbol, value: complex, segment: str) -> Vector:
+    def _vector(self, symbol: Symbol, value: complex, segment: str) -> DrawnVector:
         there = abs(value) > NO_VECTOR * self.plan.size
-        return Vector(symbol, abs(value) if there else 0.0, segment if there else "")
+        return DrawnVector(symbol, abs(value) if there else 0.0, segment if there else "")
 
 
 @dataclass(frozen=True)
-class Here:
+class PositionPlans:
     """Position with its velocity and acceleration plans.
 
     first: the first detailed position, in which the method is explained.
@@ -141,14 +141,14 @@ class Here:
         return self.subject.motion
 
     @cached_property
-    def v(self) -> OnPaper:
+    def v(self) -> DrawnPlan:
         """Velocity plan."""
-        return OnPaper(self.subject, self.motion, self.k, "velocity")
+        return DrawnPlan(self.subject, self.motion, self.k, "velocity")
 
     @cached_property
-    def a(self) -> OnPaper:
+    def a(self) -> DrawnPlan:
         """Acceleration plan."""
-        return OnPaper(self.subject, self.motion, self.k, "acceleration")
+        return DrawnPlan(self.subject, self.motion, self.k, "acceleration")
 
     @cached_property
     def omega(self) -> Mapping[str, float]:
@@ -168,7 +168,7 @@ class Here:
         """Return the magnitude of a link's angular velocity or acceleration."""
         return Leaf(Symbol(letter, link), abs(self.rates(letter).get(link, 0.0)))
 
-    def plan_of(self, letter: str) -> OnPaper:
+    def plan_of(self, letter: str) -> DrawnPlan:
         """Return the velocity plan for ω, the acceleration plan for ε."""
         return self.v if letter == "ω" else self.a
 
@@ -178,27 +178,27 @@ class Here:
         return Leaf(Symbol("l", base.at + point.at), abs(places[1] - places[0]))
 
 
-def unit(letter: str) -> str:
+def unit_of(letter: str) -> str:
     """Return the unit of v, a, ω or ε."""
     return {"v": _("m/s"), "a": _("m/s²"), "ω": _("rad/s"), "ε": _("rad/s²")}[letter]
 
 
-def large(vectors: Sequence[Vector]) -> Vector | None:
+def find_scale_vector(vectors: Sequence[DrawnVector]) -> DrawnVector | None:
     """Return the first vector large enough to set a scale; None if all are zero."""
     largest = max((vector.size for vector in vectors), default=0.0)
     return next((vector for vector in vectors if vector.segment and vector.size > SMALL * largest), None)
 
 
-def vector(symbol: Symbol) -> Letter:
+def vector_letter(symbol: Symbol) -> Letter:
     """Return a symbol with a bar above."""
     return Letter(symbol, True)
 
 
-def drawn(vector: Vector) -> Symbol:
+def segment_symbol(vector: DrawnVector) -> Symbol:
     """Return the symbol of a vector's segment."""
     return Symbol(with_subscripts(vector.segment))
 
 
-def zero(symbol: Symbol) -> Block:
+def zero_equation(symbol: Symbol) -> Block:
     """Return the equation symbol = 0."""
     return Equation(row(Letter(symbol), "=", Number("0")))
