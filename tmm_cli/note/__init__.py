@@ -1,4 +1,4 @@
-"""The explanatory note of a course project."""
+"""Explanatory note of a course project: the calculation in sentences, formulas, tables and figures."""
 
 from tmm_cli.interfaces import lazy
 

@@ -1,8 +1,8 @@
-"""Chapter on balancing: shaking force and moment, counterweights, balancing of a rotor.
+"""Chapter on balancing: shaking force and shaking moment, counterweights, balancing of a rotor.
 
-Counterweights are explained by static replacement of masses (couplers by masses in their hinges; Artobolevsky, Theory
-of Mechanisms and Machines, 1988, ch. 13) where that gives the computed values: for links whose centres of mass lie on
-the lines of their hinges.
+The note explains counterweights by static replacement of masses where that gives the computed values, which is the
+case if the centres of mass lie on the lines through the hinges of their links. The mass of a coupler is replaced by two
+masses at its hinges (Artobolevsky, Theory of Mechanisms and Machines, 1988, ch. 13).
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ X, Y = Symbol("F", "x"), Symbol("F", "y")
 
 
 def write_balancing(subject: Subject) -> Iterable[Block]:
-    """Write the chapter on balancing; nothing if the file does not request it."""
+    """Write the chapter on balancing. It is empty if the file requests no balancing."""
     found = subject.results.balancing
     if found is not None and (found.task.rotor is not None or found.cycle.shakes):
         yield Heading(_("Balancing"))
@@ -62,7 +62,6 @@ def _write_shaking_and_counterweights(subject: Subject, found: BalancingResults)
 
 
 def _explain_symbols(found: BalancingResults) -> Iterable[Block]:
-    """Explain the symbols of the shaking force and the shaking moment."""
     pivot: Inline = Symbol(found.pivot) if found.pivot else _("the origin")
     yield write_sentence(
         _(
@@ -85,7 +84,7 @@ def _explain_symbols(found: BalancingResults) -> Iterable[Block]:
 
 
 def _write_shaking_force(subject: Subject, found: BalancingResults, k: int) -> Iterable[Block]:
-    """Write the components of the shaking force (N), its magnitude and the shaking moment (N m) in one position."""
+    """Write the components and the magnitude of the shaking force (N) and the shaking moment (N m) in one position."""
     results = subject.results
     motion = constant_speed_motion(results.mechanism, subject.motion.q[k : k + 1])
     about, along, across, moments = found.before.about, list[Expression](), list[Expression](), list[Expression]()
@@ -122,7 +121,10 @@ MASS_RADIUS, SHARE = Symbol("D"), Symbol("k")
 
 
 def write_counterweights(subject: Subject, found: BalancedCycle, task: BalancingTask) -> Iterable[Block]:
-    """Write each counterweight with its mass-radius product, its mass if the radius is given, the remaining force."""
+    """Write the counterweights and the shaking force that remains with them.
+
+    Each counterweight is described by its mass-radius product m·r and, if its radius is given, by its mass.
+    """
     replacement = _StaticReplacement(subject.results.linkage, found, task)
     if replacement.explain_counterweights():
         yield write_sentence(
@@ -167,7 +169,15 @@ def write_counterweights(subject: Subject, found: BalancedCycle, task: Balancing
 
 @dataclass
 class _StaticReplacement:
-    """Static replacement of links by masses at their hinges, which counterweights balance."""
+    """Static replacement of links by point masses at their hinges, by which the note explains the counterweights.
+
+    Attributes:
+        linkage: Linkage with the masses of its links.
+        cycle: Shaking force over the cycle, with and without the counterweights.
+        task: Requirements on the balancing.
+        explanation: Sentences and formulas that derive the counterweights.
+        lumps: Point masses (kg) by the hinge at which they are placed.
+    """
 
     linkage: Linkage
     cycle: BalancedCycle
@@ -176,7 +186,7 @@ class _StaticReplacement:
     lumps: dict[str, list[Leaf]] = field(default_factory=dict)
 
     def explain_counterweights(self) -> bool:
-        """Return True if the replacement gives all counterweights; `told` then holds the blocks that explain it."""
+        """Fill `explanation`; return False if static replacement does not give all counterweights as computed."""
         weights = {weight.place.link: weight for weight in self.cycle.counterweights}
         if len(weights) < len(self.cycle.counterweights):
             return False
@@ -191,7 +201,7 @@ class _StaticReplacement:
         return next((p for p in self._find_hinges(place.link, FRAME) if points[p] == place.about), None)
 
     def _find_hinges(self, link: str, *others: str) -> list[str]:
-        """Return the points in which the link is hinged to the given links, by default to any moving link."""
+        """Return the hinges that connect a link to the other links named, or if none is named to any moving link."""
         named = others or tuple(name for name in self.linkage.moving if name != link)
         return [h.point for h in self.linkage.hinges if link in h.links and set(named) & set(h.links)]
 
@@ -228,8 +238,10 @@ class _StaticReplacement:
         return True
 
     def _balance_link(self, weight: CounterweightSolution) -> bool:
-        """Balance the masses of a link and those at its points; return False if its counterweight does not follow from
-        them.
+        """Derive the counterweight of a link from its mass and the point masses at its hinges.
+
+        Returns:
+            False if the result is not the computed counterweight.
         """
         place, link = weight.place, self.linkage.links[weight.place.link]
         name, pivot = place.link, next((p for p, at in link.points.items() if at == place.about), None)
@@ -264,7 +276,7 @@ class _StaticReplacement:
         return True
 
     def _merge_into_pivot(self, weight: CounterweightSolution, pivot: str, masses: list[Leaf]) -> None:
-        """Replace a link and its counterweight by a point mass at the moving pivot of the link."""
+        """Replace a link and its counterweight by one point mass at the moving pivot of the link."""
         name = weight.place.link
         every = [*(one for one in masses if one.value), Leaf(Symbol("m", f"c{name}"), weight.mass or 0.0)]
         total = Leaf(Symbol("m", f"{name}{pivot}"), sum(one.value for one in every))
@@ -280,7 +292,9 @@ class _StaticReplacement:
         self.lumps.setdefault(pivot, []).append(total)
 
     def _reciprocating_moments(self, name: str, pivot: str, along: complex) -> Iterator[Expression]:
-        """Yield the moments of the fraction of reciprocating masses that a counterweight on the crank balances."""
+        """Yield the mass moments (kg m) of the fraction of the reciprocating masses that a crank's counterweight
+        balances.
+        """
         points = self.linkage.links[name].points
         for point in list(self.lumps):
             sliding = any(
@@ -310,7 +324,7 @@ PLANES = ("I", "II")
 
 
 def write_rotor_balancing(subject: Subject, rotor: UnbalancedShaft, corrections: Vector) -> Iterable[Block]:
-    """Write the correction masses of a rotor, in the second plane first."""
+    """Write the correction masses of a rotor: that in the second plane, if there are two, before that in the first."""
     two = len(rotor.planes) > 1
     static = _("A rotor is statically balanced if the vectors {D} = m·r of all its masses sum to zero.")
     dynamic = _(
@@ -350,7 +364,10 @@ def _write_correction_mass(subject: Subject, rotor: UnbalancedShaft, corrections
 
 
 def _unbalance_term(rotor: UnbalancedShaft, number: int, function: str, *, moment: bool) -> Expression:
-    """Return the component of m·r of a mass along an axis, or with `moment` its moment about the first plane."""
+    """Return a component of the unbalance m·r of one mass, or its moment about the first correction plane.
+
+    function: "cos" for the x component, "sin" for the y component.
+    """
     size, index = complex(rotor.sizes[number]), str(number + 1)
     angle = Leaf(Symbol("α", index), float(np.angle(size) % (2 * np.pi)), angle=True)
     share = Leaf(Symbol("D", index), abs(size)) * Function(function, angle)
@@ -358,5 +375,5 @@ def _unbalance_term(rotor: UnbalancedShaft, number: int, function: str, *, momen
 
 
 def _distance_from_first_plane(symbol: Symbol, at: float, rotor: UnbalancedShaft) -> Expression:
-    """Return the distance (m) of a plane beyond the first correction plane."""
+    """Return the axial distance (m) from the first correction plane."""
     return Leaf(symbol, at) - Leaf(Symbol("z", PLANES[0]), rotor.planes[0].at)

@@ -1,4 +1,7 @@
-"""Blocks of a note, one after another, which each format writes in its own way. All texts are data."""
+"""Blocks of a note (headings, paragraphs, formulas, tables, figures), which each format writes in its own way.
+
+The texts of blocks are plain data: no format interprets them as markup.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ from tmm_cli.note.formula_tree import Node
 
 @dataclass(frozen=True)
 class Ref:
-    """Reference to the number of a figure or a table by its key."""
+    """Reference to a figure or a table by its key; printed as its number."""
 
     key: str
 
@@ -33,7 +36,7 @@ Line = tuple[Inline, ...]
 
 @dataclass(frozen=True)
 class Heading:
-    """Heading of a chapter (level 1) or a section (level 2); formats number it: 3.2."""
+    """Heading of a chapter (level 1) or a section (level 2). The format adds its decimal number, e.g. 3.2."""
 
     text: str
     level: int = 1
@@ -62,7 +65,14 @@ class Equation:
 
 @dataclass(frozen=True)
 class Rows:
-    """Table of text cells with its column headings; numeric columns are right-aligned."""
+    """Table with a caption and column headings.
+
+    Attributes:
+        caption: Text after the number of the table.
+        head: Headings of the columns.
+        rows: Cells, row by row.
+        key: Key for references; empty if no sentence refers to the table.
+    """
 
     caption: str
     head: tuple[Line, ...]
@@ -71,14 +81,14 @@ class Rows:
 
     @cached_property
     def numeric(self) -> list[bool]:
-        """For each column, True if its cells are numbers or dashes and at least one is a number."""
+        """True for each column that contains only numbers and dashes, and at least one number."""
         columns = [[row[k] for row in self.rows] for k in range(len(self.head))]
         return [all(map(_is_number, cells)) and any(map(_has_digits, cells)) for cells in columns]
 
 
 @dataclass(frozen=True)
 class Figure:
-    """Drawing with its caption, reduced to the text width if it is wider."""
+    """Drawing with its caption. Formats reduce a drawing that is wider than the text."""
 
     caption: str
     drawing: Drawing
@@ -87,12 +97,20 @@ class Figure:
 
 @dataclass(frozen=True)
 class Contents:
-    """Table of contents; the block after it starts a new page."""
+    """Table of contents. The next block starts a new page."""
 
 
 @dataclass(frozen=True)
 class Title:
-    """Title page: its lines from top to bottom."""
+    """Title page.
+
+    Attributes:
+        institution: Institution and department, at the top.
+        heading: Kind of the work, e.g. explanatory note.
+        title: Title of the project.
+        people: Roles (student, group, teacher) and names; an empty name is printed as a blank line.
+        foot: Text at the foot of the page.
+    """
 
     institution: str
     heading: str
@@ -103,7 +121,7 @@ class Title:
 
 @dataclass(frozen=True)
 class Source:
-    """Entry of the list of references."""
+    """Entry in the list of references."""
 
     key: str
     text: str
@@ -121,7 +139,13 @@ Block = Heading | Paragraph | Items | Equation | ComputedQuantity | Rows | Figur
 
 @dataclass(frozen=True)
 class Note:
-    """Explanatory note: its blocks in order, its language, and its title for the properties of the file."""
+    """Explanatory note.
+
+    Attributes:
+        title: Title, for the properties of the file.
+        language: Code of the language, e.g. en.
+        blocks: Contents of the note, in order.
+    """
 
     title: str
     language: str
@@ -139,7 +163,7 @@ class Note:
         return found
 
     def numbers(self) -> dict[str, str]:
-        """Return the numbers of tables, figures and sources by key; each kind is numbered through the whole note."""
+        """Return the printed numbers of tables, figures and sources by key. Each kind is numbered separately."""
         counted: dict[type, int] = {}
         found: dict[str, str] = {}
         for block in self.blocks:
@@ -152,12 +176,12 @@ class Note:
 
 
 def paragraph(*line: Inline) -> Paragraph:
-    """Return a paragraph of texts and symbols in a row."""
+    """Return a paragraph that consists of these texts and symbols."""
     return Paragraph(line)
 
 
 def cells(*parts: Inline | Line) -> tuple[Line, ...]:
-    """Return a table row from texts, symbols and lines."""
+    """Return a table row from its cells, each a text, a symbol or a line of both."""
     return tuple(part if isinstance(part, tuple) else (part,) for part in parts)
 
 
@@ -173,17 +197,24 @@ def bulleted_list(lines: Sequence[Line]) -> Items:
 
 
 def refer_to_blocks(one: str, two: str, more: str, keys: Sequence[str]) -> Paragraph:
-    """Return the sentence for one, two or more keys; it refers to {first} and {last} of them."""
+    """Return a sentence that refers to one or more tables or figures.
+
+    Args:
+        one: Sentence for one key, with the field {first}.
+        two: Sentence for two keys, with the fields {first} and {last}.
+        more: Sentence for three or more keys, with the same fields.
+        keys: Keys of the tables or figures; not empty.
+    """
     return write_sentence((one, two, more)[min(len(keys), 3) - 1], first=Ref(keys[0]), last=Ref(keys[-1]))
 
 
 def write_sentence(sentence: str, **parts: Inline | Line) -> Paragraph:
-    """Return a paragraph from a translated sentence, with its fields filled by texts, symbols or references."""
+    """Return a paragraph from a translated sentence whose fields are replaced by texts, symbols or references."""
     return Paragraph(filled(sentence, **parts))
 
 
 def write_table(sentence: str, rows: Rows, **parts: Inline | Line) -> Iterable[Block]:
-    """Yield a sentence that refers to a table by {table}, then the table."""
+    """Yield a sentence that refers to a table as {table}, then the table."""
     yield write_sentence(sentence, table=Ref(rows.key), **parts)
     yield rows
 

@@ -1,4 +1,4 @@
-"""Instantaneous centres: how many there are, how Kennedy's theorem finds them, the speeds that they give."""
+"""Chapter on instantaneous centres: their number, Kennedy's theorem, velocities of links from distances of centres."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ALL, LINKS = Symbol("N"), Symbol("k")
 
 
 def write_centres(subject: Subject) -> Iterable[Block]:
-    """Write the chapter on instantaneous centres; nothing if the file does not request them."""
+    """Write the chapter on instantaneous centres. It is empty if the file does not request them."""
     results = subject.results
     if not results.centres:
         return
@@ -90,7 +90,7 @@ def _compute_speeds(subject: Subject, k: int, found: Mapping[LinkPair, InstantCe
 
 
 def _distance(one: InstantCentre, other: InstantCentre) -> Leaf:
-    """Return the distance (m) between two instantaneous centres as a leaf P₁₂P₁₃."""
+    """Return the distance (m) between two instantaneous centres, with a symbol such as P₁₂P₁₃."""
     assert one.place is not None and other.place is not None
     letters = "".join("P" + subscript(centre_name(centre.links)[1:]) for centre in (one, other))
     return Leaf(Symbol(letters), abs(other.place - one.place))

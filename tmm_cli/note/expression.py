@@ -1,7 +1,7 @@
-"""Expressions whose leaves carry a symbol and a value, so that symbols, substituted numbers and result are one object.
+"""Expressions whose leaves carry both a symbol and a value.
 
-A substitution therefore cannot show another formula than the symbols before it, and its rounded numbers can be checked
-before they are printed.
+One expression gives the formula in symbols, the formula with numbers and the result. The substitution therefore cannot
+differ from the symbols before it, and its rounded numbers are checked against the result before they are printed.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ CANCELLED = 1e-6  # of the largest term: a sum that is less, and has no digit in
 
 
 class ExpressionOperators:
-    """Operators that build expressions as on paper: 2 * a - b / c; nested sums and products are flattened."""
+    """Arithmetic operators that build expressions, e.g. 2 * a - b / c. Nested sums and products are flattened."""
 
     def __add__(self, other: Expression | float) -> Sum:
         return Sum((*_terms(self), *_terms(other)))
@@ -62,9 +62,13 @@ class ExpressionOperators:
 
 @dataclass(frozen=True)
 class Leaf(ExpressionOperators):
-    """Quantity with its value in SI (radians for angles); no value is needed for symbols only.
+    """Quantity in an expression.
 
-    angle: print the value in degrees. of: expression substituted instead of the value, e.g. 2·π.
+    Attributes:
+        symbol: Symbol of the quantity.
+        value: Value in SI, or in rad for angles; nan if the expression is only printed in symbols.
+        angle: True if the value is printed in degrees.
+        of: Expression printed instead of the value, e.g. 2·π.
     """
 
     symbol: Symbol
@@ -75,7 +79,7 @@ class Leaf(ExpressionOperators):
 
 @dataclass(frozen=True)
 class Constant(ExpressionOperators):
-    """Number written as it is, or as `text` (π)."""
+    """Number in a formula. If `text` is given, it is printed instead of the number (π)."""
 
     value: float
     text: str = ""
@@ -83,7 +87,7 @@ class Constant(ExpressionOperators):
 
 @dataclass(frozen=True)
 class Sum(ExpressionOperators):
-    """Sum of terms with their signs, +1 or -1."""
+    """Sum of terms, each with its sign, +1 or -1."""
 
     terms: tuple[tuple[int, Expression], ...]
 
@@ -97,7 +101,7 @@ class Product(ExpressionOperators):
 
 @dataclass(frozen=True)
 class Quotient(ExpressionOperators):
-    """Fraction of two expressions."""
+    """Fraction with the numerator `over` and the denominator `under`."""
 
     over: Expression
     under: Expression
@@ -105,7 +109,7 @@ class Quotient(ExpressionOperators):
 
 @dataclass(frozen=True)
 class PowerOf(ExpressionOperators):
-    """Power with an integer exponent `over`, or with `under` a root written as the exponent over/under."""
+    """Power of an expression with the exponent over/under, e.g. 1/5 for a fifth root."""
 
     of: Expression
     over: int
@@ -131,10 +135,16 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
 
 @dataclass(frozen=True)
 class ComputedQuantity:
-    """Computed quantity on a line of its own: name = symbols = numbers = result with its unit.
+    """Line of a calculation: name = symbols = numbers = result.
 
-    result: computed value in SI, independent of the expression, so that a wrong formula is detected. unit: printed
-    unit, degrees for angles. whole: an integer. most: significant figures of the result.
+    Attributes:
+        name: Symbol of the computed quantity.
+        expression: Formula by which the note explains it.
+        result: Computed value in SI. It does not come from the expression, so that a wrong formula is detected.
+        unit: Printed unit; ° for an angle.
+        angle: True if the result is an angle (rad), printed in degrees.
+        whole: True if the result is an integer.
+        most: Largest number of significant figures of the result.
     """
 
     name: Symbol
@@ -146,12 +156,16 @@ class ComputedQuantity:
     most: int = FIGURES
 
     def value(self, figures: int) -> float:
-        """Return the expression with numbers of this many figures substituted, in the unit of the result."""
+        """Return the value of the expression with its numbers rounded to so many figures; angles in degrees."""
         found = evaluate(self.expression, figures)
         return math.degrees(found) if self.angle else found
 
     def printed(self) -> tuple[int, str]:
-        """Return the figures of the substituted numbers and the result as text, consistent within its last digit.
+        """Choose the rounding of the substituted numbers and of the result so that the line is consistent.
+
+        Returns:
+            The number of significant figures of the substituted numbers, and the result as text. The numbers give this
+            result to within one unit of its last digit.
 
         Raises:
             ValueError: The expression does not give the result with any number of figures.
@@ -174,17 +188,17 @@ class ComputedQuantity:
 
 
 def state_value(name: Symbol, value: float, unit: str) -> ComputedQuantity:
-    """Return a quantity that is read off a plan: its symbol and its value."""
+    """Return a quantity whose value is stated without a formula, e.g. because it is measured on a plan."""
     return ComputedQuantity(name, Leaf(name, value), value, unit)
 
 
 def sum_terms(terms: Iterable[Expression]) -> Sum:
-    """Return the sum of the terms; nested sums are flattened."""
+    """Return the sum of the terms. Nested sums are flattened."""
     return Sum(tuple(chain.from_iterable(map(_terms, terms))))
 
 
 def apply_sign(sense: float, expression: Expression) -> Expression:
-    """Return the expression, negated if `sense` is not positive."""
+    """Return the expression if `sense` is positive, otherwise its negative."""
     return expression if sense > 0 else -expression
 
 
@@ -201,7 +215,7 @@ def _terms(part: object) -> tuple[tuple[int, Expression], ...]:
 
 
 def evaluate(expression: Expression, figures: int) -> float:
-    """Evaluate an expression with each leaf rounded to this many significant figures."""
+    """Evaluate an expression with each quantity rounded to so many significant figures."""
     of = partial(evaluate, figures=figures)
     match expression:
         case Leaf(_, value, angle, instead):
@@ -223,9 +237,10 @@ def evaluate(expression: Expression, figures: int) -> float:
 
 
 def largest_term(expression: Expression) -> float:
-    """Return the magnitude of an expression without cancellation: largest term of a sum, 1 for sine and cosine.
+    """Return the magnitude that an expression would have without cancellation.
 
-    Rounding of the substituted numbers changes the value of the expression in proportion to this magnitude.
+    For a sum this is the magnitude of its largest term, for a sine or cosine 1. Rounding of the substituted numbers
+    changes the value of the expression in proportion to this magnitude.
     """
     match expression:
         case Sum(terms):
@@ -246,12 +261,18 @@ def largest_term(expression: Expression) -> float:
 
 
 def symbolic_formula(expression: Expression) -> paper.Node:
-    """Return the formula of an expression in symbols."""
+    """Return an expression as a formula in symbols."""
     return _build_formula(expression, lambda leaf: paper.Letter(leaf.symbol))
 
 
 def numeric_formula(expression: Expression, figures: int, text: Callable[[str], str]) -> paper.Node:
-    """Return the formula of an expression with numbers substituted; `text` writes figures in the language."""
+    """Return an expression as a formula with numbers substituted.
+
+    Args:
+        expression: Expression to print.
+        figures: Significant figures of each number.
+        text: Function that writes a number in the style of the language.
+    """
 
     def number(leaf: Leaf) -> paper.Node:
         if leaf.of is not None:
@@ -267,7 +288,7 @@ def numeric_formula(expression: Expression, figures: int, text: Callable[[str], 
 
 
 def _number_formula(digits: str, text: Callable[[str], str]) -> paper.Node:
-    """Return a number in scientific notation as a formula: -1.2e-5 gives −1.2·10^−5."""
+    """Return a number as a formula; scientific notation becomes a power of ten: -1.2e-5 gives −1.2·10^−5."""
     if digits.startswith("-"):
         return paper.row("−", _number_formula(digits[1:], text))
     mantissa, _, power = digits.partition("e")
@@ -315,15 +336,18 @@ def _build_formula(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -
 
 
 def round_figures(value: float, figures: int) -> float:
-    """Round to this many significant figures, but keep all digits before the point of numbers below 10^7."""
+    """Round to so many significant figures. In numbers below 10^7 no digit before the decimal point is lost."""
     text = f"{half_up(value):.{figures - 1}e}"
     return float(f"{half_up(value):.0f}") if figures <= int(text.partition("e")[2]) < WHOLE else float(text)
 
 
 def format_fixed(value: float, figures: int, terms: float = 0.0) -> str:
-    """Format a value with this many significant figures, keeping trailing zeros.
+    """Format a value with so many significant figures, trailing zeros included.
 
-    terms: for a zero, magnitude of the terms that cancel; it sets the number of decimals.
+    Args:
+        value: Value to format.
+        figures: Number of significant figures.
+        terms: Magnitude of the terms whose sum is zero; it sets the number of decimals with which a zero is written.
     """
     if value == 0:
         return "0" if not terms else f"{0.0:.{max(figures - 1 - math.floor(math.log10(terms)), 0)}f}"
@@ -341,22 +365,26 @@ def format_plain(value: float, figures: int) -> str:
 
 
 def last_digit_unit(text: str) -> float:
-    """Return the value of one unit in the last digit of a printed number."""
+    """Return one unit in the last digit of a printed number: 0.01 for 3.14."""
     mantissa, _, power = text.partition("e")
     return 10.0 ** (int(power or 0) - len(mantissa.partition(".")[2]))
 
 
 def result_formula(text: str, unit: str, say: Callable[[str], str]) -> paper.Node:
-    """Return the formula of a result with its unit."""
+    """Return a printed result with its unit as a formula."""
     shown = _number_formula(text, say)
     return paper.row(shown, paper.Words(unit if unit == "°" else f" {unit}")) if unit else shown
 
 
 def formula(found: ComputedQuantity, say: Callable[[str], str]) -> paper.Node:
-    """Return the line symbols = numbers = result of a computed quantity; `say` writes figures in the language.
+    """Return the line of a computed quantity: name = symbols = numbers = result.
+
+    Args:
+        found: Computed quantity.
+        say: Function that writes a number in the style of the language.
 
     Raises:
-        ValueError: The formula does not give the result.
+        ValueError: The expression does not give the result.
     """
     figures, text = found.printed()
     own = found.expression

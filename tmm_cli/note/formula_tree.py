@@ -1,6 +1,7 @@
-"""Formulas as trees of nodes, which each format of the note writes, and their breaking into lines.
+"""Formulas as trees of nodes, which each format of the note writes, and the breaking of wide formulas into lines.
 
-No format breaks a wide formula well by itself, so it is broken before it is written."""
+No format breaks wide formulas well by itself, so they are broken before they are written.
+"""
 
 from __future__ import annotations
 
@@ -19,10 +20,13 @@ class Number:
 
 @dataclass(frozen=True)
 class Letter:
-    """Symbol with its indices.
+    """Symbol of a quantity.
 
-    vector: with a bar above. lines: underlines of a vector: two if it is known completely, one if only its
-    line is known.
+    Attributes:
+        symbol: Letter with its indices.
+        vector: True for a vector, which is printed with a bar above.
+        lines: Number of underlines of a vector: 2 if its magnitude and direction are known, 1 if only its line of
+            action is known.
     """
 
     symbol: Symbol
@@ -46,14 +50,14 @@ class Words:
 
 @dataclass(frozen=True)
 class Row:
-    """Nodes in a row."""
+    """Nodes one after another."""
 
     nodes: tuple[Node, ...]
 
 
 @dataclass(frozen=True)
 class Fraction:
-    """Fraction."""
+    """Fraction with the numerator `over` and the denominator `under`."""
 
     over: Node
     under: Node
@@ -76,9 +80,13 @@ class Root:
 
 @dataclass(frozen=True)
 class Brackets:
-    """Round brackets, or with `bars` an absolute value.
+    """Expression in round brackets.
 
-    opens, closes: False if that bracket stands on another line of a broken formula.
+    Attributes:
+        inside: Expression between the brackets.
+        opens: False if the opening bracket stands on an earlier line of a broken formula.
+        closes: False if the closing bracket stands on a later line.
+        bars: True for the bars of an absolute value instead of round brackets.
     """
 
     inside: Node
@@ -89,7 +97,7 @@ class Brackets:
 
 @dataclass(frozen=True)
 class Lines:
-    """Formula broken into lines, each but the first beginning with a sign."""
+    """Formula broken into lines. Each line but the first begins with an operator or an equals sign."""
 
     lines: tuple[Node, ...]
 
@@ -98,7 +106,7 @@ Node = Number | Letter | Sign | Words | Row | Fraction | Power | Root | Brackets
 
 
 def row(*parts: Node | str) -> Node:
-    """Return nodes and signs in a row; a single node is returned unchanged."""
+    """Return nodes and operators as one row. A single node is returned unchanged."""
     nodes: list[Node] = []
     for part in parts:
         node = Sign(part) if isinstance(part, str) else part
@@ -116,7 +124,13 @@ OPENING = (Sign("="), OPEN, Sign("·"))  # after which a sign is the number's ow
 
 
 def chain_of_equalities(sides: Sequence[Node], most: float = LINE) -> Node:
-    """Return equal sides joined by equals signs, broken before an equals sign or the sign of a term if too wide."""
+    """Join equal expressions by equals signs.
+
+    Args:
+        sides: Equal expressions.
+        most: Largest width of a line, in widths of a digit. A wider formula is broken before equals signs and the signs
+            of terms.
+    """
     lines: list[Node] = []
     for side in sides:
         joined = row(lines[-1], "=", side) if lines else side
@@ -131,7 +145,7 @@ def chain_of_equalities(sides: Sequence[Node], most: float = LINE) -> Node:
 
 
 def width(node: Node) -> float:
-    """Return the approximate width of a formula, in widths of a digit."""
+    """Estimate the width of a formula, in widths of a digit."""
     match node:
         case Number(text) | Words(text):
             return float(len(text))
@@ -154,7 +168,7 @@ def width(node: Node) -> float:
 
 
 def _fill_last_line(lines: list[Node], most: float) -> list[Node]:
-    """Move the term before a result that stands alone on the last line down to it."""
+    """If the last line contains only a short result, move the term before it down to this line."""
     if len(lines) < 2 or width(lines[-1]) > 1.5 * SHORT or not isinstance(lines[-2], Row):
         return lines
     nodes = lines[-2].nodes
@@ -165,7 +179,7 @@ def _fill_last_line(lines: list[Node], most: float) -> list[Node]:
 
 
 def _break_at_terms(node: Node, most: float) -> list[Node]:
-    """Break a row into lines, each but the first beginning with the sign of a term."""
+    """Break a row into lines. Each line but the first begins with the sign of a term."""
     if width(node) <= most or not isinstance(node, Row):
         return [node]
     lines: list[list[Node]] = [[]]
@@ -177,7 +191,7 @@ def _break_at_terms(node: Node, most: float) -> list[Node]:
 
 
 def _group_brackets(line: Sequence[Node]) -> Node:
-    """Return a line with the contents of brackets that open or close on it as one node."""
+    """Collect the nodes between brackets in one node, also if only one of the two brackets stands on this line."""
     first = line.index(OPEN) + 1 if OPEN in line else None
     last = line.index(CLOSE) if CLOSE in line else None
     if first is None and last is None:
@@ -197,7 +211,7 @@ def _split_terms(nodes: Sequence[Node]) -> list[list[Node]]:
 
 
 def _unfold_wide_fractions(nodes: Sequence[Node], most: float) -> list[Node]:
-    """Replace fractions that are too wide by one over the denominator times the numerator."""
+    """Replace each fraction a/b that is too wide by (1/b)·(a)."""
     found: list[Node] = []
     for node in nodes:
         if isinstance(node, Fraction) and isinstance(node.over, Row) and width(node) > most - 4:

@@ -1,6 +1,6 @@
 """Chapters of the note and their order.
 
-A chapter is a function of the subject that yields blocks, and an entry in CHAPTERS.
+To add a chapter, write a function that takes the subject and yields blocks, and enter it in CHAPTERS.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ def note(results: Results, *, drawn: bool = True) -> Note:
 
     Args:
         results: Results of the problem.
-        drawn: Include drawings.
+        drawn: True to include drawings. Without them the note is written much faster.
 
     Returns:
-        The note, for the formats in FORMATS.
+        The note, to be written to a file by a function of FORMATS.
     """
     subject = Subject(results, drawn)
     present = [name for name in CHAPTERS if name not in PARTS or getattr(results, PARTS[name]) is not None]

@@ -1,4 +1,4 @@
-"""Chapters of a few lines: title page with the table of contents, checks of the results, list of literature."""
+"""Short chapters: title page with table of contents, checks of the results, list of references."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ from tmm_cli.reports import collect_warnings, walk
 
 
 def write_title_page(subject: Subject) -> Iterable[Block]:
-    """Write the title page from the block `sheet` of the file, with blanks for missing names, and the table of
-    contents.
+    """Write the title page and the table of contents.
+
+    Names come from the block `sheet` of the file. Missing ones become blanks to be filled in.
     """
     texts = subject.results.problem.title_texts
     people = ((_("Student"), texts.student), (_("Group"), texts.group), (_("Teacher"), texts.teacher))

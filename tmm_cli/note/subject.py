@@ -1,4 +1,4 @@
-"""The subject of a note: results, detailed positions, drawings and tables of results in the form that chapters use."""
+"""Results of a problem in the form that the chapters of a note use: numbers as texts, drawings, tables."""
 
 from __future__ import annotations
 
@@ -71,9 +71,11 @@ OF_POSITION: Mapping[str, tuple[Callable[[Position], NamedDrawings], float]] = {
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """Results that a note describes, with its drawings.
+    """Results that a note describes, with drawings of them.
 
-    drawn: False for a note without drawings, which is much faster.
+    Attributes:
+        results: Results of the problem.
+        drawn: False for a note without drawings, which is much faster.
     """
 
     results: Results
@@ -82,42 +84,42 @@ class Subject:
 
     @cached_property
     def detail(self) -> tuple[int, ...]:
-        """Indices of the detailed positions."""
+        """Indices of the detailed positions, for which plans are drawn; empty if the mechanism cannot move."""
         return detailed_positions(self.results) if self.results.motion is not None else ()
 
     @property
     def motion(self) -> Motion:
-        """Motion of the mechanism; only for chapters on a mechanism that moves."""
+        """Motion of the mechanism. It may be used only if the mechanism moves."""
         assert self.results.motion is not None
         return self.results.motion
 
     @property
     def reactions(self) -> Reactions:
-        """Reactions; only for chapters on forces."""
+        """Reactions. They may be used only if loads act on the links."""
         assert self.results.reactions is not None
         return self.results.reactions
 
     @property
     def lever(self) -> ZhukovskyLever:
-        """Zhukovsky lever; only for chapters on forces."""
+        """Zhukovsky lever. It may be used only if loads act on the links."""
         assert self.results.lever is not None
         return self.results.lever
 
     def position(self, k: int) -> Position:
-        """Return a position in the form that drawings take."""
+        """Return position k in the form that drawings require."""
         return Position(self.results, self.motion, k)
 
     def position_number(self, k: int) -> str:
-        """Return the number of a position."""
+        """Return the number of position k in tables and drawings."""
         return str(self.results.numbers[k])
 
     def describe_position(self, k: int) -> str:
-        """Return the number of a position with its driver coordinate."""
+        """Return the number of position k with its driver coordinate."""
         place = with_degrees(driver_caption(self.results, float(self.motion.q[k]), 4))
         return _("position {number}, {place}").format(number=self.position_number(k), place=place)
 
     def rate(self, k: int) -> float:
-        """Return the velocity of the first driver in a position, in SI."""
+        """Return the velocity of the first driver in position k (rad/s or m/s)."""
         return float(np.broadcast_to(self.motion.rate, self.motion.q.shape)[k])
 
     @property
@@ -126,15 +128,15 @@ class Subject:
         return self.results.reactions is not None and bool(self.results.reactions.applied)
 
     def number(self, si: float, dimension: Dimension, digits: int = 6) -> str:
-        """Return a value (SI) as text in the unit of the problem file."""
+        """Convert a value from SI to the unit of the problem file and return it as text, without the unit."""
         return self.text(float(self.results.problem.units.from_si(si, dimension)), digits)
 
     def value(self, si: float, dimension: Dimension, digits: int = 6) -> str:
-        """Return a value (SI) as text with the unit of the problem file."""
+        """Convert a value from SI to the unit of the problem file and return it as text with the unit."""
         return with_degrees(f"{self.number(si, dimension, digits)} {self.unit(dimension)}".rstrip())
 
     def unit(self, dimension: Dimension) -> str:
-        """Return the printed unit of a dimension in the problem file."""
+        """Return the printed unit that the problem file uses for a dimension."""
         return typeset_unit(self.results.problem.units.spelt(dimension))
 
     def text(self, value: float, digits: int = 4) -> str:
@@ -142,15 +144,15 @@ class Subject:
         return self.localise(format_plain(round_figures(value, digits), digits))
 
     def format_result(self, value: float) -> str:
-        """Return a result as text with all its significant figures."""
+        """Return a result as text in the current language with all significant figures, trailing zeros included."""
         return self.localise(format_fixed(value, FIGURES))
 
     def angle(self, radians: float) -> str:
-        """Return an angle (rad) from the x axis in degrees, 0 to 360, without the degree sign."""
+        """Return an angle (rad) as text in degrees, from 0 to 360, without the degree sign."""
         return numeral(round(float(np.degrees(radians)), 1) % 360, ".1f")
 
     def direction(self, vector: complex) -> str:
-        """Return the angle of a vector from the x axis with the degree sign."""
+        """Return the angle of a vector to the x axis as text, e.g. 135.0°."""
         return f"{self.angle(float(np.angle(vector)))}°"
 
     def localise(self, text: str) -> str:
@@ -158,7 +160,15 @@ class Subject:
         return localise_figures(text, language())
 
     def drawings(self, name: str, k: int | None = None) -> dict[str, Drawing]:
-        """Return drawings by name, of the mechanism or of position `k`; each is drawn on its first use."""
+        """Return drawings by name. They are drawn when first requested.
+
+        Args:
+            name: Kind of drawing, a key of OF_MECHANISM or, if k is given, of OF_POSITION.
+            k: Index of a position; None for drawings of the whole mechanism.
+
+        Returns:
+            The drawings, or none for a note without drawings.
+        """
         if not self.drawn:
             return {}
         draw, longest = OF_MECHANISM[name] if k is None else OF_POSITION[name]
@@ -170,7 +180,7 @@ class Subject:
         return {stem: d for stem, d in self._drawings[draw, k].items() if not several or stem.startswith(name)}
 
     def scale(self, name: str, k: int, stem: str) -> float:
-        """Return the scale (m/mm) of a drawing; if it is not drawn, the scale that would suit the mechanism."""
+        """Return the scale (m/mm) of a drawing. If the note has no drawings, return a scale that suits the mechanism."""
         picture = self.drawings(name, k).get(stem)
         mu = getattr(picture, "mu", None)
         if mu is not None:
@@ -182,15 +192,15 @@ class Subject:
     def figures(
         self, name: str, sentence: str, caption: str = "", k: int | None = None, only: str = "", further: str = ""
     ) -> Iterable[Block]:
-        """Yield drawings, each after a sentence that refers to it by {figure}.
+        """Yield drawings, each after a sentence that refers to it as {figure}.
 
         Args:
-            name: Kind of drawing, a key of OF_MECHANISM or OF_POSITION.
+            name: Kind of drawing, a key of OF_MECHANISM or, if k is given, of OF_POSITION.
             sentence: Sentence before the first drawing.
             caption: Caption; by default the heading of the drawing.
-            k: Index of a position.
-            only: Restrict to the drawing of this stem and its continuation sheets.
-            further: Sentence before each further drawing.
+            k: Index of a position; None for drawings of the whole mechanism.
+            only: Name of the one drawing to include, with its continuation sheets; all drawings if empty.
+            further: Sentence before each further drawing; by default the same sentence.
         """
         for stem, drawing in self.drawings(name, k).items():
             if only and not re.fullmatch(rf"{re.escape(only)}(-sheet)?(-\d+)?", stem):
@@ -201,20 +211,25 @@ class Subject:
 
 
 def add_margin(drawing: Drawing) -> Drawing:
-    """Return a drawing with a narrow margin, so that its outer lines are not cut."""
+    """Return a drawing with a narrow margin, so that its outer lines are not cut off."""
     width, height = drawing.paper
     marks = tuple(mark.moved(EDGE * (1 + 1j)) for mark in drawing.marks)
     return replace(drawing, paper=(width + 2 * EDGE, height + 2 * EDGE), marks=marks)
 
 
 def localise_figures(text: str, spoken: str) -> str:
-    """Return a number with the decimal mark, minus sign and power of ten of a language."""
+    """Return a number with the decimal mark, minus sign and power of ten of a language.
+
+    Args:
+        text: Number as Python formats it, e.g. -1.2e-5.
+        spoken: Code of the language, e.g. en.
+    """
     text = re.sub(r"(?<=\d)e([+-]?\d+)\b", lambda power: f"·10{str(int(power[1])).translate(RAISED)}", text)
     return text.replace("-", "−") if spoken == "en" else text.replace(".", ",").replace("-", "−")
 
 
 def with_degrees(text: str) -> str:
-    """Replace the unit deg by ° and keep a percent sign on the line of its number."""
+    """Replace the unit deg by ° and prevent line breaks before percent signs."""
     return re.sub(r"(?<=\d) (?:deg\b|град\b|°)", "°", text).replace(" %", "\N{NO-BREAK SPACE}%")
 
 
@@ -235,7 +250,7 @@ GREEK = {
 
 
 def typeset_formulas(text: str) -> str:
-    """Return a text with its formulas in handwriting style: psi1 = pi - phi_2 gives ψ1 = π − φ₂."""
+    """Return a text with the formulas in it typeset: psi1 = pi - phi_2 becomes ψ1 = π − φ₂."""
     text = re.sub(rf"\b({'|'.join(GREEK)})(?=[\W\d_]|$)", lambda found: GREEK[found[0]], text)
     return re.sub(r"_(\d+)\b", lambda index: subscript(index[1]), signed(typeset(text))).replace(" - ", " − ")
 
@@ -247,15 +262,15 @@ NONE = "—"
 def note_table(
     subject: Subject, table: Table, caption: str = "", key: str = "", digits: int = DIGITS, *, zeros: bool = False
 ) -> Rows:
-    """Return a table of results as a table of the note, in the units of the file.
+    """Convert a table of results to a table of the note, in the units of the file.
 
     Args:
-        subject: Subject of the note.
-        table: Table of results; empty cells get a dash, empty columns are left out.
+        subject: Results that the note describes.
+        table: Table of results. Empty cells get a dash, empty columns are left out.
         caption: Caption; by default the title of the table.
-        key: Key for references.
+        key: Key for references; empty if there are none.
         digits: Significant figures.
-        zeros: Keep trailing zeros, so that all numbers of a column have as many figures.
+        zeros: True to keep trailing zeros, so that all numbers of a column have the same number of figures.
     """
     units = subject.results.problem.units
     columns = [
@@ -282,7 +297,7 @@ def note_table(
 def table_over_positions(
     subject: Subject, caption: str, columns: Sequence[tuple[Line, Sequence[str]]], key: str
 ) -> Rows:
-    """Return a table with a row per position from columns of heading and texts."""
+    """Return a table with a row per position. columns: heading of each column and its texts, one per position."""
     rows = zip(map(str, subject.results.numbers), *(texts for __, texts in columns), strict=True)
     head = cells(_("position"), *(head for head, __ in columns))
     return Rows(caption, head, tuple(cells(*row) for row in rows), key)
@@ -294,7 +309,7 @@ def join_with_no_break_spaces(text: str) -> str:
 
 
 def _move_units(table: Table, shown: list[list[str]]) -> None:
-    """Move units written after names of quantities into the column of units: "time, s" gives "time" and "s"."""
+    """Move units that stand after names of quantities to the column of units: "time, s" becomes "time" and "s"."""
     headers = [column.header for column in table.columns]
     if headers != ["what", "value", "unit"] or len(shown) != len(headers):
         return
@@ -306,7 +321,7 @@ def _move_units(table: Table, shown: list[list[str]]) -> None:
 
 
 def _format_cells(column: Column, units: UnitSystem, zeros: bool) -> list[str]:
-    """Return the cells of a column as texts, in scientific notation only for very large or small numbers."""
+    """Return the cells of a column as texts. Only very large and very small numbers are in scientific notation."""
     if column.dimension is None:
         return cells_of(column, units, range(len(column.values)))
     write = format_fixed if zeros else format_plain
@@ -321,5 +336,5 @@ def _fill_empty_cell(text: str) -> str:
 
 
 def _typeset_units(column: Column) -> Column:
-    """Return a column of units in printed form; other columns unchanged."""
+    """If the column contains units, return it with the units typeset; otherwise return it unchanged."""
     return replace(column, values=[typeset_unit(unit) for unit in column.values]) if column.header == "unit" else column

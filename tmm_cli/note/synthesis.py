@@ -1,4 +1,4 @@
-"""Chapter on synthesis: requirements, formulas, results, and the same quantities measured on the mechanism."""
+"""Chapter on synthesis: requirements, formulas, results, and the required quantities measured on the mechanism."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ USED = ("k", "stroke", "OA", "OC", "CD")  # values of tasks that are put into fo
 
 
 def write_synthesis(subject: Subject) -> Iterable[Block]:
-    """Write the chapter on synthesis; nothing if the file gives all dimensions."""
+    """Write the chapter on synthesis. It is empty if the file gives all dimensions."""
     results = subject.results
     task = results.problem.synthesis
     if task is None:
@@ -62,7 +62,7 @@ def write_synthesis(subject: Subject) -> Iterable[Block]:
 
 
 def _write_formulas(task: Synthesised) -> Iterable[Block]:
-    """Write the formulas of the task that fit on one line, with numbers substituted."""
+    """Write those formulas of the synthesis that fit on one line, with numbers substituted."""
     values = {
         value.name: float(value.value) for value in (*task.outcome.asked, *task.outcome.found) if value.name in USED
     }

@@ -1,4 +1,4 @@
-"""Chapter on the problem statement: input data in the units of the file, and what is to be found."""
+"""Chapter on the problem statement: input data in the units of the file, and the quantities to be found."""
 
 from __future__ import annotations
 
@@ -122,7 +122,10 @@ def _dimension_table(subject: Subject) -> Rows:
 
 
 def _describe_dimensions(subject: Subject, link: Link) -> Line:
-    """Return the lengths of a link (l_AB = 110 mm), then the coordinates of its points if any lies off the x axis."""
+    """Return the lengths of a link, e.g. l_AB = 110 mm, and the coordinates of its points.
+
+    The coordinates are left out if all points lie on the x axis of the link.
+    """
     points = list(link.points)
     pairs = combinations(points, 2) if len(points) <= SIDES else ((points[0], other) for other in points[1:])
     found: list[Line] = []
@@ -138,7 +141,7 @@ def _describe_dimensions(subject: Subject, link: Link) -> Line:
 
 
 def _fixed_point_table(subject: Subject) -> Rows:
-    """Return the table of fixed points and guides; the last column is the direction of guides."""
+    """Return the table of fixed points and guides. Its last column is the direction of the guides."""
     linkage, unit = subject.results.linkage, subject.unit(LENGTH)
     rows = [cells(point, *_format_point(subject, place), NONE) for point, place in linkage.links[FRAME].points.items()]
     for slide in linkage.slides:

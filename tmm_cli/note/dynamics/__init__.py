@@ -1,1 +1,1 @@
-"""Parts of the chapter on the law of motion."""
+"""Chapter on the law of motion of a machine: reduced moments, flywheel, velocity and acceleration of the input link."""

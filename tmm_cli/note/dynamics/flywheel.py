@@ -1,4 +1,4 @@
-"""The flywheel: by tangents of the energy-mass diagram, by Mertsalov, on its shaft, and how large it is."""
+"""Flywheel: moment of inertia from the energy-mass diagram and by Mertsalov's method; diameter, width and mass."""
 
 from __future__ import annotations
 
@@ -33,7 +33,9 @@ DIAMETER, WIDTH, MASS = Symbol("D"), Symbol("b"), CourseSymbol("m_f")
 
 
 def write_extreme_speeds(here: SteadyPosition) -> Iterable[Block]:
-    """Write the largest and the smallest angular velocity from their mean and the coefficient of fluctuation."""
+    """Write the largest and the smallest angular velocity, which follow from the mean and the coefficient of
+    fluctuation.
+    """
     steady = here.steady
     low, high = steady.speeds
     middle, half = Leaf(MEAN, (low + high) / 2), Leaf(DELTA, steady.delta) / 2
@@ -50,7 +52,7 @@ def write_extreme_speeds(here: SteadyPosition) -> Iterable[Block]:
 
 
 def write_energy_mass_diagram(here: SteadyPosition) -> Iterable[Block]:
-    """Write the energy-mass diagram and the energies cut off by its tangents."""
+    """Write the energy-mass diagram and the energies (J) that its tangents cut off."""
     upper, lower = Leaf(LARGEST) ** 2 / 2, Leaf(LEAST) ** 2 / 2
     slope = Leaf(Symbol("μ", "J")) * Leaf(Symbol("ω")) ** 2 / (2 * Leaf(Symbol("μ", "A")))
     yield write_sentence(
@@ -77,7 +79,7 @@ def write_energy_mass_diagram(here: SteadyPosition) -> Iterable[Block]:
 
 
 def write_flywheel_by_tangents(here: SteadyPosition) -> Iterable[Block]:
-    """Write the moment of inertia of the flywheel from the energies cut off by the tangents."""
+    """Write the moment of inertia of the flywheel from the energies that the tangents cut off."""
     steady = here.steady
     upper, lower = here.tangents
     text = _("The moment of inertia of the flywheel, reduced to the input link:")
@@ -96,8 +98,9 @@ def write_flywheel_by_tangents(here: SteadyPosition) -> Iterable[Block]:
 
 
 def write_flywheel_by_mertsalov(here: SteadyPosition) -> Iterable[Block]:
-    """Write the flywheel by Mertsalov's method and by the approximate tangents of a course, for a constant driving
-    moment.
+    """Write the flywheel by Mertsalov's method and by tangents with approximate slopes, as in student courses.
+
+    Both methods assume a constant driving moment. Nothing is written if no exact flywheel was computed to compare with.
     """
     steady = here.steady
     if steady.found is None:
@@ -153,7 +156,7 @@ def write_flywheel_by_mertsalov(here: SteadyPosition) -> Iterable[Block]:
 
 
 def write_flywheel_on_its_shaft(here: SteadyPosition) -> Iterable[Block]:
-    """Write the moment of inertia on the flywheel's own shaft, if that is not the shaft of the input link."""
+    """Write the moment of inertia of the flywheel on its own shaft. Nothing is written if that is the input shaft."""
     steady = here.steady
     if steady.task.ratio == 1:
         return
@@ -169,7 +172,7 @@ def write_flywheel_on_its_shaft(here: SteadyPosition) -> Iterable[Block]:
 
 
 def write_flywheel_size(here: SteadyPosition) -> Iterable[Block]:
-    """Write the diameter, width and mass of a disk or a rim."""
+    """Write the diameter, width and mass of a flywheel in the form of a disk or a rim."""
     steady = here.steady
     form, inertia = steady.task.size, Leaf(FLYWHEEL if steady.task.ratio == 1 else ON_SHAFT, steady.on_shaft)
     share, diameter = Leaf(SHARE, form.width), Leaf(DIAMETER, steady.diameter)
@@ -208,5 +211,5 @@ def write_flywheel_size(here: SteadyPosition) -> Iterable[Block]:
 
 
 def tangent_speed(tangent: Tangent, name: Symbol) -> Leaf:
-    """Return the speed that corresponds to a tangent of the energy-mass diagram."""
+    """Return the angular velocity (rad/s) that corresponds to a tangent of the energy-mass diagram: ω² = 2·slope."""
     return Leaf(name, float(np.sqrt(2 * tangent.slope)))

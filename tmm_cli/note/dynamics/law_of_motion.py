@@ -1,4 +1,4 @@
-"""Chapter on the law of motion: steady running of a machine, or a single run."""
+"""Chapter on the law of motion of a machine in steady running or in a single run."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ TABLES = ("dynamics", "law-of-motion")
 
 
 def write_steady_running(subject: Subject) -> Iterable[Block]:
-    """Write the chapter on the law of motion of steady running."""
+    """Write the chapter on the law of motion in steady running."""
     every = [SteadyPosition(subject, k) for k in subject.detail]
     here = every[0]
     yield Heading(_("Law of motion"))
@@ -83,7 +83,7 @@ def write_steady_running(subject: Subject) -> Iterable[Block]:
 
 
 def write_tables(subject: Subject) -> Iterable[Block]:
-    """Write the tables of the results and of the law of motion in all positions."""
+    """Write the table of results and the table of the law of motion in all positions."""
     found = list(walk(subject.results, TABLES))
     sentences = _("The results are summarised in table {table}."), _("The law of motion is given in table {table}.")
     for table, sentence in zip(found, sentences, strict=True):
@@ -92,7 +92,7 @@ def write_tables(subject: Subject) -> Iterable[Block]:
 
 
 def _write_initial_energy(here: SteadyPosition) -> Iterable[Block]:
-    """Write the kinetic energy in position 0 from the tangent of the largest speed."""
+    """Write the kinetic energy in position 0, found from the tangent of the largest speed."""
     upper, __ = here.tangents
     yield write_sentence(_("The kinetic energy of the machine in position 0:"))
     flywheel, offset = Leaf(FLYWHEEL, here.steady.law.flywheel), Leaf(OFFSETS[0], upper.offset)
@@ -123,7 +123,7 @@ def _write_input_motion(here: SteadyPosition, *, explained: bool) -> Iterable[Bl
 
 
 def _write_time(here: SteadyPosition) -> Iterable[Block]:
-    """Write the time as the integral of the reciprocal angular velocity, and the period."""
+    """Write the time as the integral of the reciprocal angular velocity, and the duration of the cycle."""
     omega = Letter(Symbol("ω", here.motion.linkage.driver.link))
     yield write_sentence(
         _("The time from position 0 is the integral of the reciprocal angular velocity over the angle of rotation:")

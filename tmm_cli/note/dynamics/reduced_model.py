@@ -1,4 +1,4 @@
-"""Reduced moment of inertia and reduced moment of a machine, position by position, and its driving moment."""
+"""Reduced moment of inertia and reduced moment of a machine in detailed positions, and the driving moment."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ LARGEST, LEAST = Symbol("ω", "max"), Symbol("ω", "min")
 
 @dataclass(frozen=True)
 class SteadyPosition:
-    """A position of a machine in steady running; signs follow the sense of rotation of the input link."""
+    """Position of a machine in steady running. Quantities in the sense of rotation of the input link are positive."""
 
     subject: Subject
     k: int
@@ -60,7 +60,7 @@ class SteadyPosition:
 
     @property
     def speed(self) -> Leaf:
-        """Angular velocity of the input link, rad/s, as a magnitude."""
+        """Magnitude of the angular velocity of the input link (rad/s)."""
         return Leaf(Symbol("ω", self.motion.linkage.driver.link), abs(self.subject.rate(self.k)))
 
     @cached_property
@@ -69,12 +69,12 @@ class SteadyPosition:
 
     @cached_property
     def initial_energy(self) -> float:
-        """Kinetic energy in position 0, J."""
+        """Kinetic energy in position 0 (J)."""
         upper, __ = self.tangents
         return upper.slope * self.steady.law.flywheel - upper.offset
 
     def value_of(self, curve: PanelCurve) -> float:
-        """Return the value of a curve over the input angle at this position."""
+        """Return the value in this position of a curve plotted against the angle of the input link."""
         return float(curve(self.running.way(self.motion.q))[self.k])
 
 
@@ -98,7 +98,7 @@ def explain_reduction(here: SteadyPosition) -> Iterable[Block]:
 
 
 def write_reduced_inertia(here: SteadyPosition) -> Iterable[Block]:
-    """Write the reduced moment of inertia: inertias times squared velocity ratios."""
+    """Write the reduced moment of inertia: masses and moments of inertia times squared velocity ratios."""
     terms = [term for link in here.motion.linkage.moving for term in _inertia_terms(here, link)]
     if not terms:
         return
@@ -129,7 +129,7 @@ def _inertia_terms(here: SteadyPosition, name: str) -> Iterable[Expression]:
 
 
 def write_reduced_moment(here: SteadyPosition) -> Iterable[Block]:
-    """Write the reduced moment: power of all loads divided by the speed of the input link."""
+    """Write the reduced moment: the power of all loads divided by the angular velocity of the input link."""
     terms = [term for load in here.subject.results.loads if load.kind != "inertia" for term in _power_terms(here, load)]
     if not terms:
         return
@@ -167,7 +167,6 @@ def _power_terms(here: SteadyPosition, load: AppliedLoad) -> Iterable[Expression
 
 
 def _sum_without_negligible(terms: list[Expression]) -> Sum:
-    """Return the sum of the terms without those negligible beside the largest."""
     sizes = [abs(evaluate(term, EXACT)) for term in terms]
     return sum_terms(term for term, size in zip(terms, sizes, strict=True) if size > NO_VECTOR * max(sizes))
 
@@ -181,7 +180,7 @@ BREAKDOWN, SLIP, CRITICAL = CourseSymbol("M_k"), Symbol("s"), CourseSymbol("s_k"
 
 
 def write_mean_driving_moment(here: SteadyPosition) -> Iterable[Block]:
-    """Write the mean driving moment from the condition of zero total work over the cycle."""
+    """Write the mean driving moment. It follows from the total work over the cycle, which is zero."""
     steady = here.steady
     turns = round(steady.machine.length / (2 * math.pi))
     yield write_sentence(
@@ -206,7 +205,7 @@ def write_mean_driving_moment(here: SteadyPosition) -> Iterable[Block]:
 
 
 def write_motor_moment(here: SteadyPosition) -> Iterable[Block]:
-    """Write the motor moment at the speed in this position."""
+    """Write the moment of the motor at the speed in this position. Nothing is written if no motor is given."""
     match here.steady.task.motor:
         case LinearMotor() as found:
             yield write_sentence(

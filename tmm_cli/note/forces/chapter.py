@@ -1,4 +1,4 @@
-"""Chapter on forces: loads, groups from the last to the input link, lever, tables of all positions."""
+"""Chapter on forces: loads, groups from the last to the first, input links, Zhukovsky lever, tables of results."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from tmm_cli.reports import has_flywheel, indeterminate_reactions
 
 
 def write_forces(subject: Subject) -> Iterable[Block]:
-    """Write the chapter on forces; nothing if no load acts on the links."""
+    """Write the chapter on forces. It is empty if no load acts on the links."""
     if not subject.has_loads:
         return
     yield Heading(_("Force analysis"))
@@ -58,7 +58,7 @@ def write_forces(subject: Subject) -> Iterable[Block]:
 
 
 def _write_position(subject: Subject, k: int) -> Iterable[Block]:
-    """Write the sections of one detailed position; headings name the position if there are several."""
+    """Write the sections on one detailed position. If there are several, the headings name the position."""
     several = len(subject.detail) > 1
 
     def heading(text: str) -> str:
@@ -84,7 +84,10 @@ def _write_by_groups(subject: Subject, k: int, heading: Callable[[str], str]) ->
 
 
 def _write_by_guidelines(subject: Subject, k: int, heading: Callable[[str], str]) -> Iterable[Block]:
-    """Write steps 2.3.1 to 2.3.4 of the force guidelines: plan, weights and loads, inertia forces, groups in turn."""
+    """Write a position in the order of steps 2.3.1 to 2.3.4 of the MATI guidelines for force analysis.
+
+    The steps are: plan of the mechanism, weights and useful resistance, inertia forces, reactions group by group.
+    """
     first, caption = k == subject.detail[0], subject.describe_position(k)
     yield Heading(heading(_("Plan of the mechanism")), 2)
     stem = subject.position(k).stem("position")
@@ -121,7 +124,7 @@ def _write_other_loads(subject: Subject, k: int) -> Iterable[Block]:
 
 
 def _write_group_sections(subject: Subject, k: int, heading: Callable[[str], str], level: int) -> Iterable[Block]:
-    """Write the sections of the groups, last group first, and of the input links."""
+    """Write the sections on the groups, from the last to the first, and on the input links."""
     for number, part in enumerate(list_bodies(subject, k)):
         if part.forces is not None:
             text = _("Group of links {links}") if len(part.links) > 1 else _("Group of link {links}")
@@ -138,7 +141,7 @@ PAIRS = 4  # reactions in one table
 
 
 def write_reactions(subject: Subject) -> Iterable[Block]:
-    """Write the tables of reactions (N) with angles, and of pin forces of compound hinges."""
+    """Write the tables of the reactions (N) with their angles, and of the pin forces in compound hinges."""
     found = subject.reactions
     pairs = [(r.pair.name, reaction_symbol(r.by, r.on), r.force, r.angle) for r in found.directed]
     tables = list(_force_tables(subject, _("Reactions in the pairs {names}"), pairs, "reactions"))
@@ -174,7 +177,7 @@ def write_reactions(subject: Subject) -> Iterable[Block]:
 
 
 def write_transmission(subject: Subject) -> Iterable[Block]:
-    """Write the driving force of each driven link and its useful component in the detailed positions."""
+    """Write the force that drives each driven link, and its useful component, in the detailed positions."""
     given = find_transmitted_forces(subject.motion, subject.reactions)
     if not given or not subject.reactions.loaded:
         return
@@ -222,9 +225,14 @@ def write_transmission(subject: Subject) -> Iterable[Block]:
 def _force_tables(
     subject: Subject, caption: str, forces: Sequence[tuple[str, Symbol, Vector, Real | None]], key: str
 ) -> Iterable[Rows]:
-    """Yield tables of at most PAIRS forces with their angles.
+    """Yield tables of forces (N) and their angles in all positions, with at most PAIRS forces in each.
 
-    forces: name of the pair, symbol, force (N), and the angle if it is defined where the force is zero.
+    Args:
+        subject: Results that the note describes.
+        caption: Caption with the field {names}.
+        forces: For each force the name of its pair, its symbol, the force itself (N) and its angle (rad), both of shape
+            (positions,). The angle may be None; it must be given if it is defined where the force is zero.
+        key: Beginning of the keys of the tables.
     """
     for first in range(0, len(forces), PAIRS):
         some = forces[first : first + PAIRS]
@@ -239,7 +247,7 @@ def _force_tables(
 
 
 def write_balancing_loads(subject: Subject) -> Iterable[Block]:
-    """Write the table of balancing moments or forces by the force plan and by the Zhukovsky lever."""
+    """Write the table of the balancing moments or forces, found by the force plan and by the Zhukovsky lever."""
     results, balances, lever = subject.results, subject.reactions.balances, subject.lever
     several = len(balances) > 1
     symbols = [balance_symbol(b.driver.link, several, turns=b.moment is not None) for b in balances]
@@ -293,7 +301,7 @@ def write_balancing_loads(subject: Subject) -> Iterable[Block]:
 
 
 def _format_column(subject: Subject, column: Real, write: Callable[[Subject, float], str]) -> list[str]:
-    """Return the values in all positions as texts, a dash where the mechanism cannot move."""
+    """Return the values in all positions as texts, with a dash where the mechanism cannot move."""
     values = without_rounding(column, largest_magnitude(column))
     there = np.isfinite(values) & subject.motion.moving
     return [write(subject, float(value)) if known else NONE for value, known in zip(values, there, strict=True)]

@@ -1,4 +1,4 @@
-"""Equations of moments and of projections as formulas: the whole sum, and the unknown it gives."""
+"""Moment equations and sums of projections as formulas, and the unknowns that they give."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ ALONG = 1e-12  # one less the cosine: a force with less is along the guide
 
 
 def moment_equation(equation: MomentEquation, mu: float | None = None) -> Node:
-    """Return the equation ΣM_E = −R·h₃ + G·h₁ − ... = 0, the unknown first.
+    """Return a moment equation as a formula with the unknown first: ΣM_E = −R·h₃ + G·h₁ − ... = 0.
 
-    mu: scale (m/mm) for arms measured on paper; couples are then written as M/μ_l.
+    mu: scale (m/mm) if arms are measured on the drawing; couples are then written as M/μ_l. None: arms in metres.
     """
     found = equation.found
     terms = [*([found] if found else []), *(t for t in equation.terms if t is not found)]
@@ -31,16 +31,17 @@ def moment_equation(equation: MomentEquation, mu: float | None = None) -> Node:
 
 
 def solve_moment_equation(equation: MomentEquation, unit: str = "", mu: float | None = None) -> ComputedQuantity | None:
-    """Return the unknown of a moment equation; without an unknown, the sum itself, which is zero.
+    """Return the unknown of a moment equation, computed from the other terms.
 
     Args:
         equation: Moment equation.
         unit: Unit of moments if it is not N·m.
-        mu: Scale (m/mm) for arms in millimetres of the drawing: a couple is substituted as M/μ_l, and a sum of F·h is
-            multiplied by μ_l to give a moment (guidelines, equation 7).
+        mu: Scale (m/mm) if arms are in millimetres of the drawing. A couple is then substituted as M/μ_l, and a sum of
+            F·h is multiplied by μ_l to give a moment (MATI guidelines, equation 7).
 
     Returns:
-        The computed quantity, or None if nothing has a moment.
+        The unknown. If the equation has no single unknown, the sum of its moments, which is zero. None if no force has
+        a moment.
     """
     found, sought = equation.found, equation.sought
     others: Expression = sum_terms(_moment_term(t, mu) for t in equation.terms if t is not found)
@@ -63,7 +64,7 @@ def solve_moment_equation(equation: MomentEquation, unit: str = "", mu: float | 
 
 
 def solve_guide_sum(forces: ForceSum) -> tuple[Node, ComputedQuantity]:
-    """Return the sum of projections ΣF = R − G·cos α₁ + ... = 0 and the unknown it gives."""
+    """Return the sum of projections onto a guide, ΣF = R − G·cos α₁ + ... = 0, and the unknown that it gives."""
     own = forces.found
     parts = [own, *(part for part in forces.parts if part is not own)]
     shares = [_projection(part, number) for number, part in enumerate(parts)]
@@ -76,7 +77,9 @@ def solve_guide_sum(forces: ForceSum) -> tuple[Node, ComputedQuantity]:
 
 
 def vector_sum_equation(vectors: Sequence[tuple[Symbol, int]]) -> Node:
-    """Return a vector equation with zero sum; each symbol with its number of underlines."""
+    """Return an equation by which the sum of vectors is zero. Each vector is given by its symbol and number of
+    underlines.
+    """
     parts = [part for symbol, lines in vectors for part in ("+", Letter(symbol, vector=True, lines=lines))]
     return chain_of_equalities((row(*parts[1:]), Number("0")))
 
@@ -89,7 +92,9 @@ def _moment_term(term: MomentTerm, mu: float | None = None) -> Expression:
 
 
 def _arm_leaf(term: MomentTerm, mu: float | None) -> Leaf:
-    """Return the moment arm of a force in metres, or in millimetres of a drawing with this scale."""
+    """Return the moment arm of a force: in millimetres of the drawing if the scale mu (m/mm) is given, otherwise in
+    metres.
+    """
     return Leaf(term.letter, term.arm if mu is None else term.arm / mu)
 
 

@@ -1,4 +1,4 @@
-"""Zhukovsky lever: replaced couples, moments about the pole, comparison with the force plan."""
+"""Section on the Zhukovsky lever: couples, moments about the pole, difference from the force plan."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tmm_cli.note.subject import Subject
 
 
 def write_lever(subject: Subject, k: int, heading: str, *, explained: bool) -> Iterable[Block]:
-    """Write the section on the Zhukovsky lever; with `explained` the method first."""
+    """Write the section on the Zhukovsky lever in position k. If `explained` is True, it begins with the method."""
     plan = lever_plan(subject.motion, subject.reactions, subject.lever, k)
     if not plan.equation.terms:
         return
@@ -64,7 +64,9 @@ def _explain_lever(*, turns: bool) -> Block:
 
 
 def _write_couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]:
-    """Write couples as pairs of forces, or multiplied by the velocity ratio of their link."""
+    """Write the couples as they act on the lever: as pairs of forces, or multiplied by the velocity ratio of their
+    link.
+    """
     if plan.pairs:
         yield write_sentence(
             _(
@@ -97,8 +99,10 @@ def driver_rotates(subject: Subject) -> bool:
 
 
 def _velocity_ratio(subject: Subject, load: AppliedLoad, k: int) -> tuple[Expression, ...]:
-    """Return the ratio of the link's angular velocity to the driver's: no factor if equal, a number if the driver
-    rests.
+    """Return the factors of the velocity ratio between a loaded link and the driver.
+
+    They are empty for a couple on the rotating driver itself. If the driver is at rest in position k, the ratio is one
+    number, otherwise a quotient of velocities.
     """
     motion, driver = subject.motion, subject.results.linkage.driver
     rate = abs(subject.rate(k))
@@ -111,7 +115,9 @@ def _velocity_ratio(subject: Subject, load: AppliedLoad, k: int) -> tuple[Expres
 
 
 def _write_reduced_balance(subject: Subject, k: int, unit: str) -> Iterable[Block]:
-    """Write the combined effect of several drivers, each multiplied by its velocity ratio to the first."""
+    """Write the sum of the balancing loads of several drivers, each multiplied by its velocity ratio to the first
+    driver.
+    """
     motion, reactions, lever = subject.motion, subject.reactions, subject.lever
     first, terms = reactions.balance, list[Expression]()
     for balance in reactions.balances:
@@ -134,7 +140,7 @@ def _write_reduced_balance(subject: Subject, k: int, unit: str) -> Iterable[Bloc
 
 
 def _write_difference(subject: Subject, k: int) -> Iterable[Block]:
-    """Write the difference from the force plan, in per cent of the largest magnitude in all positions."""
+    """Write the difference between lever and force plan, in per cent of the largest magnitude in all positions."""
     balance, lever = subject.reactions.balance, subject.lever
     moment = balance.kind == "moment"
     name = balance_symbol(balance.driver.link, several=False, turns=moment)
@@ -160,7 +166,7 @@ def _write_difference(subject: Subject, k: int) -> Iterable[Block]:
 
 
 def _write_drawn_check(subject: Subject, k: int) -> Iterable[Block]:
-    """Write what both methods give with arms and segments measured on the drawings."""
+    """Write the results of force plan and lever if arms and segments are measured on the drawings."""
     drawn = balance_drawings(subject.motion, subject.reactions, subject.lever, k)
     if drawn is None:
         return

@@ -1,4 +1,4 @@
-"""Loads on the links except reactions: weights, inertia forces and couples, springs, friction, given loads."""
+"""Sections on the loads: weights, inertia forces and couples, springs, friction, and the losses by friction."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from tmm_cli.reports import describe_locked_ranges
 
 
 def write_weights(subject: Subject) -> Iterable[Block]:
-    """Write the weights of the links, the same in every position."""
+    """Write the weights of the links."""
     linkage = subject.results.linkage
     gravity = Leaf(Symbol("g"), abs(complex(linkage.gravity)))
     own = [load for load in subject.results.loads if load.kind == "weight"]
@@ -50,7 +50,7 @@ def write_weights(subject: Subject) -> Iterable[Block]:
 
 
 def write_inertia(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
-    """Write the inertia forces and couples of one position; those that are zero are named in words."""
+    """Write the inertia forces and couples in one position. A sentence names those that are zero."""
     found = [one for load in subject.results.loads if load.kind == "inertia" for one in _inertia_load(subject, load, k)]
     if not found:
         return
@@ -92,7 +92,7 @@ def _inertia_load(subject: Subject, load: AppliedLoad, k: int) -> Iterable[Compu
 
 
 def write_springs(subject: Subject, k: int) -> Iterable[Block]:
-    """Write the force or moment of each spring from its length or angle and their rate of change."""
+    """Write the force or moment of each spring as a function of its length or angle and of their rates of change."""
     for spring in subject.results.linkage.springs:
         load = next((one for one in subject.results.loads if one.name == spring.name), None)
         if load is not None:
@@ -130,7 +130,7 @@ def _write_spring(subject: Subject, spring: Spring, load: AppliedLoad, k: int) -
 
 
 def write_friction(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
-    """Write the friction force or moment in each pair, for the reactions determined with it."""
+    """Write the friction force or moment in each pair. It corresponds to the reactions found with friction."""
     given = subject.results.linkage.friction
     if not given:
         return
@@ -169,7 +169,7 @@ def _write_pair_friction(subject: Subject, given: Friction, k: int) -> Iterable[
 
 
 def write_balance_without_friction(subject: Subject, k: int) -> Iterable[Block]:
-    """Write the balancing moment or force without friction."""
+    """Write the balancing moment or force that would be required without friction."""
     if not subject.results.linkage.friction:
         return
     loads = tuple(load for load in subject.results.loads if load.kind != "friction")
@@ -183,7 +183,7 @@ def write_balance_without_friction(subject: Subject, k: int) -> Iterable[Block]:
 
 
 def write_load_table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
-    """Write the table of loads in one position: magnitudes, and angles of forces or senses of couples."""
+    """Write the table of the loads in one position: magnitudes, angles of forces, senses of couples."""
     rows: list[tuple[Line, ...]] = []
     loads = subject.results.loads
     least = NO_FORCE * max((abs(complex(load.force[k])) for load in loads), default=0.0)
@@ -203,8 +203,9 @@ def write_load_table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
 
 
 def write_losses(subject: Subject) -> Iterable[Block]:
-    """Write the work of drivers and friction over the cycle (J) and the efficiency, or where the mechanism is self-
-    locking.
+    """Write the work of the driving forces and of friction over the cycle (J), and the efficiency.
+
+    For a self-locking mechanism the ranges in which it locks are written instead.
     """
     lost = subject.results.losses
     if lost is None or lost.locked:

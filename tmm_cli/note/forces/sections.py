@@ -41,7 +41,16 @@ from tmm_cli.note.subject import Subject
 
 @dataclass(frozen=True)
 class AnalysedBody:
-    """Group or input link in one position, with its external reactions (for an input link, that of the frame)."""
+    """Group or input link in one position, with the results of its force analysis.
+
+    Attributes:
+        subject: Results that the note describes.
+        position: Position with its loads and reactions.
+        free_body: Forces on the body, its moment equations and its sums of projections.
+        plan: Force plan of the body.
+        external: Reactions in its external pairs; for an input link, the reaction of the frame.
+        forces: Forces of the group; None for an input link.
+    """
 
     subject: Subject
     position: LoadedPosition
@@ -56,7 +65,7 @@ class AnalysedBody:
 
     @property
     def unknown_reactions(self) -> frozenset[Symbol]:
-        """Symbols of the external reactions and their components."""
+        """Symbols of the external reactions and of their components."""
         names = [(r.by, r.on) for r in self.external]
         return frozenset(
             reaction_symbol(*n, part, letter) for n in names for part in ("", "n", "τ") for letter in ("R", "M")
@@ -64,34 +73,38 @@ class AnalysedBody:
 
     @property
     def known_loads(self) -> list[ForceOrCouple]:
-        """Forces and couples known before the part is solved."""
+        """Forces and couples that are known before the equations of this body are solved."""
         return [one for one in self.free_body.acting if one.symbol not in self.unknown_reactions and one.pair != DRIVE]
 
     @property
     def solved_by_moments(self) -> frozenset[Symbol]:
-        """Symbols found from equations of moments."""
+        """Symbols of the forces and couples that follow from moment equations."""
         return frozenset(e.sought.symbol for e in self.free_body.equations if e.sought and not e.sought.arm)
 
     @property
     def known_before_plan(self) -> frozenset[Symbol]:
-        """Symbols found before the force plan is drawn."""
+        """Symbols of the unknowns that equations give before the force plan is drawn."""
         return self.solved_by_moments | {s.found.acting.symbol for s in self.guide_sums[0]}
 
     @property
     def loads_of_plan(self) -> frozenset[Symbol]:
-        """Symbols of the plan known in advance, without balancing loads of drivers."""
+        """Symbols of the loads in the force plan, without reactions and without balancing loads of drivers."""
         drives = {one.symbol for one in self.free_body.acting if one.pair == DRIVE}
         return frozenset(v.symbol for v in self.plan.plan.vectors) - self.unknown_reactions - drives
 
     @property
     def known_lines(self) -> frozenset[Symbol]:
-        """Symbols of forces with a known line of action: reactions of guides and teeth, forces of drivers."""
+        """Symbols of forces with a known line of action: reactions of guides and higher pairs, forces of drivers."""
         outer = {reaction_symbol(r.by, r.on) for r in self.external if r.pair.slide is not None or not r.pair.lower}
         return frozenset(outer | {one.symbol for one in self.free_body.acting if one.pair == DRIVE})
 
     @property
     def guide_sums(self) -> tuple[list[ForceSum], list[ForceSum]]:
-        """Sums along guides that have one unknown before the force plan is drawn, and the other sums."""
+        """Sums of projections onto guides.
+
+        Returns:
+            The sums with a single unknown, which are solved before the force plan is drawn, and the remaining sums.
+        """
         inner = () if self.forces is None else self.forces.inner
         both = {reaction_symbol(*names) for r in inner for names in ((r.by, r.on), (r.on, r.by))}
         unknown = (self.unknown_reactions | both) - self.solved_by_moments
@@ -103,22 +116,25 @@ class AnalysedBody:
 
     @property
     def inner_first(self) -> bool:
-        """True for an RPP group: its two guides leave three unknowns in a plan of both links."""
+        """True for an RPP group of two links, for which the polygon of one link is drawn before the force plan.
+
+        The force plan of both links has three unknown magnitudes: two at the external hinge and one on the external guide.
+        """
         return self.forces is not None and self.forces.group.type == "RPP" and len(self.links) == 2
 
     @property
     def needs_common_solution(self) -> bool:
-        """True if no equation has a single unknown."""
+        """True if a moment equation has more than one unknown, so that all equations must be solved together."""
         return any(e.sought is None for e in self.free_body.equations)
 
     @property
     def caption(self) -> str:
-        """Position of the mechanism in words."""
+        """Number of the position with its driver coordinate."""
         return self.subject.describe_position(self.position.k)
 
     @property
     def vectors(self) -> list[NamedVector]:
-        """Vectors of the plan without the internal reaction and without negligible loads."""
+        """Vectors of the force plan without internal reactions and negligible loads."""
         least = NO_FORCE * self.plan.plan.size
         return [
             v
@@ -131,7 +147,9 @@ class AnalysedBody:
         return abs(complex(reaction.force[self.position.k]))
 
     def arm_scale(self, equation: MomentEquation) -> float | None:
-        """Return the scale (m/mm) of the drawing with the arms of an equation; None if arms are in metres."""
+        """Return the scale (m/mm) of the drawing that shows the arms of an equation; None if the note gives arms in
+        metres.
+        """
         if self.subject.results.problem.note_style.arms != "paper":
             return None
         number = next(n for n, few in enumerate(split_equations(self.free_body.equations)) if equation in few)
@@ -139,13 +157,13 @@ class AnalysedBody:
         return self.subject.scale("group-loads", self.position.k, stem)
 
     def drawing_name(self, name: str) -> str:
-        """Return the name of the part's drawing."""
+        """Return the file name of a drawing of this body, without its extension."""
         kind = "links" if len(self.links) > 1 else "link"
         return file_safe_name("-".join([self.subject.position(self.position.k).stem(name), kind, *self.links]))
 
 
 def list_bodies(subject: Subject, k: int) -> Iterable[AnalysedBody]:
-    """Yield the groups in one position, last group first, then the input links."""
+    """Yield the groups in position k, from the last to the first, then the input links."""
     motion, reactions = subject.motion, subject.reactions
     here = LoadedPosition.at(motion, reactions, k)
     loaded, plans = list_free_bodies(motion, reactions, k), force_plans(reactions, k, motion)
@@ -162,9 +180,9 @@ SIZES = 2  # that a closed polygon gives
 
 
 def write_section(part: AnalysedBody, heading: Heading, *, first: bool) -> Iterable[Block]:
-    """Write the section of a group or an input link.
+    """Write the section on a group or an input link.
 
-    first: the first section of the note, which explains how to read the vector sum.
+    first: True for the first such section of the note, which explains how to read the vector sum.
     """
     yield heading
     if not part.free_body.acting:
@@ -202,7 +220,7 @@ def _name_links(names: Sequence[str]) -> str:
 
 
 def _write_projections(forces: ForceSum) -> Iterable[Block]:
-    """Write a sum of projections onto a guide."""
+    """Write a sum of projections onto a guide, and the unknown that it gives."""
     node, found = solve_guide_sum(forces)
     yield write_sentence(
         _(
@@ -218,7 +236,7 @@ def _write_projections(forces: ForceSum) -> Iterable[Block]:
 
 
 def _write_free_body(part: AnalysedBody) -> Iterable[Block]:
-    """Write the known loads, the unknown external reactions, and the figure of the part."""
+    """Write the known loads and the unknown external reactions of a body, with its drawing."""
     given = join_inline(dict.fromkeys(one.symbol for one in part.known_loads))
     group = "" if part.forces is None else part.forces.group.title
     text = _("The input link is considered last. Known: {given}. To be found:")
@@ -256,7 +274,7 @@ def _write_free_body(part: AnalysedBody) -> Iterable[Block]:
 
 
 def _describe_unknowns(reaction: Reaction, lead: ExternalPair | None) -> Line:
-    """Return the sentence on the unknowns of an external reaction."""
+    """Return a list item that names the unknowns of an external reaction."""
     pair, line = reaction.pair, ""
     if not pair.lower:
         text = _("in pair {pair}: magnitude of the reaction {R} along the common normal of the profiles")
@@ -283,7 +301,7 @@ def _describe_unknowns(reaction: Reaction, lead: ExternalPair | None) -> Line:
 
 
 def _write_moments(part: AnalysedBody, equation: MomentEquation) -> Iterable[Block]:
-    """Write a moment equation and its unknown: a force, a couple, or the point of action of a guide's reaction."""
+    """Write a moment equation and its unknown: a force, a couple, or the arm of a reaction of a guide."""
     mu = part.arm_scale(equation)
     found, sought = solve_moment_equation(equation, mu=mu), equation.sought
     if sought is None:
@@ -320,7 +338,7 @@ def _write_moments(part: AnalysedBody, equation: MomentEquation) -> Iterable[Blo
 
 
 def _write_force_plan(part: AnalysedBody, *, explained: bool) -> Iterable[Block]:
-    """Write the closed polygon, the values read off it and the total reactions."""
+    """Write the closed force polygon, the values measured on it and the total reactions."""
     known = part.known_before_plan | part.loads_of_plan
     if part.inner_first:
         known |= {reaction_symbol(r.by, r.on) for r in part.external if r.pair.slide is not None}
@@ -375,7 +393,7 @@ def _write_total_reaction(part: AnalysedBody, reaction: Reaction) -> Iterable[Bl
 
 
 def _write_guide_polygon(part: AnalysedBody) -> Iterable[Block]:
-    """Write the force polygon of the link on which both guides act."""
+    """Write the force polygon of the link on which both guides of an RPP group act."""
     assert part.forces is not None
     inner = part.forces.inner[0]
     outer = next(r for r in part.external if r.pair.slide is not None)
@@ -396,14 +414,14 @@ def _write_guide_polygon(part: AnalysedBody) -> Iterable[Block]:
 
 
 def _polygon_of_link(part: AnalysedBody, link: str, sought: Mapping[Symbol, int]) -> Equation:
-    """Return the force polygon of one link; each unknown with its number of underlines."""
+    """Return the force polygon of one link as an equation. `sought` gives the number of underlines of each unknown."""
     acting = part.position.acting([link], {})
     known = [one.symbol for one in acting if not one.couple and one.symbol not in sought]
     return Equation(vector_sum_equation([*((symbol, 2) for symbol in known), *sought.items()]))
 
 
 def _write_internal_reactions(part: AnalysedBody) -> Iterable[Block]:
-    """Write the internal reactions from the equilibrium of one link of each internal pair."""
+    """Write the internal reactions, each from the equilibrium of one of its two links."""
     inner = () if part.forces is None else part.forces.inner
     if len(inner) == 1:
         (reaction,) = inner
@@ -425,7 +443,7 @@ def _write_internal_reactions(part: AnalysedBody) -> Iterable[Block]:
 
 
 def _write_balancing_direction(part: AnalysedBody) -> Iterable[Block]:
-    """Write the sense or direction of each balancing load."""
+    """Write the sense of each balancing moment and the direction of each balancing force."""
     for one in part.free_body.acting:
         if one.pair == DRIVE:
             way = name_sense(one.moment) if one.couple else part.subject.direction(one.force)

@@ -1,4 +1,4 @@
-"""Formats of the note; a new format is a function in a module here and an entry in FORMATS."""
+"""File formats of the note. To add a format, write a function in a module here and enter it in FORMATS."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ FORMATS: dict[str, Callable[[Note], bytes]] = {"html": html, "docx": _docx}
 
 
 def formats_of(text: str) -> list[str]:
-    """Parse comma-separated format names.
+    """Parse comma-separated names of formats, e.g. "html,docx".
 
     Raises:
         ProblemError: A format is unknown, or python-docx is not installed.

@@ -1,4 +1,4 @@
-"""The note as DOCX: formulas in OMML (Word's own, editable), Word's styles, captions and fields."""
+"""The note as a Word document (DOCX) with editable formulas (OMML) and with Word's styles, captions and fields."""
 
 from __future__ import annotations
 
@@ -49,12 +49,15 @@ NOT_XML = dict.fromkeys((*range(9), 11, 12, *range(14, 32), *range(0xD800, 0xE00
 
 
 def escape_xml(text: str) -> str:
-    """Escape a text for XML; characters that XML forbids are replaced."""
+    """Escape a text for XML. Characters that XML forbids are replaced."""
     return escape(text.translate(NOT_XML))
 
 
 def inline_omml(node: Node, size: float = 0.0) -> str:
-    """Return an inline formula as OMML; `size` is its font size in points if it differs from the text."""
+    """Return a formula within text as OMML.
+
+    size: font size in points; 0 for that of the text.
+    """
     shown = _omml(node)
     if size:
         shown = shown.replace(FONT, FONT.replace("</w:rPr>", f'<w:sz w:val="{round(2 * size)}"/></w:rPr>'))
@@ -62,14 +65,14 @@ def inline_omml(node: Node, size: float = 0.0) -> str:
 
 
 def display_omml(node: Node) -> list[str]:
-    """Return a displayed formula as OMML, a paragraph for each line."""
+    """Return a displayed formula as OMML, one paragraph for each of its lines."""
     lines = node.lines if isinstance(node, Lines) else (node,)
     jc = '<m:oMathParaPr><m:jc m:val="left"/></m:oMathParaPr>'
     return [f"<m:oMathPara {SPACES}>{jc}{inline_omml(_add_empty_operand(line))}</m:oMathPara>" for line in lines]
 
 
 def _add_empty_operand(line: Node) -> Node:
-    """Put an empty operand before a line that begins with an equals sign; some programs require two operands."""
+    """Put an empty operand before a line that begins with an equals sign, as some programs require two operands."""
     return Row((Words("\u200b"), *line.nodes)) if isinstance(line, Row) and line.nodes[0] == Sign("=") else line
 
 
@@ -194,7 +197,7 @@ def _set_font(style: Any, size: float, *, bold: bool = False) -> Any:
 
 
 def _number_headings(document: Any) -> None:
-    """Number the headings decimally: 2, 2.1."""
+    """Make Word number the headings decimally: 2, 2.1."""
     numbering = document.part.numbering_part.element
     own = "90"
     levels = "".join(
@@ -214,7 +217,14 @@ def _number_headings(document: Any) -> None:
 
 
 def add_field(paragraph: Any, code: str, shown: str, *, dirty: bool = False) -> None:
-    """Add a Word field with its code and displayed text; `dirty` makes Word update it on opening."""
+    """Add a Word field to a paragraph.
+
+    Args:
+        paragraph: Paragraph of python-docx.
+        code: Code of the field, e.g. PAGE.
+        shown: Text displayed until Word updates the field.
+        dirty: True if Word is to update the field when it opens the document.
+    """
     _open_field(paragraph, code, dirty=dirty)
     paragraph.add_run(shown)
     _add_field_mark(paragraph, "end")
@@ -234,7 +244,7 @@ def _add_field_mark(paragraph: Any, kind: str, *, dirty: bool = False) -> None:
 
 
 class WordParts:
-    """Bookmarks and pictures of a document, numbered through the file."""
+    """Writer of bookmarks, pictures and the table of contents; it numbers bookmarks and pictures through the document."""
 
     def __init__(self, document: Any) -> None:
         self.document = document
@@ -242,14 +252,14 @@ class WordParts:
         self.pictures = 0
 
     def add_bookmark(self, paragraph: Any, name: str, first: int) -> None:
-        """Bookmark a paragraph from its child number `first` to its end."""
+        """Bookmark a paragraph from the child element with index `first` to its end."""
         self.marks += 1
         own = {qn("w:id"): str(self.marks)}
         paragraph._p.insert(first, OxmlElement("w:bookmarkStart", own | {qn("w:name"): name}))
         paragraph._p.append(OxmlElement("w:bookmarkEnd", own))
 
     def add_picture(self, paragraph: Any, drawing: Drawing, share: float, told: str) -> None:
-        """Add a drawing at a fraction `share` of its size, with `told` as its alternative text."""
+        """Add a drawing to a paragraph, reduced to the fraction `share` of its size, with `told` as alternative text."""
         self.pictures += 1
         uri = PackURI(f"/word/media/drawing{self.pictures}.emf")
         part = Part(uri, "image/x-emf", write_emf(drawing), self.document.part.package)
@@ -270,7 +280,10 @@ class WordParts:
         )
 
     def add_contents(self, entries: Iterable[tuple[int, str, str]]) -> None:
-        """Add the table of contents: a field that Word updates, filled with entries of level, number and text."""
+        """Add the table of contents as a field that Word updates.
+
+        entries: level, number and text of each heading.
+        """
         paragraph = None
         for k, (level, number, text) in enumerate(entries):
             paragraph = self.document.add_paragraph(style=f"TOC {min(level, 2)}")
@@ -283,7 +296,7 @@ class WordParts:
 
 
 def keep_on_page(row: Any, *, head: bool) -> None:
-    """Keep a table row on one page; a heading row is repeated on every page."""
+    """Prevent a page break within a table row. A heading row is also repeated on every page."""
     properties = row._tr.get_or_add_trPr()
     properties.append(OxmlElement("w:cantSplit"))
     if head:
@@ -291,7 +304,7 @@ def keep_on_page(row: Any, *, head: bool) -> None:
 
 
 def add_title_page(document: Any, block: Title) -> None:
-    """Add the lines of the title page from top to bottom."""
+    """Add the title page."""
 
     def centred(text: str, before: Length | None = None) -> Any:
         paragraph = document.add_paragraph(replace_forbidden(text))
@@ -318,7 +331,7 @@ WIDE = 0.19  # mm, of a letter, a point of its size
 
 
 def docx(note: Note) -> bytes:
-    """A file of Word."""
+    """Return the note as a Word document."""
     writer = _DocxWriter(note)
     for block, following in zip(note.blocks, (*note.blocks[1:], None), strict=True):
         writer.write(
@@ -340,7 +353,7 @@ class _DocxWriter:
         self.counted: dict[str, int] = {}
 
     def write(self, block: Block, *, leads: bool = False) -> None:
-        """Add a block; `leads` keeps a paragraph on the same page as the next block."""
+        """Add a block. With `leads`, a paragraph stays on the page of the next block."""
         match block:
             case blocks.Heading(text, level):
                 heading = self.document.add_heading(replace_forbidden(text), level)
@@ -375,7 +388,7 @@ class _DocxWriter:
                     self._add_line(self._add_paragraph("ListNumber"), (source.text,))
 
     def _add_paragraph(self, style: str = "") -> Any:
-        """Add a paragraph with a style identifier (a lookup by style name is slow)."""
+        """Add a paragraph. style: identifier of a Word style, because a lookup by the name of a style is slow."""
         paragraph = self.document.add_paragraph()
         paragraph._p.style = style or None
         return paragraph
@@ -401,7 +414,7 @@ class _DocxWriter:
                 paragraph._p.append(parse_xml(inline_omml(part, size)))
 
     def _bookmark_of(self, key: str) -> str:
-        """Return the bookmark of a number that is referred to."""
+        """Return the bookmark for references to a table, figure or source."""
         return f"_Ref{list(self.numbers).index(key) + 1}"
 
     def _add_formula(self, lines: Sequence[str]) -> None:
@@ -411,7 +424,14 @@ class _DocxWriter:
             paragraph._p.append(parse_xml(line))
 
     def _add_caption(self, sentence: str, text: str, key: str, kind: str) -> Any:
-        """Add a caption numbered by a Word field; `sentence` has the fields {number} and {text}."""
+        """Add a caption whose number is a Word field.
+
+        Args:
+            sentence: Pattern of the caption with the fields {number} and {text}.
+            text: Text of the caption.
+            key: Key for references; empty if there are none.
+            kind: Name of the number sequence in Word.
+        """
         before, after = sentence.split("{number}")
         paragraph = self._add_paragraph("Caption")
         paragraph.add_run(before)
@@ -461,15 +481,15 @@ class _DocxWriter:
 
 
 def _stays_with_next(number: int, rows: int) -> bool:
-    """Return True if a row (the heading is 0) stays on the page of the next one.
+    """Return True if a table row (0 is the heading) must stay on the page of the next row.
 
-    Short tables are not divided; a longer one leaves no single rows at its ends.
+    Short tables are not split. In longer ones a few rows stay together at the beginning and at the end.
     """
     return number < rows and (rows <= WHOLE or number < ENDS or number > rows - ENDS)
 
 
 def _count_letters(line: Line) -> float:
-    """Return the approximate width of a cell in letters; capitals count more."""
+    """Estimate the width of a cell in letters. Capital letters count more."""
     capitals = sum(letter.isupper() for part in line if isinstance(part, str) for letter in part)
     return 0.3 * capitals + sum(
         width(Letter(part) if isinstance(part, Symbol) else Words(part) if isinstance(part, str) else part)
@@ -479,7 +499,10 @@ def _count_letters(line: Line) -> float:
 
 
 def _column_widths(block: blocks.Rows, letter: float) -> list[float]:
-    """Return the column widths (mm): those of the cells, reduced to the page width without breaking words."""
+    """Return the column widths (mm). Columns are narrowed to fit the page, but not so far that words break.
+
+    letter: width of a letter (mm).
+    """
     columns = list(zip(block.head, *block.rows, strict=True))
     whole = [letter * (3 + max(map(_count_letters, column))) for column in columns]
     least = [
@@ -490,7 +513,7 @@ def _column_widths(block: blocks.Rows, letter: float) -> list[float]:
 
 
 def _longest_word(line: Line) -> float:
-    """Return the width of the longest word of a cell, in letters."""
+    """Estimate the width of the longest word of a cell, in letters."""
     words = [word for part in line if isinstance(part, str) for word in part.split(" ")]
     return max(
         [_count_letters((part,)) for part in (*words, *(p for p in line if not isinstance(p, str)))], default=0.0

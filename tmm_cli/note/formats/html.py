@@ -1,4 +1,4 @@
-"""The note as one HTML page: formulas in MathML; works offline, prints on A4, runs no scripts."""
+"""The note as one HTML page with formulas in MathML. It works offline, prints on A4 and runs no scripts."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tmm_cli.note.subject import localise_figures
 
 
 def mathml(node: Node, *, display: bool = False) -> str:
-    """Return a formula as MathML; `display` puts it on a line of its own."""
+    """Return a formula as MathML. With `display` it stands on a line of its own."""
     return f"<math{' display=' + chr(34) + 'block' + chr(34) if display else ''}>{_mathml(node)}</math>"
 
 
@@ -74,7 +74,7 @@ WHOLE = 13  # rows of a table that is not parted between pages
 
 
 def html(note: Note) -> bytes:
-    """Return the note as an HTML page in UTF-8."""
+    """Return the note as an HTML page, encoded in UTF-8."""
     style = files("tmm_cli.note.formats").joinpath("note.css").read_text(encoding="utf-8")
     digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
     policy = f"default-src 'none';style-src 'sha256-{digest}'"
@@ -90,12 +90,12 @@ def html(note: Note) -> bytes:
 
 
 def escape_text(text: str) -> str:
-    """Escape an untrusted text."""
+    """Escape a text for HTML. Characters that are not allowed are replaced."""
     return escape(text.translate(NOT_XML))
 
 
 class HtmlWriter:
-    """Writer of blocks as HTML elements; headings are written in order."""
+    """Writer of blocks as HTML elements. It numbers headings, tables and figures, so blocks must be written in order."""
 
     def __init__(self, note: Note) -> None:
         self.note, self.numbers, self.headings = note, note.numbers(), iter(note.headings())
@@ -131,7 +131,7 @@ class HtmlWriter:
                 return f'<ol class="sources">{listed}</ol>'
 
     def write_line(self, line: Line) -> str:
-        """Return texts and formulas as HTML; punctuation stays on the line of the formula before it."""
+        """Return a line of texts and formulas as HTML. Punctuation is kept on the line of the formula before it."""
         texts = [self.write_inline(part) for part in line]
         for k, part in enumerate(line[1:], 1):
             if isinstance(part, str) and part[0] in STOPS and not isinstance(line[k - 1], str):
@@ -140,7 +140,7 @@ class HtmlWriter:
         return "".join(texts)
 
     def write_inline(self, part: Inline) -> str:
-        """Return a part of a line as HTML."""
+        """Return one text, symbol, formula or reference of a line as HTML."""
         match part:
             case str():
                 return escape_text(part)
@@ -153,7 +153,7 @@ class HtmlWriter:
         return mathml(part)
 
     def write_table(self, rows: blocks.Rows) -> str:
-        """Return a table with its caption above."""
+        """Return a table with its caption above it."""
         self.tables += 1
         caption = _("Table {number}. {text}").format(number=self.tables, text=rows.caption)
         head = "".join(f"<th>{self.write_heading(cell)}</th>" for cell in rows.head)
@@ -173,13 +173,13 @@ class HtmlWriter:
         )
 
     def write_heading(self, cell: Line) -> str:
-        """Return a column heading; units such as rad/s are not broken."""
+        """Return a column heading. Units such as rad/s are not broken between lines."""
         if not all(isinstance(part, str) for part in cell):
             return self.write_line(cell)
         return re.sub(r"\S+/\S+", r'<span class="joined">\g<0></span>', escape_text("".join(map(str, cell))))
 
     def write_figure(self, figure: blocks.Figure) -> str:
-        """Return a figure with its caption below."""
+        """Return a figure with its caption below it."""
         self.figures += 1
         caption = _("Figure {number}. {text}").format(number=self.figures, text=figure.caption)
         drawn = write_svg(figure.drawing).decode().partition("\n")[2]
@@ -196,18 +196,18 @@ class HtmlWriter:
         )
 
     def id_attribute(self, key: str) -> str:
-        """Return the id attribute of a block that is referred to."""
+        """Return the id attribute of a block with this key, or an empty text if the key is empty."""
         return f' id="{self.ids[key]}"' if key else ""
 
 
 def cell_class(cell: Line, number: bool) -> str:
-    """Return the class attribute of a cell: a number, or a short text that is not broken."""
+    """Return the class attribute of a cell: "number", "short" for a text that is not broken, or none."""
     short = all(isinstance(part, str) for part in cell) and sum(map(len, map(str, cell))) <= SHORT
     return ' class="number"' if number else ' class="short"' if short else ""
 
 
 def write_title_page(block: blocks.Title) -> str:
-    """Return the title page."""
+    """Return the title page as HTML."""
     people = "".join(
         f"<tr><td>{escape_text(role)}</td><td>{escape_text(name)}</td></tr>" for role, name in block.people
     )

@@ -37,7 +37,7 @@ ROUND = 1e-9  # of a speed in rpm that was given as such
 
 
 def write_drivers(subject: Subject) -> Iterable[Block]:
-    """Write how each input link moves."""
+    """Describe the motion of each input link."""
     running = subject.results.running
     for driver in subject.results.linkage.drivers:
         if running is not None:
@@ -111,7 +111,7 @@ def _value_equation(subject: Subject, name: Symbol, value: float) -> Block:
 
 
 def write_driver_speed(here: PositionPlans) -> Iterable[Block]:
-    """Write the velocity of the first driver in a position, if it is not constant."""
+    """Write the velocity of the first driver in a position. Nothing is written if it is constant."""
     results, motion = here.subject.results, here.motion
     driver, turns = motion.linkage.driver, motion.linkage.driver.kind == "turn"
     if driver.law is not None or results.running is not None:
@@ -139,7 +139,7 @@ def write_driver_speed(here: PositionPlans) -> Iterable[Block]:
 
 
 def write_positions(subject: Subject) -> Iterable[Block]:
-    """Write the number of positions, the position plan, and the extreme positions of the output with its stroke."""
+    """Write the number of positions, the plan of positions, and the extreme positions and stroke of the output."""
     results = subject.results
     request, count = results.inputs.request, len(results.asked)
     full = results.driver_range is not None and results.driver_range.full and results.linkage.driver.kind == "turn"
@@ -166,7 +166,7 @@ def write_positions(subject: Subject) -> Iterable[Block]:
 
 
 def _write_extremes(subject: Subject, strokes: Strokes) -> Iterable[Block]:
-    """Write the extreme positions of the output, its stroke and the time ratio."""
+    """Write the extreme positions of the output, its stroke or swing angle, and the time ratio."""
     places = ", ".join(f"{subject.text(_degrees(s.start % strokes.cycle))}°" for s in strokes.strokes)
     slides = strokes.kind == "slide"
     size, letter = (strokes.travel, "H") if slides else (float(np.degrees(strokes.travel)), "ψ")
@@ -210,13 +210,13 @@ def _write_travel(subject: Subject, travel: OutputTravel) -> Iterable[Block]:
 
 
 def _degrees(angle: float) -> float:
-    """Return an angle (rad) in degrees, rounding noise replaced by zero."""
+    """Convert an angle from radians to degrees. Rounding errors of a zero are removed."""
     found = float(np.degrees(angle))
     return 0.0 if abs(found) < NO_VECTOR else found
 
 
 def name_output(subject: Subject, link: str) -> str:
-    """Return "link 4", or the coordinate of a point that serves as the output."""
+    """Return "link 4", or the coordinate of a point if that is the output."""
     return _("link {link}").format(link=link) if link in subject.results.linkage.links else link
 
 
@@ -277,7 +277,15 @@ def _write_rate_tables(subject: Subject) -> Iterable[Block]:
 
 
 def _rate_columns(subject: Subject, letter: str, what: str) -> list[Column]:
-    """Return the columns of a rate of rotation: links that rotate together share one; constant rates are left out."""
+    """Return the columns of angular velocities or accelerations.
+
+    Links that rotate together share a column. Constant velocities and accelerations are left out.
+
+    Args:
+        subject: Results that the note describes.
+        letter: Letter of the quantity, ω or ε.
+        what: Name of the quantity in the motion of a link, omega or epsilon.
+    """
     motion = subject.motion
     every = {link: np.asarray(getattr(motion.link(link), what), float) for link in motion.linkage.moving}
     most = max(map(largest_magnitude, every.values()), default=0.0)
@@ -298,7 +306,10 @@ def _rate_columns(subject: Subject, letter: str, what: str) -> list[Column]:
 
 
 def _position_table(subject: Subject, caption: str, columns: Sequence[Column], key: str) -> Rows:
-    """Return a table with a row per position, the driver coordinates first and the state of failed positions last."""
+    """Return a table with a row per position.
+
+    Its first columns are the driver coordinates. If some position cannot be assembled, a last column gives the state.
+    """
     every, told = (*_driver_columns(subject), *columns), position_states(subject.results)
     texts = [
         (head, [subject.format_result(float(value)) if np.isfinite(value) else "–" for value in values])
@@ -308,7 +319,10 @@ def _position_table(subject: Subject, caption: str, columns: Sequence[Column], k
 
 
 def _driver_columns(subject: Subject) -> Iterable[Column]:
-    """Yield the columns of the driver coordinates; a rotating crank within one turn or the turns of a load cycle."""
+    """Yield the columns of the driver coordinates.
+
+    The angle of a crank that makes full turns is reduced to one turn, or to the turns of one cycle of the loads.
+    """
     results = subject.results
     several, cycle = bool(results.linkage.others), 2 * np.pi * results.linkage.turns
     for driver in results.linkage.drivers:
@@ -322,7 +336,7 @@ def _driver_columns(subject: Subject) -> Iterable[Column]:
 
 
 def write_kinematics(subject: Subject) -> Iterable[Block]:
-    """Write the chapter on kinematics; nothing if the mechanism cannot move."""
+    """Write the chapter on kinematics. It is empty if the mechanism cannot move."""
     results = subject.results
     if results.motion is None:
         return

@@ -32,28 +32,31 @@ from tmm_cli.note.kinematics.on_paper import (
 
 
 def name_sense(value: float) -> str:
-    """Return the sense of rotation in words."""
+    """Return "counterclockwise" for a positive value, otherwise "clockwise"."""
     return _("counterclockwise") if value > 0 else _("clockwise")
 
 
 def point_symbol(spot: PlanPoint) -> Symbol:
-    """Return the symbol of a point; a point under a sliding block has the number of its link as subscript."""
+    """Return the symbol of a point. A point of a guide under a sliding block has the number of its link as subscript."""
     return Symbol(spot.at, spot.name[len(spot.at) :])
 
 
 def direct_equations(step: SolutionStep) -> list[SameLinkEquation]:
-    """Return the points of a group that follow from known ones before its equations are solved."""
+    """Return the equations of a group that are solved one by one: those of points of links with known rotation."""
     return [e for e in step.equations if isinstance(e, SameLinkEquation) and e.known and not e.idle]
 
 
 def simultaneous_equations(step: SolutionStep) -> list[VectorEquation]:
-    """Return the equations that are solved together, without those that follow directly or from a higher pair."""
+    """Return the equations of a group that must be solved together."""
     alone = direct_equations(step)
     return [e for e in step.equations if e not in alone and not (isinstance(e, FixedGuideEquation) and e.known)]
 
 
 def unknown_points(step: SolutionStep, known: Collection[str]) -> list[PlanPoint]:
-    """Return the points that the equations give, without those that move like others."""
+    """Return the points whose motion the simultaneous equations of a group give.
+
+    Points are left out that belong to a link without rotation and therefore move like its other points.
+    """
     together = simultaneous_equations(step)
     others = [e for e in step.equations if e not in together or (isinstance(e, SameLinkEquation) and e.idle)]
     spots = [s for e in together for s in ([e.point] if isinstance(e, FixedGuideEquation) else [e.point, e.base])]
@@ -62,7 +65,7 @@ def unknown_points(step: SolutionStep, known: Collection[str]) -> list[PlanPoint
 
 
 def rotation_equations(together: Iterable[VectorEquation]) -> list[SameLinkEquation]:
-    """Return, for each link of unknown rotation, the equation that gives its rotation."""
+    """Return one equation for each link of unknown rotation, from which its rotation follows."""
     found: dict[str, SameLinkEquation] = {}
     for one in together:
         if isinstance(one, SameLinkEquation) and not one.known:
@@ -71,12 +74,12 @@ def rotation_equations(together: Iterable[VectorEquation]) -> list[SameLinkEquat
 
 
 def further_points(step: SolutionStep) -> list[SameLinkEquation]:
-    """Return the further points of rotating links."""
+    """Return the equations of points that no other equation of the step needs, except on links that do not rotate."""
     return [about for about in step.after if not about.idle]
 
 
 def solved_points(step: SolutionStep) -> set[str]:
-    """Return the names of the points that a step gives."""
+    """Return the names of the points whose motion is known after this step."""
     found = {
         s.name for e in step.equations for s in ([e.point] if isinstance(e, FixedGuideEquation) else [e.point, e.base])
     }
@@ -84,13 +87,20 @@ def solved_points(step: SolutionStep) -> set[str]:
 
 
 def write_equality(*symbols: Symbol) -> Block:
-    """Return an equation of equal symbols."""
+    """Return the equation a = b = ... of these symbols."""
     letters = [Letter(one) for one in symbols]
     return Equation(row(letters[0], *(part for one in letters[1:] for part in ("=", one))))
 
 
 def introduce_equations(step: SolutionStep, points: Sequence[PlanPoint], one: str, several: str) -> Block:
-    """Return the sentence that introduces the equations of a group: for one point, several points, or none."""
+    """Return the sentence before the equations of a group.
+
+    Args:
+        step: Step of the solution that belongs to a group.
+        points: Points whose motion the equations give.
+        one: Sentence for one point.
+        several: Sentence for more points. For none, the sentence speaks of the remaining unknowns.
+    """
     assert step.group is not None
     text = (
         one
@@ -103,7 +113,14 @@ def introduce_equations(step: SolutionStep, points: Sequence[PlanPoint], one: st
 
 
 def write_scale(plan: DrawnPlan, vectors: Sequence[DrawnVector], text: str, at_rest: str) -> Iterable[Block]:
-    """Write the scale of a plan, set by the first sufficiently large known vector."""
+    """Write the scale of a plan.
+
+    Args:
+        plan: Velocity or acceleration plan.
+        vectors: Known vectors; the first one that is not too small sets the scale.
+        text: Sentence before the scale.
+        at_rest: Sentence instead of the scale if all vectors are zero.
+    """
     first = find_scale_vector(vectors)
     if first is None:
         yield write_sentence(at_rest)
@@ -122,9 +139,15 @@ def write_rotation(
     carried: str,
     told: str,
 ) -> Iterable[Block]:
-    """Write the rate of rotation of each link with its sense.
+    """Write the angular velocity or acceleration of each link with its sense.
 
-    carried: sentence of the first detailed position, where the method is explained. told: sentence of the others.
+    Args:
+        here: Position with its plans.
+        together: Equations solved together.
+        letter: ω or ε.
+        vector_of: Function that returns the vector from which the rotation of a link follows.
+        carried: Sentence in the first detailed position, where the method is explained.
+        told: Sentence in the other positions.
     """
     for about in rotation_equations(together):
         value, found = here.rates(letter).get(about.link, 0.0), vector_of(about)
@@ -147,7 +170,7 @@ def write_rotation(
 
 
 def write_common_rotation(here: PositionPlans, step: SolutionStep, letter: str) -> Iterable[Block]:
-    """Write that links rotate together."""
+    """Write the equal angular velocities or accelerations of links that rotate together."""
     for links in step.same:
         if links[0] in here.rates(letter):
             if here.first and not step.ratios:
@@ -156,7 +179,10 @@ def write_common_rotation(here: PositionPlans, step: SolutionStep, letter: str) 
 
 
 def write_remaining_points(here: PositionPlans, plan: DrawnPlan, known: Collection[str]) -> Iterable[Block]:
-    """Write the points that no equation needed and the centres of mass, found by similarity."""
+    """Write the vectors of centres of mass and of points that no equation needed; they are found by similarity.
+
+    known: names of the points whose vectors are already written.
+    """
     linkage = here.motion.linkage
     names = [p for p in linkage.moving_points if p not in known] + [f"S{link}" for link in links_with_mass(linkage)]
     if not names:
@@ -176,7 +202,7 @@ def write_remaining_points(here: PositionPlans, plan: DrawnPlan, known: Collecti
 
 
 def explain_numerical_solution() -> Block:
-    """Return the sentence on a group that no vector polygon can solve."""
+    """Return the sentence for a group whose equations no vector polygon can solve."""
     return write_sentence(
         _(
             "These equations contain more unknown magnitudes than a vector polygon can give, and none of them "
@@ -196,9 +222,14 @@ WHOLE, DIRECTION, UNKNOWN = 2, 1, 0  # lines under a vector
 def write_equations(
     here: PositionPlans, step: SolutionStep, chosen: Sequence[VectorEquation], letter: str, known: Collection[str]
 ) -> Iterable[Block]:
-    """Write vector equations of a step, and the directions of their vectors.
+    """Write vector equations, and the directions of their vectors.
 
-    letter: v or a (accelerations have components). known: names of points already found.
+    Args:
+        here: Position with its plans.
+        step: Step of the solution to which the equations belong.
+        chosen: Equations to write.
+        letter: v or a. Accelerations are divided into components.
+        known: Names of points with known motion.
     """
     lined = {
         e.point.name
@@ -224,7 +255,7 @@ def write_equations(
 def write_point_of_known_link(
     here: PositionPlans, about: SameLinkEquation, letter: str, known: Collection[str]
 ) -> Iterable[Block]:
-    """Write, where the method is explained, the equation of a point of a link whose rotation is known."""
+    """Write the equation of a point of a link with known rotation, in the first detailed position only."""
     if here.first:
         text = _("Point {point} belongs to link {link}, whose rotation is known:")
         yield write_sentence(text, point=point_symbol(about.point), link=about.link)
@@ -233,7 +264,7 @@ def write_point_of_known_link(
 
 
 def _write_side_by_side(told: Sequence[Node]) -> Iterable[Block]:
-    """Write short statements side by side, as many per line as fit."""
+    """Write short statements side by side, as many on a line as fit."""
     shown: Node | None = None
     for one in told:
         longer = one if shown is None else row(shown, Words(",  "), one)
@@ -254,7 +285,7 @@ def _underlines(spot: PlanPoint, known: Collection[str], lined: Collection[str])
 def _relative_vectors(
     equation: SameLinkEquation | MovingGuideEquation, letter: str, turning: Collection[str]
 ) -> Iterable[tuple[Node, Node]]:
-    """Yield the relative vectors of an equation, each with the line it is parallel or perpendicular to."""
+    """Yield each relative vector of an equation, and the statement of its direction, e.g. v_BA ⟂ AB."""
     index = equation.point.name + equation.base.name
     sought = WHOLE if equation.known else DIRECTION
     if isinstance(equation, MovingGuideEquation):
@@ -279,7 +310,7 @@ def _vector_and_line(symbol: Symbol, lines: int, sign: str, way: Node) -> tuple[
 
 
 def name_guide(slide: Slide) -> Node:
-    """Return the name of a guide: its own on the frame, its end points on a link."""
+    """Return the printed name of a guide: its own name on the frame, otherwise its end points or its link."""
     if slide.ends is not None:
         return Words("".join(slide.ends))
     if slide.carrier == FRAME:

@@ -1,4 +1,4 @@
-"""Velocities and accelerations from higher pairs: Willis' formula for gears, rolling on a rack, motion law of a cam."""
+"""Velocities and accelerations from higher pairs: Willis's formula for gears, rolling on a rack, cam laws of motion."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tmm_cli.note.kinematics.on_paper import DrawnVector, PositionPlans, unit_of
 
 
 def write_higher_pairs(here: PositionPlans, step: SolutionStep, letter: str) -> Iterable[Block]:
-    """Write the beginning of a group: the angular velocities or accelerations that its higher pairs give."""
+    """Write the angular velocities or accelerations that the higher pairs of a group give. letter: ω or ε."""
     assert step.group is not None
     if step.ratios:
         yield write_sentence(_("The motion of group {group} follows from its higher pairs."), group=step.group.title)
@@ -28,7 +28,7 @@ def write_higher_pairs(here: PositionPlans, step: SolutionStep, letter: str) -> 
 
 
 def _write_rate(here: PositionPlans, step: SolutionStep, ratio: HigherPairRatio, letter: str) -> Iterable[Block]:
-    """Write the rate of rotation, or of sliding, that a higher pair gives."""
+    """Write the rotation of a link, or the motion in a prismatic pair, that follows from a higher pair."""
     mesh, first = ratio.mesh, here.first and letter == "ω"
     if mesh.kind == "gear":
         if first:
@@ -50,20 +50,20 @@ def _write_rate(here: PositionPlans, step: SolutionStep, ratio: HigherPairRatio,
 
 
 def _signed_rate(here: PositionPlans, link: str, letter: str) -> Leaf | None:
-    """Return the rate of rotation of a link with its sign; None if it never rotates."""
+    """Return the angular velocity or acceleration of a link with its sign; None if the link never rotates."""
     rates = here.rates(letter)
     return Leaf(Symbol(letter, link), rates[link]) if link in rates else None
 
 
 def _subtract_rates(one: Expression | None, other: Expression | None) -> Expression | None:
-    """Return the difference of two rates, None standing for a link that never rotates."""
+    """Return the difference of two angular velocities or accelerations. None stands for zero."""
     if one is None or other is None:
         return one if other is None else -other
     return one - other
 
 
 def _write_gear_ratio(here: PositionPlans, mesh: Mesh) -> Iterable[Block]:
-    """Write the ratio of two gears with their carrier at rest."""
+    """Write the transmission ratio of two gears relative to their carrier."""
     linkage = here.motion.linkage
     a, b = (complex(carrier_axis(linkage, wheel, mesh.carrier)) for wheel in (mesh.i, mesh.j))
     pitch = (a - mesh.ratio * b) / (1 - mesh.ratio)
@@ -95,7 +95,7 @@ def _ratio_symbol(mesh: Mesh) -> Symbol:
 
 
 def _gear_rate(here: PositionPlans, mesh: Mesh, link: str, letter: str) -> Block:
-    """Return the rate of rotation of one of two gears, or of their carrier."""
+    """Return the angular velocity or acceleration of one of two gears or of their carrier, from the other two links."""
     i, j, c = (_signed_rate(here, one, letter) for one in (mesh.i, mesh.j, mesh.carrier))
     u, found = Leaf(_ratio_symbol(mesh), mesh.ratio), _signed_rate(here, link, letter)
     if found is None:
@@ -117,7 +117,7 @@ def _gear_rate(here: PositionPlans, mesh: Mesh, link: str, letter: str) -> Block
 
 
 def _sliding_vector(here: PositionPlans, step: SolutionStep, ratio: HigherPairRatio, letter: str) -> DrawnVector:
-    """Return the velocity or acceleration in the prismatic pair of a rack or follower."""
+    """Return the velocity or acceleration in the prismatic pair of a rack or a cam follower."""
     slide, plan = here.motion.linkage.slide(ratio.mesh.slide), here.plan_of(letter)
     own = next(
         (

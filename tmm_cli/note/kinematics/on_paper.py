@@ -1,4 +1,4 @@
-"""Readings of one position: segments of its plans (mm), rates of rotation, lengths."""
+"""Velocity and acceleration plans of one position, as they are read from the drawings."""
 
 from __future__ import annotations
 
@@ -24,7 +24,13 @@ SMALL = 0.2  # of the largest known vector: a smaller one is not the one by whic
 
 @dataclass(frozen=True)
 class DrawnVector:
-    """Vector of a plan: its symbol, magnitude (SI) and segment; a zero vector has no segment."""
+    """Vector of a velocity or acceleration plan.
+
+    Attributes:
+        symbol: Symbol of the velocity or acceleration.
+        size: Magnitude, in SI.
+        segment: Letters at the ends of the segment; empty for a zero vector.
+    """
 
     symbol: Symbol
     size: float
@@ -32,13 +38,13 @@ class DrawnVector:
 
     @property
     def leaf(self) -> Leaf:
-        """Magnitude as a leaf of a formula."""
+        """Magnitude of the vector, for use in a formula."""
         return Leaf(self.symbol, self.size)
 
 
 @dataclass(frozen=True)
 class DrawnPlan:
-    """Velocity or acceleration plan at its scale."""
+    """Velocity or acceleration plan of one position, drawn to scale."""
 
     subject: Subject
     motion: Motion
@@ -47,17 +53,16 @@ class DrawnPlan:
 
     @cached_property
     def kind(self) -> MotionPlanKind:
-        """Letters and units of the plan."""
+        """Kind of the plan, with its letters and units."""
         return next(sort for sort in motion_plan_kinds() if sort.stem == self.name)
 
     @cached_property
     def plan(self) -> Plan:
-        """Vectors of the plan."""
         return self.kind.plan(self.motion, self.k)
 
     @cached_property
     def mu(self) -> float:
-        """Scale in SI units per mm: that of the drawing, or the one it would have."""
+        """Scale (SI units per mm). If the note has no drawings, the scale that the drawing would have."""
         for drawing in self.subject.drawings(self.name, self.k).values():
             if isinstance(drawing, SheetPicture) and drawing.mu is not None:
                 return drawing.mu
@@ -67,16 +72,18 @@ class DrawnPlan:
 
     @cached_property
     def ends(self) -> dict[str, NamedVector]:
-        """Vectors of points and centres of mass by name."""
+        """Vectors from the pole, by the name of the point or centre of mass."""
         return {v.symbol.below: v for v in self.plan.vectors if v.kind == "absolute"}
 
     def vector_of(self, spot: PlanPoint | str) -> DrawnVector:
-        """Return the vector of a point, or of a centre of mass by name."""
+        """Return the velocity or acceleration of a point, or of a centre of mass given by its name."""
         name = spot if isinstance(spot, str) else spot.name
         return self._vector(Symbol(self.kind.letter, name), self._end(name), self.kind.pole + self._letter(name))
 
     def relative(self, point: PlanPoint, base: PlanPoint) -> DrawnVector:
-        """Return the velocity of a point relative to another; relative to a fixed point, its absolute velocity."""
+        """Return the velocity of a point relative to another point. Relative to a fixed point it is the absolute
+        velocity.
+        """
         if base.fixed:
             return self.vector_of(point)
         symbol = Symbol(self.kind.letter, point.name + base.name)
@@ -84,7 +91,13 @@ class DrawnPlan:
         return self._vector(symbol, self._end(point.name) - self._end(base.name), "".join(letters))
 
     def component(self, point: PlanPoint, base: PlanPoint, above: str) -> DrawnVector:
-        """Return a component of a relative acceleration: n, τ, k or r."""
+        """Return a component of a relative acceleration.
+
+        Args:
+            point: Point whose acceleration is considered.
+            base: Point relative to which it is considered.
+            above: Superscript of the component: n (normal), τ (tangential), k (Coriolis) or r (relative).
+        """
         symbol = Symbol(self.kind.letter, point.name + base.name, above)
         found = next(v for v in self.plan.vectors if v.symbol == symbol)
         return self._vector(symbol, found.value, found.name)
@@ -94,17 +107,17 @@ class DrawnPlan:
         return abs(self._end(one) - self._end(other)) <= NO_VECTOR * self.plan.size
 
     def measure(self, vector: DrawnVector) -> Block:
-        """Return the value of a vector measured on the plan."""
+        """Write the magnitude of a vector as its segment on the plan times the scale."""
         return self.write_magnitude(vector, Leaf(Symbol("μ", self.kind.letter), self.mu) * self._segment(vector))
 
     def write_magnitude(self, vector: DrawnVector, expression: Expression) -> Block:
-        """Return a vector whose magnitude an expression gives."""
+        """Write the magnitude of a vector that follows from an expression."""
         if not vector.segment:
             return zero_equation(vector.symbol)
         return ComputedQuantity(vector.symbol, expression, vector.size, unit_of(self.kind.letter))
 
     def compute_scale(self, vector: DrawnVector) -> Block:
-        """Return the scale of the plan from the vector drawn first."""
+        """Write the scale of the plan: the magnitude of the vector drawn first, divided by its segment."""
         per_mm = {"v": _("(m/s)/mm"), "a": _("(m/s²)/mm")}[self.kind.letter]
         name, most = Symbol("μ", self.kind.letter), len(f"{self.mu:e}".partition("e")[0].rstrip("0").replace(".", ""))
         return ComputedQuantity(name, vector.leaf / self._segment(vector), self.mu, per_mm, most=most)
@@ -116,7 +129,7 @@ class DrawnPlan:
         return self.ends[name].end if name in self.ends else 0j
 
     def _letter(self, name: str) -> str:
-        """Return the letter at the end of a point's vector; none for a fixed point, which is at the pole."""
+        """Return the letter at the end of a point's vector. It is empty for a fixed point, whose image is the pole."""
         return self.ends[name].name[len(self.kind.pole) :] if name in self.ends else ""
 
     def _vector(self, symbol: Symbol, value: complex, segment: str) -> DrawnVector:
@@ -126,9 +139,12 @@ class DrawnPlan:
 
 @dataclass(frozen=True)
 class PositionPlans:
-    """Position with its velocity and acceleration plans.
+    """Position of a mechanism with its velocity and acceleration plans.
 
-    first: the first detailed position, in which the method is explained.
+    Attributes:
+        subject: Results that the note describes.
+        k: Index of the position.
+        first: True for the first detailed position, in which the note explains the method.
     """
 
     subject: Subject
@@ -137,7 +153,6 @@ class PositionPlans:
 
     @property
     def motion(self) -> Motion:
-        """Motion of the mechanism."""
         return self.subject.motion
 
     @cached_property
@@ -152,28 +167,28 @@ class PositionPlans:
 
     @cached_property
     def omega(self) -> Mapping[str, float]:
-        """Angular velocities (rad/s) of the links that rotate in some position."""
+        """Angular velocities (rad/s) in this position, by link. Links that never rotate are left out."""
         return {turn.symbol.below: turn.value for turn in angular_values(self.motion, self.k, "omega")}
 
     @cached_property
     def epsilon(self) -> Mapping[str, float]:
-        """Angular accelerations (rad/s²) of the links that do not rotate uniformly."""
+        """Angular accelerations (rad/s²) in this position, by link. Links that never have one are left out."""
         return {turn.symbol.below: turn.value for turn in angular_values(self.motion, self.k, "epsilon")}
 
     def rates(self, letter: str) -> Mapping[str, float]:
-        """Return the angular velocities (ω) or accelerations (ε) by link."""
+        """Return the angular velocities (letter ω) or accelerations (letter ε) by link."""
         return self.omega if letter == "ω" else self.epsilon
 
     def rate(self, letter: str, link: str) -> Leaf:
-        """Return the magnitude of a link's angular velocity or acceleration."""
+        """Return the magnitude of the angular velocity (letter ω) or acceleration (letter ε) of a link."""
         return Leaf(Symbol(letter, link), abs(self.rates(letter).get(link, 0.0)))
 
     def plan_of(self, letter: str) -> DrawnPlan:
-        """Return the velocity plan for ω, the acceleration plan for ε."""
+        """Return the velocity plan for the letter ω, the acceleration plan for ε."""
         return self.v if letter == "ω" else self.a
 
     def length(self, point: PlanPoint, base: PlanPoint) -> Leaf:
-        """Return the distance (m) between two points of a link."""
+        """Return the distance (m) between two points of a link in this position."""
         places = [complex(self.motion.spot(spot.at)[self.k]) for spot in (base, point)]
         return Leaf(Symbol("l", base.at + point.at), abs(places[1] - places[0]))
 
@@ -184,7 +199,7 @@ def unit_of(letter: str) -> str:
 
 
 def find_scale_vector(vectors: Sequence[DrawnVector]) -> DrawnVector | None:
-    """Return the first vector large enough to set a scale; None if all are zero."""
+    """Return the first vector large enough to set the scale of a plan; None if all are zero."""
     largest = max((vector.size for vector in vectors), default=0.0)
     return next((vector for vector in vectors if vector.segment and vector.size > SMALL * largest), None)
 
@@ -195,7 +210,7 @@ def vector_letter(symbol: Symbol) -> Letter:
 
 
 def segment_symbol(vector: DrawnVector) -> Symbol:
-    """Return the symbol of a vector's segment."""
+    """Return the symbol of the segment that represents a vector on the plan."""
     return Symbol(with_subscripts(vector.segment))
 
 

@@ -1,4 +1,8 @@
-"""Velocities of a position: those of the driving links, then of each group by its vector equations and the plan."""
+"""Velocities and accelerations of one position, in the order in which the plans are drawn.
+
+The driving links come first, then each group with its vector equations and the values that the plan gives. Normal and
+Coriolis accelerations are computed from the velocities.
+"""
 
 from __future__ import annotations
 
@@ -65,7 +69,7 @@ def _write_driver_velocities(here: PositionPlans, step: SolutionStep) -> Iterabl
 
 
 def _rotational_velocity(here: PositionPlans, about: SameLinkEquation) -> Block:
-    """Return v = ω l of a point relative to another point of its link."""
+    """Return the velocity v = ω l of a point relative to another point of its link."""
     found = here.v.relative(about.point, about.base)
     return here.v.write_magnitude(found, here.rate("ω", about.link) * here.length(about.point, about.base))
 
@@ -80,7 +84,7 @@ def _known_velocities(here: PositionPlans, step: SolutionStep) -> Iterable[Drawn
 
 
 def _write_group_velocities(here: PositionPlans, step: SolutionStep, known: Collection[str]) -> Iterable[Block]:
-    """Write a group: ratios of higher pairs, equations, their solution, further points."""
+    """Write the velocities of a group: ratios of higher pairs, vector equations, plan values, further points."""
     points, together, found = words.unknown_points(step, known), words.simultaneous_equations(step), {*known}
     yield from write_higher_pairs(here, step, "ω")
     for about in words.direct_equations(step):
@@ -115,7 +119,10 @@ def _write_group_velocities(here: PositionPlans, step: SolutionStep, known: Coll
 def _write_velocity_on_known_link(
     here: PositionPlans, about: SameLinkEquation, found: Collection[str]
 ) -> Iterable[Block]:
-    """Write the velocity of a point of a link whose rotation is known."""
+    """Write the velocity of a point of a link whose rotation is known.
+
+    solved: names of the points whose velocities are known.
+    """
     yield from write_point_of_known_link(here, about, "v", found)
     yield _rotational_velocity(here, about)
     if not about.base.fixed:
@@ -168,7 +175,7 @@ def _write_driver_accelerations(here: PositionPlans, step: SolutionStep) -> Iter
 
 
 def _write_components(here: PositionPlans, about: SameLinkEquation) -> Iterable[Block]:
-    """Write the normal and tangential acceleration of a point of a link whose rotation is known."""
+    """Write the normal and the tangential acceleration of a point of a link whose rotation is known."""
     yield _normal_acceleration(here, about)
     tangential = _component(here, about, "τ")
     if tangential.segment or about.link in here.epsilon:
@@ -194,7 +201,7 @@ def _write_total_acceleration(here: PositionPlans, about: SameLinkEquation) -> I
 
 
 def _coriolis_acceleration(here: PositionPlans, along: MovingGuideEquation) -> Block:
-    """Return the Coriolis acceleration 2 ω v."""
+    """Return the Coriolis acceleration 2 ω v of a sliding block."""
     sliding = here.v.relative(along.point, along.base)
     return here.a.write_magnitude(_component(here, along, "k"), 2 * here.rate("ω", along.slide.carrier) * sliding.leaf)
 
@@ -212,7 +219,7 @@ def _write_acceleration_scale(here: PositionPlans, steps: Sequence[SolutionStep]
 
 
 def _known_accelerations(here: PositionPlans, step: SolutionStep) -> Iterable[DrawnVector]:
-    """Yield the accelerations that are known before the plan is drawn."""
+    """Yield the accelerations and components that are known before the plan is drawn."""
     if step.group is None:
         yield from (here.a.vector_of(equation.point) for equation in step.equations)
     for about in step.after if step.group is None else ():
@@ -226,7 +233,7 @@ def _known_accelerations(here: PositionPlans, step: SolutionStep) -> Iterable[Dr
 
 
 def _write_equations_and_components(here: PositionPlans, step: SolutionStep, known: Collection[str]) -> Iterable[Block]:
-    """Write the equations of a group and the components known from velocities and higher pairs."""
+    """Write the equations of a group, and the components known from velocities and higher pairs."""
     points, together = words.unknown_points(step, known), words.simultaneous_equations(step)
     yield from write_higher_pairs(here, step, "ε")
     if here.first and together:
