@@ -144,7 +144,7 @@ class Subject:
         return self.localise(format_plain(round_figures(value, digits), digits))
 
     def format_result(self, value: float) -> str:
-        """Return a result as text in the current language with all significant figures, trailing zeros included."""
+        """Return a result as text in the current language with all significant figures, also zeros at the end."""
         return self.localise(format_fixed(value, FIGURES))
 
     def angle(self, radians: float) -> str:
@@ -180,7 +180,7 @@ class Subject:
         return {stem: d for stem, d in self._drawings[draw, k].items() if not several or stem.startswith(name)}
 
     def scale(self, name: str, k: int, stem: str) -> float:
-        """Return the scale (m/mm) of a drawing. If the note has no drawings, return a scale that suits the mechanism."""
+        """Return the scale (m/mm) of a drawing; without drawings, the scale that suits the mechanism."""
         picture = self.drawings(name, k).get(stem)
         mu = getattr(picture, "mu", None)
         if mu is not None:

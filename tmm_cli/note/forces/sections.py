@@ -118,7 +118,7 @@ class AnalysedBody:
     def inner_first(self) -> bool:
         """True for an RPP group of two links, for which the polygon of one link is drawn before the force plan.
 
-        The force plan of both links has three unknown magnitudes: two at the external hinge and one on the external guide.
+        The force plan of both links has three unknown magnitudes: two at the external hinge, one on the external guide.
         """
         return self.forces is not None and self.forces.group.type == "RPP" and len(self.links) == 2
 

@@ -54,10 +54,7 @@ def escape_xml(text: str) -> str:
 
 
 def inline_omml(node: Node, size: float = 0.0) -> str:
-    """Return a formula within text as OMML.
-
-    size: font size in points; 0 for that of the text.
-    """
+    """Return a formula within text as OMML. size: font size in points; 0 for that of the text."""
     shown = _omml(node)
     if size:
         shown = shown.replace(FONT, FONT.replace("</w:rPr>", f'<w:sz w:val="{round(2 * size)}"/></w:rPr>'))
@@ -217,14 +214,7 @@ def _number_headings(document: Any) -> None:
 
 
 def add_field(paragraph: Any, code: str, shown: str, *, dirty: bool = False) -> None:
-    """Add a Word field to a paragraph.
-
-    Args:
-        paragraph: Paragraph of python-docx.
-        code: Code of the field, e.g. PAGE.
-        shown: Text displayed until Word updates the field.
-        dirty: True if Word is to update the field when it opens the document.
-    """
+    """Add a Word field with its code and its displayed text. With `dirty`, Word updates it on opening the document."""
     _open_field(paragraph, code, dirty=dirty)
     paragraph.add_run(shown)
     _add_field_mark(paragraph, "end")
@@ -244,7 +234,7 @@ def _add_field_mark(paragraph: Any, kind: str, *, dirty: bool = False) -> None:
 
 
 class WordParts:
-    """Writer of bookmarks, pictures and the table of contents; it numbers bookmarks and pictures through the document."""
+    """Bookmarks, pictures and table of contents of a document. Bookmarks and pictures are numbered."""
 
     def __init__(self, document: Any) -> None:
         self.document = document
@@ -259,7 +249,7 @@ class WordParts:
         paragraph._p.append(OxmlElement("w:bookmarkEnd", own))
 
     def add_picture(self, paragraph: Any, drawing: Drawing, share: float, told: str) -> None:
-        """Add a drawing to a paragraph, reduced to the fraction `share` of its size, with `told` as alternative text."""
+        """Add a drawing to a paragraph, reduced to the fraction `share` of its size. told: alternative text."""
         self.pictures += 1
         uri = PackURI(f"/word/media/drawing{self.pictures}.emf")
         part = Part(uri, "image/x-emf", write_emf(drawing), self.document.part.package)
@@ -280,10 +270,7 @@ class WordParts:
         )
 
     def add_contents(self, entries: Iterable[tuple[int, str, str]]) -> None:
-        """Add the table of contents as a field that Word updates.
-
-        entries: level, number and text of each heading.
-        """
+        """Add the table of contents as a field that Word updates. entries: level, number and text of each heading."""
         paragraph = None
         for k, (level, number, text) in enumerate(entries):
             paragraph = self.document.add_paragraph(style=f"TOC {min(level, 2)}")
@@ -424,14 +411,7 @@ class _DocxWriter:
             paragraph._p.append(parse_xml(line))
 
     def _add_caption(self, sentence: str, text: str, key: str, kind: str) -> Any:
-        """Add a caption whose number is a Word field.
-
-        Args:
-            sentence: Pattern of the caption with the fields {number} and {text}.
-            text: Text of the caption.
-            key: Key for references; empty if there are none.
-            kind: Name of the number sequence in Word.
-        """
+        """Add a caption numbered by Word. `sentence` has the fields {number} and {text}; `kind` names the sequence."""
         before, after = sentence.split("{number}")
         paragraph = self._add_paragraph("Caption")
         paragraph.add_run(before)
@@ -499,7 +479,7 @@ def _count_letters(line: Line) -> float:
 
 
 def _column_widths(block: blocks.Rows, letter: float) -> list[float]:
-    """Return the column widths (mm). Columns are narrowed to fit the page, but not so far that words break.
+    """Return the column widths (mm), narrowed to fit the page without breaking words.
 
     letter: width of a letter (mm).
     """

@@ -95,7 +95,7 @@ def escape_text(text: str) -> str:
 
 
 class HtmlWriter:
-    """Writer of blocks as HTML elements. It numbers headings, tables and figures, so blocks must be written in order."""
+    """Writer of blocks as HTML elements. It numbers headings, tables and figures, so the order of blocks matters."""
 
     def __init__(self, note: Note) -> None:
         self.note, self.numbers, self.headings = note, note.numbers(), iter(note.headings())

@@ -37,7 +37,7 @@ def name_sense(value: float) -> str:
 
 
 def point_symbol(spot: PlanPoint) -> Symbol:
-    """Return the symbol of a point. A point of a guide under a sliding block has the number of its link as subscript."""
+    """Return the symbol of a point. A point of a guide under a sliding block has its link number as subscript."""
     return Symbol(spot.at, spot.name[len(spot.at) :])
 
 
