@@ -36,33 +36,33 @@ X, Y = Symbol("F", "x"), Symbol("F", "y")
 
 def write_balancing(subject: Subject) -> Iterable[Block]:
     """Write the chapter on balancing. It is empty if the file requests no balancing."""
-    found = subject.results.balancing
-    if found is not None and (found.task.rotor is not None or found.cycle.shakes):
+    balancing = subject.results.balancing
+    if balancing is not None and (balancing.task.rotor is not None or balancing.cycle.shakes):
         yield Heading(_("Balancing"))
-        if found.cycle.shakes:
-            yield from _write_shaking_and_counterweights(subject, found)
-        if found.task.rotor is not None:
+        if balancing.cycle.shakes:
+            yield from _write_shaking_and_counterweights(subject, balancing)
+        if balancing.task.rotor is not None:
             yield Heading(_("Rotating masses"), 2)
-            yield from write_rotor_balancing(subject, found.task.rotor, found.corrections)
+            yield from write_rotor_balancing(subject, balancing.task.rotor, balancing.corrections)
 
 
-def _write_shaking_and_counterweights(subject: Subject, found: BalancingResults) -> Iterable[Block]:
+def _write_shaking_and_counterweights(subject: Subject, balancing: BalancingResults) -> Iterable[Block]:
     yield Heading(_("Shaking force and moment"), 2)
-    yield from _explain_symbols(found)
+    yield from _explain_symbols(balancing)
     for k in subject.detail:
-        yield from _write_shaking_force(subject, found, k)
-    if found.cycle.counterweights:
+        yield from _write_shaking_force(subject, balancing, k)
+    if balancing.cycle.counterweights:
         yield Heading(_("Counterweights"), 2)
-        yield from write_counterweights(subject, found.cycle, found.task)
+        yield from write_counterweights(subject, balancing.cycle, balancing.task)
     text = _("The hodograph of the shaking force is shown in figure {figure}.")
-    if found.cycle.counterweights:
+    if balancing.cycle.counterweights:
         text = _("The hodographs of the shaking force before and after balancing are shown in figure {figure}.")
     yield from subject.figures("shaking", text, _("Hodograph of the shaking force"))
     yield from (note_table(subject, table) for table in walk(subject.results, ("shaking",)))
 
 
-def _explain_symbols(found: BalancingResults) -> Iterable[Block]:
-    pivot: Inline = Symbol(found.pivot) if found.pivot else _("the origin")
+def _explain_symbols(balancing: BalancingResults) -> Iterable[Block]:
+    pivot: Inline = Symbol(balancing.pivot) if balancing.pivot else _("the origin")
     yield write_sentence(
         _(
             "At constant speed of the input link the inertia forces of the links act on the frame with the "
@@ -83,11 +83,11 @@ def _explain_symbols(found: BalancingResults) -> Iterable[Block]:
     )
 
 
-def _write_shaking_force(subject: Subject, found: BalancingResults, k: int) -> Iterable[Block]:
+def _write_shaking_force(subject: Subject, balancing: BalancingResults, k: int) -> Iterable[Block]:
     """Write the components and the magnitude of the shaking force (N) and the shaking moment (N m) in one position."""
     results = subject.results
     motion = constant_speed_motion(results.mechanism, subject.motion.q[k : k + 1])
-    about, along, across, moments = found.before.about, list[Expression](), list[Expression](), list[Expression]()
+    about, along, across, moments = balancing.before.about, list[Expression](), list[Expression](), list[Expression]()
     largest = max(abs(complex(motion.centre(name).a[0])) for name in motion.linkage.moving)
     for name in motion.linkage.moving:
         link = motion.linkage.links[name]
@@ -106,26 +106,26 @@ def _write_shaking_force(subject: Subject, found: BalancingResults, k: int) -> I
     if not moments:
         return
     yield write_sentence(_("Position {number}:"), number=subject.position_number(k))
-    force = complex(found.before.force[k])
+    force = complex(balancing.before.force[k])
     x, y = Leaf(X, force.real), Leaf(Y, force.imag)
     yield ComputedQuantity(X, -sum_terms(along), x.value, _("N"))
     yield ComputedQuantity(Y, -sum_terms(across), y.value, _("N"))
     yield ComputedQuantity(FORCE, Function("sqrt", x**2 + y**2), abs(force), _("N"))
-    yield ComputedQuantity(MOMENT, -sum_terms(moments), float(found.before.moment[k]), _("N·m"))
+    yield ComputedQuantity(MOMENT, -sum_terms(moments), float(balancing.before.moment[k]), _("N·m"))
 
 
-ON_LINE = 1e-9  # of a length: what is nearer to a line lies on it
-SAME = 1e-8  # of a counterweight: what comes out of masses in hinges is what was found
+ON_LINE = 1e-9  # relative distance within which a point counts as lying on a line
+SAME = 1e-8  # relative difference within which static replacement gives the computed counterweight
 
 MASS_RADIUS, SHARE = Symbol("D"), Symbol("k")
 
 
-def write_counterweights(subject: Subject, found: BalancedCycle, task: BalancingTask) -> Iterable[Block]:
+def write_counterweights(subject: Subject, cycle: BalancedCycle, task: BalancingTask) -> Iterable[Block]:
     """Write the counterweights and the shaking force that remains with them.
 
     Each counterweight is described by its mass-radius product m·r and, if its radius is given, by its mass.
     """
-    replacement = _StaticReplacement(subject.results.linkage, found, task)
+    replacement = _StaticReplacement(subject.results.linkage, cycle, task)
     if replacement.explain_counterweights():
         yield write_sentence(
             _(
@@ -144,16 +144,16 @@ def write_counterweights(subject: Subject, found: BalancedCycle, task: Balancing
             ),
             D=MASS_RADIUS,
         )
-    for weight in found.counterweights:
-        link, own = weight.place.link, Leaf(Symbol("D", weight.place.link), weight.size)
-        size, angle = subject.text(weight.size), subject.text(float(np.degrees(weight.angle)))
+    for weight in cycle.counterweights:
+        link, mass_radius = weight.place.link, Leaf(Symbol("D", weight.place.link), weight.size)
+        magnitude, angle = subject.text(weight.size), subject.text(float(np.degrees(weight.angle)))
         text = _("Link {link}: {D} = {size} kg·m, {angle}° from the x axis of the link.")
-        yield write_sentence(text, link=link, D=own.symbol, size=size, angle=angle)
+        yield write_sentence(text, link=link, D=mass_radius.symbol, size=magnitude, angle=angle)
         if weight.mass is not None and weight.size:
-            mass = own / Leaf(Symbol("r", link), weight.place.radius)
+            mass = mass_radius / Leaf(Symbol("r", link), weight.place.radius)
             yield ComputedQuantity(Symbol("m", f"c{link}"), mass, weight.mass, _("kg"))
-    before, after = (float(np.nanmax(np.abs(one.force))) for one in (found.before, found.after))
-    if found.left < ON_LINE:
+    before, after = (float(np.nanmax(np.abs(results.force))) for results in (cycle.before, cycle.after))
+    if cycle.left < ON_LINE:
         yield write_sentence(
             _("With the counterweights no shaking force remains: the common centre of mass of the links does not move.")
         )
@@ -164,7 +164,7 @@ def write_counterweights(subject: Subject, found: BalancedCycle, task: Balancing
         Fb=Symbol("F", "max").primed,
     )
     share = Leaf(Symbol("F", "max").primed, after) / Leaf(Symbol("F", "max"), before)
-    yield ComputedQuantity(Symbol("λ"), share, found.left)
+    yield ComputedQuantity(Symbol("λ"), share, cycle.left)
 
 
 @dataclass
@@ -211,9 +211,9 @@ class _StaticReplacement:
         mass = float(np.ravel(link.mass)[0])
         if not mass:
             return True
-        own, hinges = Leaf(Symbol("m", name), mass), list(dict.fromkeys(self._find_hinges(name)))
+        mass_leaf, hinges = Leaf(Symbol("m", name), mass), list(dict.fromkeys(self._find_hinges(name)))
         if self.linkage.slides_on_frame(name) and len(hinges) == 1:
-            self.lumps.setdefault(hinges[0], []).append(own)
+            self.lumps.setdefault(hinges[0], []).append(mass_leaf)
             return True
         if self._find_hinges(name, FRAME) or len(hinges) != 2:
             return False
@@ -230,10 +230,10 @@ class _StaticReplacement:
                 _("Link {link} is replaced by masses at points {a} and {b}:"), link=name, a=hinges[0], b=hinges[1]
             )
         )
-        for (point, part), other in (((hinges[0], 1 - share), hinges[1]), ((hinges[1], share), hinges[0])):
-            symbol, value = Symbol("m", f"{name}{point}"), mass * part
-            arm = Leaf(Symbol("l", f"S{name}{other}"), abs(line) * part)
-            self.explanation.append(ComputedQuantity(symbol, own * (arm / length), value, _("kg")))
+        for (point, fraction), other in (((hinges[0], 1 - share), hinges[1]), ((hinges[1], share), hinges[0])):
+            symbol, value = Symbol("m", f"{name}{point}"), mass * fraction
+            arm = Leaf(Symbol("l", f"S{name}{other}"), abs(line) * fraction)
+            self.explanation.append(ComputedQuantity(symbol, mass_leaf * (arm / length), value, _("kg")))
             self.lumps.setdefault(point, []).append(Leaf(symbol, value))
         return True
 
@@ -247,22 +247,22 @@ class _StaticReplacement:
         name, pivot = place.link, next((p for p, at in link.points.items() if at == place.about), None)
         if pivot is None:
             return False
-        own, mass = Symbol("m", name), float(np.ravel(link.mass)[0])
+        mass_symbol, mass = Symbol("m", name), float(np.ravel(link.mass)[0])
         masses: list[tuple[Leaf, Leaf, complex]] = []
         if mass and link.centre != place.about:
             arm = complex(link.centre) - place.about
-            masses.append((Leaf(own, mass), Leaf(Symbol("l", f"{pivot}S{name}"), abs(arm)), arm))
+            masses.append((Leaf(mass_symbol, mass), Leaf(Symbol("l", f"{pivot}S{name}"), abs(arm)), arm))
         for point in self._find_hinges(name):
             if point == pivot or point not in self.lumps:
                 continue
             arm = complex(link.points[point]) - place.about
-            masses += [(one, Leaf(Symbol("l", f"{pivot}{point}"), abs(arm)), arm) for one in self.lumps.pop(point)]
+            masses += [(lump, Leaf(Symbol("l", f"{pivot}{point}"), abs(arm)), arm) for lump in self.lumps.pop(point)]
         if not masses:
             return False
         along = masses[-1][2] / abs(masses[-1][2])
         if any(abs(cross(along, arm)) > ON_LINE * abs(arm) for *__, arm in masses):
             return False
-        moments = [apply_sign(dot(along, arm), one * length) for one, length, arm in masses]
+        moments = [apply_sign(dot(along, arm), lump * length) for lump, length, arm in masses]
         expression = sum_terms((*moments, *self._reciprocating_moments(name, pivot, along)))
         if abs(abs(evaluate(expression, EXACT)) - weight.size) > SAME * weight.size:
             return False
@@ -272,23 +272,27 @@ class _StaticReplacement:
         self.explanation.append(write_sentence(text, link=name, pivot=pivot))
         self.explanation.append(ComputedQuantity(Symbol("D", name), expression, weight.size, _("kg·m")))
         if self._find_fixed_pivot(place) is None:
-            self._merge_into_pivot(weight, pivot, [Leaf(own, mass), *(one for one, *__ in masses if one.symbol != own)])
+            self._merge_into_pivot(
+                weight, pivot, [Leaf(mass_symbol, mass), *(lump for lump, *__ in masses if lump.symbol != mass_symbol)]
+            )
         return True
 
     def _merge_into_pivot(self, weight: CounterweightSolution, pivot: str, masses: list[Leaf]) -> None:
         """Replace a link and its counterweight by one point mass at the moving pivot of the link."""
         name = weight.place.link
-        every = [*(one for one in masses if one.value), Leaf(Symbol("m", f"c{name}"), weight.mass or 0.0)]
-        total = Leaf(Symbol("m", f"{name}{pivot}"), sum(one.value for one in every))
+        lumps = [*(lump for lump in masses if lump.value), Leaf(Symbol("m", f"c{name}"), weight.mass or 0.0)]
+        total = Leaf(Symbol("m", f"{name}{pivot}"), sum(lump.value for lump in lumps))
         self.explanation.append(
             write_sentence(
                 _("The link with its counterweight of mass {m} is replaced by one mass at {pivot}:"),
-                m=every[-1].symbol,
+                m=lumps[-1].symbol,
                 pivot=pivot,
             )
         )
-        own = Leaf(Symbol("D", name), weight.size) / Leaf(Symbol("r", name), weight.place.radius)
-        self.explanation.append(ComputedQuantity(total.symbol, sum_terms((*every[:-1], own)), total.value, _("kg")))
+        counterweight = Leaf(Symbol("D", name), weight.size) / Leaf(Symbol("r", name), weight.place.radius)
+        self.explanation.append(
+            ComputedQuantity(total.symbol, sum_terms((*lumps[:-1], counterweight)), total.value, _("kg"))
+        )
         self.lumps.setdefault(pivot, []).append(total)
 
     def _reciprocating_moments(self, name: str, pivot: str, along: complex) -> Iterator[Expression]:
@@ -309,8 +313,8 @@ class _StaticReplacement:
                 arm = complex(points[pins[0]]) - complex(points[pivot])
                 length = Leaf(Symbol("l", f"{pivot}{pins[0]}"), abs(arm))
                 share = Leaf(SHARE, self.task.share)
-                for one in self.lumps.pop(point):
-                    yield apply_sign(dot(along, arm), share * one * length)
+                for lump in self.lumps.pop(point):
+                    yield apply_sign(dot(along, arm), share * lump * length)
                 self.explanation.append(
                     write_sentence(
                         _("The fraction {k} of the reciprocating masses at {point} is balanced:"),
@@ -339,10 +343,10 @@ def write_rotor_balancing(subject: Subject, rotor: UnbalancedShaft, corrections:
 
 
 def _write_correction_mass(subject: Subject, rotor: UnbalancedShaft, corrections: Vector, k: int) -> Iterable[Block]:
-    found, name = complex(corrections[k]), PLANES[k]
-    own = Symbol("D", name)
+    correction, name = complex(corrections[k]), PLANES[k]
+    unbalance = Symbol("D", name)
     yield write_sentence(_("Correction mass in plane {plane}:"), plane=name)
-    parts = []
+    components = []
     for axis, function, take in (("x", "cos", np.real), ("y", "sin", np.imag)):
         whole: Expression = -sum_terms(
             _unbalance_term(rotor, number, function, moment=k > 0) for number in range(len(rotor.sizes))
@@ -351,16 +355,18 @@ def _write_correction_mass(subject: Subject, rotor: UnbalancedShaft, corrections
             whole = whole / _distance_from_first_plane(Symbol("z", name), rotor.planes[k].at, rotor)
         elif len(rotor.planes) > 1:
             whole = whole - Leaf(Symbol("D", f"{PLANES[1]}{axis}"), float(take(corrections[1])))
-        parts.append(Leaf(Symbol("D", f"{name}{axis}"), float(take(found))))
-        yield ComputedQuantity(parts[-1].symbol, whole, parts[-1].value, _("kg·m"))
-    yield ComputedQuantity(own, Function("sqrt", sum_terms(part**2 for part in parts)), abs(found), _("kg·m"))
-    if abs(found):
-        direction = subject.text(float(np.degrees(np.angle(found) % (2 * np.pi))))
+        components.append(Leaf(Symbol("D", f"{name}{axis}"), float(take(correction))))
+        yield ComputedQuantity(components[-1].symbol, whole, components[-1].value, _("kg·m"))
+    yield ComputedQuantity(
+        unbalance, Function("sqrt", sum_terms(component**2 for component in components)), abs(correction), _("kg·m")
+    )
+    if abs(correction):
+        direction = subject.text(float(np.degrees(np.angle(correction) % (2 * np.pi))))
         yield write_sentence(_("Its angle is {angle}°."), angle=direction)
     radius = rotor.planes[k].radius
     if radius:
-        mass = Leaf(own, abs(found)) / Leaf(Symbol("r", name), radius)
-        yield ComputedQuantity(Symbol("m", name), mass, abs(found) / radius, _("kg"))
+        mass = Leaf(unbalance, abs(correction)) / Leaf(Symbol("r", name), radius)
+        yield ComputedQuantity(Symbol("m", name), mass, abs(correction) / radius, _("kg"))
 
 
 def _unbalance_term(rotor: UnbalancedShaft, number: int, function: str, *, moment: bool) -> Expression:
@@ -368,9 +374,9 @@ def _unbalance_term(rotor: UnbalancedShaft, number: int, function: str, *, momen
 
     function: "cos" for the x component, "sin" for the y component.
     """
-    size, index = complex(rotor.sizes[number]), str(number + 1)
-    angle = Leaf(Symbol("α", index), float(np.angle(size) % (2 * np.pi)), angle=True)
-    share = Leaf(Symbol("D", index), abs(size)) * Function(function, angle)
+    unbalance, index = complex(rotor.sizes[number]), str(number + 1)
+    angle = Leaf(Symbol("α", index), float(np.angle(unbalance) % (2 * np.pi)), angle=True)
+    share = Leaf(Symbol("D", index), abs(unbalance)) * Function(function, angle)
     return share * _distance_from_first_plane(Symbol("z", index), float(rotor.at[number]), rotor) if moment else share
 
 

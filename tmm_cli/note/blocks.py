@@ -154,25 +154,25 @@ class Note:
     def headings(self) -> list[tuple[str, Heading]]:
         """Return the headings with their decimal numbers: 2, 2.1, 2.2."""
         count: list[int] = []
-        found = []
+        numbered = []
         for block in self.blocks:
             if isinstance(block, Heading):
                 count = [*count, *[0] * block.level][: block.level]
                 count[-1] += 1
-                found.append((".".join(map(str, count)), block))
-        return found
+                numbered.append((".".join(map(str, count)), block))
+        return numbered
 
     def numbers(self) -> dict[str, str]:
         """Return the printed numbers of tables, figures and sources by key. Each kind is numbered separately."""
         counted: dict[type, int] = {}
-        found: dict[str, str] = {}
+        numbers: dict[str, str] = {}
         for block in self.blocks:
             if isinstance(block, Figure | Rows):
                 counted[type(block)] = counted.get(type(block), 0) + 1
                 if block.key:
-                    found[block.key] = str(counted[type(block)])
+                    numbers[block.key] = str(counted[type(block)])
         sources = [s for block in self.blocks if isinstance(block, Sources) for s in block.sources]
-        return found | {source.key: str(number) for number, source in enumerate(sources, 1)}
+        return numbers | {source.key: str(number) for number, source in enumerate(sources, 1)}
 
 
 def paragraph(*line: Inline) -> Paragraph:
@@ -180,14 +180,14 @@ def paragraph(*line: Inline) -> Paragraph:
     return Paragraph(line)
 
 
-def cells(*parts: Inline | Line) -> tuple[Line, ...]:
+def cells(*row: Inline | Line) -> tuple[Line, ...]:
     """Return a table row from its cells, each a text, a symbol or a line of both."""
-    return tuple(part if isinstance(part, tuple) else (part,) for part in parts)
+    return tuple(cell if isinstance(cell, tuple) else (cell,) for cell in row)
 
 
 def join_inline(parts: Iterable[Inline | Line], between: str = ", ") -> Line:
     """Join texts and symbols into one line with a separator."""
-    return tuple(one for k, line in enumerate(cells(*parts)) for one in ((between, *line) if k else line))
+    return tuple(inline for k, line in enumerate(cells(*parts)) for inline in ((between, *line) if k else line))
 
 
 def bulleted_list(lines: Sequence[Line]) -> Items:
@@ -220,9 +220,9 @@ def write_table(sentence: str, rows: Rows, **parts: Inline | Line) -> Iterable[B
 
 
 def _is_number(cell: Line) -> bool:
-    text = "".join(part if isinstance(part, str) else "x" for part in cell)
+    text = "".join(inline if isinstance(inline, str) else "x" for inline in cell)
     return not text.strip("0123456789.,−-–— ·⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
 def _has_digits(cell: Line) -> bool:
-    return any(isinstance(part, str) and any(map(str.isdigit, part)) for part in cell)
+    return any(isinstance(inline, str) and any(map(str.isdigit, inline)) for inline in cell)

@@ -31,8 +31,8 @@ def write_centres(subject: Subject) -> Iterable[Block]:
         k=LINKS,
     )
     count = len(results.linkage.links)
-    own = Leaf(LINKS, float(count))
-    yield ComputedQuantity(ALL, own * (own - 1) / 2, count * (count - 1) / 2, whole=True)
+    link_count = Leaf(LINKS, float(count))
+    yield ComputedQuantity(ALL, link_count * (link_count - 1) / 2, count * (count - 1) / 2, whole=True)
     yield write_sentence(
         _(
             "The instantaneous centre of two links joined by a hinge is the hinge; that of two links joined by "
@@ -59,38 +59,38 @@ def _write_speeds(subject: Subject) -> Iterable[Block]:
         "distances between centres therefore give the angular velocity of the link or, if it does not "
         "rotate, its velocity. Position {number}:"
     )
-    for k, found in results.centres.items():
-        told = list(_compute_speeds(subject, k, {centre.links: centre for centre in found}))
-        if told:
+    for k, centres in results.centres.items():
+        speeds = list(_compute_speeds(subject, k, {centre.links: centre for centre in centres}))
+        if speeds:
             yield write_sentence(text, number=subject.position_number(k))
-            yield from told
+            yield from speeds
             text = _("Position {number}:")
 
 
-def _compute_speeds(subject: Subject, k: int, found: Mapping[LinkPair, InstantCentre]) -> Iterable[ComputedQuantity]:
+def _compute_speeds(subject: Subject, k: int, centres: Mapping[LinkPair, InstantCentre]) -> Iterable[ComputedQuantity]:
     motion = subject.motion
     driver = motion.linkage.driver.link
-    own = abs(subject.rate(k))
-    rate, pivot = Leaf(Symbol("ω", driver), own), found[FRAME, driver]
+    driver_speed = abs(subject.rate(k))
+    rate, pivot = Leaf(Symbol("ω", driver), driver_speed), centres[FRAME, driver]
     for link in motion.linkage.moving:
-        if link == driver or pivot.place is None or not own:
+        if link == driver or pivot.place is None or not driver_speed:
             continue
-        here = found[FRAME, link]
-        both = found[(driver, link) if (driver, link) in found else (link, driver)]
-        if both.place is None:
+        to_frame = centres[FRAME, link]
+        to_driver = centres[(driver, link) if (driver, link) in centres else (link, driver)]
+        if to_driver.place is None:
             continue
-        reached = rate * _distance(pivot, both)
-        if here.place is None and here.direction is not None:
+        reached = rate * _distance(pivot, to_driver)
+        if to_frame.place is None and to_frame.direction is not None:
             speed = abs(complex(motion.point(link, 0j).v[k]))
             yield ComputedQuantity(Symbol("v", link), reached, speed, _("m/s"))
-        elif here.place is not None:
-            other, turning = _distance(here, both), abs(float(motion.link(link).omega[k]))
-            if turning > NO_VECTOR * own and other.value:
+        elif to_frame.place is not None:
+            other, turning = _distance(to_frame, to_driver), abs(float(motion.link(link).omega[k]))
+            if turning > NO_VECTOR * driver_speed and other.value:
                 yield ComputedQuantity(Symbol("ω", link), reached / other, turning, _("rad/s"))
 
 
-def _distance(one: InstantCentre, other: InstantCentre) -> Leaf:
+def _distance(first: InstantCentre, second: InstantCentre) -> Leaf:
     """Return the distance (m) between two instantaneous centres, with a symbol such as P₁₂P₁₃."""
-    assert one.place is not None and other.place is not None
-    letters = "".join("P" + subscript(centre_name(centre.links)[1:]) for centre in (one, other))
-    return Leaf(Symbol(letters), abs(other.place - one.place))
+    assert first.place is not None and second.place is not None
+    letters = "".join("P" + subscript(centre_name(centre.links)[1:]) for centre in (first, second))
+    return Leaf(Symbol(letters), abs(second.place - first.place))

@@ -17,12 +17,12 @@ from tmm_cli.mechanics.forces import Symbol
 from tmm_cli.note import formula_tree as paper
 from tmm_cli.note.formula_tree import chain_of_equalities
 
-FIGURES = 4  # of a result, and of what is put in if that does
-MOST_FIGURES = 8  # of what is put in, where terms nearly cancel
-EXACT = 15  # of what is compared, not printed
-WHOLE = 7  # figures before the point that are written out
-NOTHING = 1e-9  # of the largest term: a sum that is less is zero
-CANCELLED = 1e-6  # of the largest term: a sum that is less, and has no digit in common with its numbers, is zero
+FIGURES = 4  # of a result, and of the substituted numbers if that suffices
+MOST_FIGURES = 8  # of the substituted numbers, where terms nearly cancel
+EXACT = 15  # for values that are compared and not printed
+WHOLE = 7  # digits before the point, with more a number is in scientific notation
+NOTHING = 1e-9  # fraction of the largest term below which a sum is zero
+CANCELLED = 1e-6  # same for a sum whose digits the substituted numbers do not give
 
 
 class ExpressionOperators:
@@ -44,8 +44,8 @@ class ExpressionOperators:
         return Sum(tuple((-sign, term) for sign, term in _terms(self)))
 
     def __mul__(self, other: Expression | float) -> Product:
-        own = self.factors if isinstance(self, Product) else (_as_expression(self),)
-        return Product((*own, _as_expression(other)))
+        factors = self.factors if isinstance(self, Product) else (_as_expression(self),)
+        return Product((*factors, _as_expression(other)))
 
     def __rmul__(self, number: float) -> Product:
         return _as_expression(number) * _as_expression(self)
@@ -157,8 +157,8 @@ class ComputedQuantity:
 
     def value(self, figures: int) -> float:
         """Return the value of the expression with its numbers rounded to so many figures; angles in degrees."""
-        found = evaluate(self.expression, figures)
-        return math.degrees(found) if self.angle else found
+        number = evaluate(self.expression, figures)
+        return math.degrees(number) if self.angle else number
 
     def printed(self) -> tuple[int, str]:
         """Choose the rounding of the substituted numbers and of the result so that the line is consistent.
@@ -173,13 +173,13 @@ class ComputedQuantity:
         result = math.degrees(self.result) if self.angle else self.result
         terms = largest_term(self.expression)
         terms = math.degrees(terms) if self.angle else terms
-        shown = 0.0 if abs(result) <= NOTHING * terms else result
+        significant = 0.0 if abs(result) <= NOTHING * terms else result
         cancelled = max(abs(result), abs(self.value(EXACT))) <= CANCELLED * terms
         if self.whole and self.value(MOST_FIGURES) == result:
             return MOST_FIGURES, str(round(result))
-        for value in (shown, 0.0) if cancelled else (shown,):
-            for own in range(self.most, 0, -1):
-                text = format_fixed(value, own, terms)
+        for value in (significant, 0.0) if cancelled else (significant,):
+            for digits in range(self.most, 0, -1):
+                text = format_fixed(value, digits, terms)
                 unit = last_digit_unit(text)
                 for figures in range(FIGURES, MOST_FIGURES + 1):
                     if abs(self.value(figures) - float(text)) <= unit:
@@ -202,38 +202,38 @@ def apply_sign(sense: float, expression: Expression) -> Expression:
     return expression if sense > 0 else -expression
 
 
-def _as_expression(part: object) -> Expression:
-    if isinstance(part, Expression):
-        return part
-    assert isinstance(part, int | float)
-    return Constant(part)
+def _as_expression(operand: object) -> Expression:
+    if isinstance(operand, Expression):
+        return operand
+    assert isinstance(operand, int | float)
+    return Constant(operand)
 
 
-def _terms(part: object) -> tuple[tuple[int, Expression], ...]:
-    own = _as_expression(part)
-    return own.terms if isinstance(own, Sum) else ((1, own),)
+def _terms(operand: object) -> tuple[tuple[int, Expression], ...]:
+    expression = _as_expression(operand)
+    return expression.terms if isinstance(expression, Sum) else ((1, expression),)
 
 
 def evaluate(expression: Expression, figures: int) -> float:
     """Evaluate an expression with each quantity rounded to so many significant figures."""
-    of = partial(evaluate, figures=figures)
+    evaluate_part = partial(evaluate, figures=figures)
     match expression:
         case Leaf(_, value, angle, instead):
             if instead is not None:
-                return of(instead)
+                return evaluate_part(instead)
             return math.radians(round_figures(math.degrees(value), figures)) if angle else round_figures(value, figures)
         case Constant(value):
             return value
         case Sum(terms):
-            return math.fsum(sign * of(term) for sign, term in terms)
+            return math.fsum(sign * evaluate_part(term) for sign, term in terms)
         case Product(factors):
-            return math.prod(of(factor) for factor in factors)
+            return math.prod(evaluate_part(factor) for factor in factors)
         case Quotient(over, under):
-            return of(over) / of(under)
+            return evaluate_part(over) / evaluate_part(under)
         case PowerOf(base, over, under):
-            return float(of(base) ** (over / under))
+            return float(evaluate_part(base) ** (over / under))
         case Function(name, argument):
-            return FUNCTIONS[name](of(argument))
+            return FUNCTIONS[name](evaluate_part(argument))
 
 
 def largest_term(expression: Expression) -> float:
@@ -279,10 +279,10 @@ def numeric_formula(expression: Expression, figures: int, text: Callable[[str], 
             return numeric_formula(leaf.of, figures, text)
         value = math.degrees(leaf.value) if leaf.angle else leaf.value
         digits = format_plain(round_figures(value, figures), figures)
-        shown = _number_formula(digits, text)
+        node = _number_formula(digits, text)
         if digits.startswith("-"):
-            return paper.Brackets(shown)
-        return paper.row(shown, paper.Words("°")) if leaf.angle else shown
+            return paper.Brackets(node)
+        return paper.row(node, paper.Words("°")) if leaf.angle else node
 
     return _build_formula(expression, number)
 
@@ -292,12 +292,12 @@ def _number_formula(digits: str, text: Callable[[str], str]) -> paper.Node:
     if digits.startswith("-"):
         return paper.row("−", _number_formula(digits[1:], text))
     mantissa, _, power = digits.partition("e")
-    shown = paper.Number(text(mantissa))
-    return paper.row(shown, "·", paper.Power(paper.Number("10"), _number_formula(power, text))) if power else shown
+    node = paper.Number(text(mantissa))
+    return paper.row(node, "·", paper.Power(paper.Number("10"), _number_formula(power, text))) if power else node
 
 
 def _build_formula(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -> paper.Node:
-    of = partial(_build_formula, leaf=leaf)
+    build = partial(_build_formula, leaf=leaf)
     match expression:
         case Leaf():
             return leaf(expression)
@@ -306,28 +306,28 @@ def _build_formula(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -
         case Sum(terms):
             parts: list[paper.Node | str] = []
             for sign, term in terms:
-                node = of(term)
+                node = build(term)
                 if not parts and sign > 0 and isinstance(term, Leaf) and isinstance(node, paper.Brackets):
-                    node = node.inside  # a minus at the beginning
+                    node = node.inside  # a negative first number needs no brackets
                 parts += ["−"] if sign < 0 else ["+"] if parts else []
                 parts.append(node)
             return paper.row(*parts) if parts else paper.Number("0")
         case Product(factors):
-            shown: list[paper.Node | str] = []
+            nodes: list[paper.Node | str] = []
             for factor in factors:
-                shown += ["·"] if shown else []
+                nodes += ["·"] if nodes else []
                 several = isinstance(factor, Sum) and len(factor.terms) > 1
-                shown.append(paper.Brackets(of(factor)) if several else of(factor))
-            return paper.row(*shown)
+                nodes.append(paper.Brackets(build(factor)) if several else build(factor))
+            return paper.row(*nodes)
         case Quotient(over, under):
-            return paper.Fraction(of(over), of(under))
+            return paper.Fraction(build(over), build(under))
         case PowerOf(base, over, under):
-            node, power = of(base), paper.Number(str(over))
+            node, power = build(base), paper.Number(str(over))
             if not isinstance(node, paper.Number | paper.Letter | paper.Brackets):
                 node = paper.Brackets(node)
             return paper.Power(node, power if under == 1 else paper.Fraction(power, paper.Number(str(under))))
         case Function(name, argument):
-            node = of(argument)
+            node = build(argument)
             if name == "sqrt":
                 return paper.Root(node)
             if name == "abs":
@@ -372,22 +372,22 @@ def last_digit_unit(text: str) -> float:
 
 def result_formula(text: str, unit: str, say: Callable[[str], str]) -> paper.Node:
     """Return a printed result with its unit as a formula."""
-    shown = _number_formula(text, say)
-    return paper.row(shown, paper.Words(unit if unit == "°" else f" {unit}")) if unit else shown
+    node = _number_formula(text, say)
+    return paper.row(node, paper.Words(unit if unit == "°" else f" {unit}")) if unit else node
 
 
-def formula(found: ComputedQuantity, say: Callable[[str], str]) -> paper.Node:
+def formula(quantity: ComputedQuantity, say: Callable[[str], str]) -> paper.Node:
     """Return the line of a computed quantity: name = symbols = numbers = result.
 
     Args:
-        found: Computed quantity.
+        quantity: Computed quantity.
         say: Function that writes a number in the style of the language.
 
     Raises:
         ValueError: The expression does not give the result.
     """
-    figures, text = found.printed()
-    own = found.expression
-    plain = isinstance(own, Leaf)  # read off: what would be put in is the result
-    put_in = () if plain else (symbolic_formula(own), numeric_formula(own, figures, say))
-    return chain_of_equalities((paper.Letter(found.name), *put_in, result_formula(text, found.unit, say)))
+    figures, text = quantity.printed()
+    expression = quantity.expression
+    stated = isinstance(expression, Leaf)  # stated without a formula: a substitution would only repeat the result
+    put_in = () if stated else (symbolic_formula(expression), numeric_formula(expression, figures, say))
+    return chain_of_equalities((paper.Letter(quantity.name), *put_in, result_formula(text, quantity.unit, say)))

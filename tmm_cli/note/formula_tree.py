@@ -105,22 +105,22 @@ class Lines:
 Node = Number | Letter | Sign | Words | Row | Fraction | Power | Root | Brackets | Lines
 
 
-def row(*parts: Node | str) -> Node:
+def row(*items: Node | str) -> Node:
     """Return nodes and operators as one row. A single node is returned unchanged."""
     nodes: list[Node] = []
-    for part in parts:
-        node = Sign(part) if isinstance(part, str) else part
+    for node_or_sign in items:
+        node = Sign(node_or_sign) if isinstance(node_or_sign, str) else node_or_sign
         nodes += node.nodes if isinstance(node, Row) else (node,)
     return nodes[0] if len(nodes) == 1 else Row(tuple(nodes))
 
 
-LINE = 64.0  # of the text of an A4 page, in widths of a figure of the widest usual font
+LINE = 64.0  # width of the text of an A4 page, in widths of a digit of the widest usual font
 SMALL = 0.75  # size of indices and exponents
-SHORT = 9.0  # what is no wider, a name, has no line of its own
+SHORT = 9.0  # a narrower side of an equation, e.g. a symbol, has no line of its own
 TERMS = (Sign("+"), Sign("−"))
 BREAKS = (Sign("="), *TERMS)
 OPEN, CLOSE = Sign("("), Sign(")")
-OPENING = (Sign("="), OPEN, Sign("·"))  # after which a sign is the number's own
+OPENING = (Sign("="), OPEN, Sign("·"))  # a sign after these belongs to the number
 
 
 def chain_of_equalities(sides: Sequence[Node], most: float = LINE) -> Node:
@@ -159,8 +159,8 @@ def width(node: Node) -> float:
             return max(width(over), width(under)) + 0.5
         case Power(base, exponent):
             return width(base) + SMALL * width(exponent)
-        case Root(of):
-            return width(of) + 1.5
+        case Root(radicand):
+            return width(radicand) + 1.5
         case Brackets(inside):
             return width(inside) + 1.4
         case Lines(lines):
@@ -212,10 +212,10 @@ def _split_terms(nodes: Sequence[Node]) -> list[list[Node]]:
 
 def _unfold_wide_fractions(nodes: Sequence[Node], most: float) -> list[Node]:
     """Replace each fraction a/b that is too wide by (1/b)·(a)."""
-    found: list[Node] = []
+    unfolded: list[Node] = []
     for node in nodes:
         if isinstance(node, Fraction) and isinstance(node.over, Row) and width(node) > most - 4:
-            found += [Fraction(Number("1"), node.under), Sign("·"), OPEN, *node.over.nodes, CLOSE]
+            unfolded += [Fraction(Number("1"), node.under), Sign("·"), OPEN, *node.over.nodes, CLOSE]
         else:
-            found.append(node)
-    return found
+            unfolded.append(node)
+    return unfolded

@@ -12,7 +12,7 @@ from tmm_cli.mechanics.analysis import Results
 from tmm_cli.note.blocks import Block, Note
 from tmm_cli.note.subject import Subject
 
-CHAPTERS = {  # in the order of the note: the module and the function of each
+CHAPTERS = {  # module and function of each chapter, in the order of the note
     "title": ("short_chapters", "write_title_page"),
     "task": ("task", "write_task"),
     "synthesis": ("synthesis", "write_synthesis"),
@@ -26,7 +26,7 @@ CHAPTERS = {  # in the order of the note: the module and the function of each
     "checks": ("short_chapters", "write_checks"),
     "literature": ("short_chapters", "write_literature"),
 }
-# the part of Results that a chapter needs, where it is not there for every file: without it the chapter is not imported
+# results that only some files have; a chapter that needs them is imported only if they exist
 PARTS = {"law_of_motion": "steady", "single_run": "single", "balancing": "balancing"}
 
 

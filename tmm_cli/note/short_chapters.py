@@ -32,16 +32,16 @@ def write_checks(subject: Subject) -> Iterable[Block]:
     """Write the table of checks and the warnings."""
     results = subject.results
     tables = list(walk(results, ("checks",)))
-    told = tuple(collect_warnings(results, checked=False))
-    if not tables and not told:
+    warnings = tuple(collect_warnings(results, checked=False))
+    if not tables and not warnings:
         return
     yield Heading(_("Checks"))
     for table in tables:
         text = _("The results are checked: table {table} compares each quantity with its limit.")
         yield from write_table(text, note_table(subject, table, _("Checks"), "checks"))
-    if told:
+    if warnings:
         yield paragraph(_("The following deserves attention:"))
-        yield Items(tuple((with_degrees(text),) for text in told))
+        yield Items(tuple((with_degrees(text),) for text in warnings))
 
 
 def write_literature(subject: Subject) -> Iterable[Block]:

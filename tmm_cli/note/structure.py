@@ -194,20 +194,21 @@ def _draw_parts(subject: Subject) -> Iterable[Block]:
             _("The parts of the mechanism are shown in figures {first} to {last}."),
             list(drawn),
         )
-    for part, (stem, drawing) in zip(mechanism_parts(subject.results.structure), drawn.items(), strict=False):
-        text = _("Primary mechanism {title}") if part.group is None else _("Group {title}")
-        text = _("Redundant link {title}") if part.redundant else text
-        yield Figure(text.format(title=part.title), drawing, stem)
+    for mechanism_part, (stem, drawing) in zip(mechanism_parts(subject.results.structure), drawn.items(), strict=False):
+        text = _("Primary mechanism {title}") if mechanism_part.group is None else _("Group {title}")
+        text = _("Redundant link {title}") if mechanism_part.redundant else text
+        yield Figure(text.format(title=mechanism_part.title), drawing, stem)
 
 
 def _group_row(group: Group) -> tuple[Line, ...]:
     n, lower, higher = group.count
-    own = f"3·{n} − 2·{lower}" + (f" − {higher}" if higher else "") + f" = {group.mobility}"
-    known = [(pair.name, pair.other(group.own(pair))) for pair in group.outer]
+    formula = f"3·{n} − 2·{lower}" + (f" − {higher}" if higher else "") + f" = {group.mobility}"
+    external = [(pair.name, pair.other(group.own(pair))) for pair in group.outer]
     outer = ", ".join(
-        join_with_no_break_spaces(_("{pair} (to {link})").format(pair=pair, link=printed(link))) for pair, link in known
+        join_with_no_break_spaces(_("{pair} (to {link})").format(pair=pair, link=printed(link)))
+        for pair, link in external
     )
     inner = ", ".join(pair.name for pair in group.inner) or NONE
     roman, order = group.roman, str(group.order)
     kind = count_pair_letters(group.type) + (f" ({group.letters}, {group.type_number})" if group.type_number else "")
-    return cells(group.title, roman, order, kind, inner, outer, own)
+    return cells(group.title, roman, order, kind, inner, outer, formula)

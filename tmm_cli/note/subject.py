@@ -42,11 +42,11 @@ from tmm_cli.note.expression import FIGURES, format_fixed, format_plain, round_f
 from tmm_cli.problem import UnitSystem, typeset_unit
 from tmm_cli.reports import Column, Table, printed_figures, terminal_cells as cells_of
 
-EDGE = 0.4  # mm
-WIDTH, HEIGHT = 175.0, 225.0  # mm: of the text on a page of A4, and of a drawing with its caption
+EDGE = 0.4  # margin around a drawing (mm)
+WIDTH, HEIGHT = 175.0, 225.0  # of the text on an A4 page, and of a drawing with its caption (mm)
 
 
-# names that chapters use: what draws them, and the longest side (mm) of what is to scale
+# by the name that chapters use: drawing function, and longest side (mm) of a drawing to scale
 OF_MECHANISM: Mapping[str, tuple[Callable[[Results], NamedDrawings], float]] = {
     "structure": (draw_scheme, 100),
     "groups": (draw_all_groups, 45),
@@ -251,7 +251,7 @@ GREEK = {
 
 def typeset_formulas(text: str) -> str:
     """Return a text with the formulas in it typeset: psi1 = pi - phi_2 becomes ψ1 = π − φ₂."""
-    text = re.sub(rf"\b({'|'.join(GREEK)})(?=[\W\d_]|$)", lambda found: GREEK[found[0]], text)
+    text = re.sub(rf"\b({'|'.join(GREEK)})(?=[\W\d_]|$)", lambda match: GREEK[match[0]], text)
     return re.sub(r"_(\d+)\b", lambda index: subscript(index[1]), signed(typeset(text))).replace(" - ", " − ")
 
 
@@ -282,15 +282,15 @@ def note_table(
         for c in table.columns
     ]
     kept = [(head, texts, dimension) for head, texts, dimension in columns if any(texts)]
-    shown = [
+    texts_by_column = [
         [
             _fill_empty_cell(typeset_formulas(with_degrees(t)) if dimension is None else subject.localise(t))
             for t in texts
         ]
         for __, texts, dimension in kept
     ]
-    _move_units(table, shown)
-    rows = tuple(cells(*row) for row in zip(*shown, strict=True))
+    _move_units(table, texts_by_column)
+    rows = tuple(cells(*row) for row in zip(*texts_by_column, strict=True))
     return Rows(caption or table.title, cells(*(head for head, *__ in kept)), rows, key)
 
 
@@ -308,12 +308,12 @@ def join_with_no_break_spaces(text: str) -> str:
     return text.replace(" ", "\N{NO-BREAK SPACE}")
 
 
-def _move_units(table: Table, shown: list[list[str]]) -> None:
+def _move_units(table: Table, texts_by_column: list[list[str]]) -> None:
     """Move units that stand after names of quantities to the column of units: "time, s" becomes "time" and "s"."""
     headers = [column.header for column in table.columns]
-    if headers != ["what", "value", "unit"] or len(shown) != len(headers):
+    if headers != ["what", "value", "unit"] or len(texts_by_column) != len(headers):
         return
-    names, units = shown[0], shown[2]
+    names, units = texts_by_column[0], texts_by_column[2]
     for k, name in enumerate(names):
         quantity, __, unit = name.rpartition(", ")
         if units[k] == NONE and unit in (spelt("J"), spelt("s"), "%"):
@@ -325,9 +325,10 @@ def _format_cells(column: Column, units: UnitSystem, zeros: bool) -> list[str]:
     if column.dimension is None:
         return cells_of(column, units, range(len(column.values)))
     write = format_fixed if zeros else format_plain
-    told = zip(column.numbers(units).tolist(), printed_figures(column, units).tolist(), strict=True)
+    numbers_and_figures = zip(column.numbers(units).tolist(), printed_figures(column, units).tolist(), strict=True)
     return [
-        write(round_figures(value, count), count) if count > 0 else "0" if count == 0 else NONE for value, count in told
+        write(round_figures(value, count), count) if count > 0 else "0" if count == 0 else NONE
+        for value, count in numbers_and_figures
     ]
 
 

@@ -14,9 +14,9 @@ from tmm_cli.problem import Synthesised
 from tmm_cli.reports import tables_of_synthesis
 from tmm_cli.synthesis import Diagram, measure_problem, theta_of
 
-FOUND = 6  # digits of lengths that are found: with fewer the mechanism is another one
+FOUND = 6  # figures of computed lengths; with fewer the mechanism would differ
 THETA, K, H = Symbol("θ"), Symbol("k"), Symbol("H")
-USED = ("k", "stroke", "OA", "OC", "CD")  # values of tasks that are put into formulas
+USED = ("k", "stroke", "OA", "OC", "CD")  # values that are substituted in formulas
 
 
 def write_synthesis(subject: Subject) -> Iterable[Block]:
@@ -27,21 +27,21 @@ def write_synthesis(subject: Subject) -> Iterable[Block]:
         return
     yield Heading(_("Synthesis of the mechanism"))
     tables = {t.name: t for t in tables_of_synthesis(task, measure_problem(results), results.problem.units, FOUND)}
-    asked = tables.pop("synthesis-asked", None)
-    if asked is None:
+    required = tables.pop("synthesis-asked", None)
+    if required is None:
         yield paragraph(_("The dimensions of the mechanism are determined from the requirements."))
     else:
-        rows = note_table(subject, asked, _("Requirements"), "asked", FOUND)
+        rows = note_table(subject, required, _("Requirements"), "asked", FOUND)
         yield from write_table(
             _("The dimensions of the mechanism are determined from the requirements (table {table})."), rows
         )
     source = typeset_formulas(translated(task.outcome.source).rstrip("."))
     yield paragraph(_("Method of solution: {source}.").format(source=source))
     yield from _write_formulas(task)
-    found = tables.pop("synthesis-found", None)
+    results_table = tables.pop("synthesis-found", None)
     measured = tables.pop("synthesis-measured", None)
-    if found is not None:
-        rows = note_table(subject, found, _("Results of the synthesis"), "found", FOUND)
+    if results_table is not None:
+        rows = note_table(subject, results_table, _("Results of the synthesis"), "found", FOUND)
         yield from write_table(_("The results are given in table {table}."), rows)
         yield from (paragraph(typeset_formulas(translated(note))) for note in task.outcome.notes)
     yield from (note_table(subject, t, digits=FOUND) for t in tables.values() if not t.long)

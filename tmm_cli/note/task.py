@@ -35,9 +35,9 @@ from tmm_cli.reports import (
     translate_label,
 )
 
-# tables of `tmm explain` that the note has in words of its own; the others it has as they are
+# tables of `tmm explain` that the note replaces by its own; it includes the others unchanged
 IN_WORDS = ("synthesis", "points", "slides", "facts", "speeds", "masses", "loads")
-SIDES = 3  # points of a link whose distances are all given; of more, those from the first one
+SIDES = 3  # for a link with more points only the distances from its first point are given
 
 
 def write_task(subject: Subject) -> Iterable[Block]:
@@ -99,14 +99,14 @@ def write_task(subject: Subject) -> Iterable[Block]:
 
 def _write_gravity(subject: Subject) -> Iterable[Block]:
     pull = subject.results.linkage.gravity
-    size = abs(pull)
-    if not size:
+    magnitude = abs(pull)
+    if not magnitude:
         yield paragraph(_("The weights of the links are not taken into account."))
         return
     yield write_sentence(
         _("The acceleration of gravity is {g} = {size} m/s²; it is directed at {angle} to the x axis."),
         g=Symbol("g"),
-        size=subject.text(size),
+        size=subject.text(magnitude),
         angle=subject.value(float(np.angle(pull)), ANGLE, 4),
     )
 
@@ -128,16 +128,16 @@ def _describe_dimensions(subject: Subject, link: Link) -> Line:
     """
     points = list(link.points)
     pairs = combinations(points, 2) if len(points) <= SIDES else ((points[0], other) for other in points[1:])
-    found: list[Line] = []
+    dimensions: list[Line] = []
     for a, b in pairs:
         length = float(np.ravel(abs(link.points[a] - link.points[b]))[0])
         if length > 0:
-            found.append((Symbol("l", a + b), f" = {subject.value(length, LENGTH)}"))
+            dimensions.append((Symbol("l", a + b), f" = {subject.value(length, LENGTH)}"))
     if any(np.any(np.imag(place) != 0) for place in link.points.values()):
         for point, place in link.points.items():
             x, y = _format_point(subject, place)
-            found.append((join_with_no_break_spaces(f"{point} ({x}; {y}) {subject.unit(LENGTH)}"),))
-    return join_inline(found)
+            dimensions.append((join_with_no_break_spaces(f"{point} ({x}; {y}) {subject.unit(LENGTH)}"),))
+    return join_inline(dimensions)
 
 
 def _fixed_point_table(subject: Subject) -> Rows:
@@ -169,8 +169,8 @@ def _mass_table(subject: Subject) -> Rows:
     for name in links_with_inertia(linkage):
         link = linkage.links[name]
         mass, inertia = (float(np.ravel(value)[0]) for value in (link.mass, link.inertia))
-        own = (subject.number(mass, MASS), subject.number(inertia, INERTIA))
-        rows.append(cells(name, *own, *_format_point(subject, link.centre)))
+        numbers = (subject.number(mass, MASS), subject.number(inertia, INERTIA))
+        rows.append(cells(name, *numbers, *_format_point(subject, link.centre)))
     quantities = (
         (Symbol("m"), MASS),
         (Symbol("J", "S"), INERTIA),
@@ -193,15 +193,15 @@ def _load_row(subject: Subject, load: Load) -> tuple[Line, ...]:
     if load.force and not place:
         x, y = _format_point(subject, load.at)
         place = _("({x}; {y}) {unit}").format(x=x, y=y, unit=subject.unit(LENGTH))
-    size = subject.value(load.moment, MOMENT)
+    magnitude = subject.value(load.moment, MOMENT)
     if load.force:
-        x, y = (subject.number(part, FORCE) for part in (load.force.real, load.force.imag))
-        size = f"({x}; {y}) {subject.unit(FORCE)}"
+        x, y = (subject.number(component, FORCE) for component in (load.force.real, load.force.imag))
+        magnitude = f"({x}; {y}) {subject.unit(FORCE)}"
     if load.table is not None:
-        size = _("given by a table")
+        magnitude = _("given by a table")
     elif load.resists:
         against = subject.value(abs(load.force), FORCE) if load.force else subject.value(load.moment, MOMENT)
-        size = _("{size}, opposite to the motion").format(size=against)
+        magnitude = _("{size}, opposite to the motion").format(size=against)
     when = _("in the working stroke") if load.working_stroke_only else _("always")
     if load.stroke_link:
         when = _("in the working stroke of link {link}").format(link=load.stroke_link)
@@ -209,7 +209,7 @@ def _load_row(subject: Subject, load: Load) -> tuple[Line, ...]:
         first, last = (subject.value(angle, ANGLE) for angle in load.window)
         when = _("crank angle from {first} to {last}").format(first=first, last=last)
     name = symbol_of_name(load.name, "P" if load.force else "M")
-    return cells(name, link_name(load.link), place if load.force else NONE, size, when)
+    return cells(name, link_name(load.link), place if load.force else NONE, magnitude, when)
 
 
 def _list_requirements(subject: Subject) -> Iterable[str]:

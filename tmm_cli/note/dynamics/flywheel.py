@@ -32,11 +32,11 @@ DENSITY, SHARE, HEIGHT = Symbol("ρ"), Symbol("β"), Symbol("η")
 DIAMETER, WIDTH, MASS = Symbol("D"), Symbol("b"), CourseSymbol("m_f")
 
 
-def write_extreme_speeds(here: SteadyPosition) -> Iterable[Block]:
+def write_extreme_speeds(position: SteadyPosition) -> Iterable[Block]:
     """Write the largest and the smallest angular velocity, which follow from the mean and the coefficient of
     fluctuation.
     """
-    steady = here.steady
+    steady = position.steady
     low, high = steady.speeds
     middle, half = Leaf(MEAN, (low + high) / 2), Leaf(DELTA, steady.delta) / 2
     yield write_sentence(
@@ -51,7 +51,7 @@ def write_extreme_speeds(here: SteadyPosition) -> Iterable[Block]:
     yield ComputedQuantity(LEAST, middle * (1 - half), low, _("rad/s"))
 
 
-def write_energy_mass_diagram(here: SteadyPosition) -> Iterable[Block]:
+def write_energy_mass_diagram(position: SteadyPosition) -> Iterable[Block]:
     """Write the energy-mass diagram and the energies (J) that its tangents cut off."""
     upper, lower = Leaf(LARGEST) ** 2 / 2, Leaf(LEAST) ** 2 / 2
     slope = Leaf(Symbol("μ", "J")) * Leaf(Symbol("ω")) ** 2 / (2 * Leaf(Symbol("μ", "A")))
@@ -72,16 +72,16 @@ def write_energy_mass_diagram(here: SteadyPosition) -> Iterable[Block]:
         Eb=OFFSETS[1],
         psi=row(symbol("tan"), Letter(Symbol("ψ")), "=", symbolic_formula(slope)),
     )
-    for tangent, name, speed, point in zip(here.tangents, OFFSETS, (LARGEST, LEAST), ("a", "b"), strict=True):
+    for tangent, name, speed, point in zip(position.tangents, OFFSETS, (LARGEST, LEAST), ("a", "b"), strict=True):
         energy, work = tangent_speed(tangent, speed) ** 2 / 2, Leaf(Symbol(WORK.letter, point), tangent.energy)
         cut = work - energy * Leaf(Symbol(INERTIA.letter, point), tangent.inertia)
         yield ComputedQuantity(name, cut, tangent.offset, _("J"))
 
 
-def write_flywheel_by_tangents(here: SteadyPosition) -> Iterable[Block]:
+def write_flywheel_by_tangents(position: SteadyPosition) -> Iterable[Block]:
     """Write the moment of inertia of the flywheel from the energies that the tangents cut off."""
-    steady = here.steady
-    upper, lower = here.tangents
+    steady = position.steady
+    upper, lower = position.tangents
     text = _("The moment of inertia of the flywheel, reduced to the input link:")
     if steady.task.delta is None:
         text = _("The same construction gives the moment of inertia of the given flywheel, reduced to the input link:")
@@ -97,12 +97,12 @@ def write_flywheel_by_tangents(here: SteadyPosition) -> Iterable[Block]:
     yield ComputedQuantity(FLYWHEEL, 2 * cut / squares, steady.law.flywheel, _("kg·m²"))
 
 
-def write_flywheel_by_mertsalov(here: SteadyPosition) -> Iterable[Block]:
+def write_flywheel_by_mertsalov(position: SteadyPosition) -> Iterable[Block]:
     """Write the flywheel by Mertsalov's method and by tangents with approximate slopes, as in student courses.
 
     Both methods assume a constant driving moment. Nothing is written if no exact flywheel was computed to compare with.
     """
-    steady = here.steady
+    steady = position.steady
     if steady.found is None:
         return
     upper, lower = steady.at_mean
@@ -117,7 +117,7 @@ def write_flywheel_by_mertsalov(here: SteadyPosition) -> Iterable[Block]:
         ),
         plus=symbolic_formula(square * (1 + delta)),
         minus=symbolic_formula(square * (1 - delta)),
-        found=here.subject.text(steady.wittenbauer),
+        found=position.subject.text(steady.wittenbauer),
     )
     if constant:
         yield write_sentence(
@@ -128,7 +128,7 @@ def write_flywheel_by_mertsalov(here: SteadyPosition) -> Iterable[Block]:
                 "group then varies between {most} and {least}, the largest and the smallest value of {rest}:"
             ),
             constant=CONSTANT,
-            value=here.subject.text(constant),
+            value=position.subject.text(constant),
             most=most.symbol,
             least=least.symbol,
             rest=symbolic_formula(Leaf(WORK) - second * (Leaf(MEAN) ** 2 / 2)),
@@ -155,9 +155,9 @@ def write_flywheel_by_mertsalov(here: SteadyPosition) -> Iterable[Block]:
     yield ComputedQuantity(FLYWHEEL.primed, flywheel, steady.mertsalov, _("kg·m²"))
 
 
-def write_flywheel_on_its_shaft(here: SteadyPosition) -> Iterable[Block]:
+def write_flywheel_on_its_shaft(position: SteadyPosition) -> Iterable[Block]:
     """Write the moment of inertia of the flywheel on its own shaft. Nothing is written if that is the input shaft."""
-    steady = here.steady
+    steady = position.steady
     if steady.task.ratio == 1:
         return
     yield write_sentence(
@@ -167,13 +167,13 @@ def write_flywheel_on_its_shaft(here: SteadyPosition) -> Iterable[Block]:
         ),
         u=RATIO,
     )
-    own = Leaf(FLYWHEEL, steady.law.flywheel) / Leaf(RATIO, steady.task.ratio) ** 2
-    yield ComputedQuantity(ON_SHAFT, own, steady.on_shaft, _("kg·m²"))
+    on_shaft = Leaf(FLYWHEEL, steady.law.flywheel) / Leaf(RATIO, steady.task.ratio) ** 2
+    yield ComputedQuantity(ON_SHAFT, on_shaft, steady.on_shaft, _("kg·m²"))
 
 
-def write_flywheel_size(here: SteadyPosition) -> Iterable[Block]:
+def write_flywheel_size(position: SteadyPosition) -> Iterable[Block]:
     """Write the diameter, width and mass of a flywheel in the form of a disk or a rim."""
-    steady = here.steady
+    steady = position.steady
     form, inertia = steady.task.size, Leaf(FLYWHEEL if steady.task.ratio == 1 else ON_SHAFT, steady.on_shaft)
     share, diameter = Leaf(SHARE, form.width), Leaf(DIAMETER, steady.diameter)
     section = Constant(math.pi, "π") * Leaf(DENSITY, form.density) * share

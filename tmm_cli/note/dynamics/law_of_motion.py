@@ -33,14 +33,14 @@ TABLES = ("dynamics", "law-of-motion")
 
 def write_steady_running(subject: Subject) -> Iterable[Block]:
     """Write the chapter on the law of motion in steady running."""
-    every = [SteadyPosition(subject, k) for k in subject.detail]
-    here = every[0]
+    positions = [SteadyPosition(subject, k) for k in subject.detail]
+    first = positions[0]
     yield Heading(_("Law of motion"))
     yield Heading(_("Reduced moments"), 2)
-    yield from reduced_model.explain_reduction(here)
-    for one in every:
-        yield from reduced_model.write_reduced_inertia(one)
-        yield from reduced_model.write_reduced_moment(one)
+    yield from reduced_model.explain_reduction(first)
+    for position in positions:
+        yield from reduced_model.write_reduced_inertia(position)
+        yield from reduced_model.write_reduced_moment(position)
     yield from subject.figures(
         "law",
         _("The reduced moments, the work and the energies are shown in figure {figure}."),
@@ -48,59 +48,59 @@ def write_steady_running(subject: Subject) -> Iterable[Block]:
         only="law-moments",
     )
     yield Heading(_("Driving moment"), 2)
-    yield from reduced_model.write_mean_driving_moment(here)
-    for one in every:
-        yield from reduced_model.write_motor_moment(one)
-    flies = here.steady.law.flywheel > 0
+    yield from reduced_model.write_mean_driving_moment(first)
+    for position in positions:
+        yield from reduced_model.write_motor_moment(position)
+    flies = first.steady.law.flywheel > 0
     yield Heading(_("Flywheel") if flies else _("Fluctuation of speed"), 2)
-    yield from flywheel.write_extreme_speeds(here)
-    yield from flywheel.write_energy_mass_diagram(here)
+    yield from flywheel.write_extreme_speeds(first)
+    yield from flywheel.write_energy_mass_diagram(first)
     yield from subject.figures(
         "energy-mass", _("The energy-mass diagram is shown in figure {figure}."), _("Energy-mass diagram")
     )
     if flies:
-        for part in (
+        for write_section in (
             flywheel.write_flywheel_by_tangents,
             flywheel.write_flywheel_by_mertsalov,
             flywheel.write_flywheel_on_its_shaft,
             flywheel.write_flywheel_size,
         ):
-            yield from part(here)
+            yield from write_section(first)
     yield Heading(_("Velocity and acceleration of the input link"), 2)
-    yield from _write_initial_energy(here)
-    for one in every:
-        yield from _write_input_motion(one, explained=one is here)
-    yield from _write_time(here)
+    yield from _write_initial_energy(first)
+    for position in positions:
+        yield from _write_input_motion(position, explained=position is first)
+    yield from _write_time(first)
     yield from subject.figures(
         "law",
         _("The law of motion is shown in figure {figure}."),
         _("Law of motion of the input link"),
         only="law-motion",
     )
-    if here.running.sense < 0:
+    if first.running.sense < 0:
         yield paragraph(sign_convention(subject.results.linkage))
     yield from write_tables(subject)
 
 
 def write_tables(subject: Subject) -> Iterable[Block]:
     """Write the table of results and the table of the law of motion in all positions."""
-    found = list(walk(subject.results, TABLES))
+    tables = list(walk(subject.results, TABLES))
     sentences = _("The results are summarised in table {table}."), _("The law of motion is given in table {table}.")
-    for table, sentence in zip(found, sentences, strict=True):
+    for table, sentence in zip(tables, sentences, strict=True):
         rows = note_table(subject, table, key=table.name, zeros=table.name == "law-of-motion")
         yield from write_table(sentence, rows)
 
 
-def _write_initial_energy(here: SteadyPosition) -> Iterable[Block]:
+def _write_initial_energy(position: SteadyPosition) -> Iterable[Block]:
     """Write the kinetic energy in position 0, found from the tangent of the largest speed."""
-    upper, __ = here.tangents
+    upper, __ = position.tangents
     yield write_sentence(_("The kinetic energy of the machine in position 0:"))
-    flywheel, offset = Leaf(FLYWHEEL, here.steady.law.flywheel), Leaf(OFFSETS[0], upper.offset)
-    own = tangent_speed(upper, LARGEST) ** 2 / 2 * flywheel - offset if flywheel.value else -offset
-    yield ComputedQuantity(START, own, here.initial_energy, _("J"))
+    flywheel, offset = Leaf(FLYWHEEL, position.steady.law.flywheel), Leaf(OFFSETS[0], upper.offset)
+    energy = tangent_speed(upper, LARGEST) ** 2 / 2 * flywheel - offset if flywheel.value else -offset
+    yield ComputedQuantity(START, energy, position.initial_energy, _("J"))
 
 
-def _write_input_motion(here: SteadyPosition, *, explained: bool) -> Iterable[Block]:
+def _write_input_motion(position: SteadyPosition, *, explained: bool) -> Iterable[Block]:
     """Write the angular velocity and acceleration of the input link in one position."""
     text = _("Position {number}:")
     if explained:
@@ -109,27 +109,29 @@ def _write_input_motion(here: SteadyPosition, *, explained: bool) -> Iterable[Bl
             "from the equation of motion, in which {slope} is the derivative of the reduced moment of inertia "
             "with respect to the angle of the input link. Position {number}:"
         )
-    yield write_sentence(text, slope=SLOPE, number=here.number)
-    steady, link = here.steady, here.motion.linkage.driver.link
-    law, speed = steady.law, here.speed
-    inertia = Leaf(INERTIA, here.value_of(steady.machine.inertia))
-    every = Leaf(FLYWHEEL, law.flywheel) + inertia if law.flywheel else inertia
-    energy = Leaf(START, here.initial_energy) + Leaf(WORK, here.value_of(steady.work))
-    yield ComputedQuantity(speed.symbol, Function("sqrt", 2 * energy / every), speed.value, _("rad/s"))
-    moments = Leaf(DRIVING, here.value_of(law.driving)) + Leaf(MOMENT, here.value_of(steady.machine.moment))
-    turned = Leaf(SLOPE, here.value_of(steady.machine.slope)) * (speed**2 / 2)
-    found = here.running.sense * float(np.broadcast_to(here.motion.acceleration, here.motion.q.shape)[here.k])
-    yield ComputedQuantity(Symbol("ε", link), (moments - turned) / every, found, _("rad/s²"))
+    yield write_sentence(text, slope=SLOPE, number=position.number)
+    steady, link = position.steady, position.motion.linkage.driver.link
+    law, speed = steady.law, position.speed
+    inertia = Leaf(INERTIA, position.value_of(steady.machine.inertia))
+    total_inertia = Leaf(FLYWHEEL, law.flywheel) + inertia if law.flywheel else inertia
+    energy = Leaf(START, position.initial_energy) + Leaf(WORK, position.value_of(steady.work))
+    yield ComputedQuantity(speed.symbol, Function("sqrt", 2 * energy / total_inertia), speed.value, _("rad/s"))
+    moments = Leaf(DRIVING, position.value_of(law.driving)) + Leaf(MOMENT, position.value_of(steady.machine.moment))
+    turned = Leaf(SLOPE, position.value_of(steady.machine.slope)) * (speed**2 / 2)
+    acceleration = position.running.sense * float(
+        np.broadcast_to(position.motion.acceleration, position.motion.q.shape)[position.k]
+    )
+    yield ComputedQuantity(Symbol("ε", link), (moments - turned) / total_inertia, acceleration, _("rad/s²"))
 
 
-def _write_time(here: SteadyPosition) -> Iterable[Block]:
+def _write_time(position: SteadyPosition) -> Iterable[Block]:
     """Write the time as the integral of the reciprocal angular velocity, and the duration of the cycle."""
-    omega = Letter(Symbol("ω", here.motion.linkage.driver.link))
+    omega = Letter(Symbol("ω", position.motion.linkage.driver.link))
     yield write_sentence(
         _("The time from position 0 is the integral of the reciprocal angular velocity over the angle of rotation:")
     )
     yield Equation(row(Letter(Symbol("t")), "=", Sign("∫"), Fraction(row("d", Letter(Symbol("φ"))), omega)))
-    yield write_sentence(_("A cycle takes {time} s."), time=here.subject.text(here.steady.law.period))
+    yield write_sentence(_("A cycle takes {time} s."), time=position.subject.text(position.steady.law.period))
 
 
 DRIVEN, LOADED, BRAKED, END = CourseSymbol("A_d"), CourseSymbol("A_l"), CourseSymbol("A_b"), Symbol("T", "1")
@@ -171,11 +173,11 @@ def _write_energy_balance(single: SingleRun, *, crank: bool) -> Iterable[Block]:
     end = Leaf(END, float(run.kinetic[-1]))
     yield ComputedQuantity(END, sum_terms(Leaf(symbol, float(value)) for symbol, value in parts), end.value, _("J"))
     inertia = float(single.machine.inertia(np.array([run.way[-1]]))[0])
-    every: Expression = Leaf(INERTIA if crank else Symbol("m"), inertia)
+    total_inertia: Expression = Leaf(INERTIA if crank else Symbol("m"), inertia)
     if single.task.flywheel:
-        every = Leaf(FLYWHEEL, single.task.flywheel) + every
+        total_inertia = Leaf(FLYWHEEL, single.task.flywheel) + total_inertia
     if run.speed[-1] > 0:
         yield write_sentence(_("With the reduced inertia at the end of the run, the final velocity is"))
-        root = Function("sqrt", 2 * end / every)
+        root = Function("sqrt", 2 * end / total_inertia)
         unit = _("rad/s") if crank else _("m/s")
         yield ComputedQuantity(Symbol("ω" if crank else "v", "1"), root, float(run.speed[-1]), unit)

@@ -78,12 +78,12 @@ class SteadyPosition:
         return float(curve(self.running.way(self.motion.q))[self.k])
 
 
-# The reduced inertia and the reduced moment of a position, link by link and load by load.
+# Reduced moment of inertia and reduced moment in one position: terms of the links and of the loads.
 
 
-def explain_reduction(here: SteadyPosition) -> Iterable[Block]:
+def explain_reduction(position: SteadyPosition) -> Iterable[Block]:
     """Explain the reduction of masses and loads to the input link."""
-    link = here.motion.linkage.driver.link
+    link = position.motion.linkage.driver.link
     yield write_sentence(
         _(
             "The machine is replaced by its input link {link}, to which all masses and all loads are reduced; "
@@ -97,9 +97,9 @@ def explain_reduction(here: SteadyPosition) -> Iterable[Block]:
     )
 
 
-def write_reduced_inertia(here: SteadyPosition) -> Iterable[Block]:
+def write_reduced_inertia(position: SteadyPosition) -> Iterable[Block]:
     """Write the reduced moment of inertia: masses and moments of inertia times squared velocity ratios."""
-    terms = [term for link in here.motion.linkage.moving for term in _inertia_terms(here, link)]
+    terms = [term for link in position.motion.linkage.moving for term in _inertia_terms(position, link)]
     if not terms:
         return
     yield write_sentence(
@@ -108,29 +108,34 @@ def write_reduced_inertia(here: SteadyPosition) -> Iterable[Block]:
             "velocity of its centre of mass, {J} its moment of inertia about the centre of mass and {omega} "
             "its angular velocity:"
         ),
-        number=here.number,
+        number=position.number,
         m=Symbol("m"),
         v=Symbol("v", "S"),
         J=Symbol("J", "S"),
         omega=Symbol("ω"),
     )
     yield ComputedQuantity(
-        INERTIA, _sum_without_negligible(terms), here.value_of(here.steady.machine.inertia), _("kg·m²")
+        INERTIA, _sum_without_negligible(terms), position.value_of(position.steady.machine.inertia), _("kg·m²")
     )
 
 
-def _inertia_terms(here: SteadyPosition, name: str) -> Iterable[Expression]:
-    motion, link, omega = here.motion, here.motion.linkage.links[name], here.speed
-    speed = Leaf(Symbol("v", f"S{name}"), abs(complex(motion.centre(name).v[here.k])))
-    turned = Leaf(Symbol("ω", name), abs(float(motion.link(name).omega[here.k])))
+def _inertia_terms(position: SteadyPosition, name: str) -> Iterable[Expression]:
+    motion, link, omega = position.motion, position.motion.linkage.links[name], position.speed
+    speed = Leaf(Symbol("v", f"S{name}"), abs(complex(motion.centre(name).v[position.k])))
+    turned = Leaf(Symbol("ω", name), abs(float(motion.link(name).omega[position.k])))
     yield Leaf(Symbol("m", name), float(np.ravel(link.mass)[0])) * (speed / omega) ** 2
     inertia = Leaf(Symbol("J", f"S{name}"), float(np.ravel(link.inertia)[0]))
     yield inertia if turned.symbol == omega.symbol else inertia * (turned / omega) ** 2
 
 
-def write_reduced_moment(here: SteadyPosition) -> Iterable[Block]:
+def write_reduced_moment(position: SteadyPosition) -> Iterable[Block]:
     """Write the reduced moment: the power of all loads divided by the angular velocity of the input link."""
-    terms = [term for load in here.subject.results.loads if load.kind != "inertia" for term in _power_terms(here, load)]
+    terms = [
+        term
+        for load in position.subject.results.loads
+        if load.kind != "inertia"
+        for term in _power_terms(position, load)
+    ]
     if not terms:
         return
     yield write_sentence(
@@ -142,19 +147,19 @@ def write_reduced_moment(here: SteadyPosition) -> Iterable[Block]:
         v=Symbol("v"),
         alpha=Symbol("α"),
     )
-    whole = _sum_without_negligible(terms) / here.speed
-    yield ComputedQuantity(MOMENT, whole, here.value_of(here.steady.machine.moment), _("N·m"))
+    whole = _sum_without_negligible(terms) / position.speed
+    yield ComputedQuantity(MOMENT, whole, position.value_of(position.steady.machine.moment), _("N·m"))
 
 
-def _power_terms(here: SteadyPosition, load: AppliedLoad) -> Iterable[Expression]:
-    k, motion = here.k, here.motion
+def _power_terms(position: SteadyPosition, load: AppliedLoad) -> Iterable[Expression]:
+    k, motion = position.k, position.motion
     force, couple = load_symbols(load)
-    pull, turned = complex(load.force[k]), float(load.moment[k])
+    force_vector, turned = complex(load.force[k]), float(load.moment[k])
     speed = complex(motion.point(load.link, load.at).v[k])
-    if pull and speed:
+    if force_vector and speed:
         in_centre = load.kind == "weight"
-        own = Leaf(Symbol("v", f"S{load.link}" if in_centre else force.plain), abs(speed))
-        angle, factors = abs(float(np.angle(pull / speed))), Leaf(force, abs(pull)) * own
+        velocity = Leaf(Symbol("v", f"S{load.link}" if in_centre else force.plain), abs(speed))
+        angle, factors = abs(float(np.angle(force_vector / speed))), Leaf(force, abs(force_vector)) * velocity
         if min(angle, np.pi - angle) < NO_VECTOR:
             yield apply_sign(1 - angle, factors)
         else:
@@ -162,16 +167,18 @@ def _power_terms(here: SteadyPosition, load: AppliedLoad) -> Iterable[Expression
             yield factors * cosine
     omega = float(motion.link(load.link).omega[k])
     if turned and omega:
-        own = Leaf(Symbol("ω", load.link), abs(omega))
-        yield apply_sign(turned * omega, Leaf(couple, abs(turned)) * own)
+        velocity = Leaf(Symbol("ω", load.link), abs(omega))
+        yield apply_sign(turned * omega, Leaf(couple, abs(turned)) * velocity)
 
 
 def _sum_without_negligible(terms: list[Expression]) -> Sum:
-    sizes = [abs(evaluate(term, EXACT)) for term in terms]
-    return sum_terms(term for term, size in zip(terms, sizes, strict=True) if size > NO_VECTOR * max(sizes))
+    magnitudes = [abs(evaluate(term, EXACT)) for term in terms]
+    return sum_terms(
+        term for term, magnitude in zip(terms, magnitudes, strict=True) if magnitude > NO_VECTOR * max(magnitudes)
+    )
 
 
-# What drives: a moment from zero work over the cycle, or a motor by its characteristic.
+# Driving moment: constant, from zero work over the cycle, or that of a motor by its characteristic.
 
 
 CYCLE, WHOLE = CourseSymbol("A_c"), CourseSymbol("φ_c")
@@ -179,9 +186,9 @@ STALL, FREE = CourseSymbol("M_s"), Symbol("ω", "0")
 BREAKDOWN, SLIP, CRITICAL = CourseSymbol("M_k"), Symbol("s"), CourseSymbol("s_k")
 
 
-def write_mean_driving_moment(here: SteadyPosition) -> Iterable[Block]:
+def write_mean_driving_moment(position: SteadyPosition) -> Iterable[Block]:
     """Write the mean driving moment. It follows from the total work over the cycle, which is zero."""
-    steady = here.steady
+    steady = position.steady
     turns = round(steady.machine.length / (2 * math.pi))
     yield write_sentence(
         _(
@@ -199,15 +206,15 @@ def write_mean_driving_moment(here: SteadyPosition) -> Iterable[Block]:
     if steady.task.motor is not None:
         text = _("The mean moment of the motor, reduced to the input link:")
     yield write_sentence(text)
-    way = 2 * turns * Constant(math.pi, "π")
-    work = Leaf(CYCLE, steady.machine.work_of_cycle) / Leaf(WHOLE, 2 * math.pi * turns, of=way)
+    cycle_angle = 2 * turns * Constant(math.pi, "π")
+    work = Leaf(CYCLE, steady.machine.work_of_cycle) / Leaf(WHOLE, 2 * math.pi * turns, of=cycle_angle)
     yield ComputedQuantity(DRIVING, -work, steady.moment, _("N·m"))
 
 
-def write_motor_moment(here: SteadyPosition) -> Iterable[Block]:
+def write_motor_moment(position: SteadyPosition) -> Iterable[Block]:
     """Write the moment of the motor at the speed in this position. Nothing is written if no motor is given."""
-    match here.steady.task.motor:
-        case LinearMotor() as found:
+    match position.steady.task.motor:
+        case LinearMotor() as motor:
             yield write_sentence(
                 _(
                     "The characteristic of the motor is a straight line: reduced to the input link, the moment is {M} "
@@ -215,15 +222,15 @@ def write_motor_moment(here: SteadyPosition) -> Iterable[Block]:
                 ),
                 M=STALL,
                 omega=FREE,
-                number=here.number,
+                number=position.number,
             )
-            moment = Leaf(STALL, found.stall) * (1 - here.speed / Leaf(FREE, found.free))
-            yield ComputedQuantity(DRIVING, moment, here.value_of(here.steady.law.driving), _("N·m"))
-        case KlossMotor() as found:
-            yield from _write_kloss_moment(here, found)
+            moment = Leaf(STALL, motor.stall) * (1 - position.speed / Leaf(FREE, motor.free))
+            yield ComputedQuantity(DRIVING, moment, position.value_of(position.steady.law.driving), _("N·m"))
+        case KlossMotor() as motor:
+            yield from _write_kloss_moment(position, motor)
 
 
-def _write_kloss_moment(here: SteadyPosition, motor: KlossMotor) -> Iterable[Block]:
+def _write_kloss_moment(position: SteadyPosition, motor: KlossMotor) -> Iterable[Block]:
     yield write_sentence(
         _(
             "The motor is asynchronous; its moment depends on the slip {s} according to Kloss's formula. "
@@ -234,11 +241,11 @@ def _write_kloss_moment(here: SteadyPosition, motor: KlossMotor) -> Iterable[Blo
         omega=FREE,
         M=BREAKDOWN,
         sk=CRITICAL,
-        number=here.number,
+        number=position.number,
     )
-    slip, critical = Leaf(SLIP, 1 - here.speed.value / motor.synchronous), Leaf(CRITICAL, motor.slip)
-    yield ComputedQuantity(SLIP, 1 - here.speed / Leaf(FREE, motor.synchronous), slip.value)
+    slip, critical = Leaf(SLIP, 1 - position.speed.value / motor.synchronous), Leaf(CRITICAL, motor.slip)
+    yield ComputedQuantity(SLIP, 1 - position.speed / Leaf(FREE, motor.synchronous), slip.value)
     if slip.value:
         moment = 2 * Leaf(BREAKDOWN, motor.breakdown) / (slip / critical + critical / slip)
-        found = float(motor.moment(np.array([here.speed.value]))[0])
-        yield ComputedQuantity(DRIVING, moment, found, _("N·m"))
+        computed_moment = float(motor.moment(np.array([position.speed.value]))[0])
+        yield ComputedQuantity(DRIVING, moment, computed_moment, _("N·m"))

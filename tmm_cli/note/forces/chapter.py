@@ -125,16 +125,16 @@ def _write_other_loads(subject: Subject, k: int) -> Iterable[Block]:
 
 def _write_group_sections(subject: Subject, k: int, heading: Callable[[str], str], level: int) -> Iterable[Block]:
     """Write the sections on the groups, from the last to the first, and on the input links."""
-    for number, part in enumerate(list_bodies(subject, k)):
-        if part.forces is not None:
-            text = _("Group of links {links}") if len(part.links) > 1 else _("Group of link {links}")
+    for number, body in enumerate(list_bodies(subject, k)):
+        if body.forces is not None:
+            text = _("Group of links {links}") if len(body.links) > 1 else _("Group of link {links}")
         else:
             text = _("Input link {links}")
-        text = heading(text.format(links=", ".join(part.links)))
-        yield from sections.write_section(part, Heading(text, level), first=k == subject.detail[0] and not number)
+        text = heading(text.format(links=", ".join(body.links)))
+        yield from sections.write_section(body, Heading(text, level), first=k == subject.detail[0] and not number)
 
 
-# Tables of all positions: reactions, what balances the drivers by both ways.
+# Tables of all positions: reactions, transmitted forces, balancing loads by both methods.
 
 
 PAIRS = 4  # reactions in one table
@@ -142,8 +142,8 @@ PAIRS = 4  # reactions in one table
 
 def write_reactions(subject: Subject) -> Iterable[Block]:
     """Write the tables of the reactions (N) with their angles, and of the pin forces in compound hinges."""
-    found = subject.reactions
-    pairs = [(r.pair.name, reaction_symbol(r.by, r.on), r.force, r.angle) for r in found.directed]
+    reactions = subject.reactions
+    pairs = [(r.pair.name, reaction_symbol(r.by, r.on), r.force, r.angle) for r in reactions.directed]
     tables = list(_force_tables(subject, _("Reactions in the pairs {names}"), pairs, "reactions"))
     yield refer_to_blocks(
         _("Table {first} gives the reactions in all positions and their angles to the x axis."),
@@ -154,7 +154,7 @@ def write_reactions(subject: Subject) -> Iterable[Block]:
     yield from tables
     pins = [
         (pin.point, Symbol("R", f"{pin.point},{pin.link}"), pin.force, None)
-        for pin in found.pins(subject.results.linkage)
+        for pin in reactions.pins(subject.results.linkage)
     ]
     if pins:
         tables = list(_force_tables(subject, _("Forces of the pins {names} on their links"), pins, "pins"))
@@ -178,12 +178,12 @@ def write_reactions(subject: Subject) -> Iterable[Block]:
 
 def write_transmission(subject: Subject) -> Iterable[Block]:
     """Write the force that drives each driven link, and its useful component, in the detailed positions."""
-    given = find_transmitted_forces(subject.motion, subject.reactions)
-    if not given or not subject.reactions.loaded:
+    transmitted = find_transmitted_forces(subject.motion, subject.reactions)
+    if not transmitted or not subject.reactions.loaded:
         return
     moving = [
         (force, k)
-        for force in given
+        for force in transmitted
         for k in subject.detail
         if force.driving[k] > NO_FORCE * np.nanmax(force.driving) and np.isfinite(force.useful[k])
     ]
@@ -235,14 +235,14 @@ def _force_tables(
         key: Beginning of the keys of the tables.
     """
     for first in range(0, len(forces), PAIRS):
-        some = forces[first : first + PAIRS]
+        group = forces[first : first + PAIRS]
         columns: list[tuple[Line, list[str]]] = []
-        for __, symbol, force, told in some:
-            way, size = np.angle(force) if told is None else told, np.abs(force)
-            size = np.where(np.isnan(way) & np.isfinite(size), 0.0, size)
-            columns.append(((symbol, ", ", _("N")), _format_column(subject, size, Subject.format_result)))
-            columns.append(((_("angle, °"),), _format_column(subject, way, Subject.angle)))
-        names = ", ".join(dict.fromkeys(name for name, *__ in some))
+        for __, symbol, force, angle in group:
+            direction, magnitude = np.angle(force) if angle is None else angle, np.abs(force)
+            magnitude = np.where(np.isnan(direction) & np.isfinite(magnitude), 0.0, magnitude)
+            columns.append(((symbol, ", ", _("N")), _format_column(subject, magnitude, Subject.format_result)))
+            columns.append(((_("angle, °"),), _format_column(subject, direction, Subject.angle)))
+        names = ", ".join(dict.fromkeys(name for name, *__ in group))
         yield table_over_positions(subject, caption.format(names=names), columns, f"{key}-{first // PAIRS}")
 
 
@@ -252,10 +252,10 @@ def write_balancing_loads(subject: Subject) -> Iterable[Block]:
     several = len(balances) > 1
     symbols = [balance_symbol(b.driver.link, several, turns=b.moment is not None) for b in balances]
     units = [_("N·m") if b.moment is not None else _("N") for b in balances]
-    told = _("{symbol}, {unit}, by the force plan")
-    head = [filled(told, symbol=s, unit=u) for s, u in zip(symbols, units, strict=True)]
-    of_all = balance_symbol(balances[0].driver.link, several=False, turns=balances[0].moment is not None)
-    head.append(filled(_("{symbol}, {unit}, by the Zhukovsky lever"), symbol=of_all, unit=units[0]))
+    heading = _("{symbol}, {unit}, by the force plan")
+    head = [filled(heading, symbol=s, unit=u) for s, u in zip(symbols, units, strict=True)]
+    total_symbol = balance_symbol(balances[0].driver.link, several=False, turns=balances[0].moment is not None)
+    head.append(filled(_("{symbol}, {unit}, by the Zhukovsky lever"), symbol=total_symbol, unit=units[0]))
     columns = [*(b.generalized for b in balances), lever.balancing]
     if several:
         yield write_sentence(
@@ -277,7 +277,7 @@ def write_balancing_loads(subject: Subject) -> Iterable[Block]:
             "{balance} is positive in the positive direction of the guide of the input link, whatever the "
             "direction of motion of this link."
         )
-    yield write_sentence(text, balance=of_all)
+    yield write_sentence(text, balance=total_symbol)
     texts = [_format_column(subject, column, Subject.format_result) for column in columns]
     rows = table_over_positions(subject, caption, list(zip(head, texts, strict=True)), "balance")
     yield from write_table(_("The values found by both methods are given in table {table}."), rows)
@@ -287,11 +287,11 @@ def write_balancing_loads(subject: Subject) -> Iterable[Block]:
                 "The flywheel is not one of the links: {balance} balances the links alone, and the driving moment "
                 "is {whole}."
             ),
-            balance=of_all,
+            balance=total_symbol,
             whole=row(
                 Letter(CourseSymbol("M_d")),
                 "=",
-                Letter(of_all),
+                Letter(total_symbol),
                 "+",
                 Letter(CourseSymbol("J_f")),
                 "·",
@@ -303,5 +303,7 @@ def write_balancing_loads(subject: Subject) -> Iterable[Block]:
 def _format_column(subject: Subject, column: Real, write: Callable[[Subject, float], str]) -> list[str]:
     """Return the values in all positions as texts, with a dash where the mechanism cannot move."""
     values = without_rounding(column, largest_magnitude(column))
-    there = np.isfinite(values) & subject.motion.moving
-    return [write(subject, float(value)) if known else NONE for value, known in zip(values, there, strict=True)]
+    defined = np.isfinite(values) & subject.motion.moving
+    return [
+        write(subject, float(value)) if is_defined else NONE for value, is_defined in zip(values, defined, strict=True)
+    ]

@@ -11,7 +11,7 @@ from tmm_cli.note.expression import ComputedQuantity, Expression, Leaf, Product,
 from tmm_cli.note.formula_tree import Letter, Node, Number, chain_of_equalities, row
 
 MU = Symbol("μ", "l")
-ALONG = 1e-12  # one less the cosine: a force with less is along the guide
+ALONG = 1e-12  # largest 1 - cos of the angle at which a force counts as parallel to the guide
 
 
 def moment_equation(equation: MomentEquation, mu: float | None = None) -> Node:
@@ -19,8 +19,8 @@ def moment_equation(equation: MomentEquation, mu: float | None = None) -> Node:
 
     mu: scale (m/mm) if arms are measured on the drawing; couples are then written as M/μ_l. None: arms in metres.
     """
-    found = equation.found
-    terms = [*([found] if found else []), *(t for t in equation.terms if t is not found)]
+    unknown = equation.found
+    terms = [*([unknown] if unknown else []), *(t for t in equation.terms if t is not unknown)]
     return chain_of_equalities(
         (
             Letter(Symbol("ΣM", equation.about)),
@@ -43,45 +43,49 @@ def solve_moment_equation(equation: MomentEquation, unit: str = "", mu: float | 
         The unknown. If the equation has no single unknown, the sum of its moments, which is zero. None if no force has
         a moment.
     """
-    found, sought = equation.found, equation.sought
-    others: Expression = sum_terms(_moment_term(t, mu) for t in equation.terms if t is not found)
+    unknown, sought = equation.found, equation.sought
+    others: Expression = sum_terms(_moment_term(t, mu) for t in equation.terms if t is not unknown)
     unit = unit or _("N·m")
-    if found is None or sought is None:
+    if unknown is None or sought is None:
         unit = unit if mu is None else _("N·mm")
         return (
             ComputedQuantity(Symbol("ΣM", equation.about), others, 0.0, unit) if equation.terms and not sought else None
         )
-    others = apply_sign(-found.moment, others)
-    size, arm = Leaf(found.acting.symbol, found.acting.size), _arm_leaf(found, mu)
-    if found.acting.couple:
+    others = apply_sign(-unknown.moment, others)
+    magnitude, arm = Leaf(unknown.acting.symbol, unknown.acting.size), _arm_leaf(unknown, mu)
+    if unknown.acting.couple:
         if mu is None or not any(term.number for term in equation.terms):
-            couples = apply_sign(-found.moment, sum_terms(_moment_term(t) for t in equation.terms if t is not found))
-            return ComputedQuantity(size.symbol, couples, size.value, unit)
-        return ComputedQuantity(size.symbol, others * Leaf(MU, mu), size.value, unit)
+            couples = apply_sign(
+                -unknown.moment, sum_terms(_moment_term(t) for t in equation.terms if t is not unknown)
+            )
+            return ComputedQuantity(magnitude.symbol, couples, magnitude.value, unit)
+        return ComputedQuantity(magnitude.symbol, others * Leaf(MU, mu), magnitude.value, unit)
     if sought.arm:
-        return ComputedQuantity(arm.symbol, others / size, arm.value, _("m") if mu is None else _("mm"))
-    return ComputedQuantity(size.symbol, others / arm, size.value, _("N"))
+        return ComputedQuantity(arm.symbol, others / magnitude, arm.value, _("m") if mu is None else _("mm"))
+    return ComputedQuantity(magnitude.symbol, others / arm, magnitude.value, _("N"))
 
 
 def solve_guide_sum(forces: ForceSum) -> tuple[Node, ComputedQuantity]:
     """Return the sum of projections onto a guide, ΣF = R − G·cos α₁ + ... = 0, and the unknown that it gives."""
-    own = forces.found
-    parts = [own, *(part for part in forces.parts if part is not own)]
-    shares = [_projection(part, number) for number, part in enumerate(parts)]
-    told = [apply_sign(part.along, share) for part, share in zip(parts, shares, strict=True)]
-    whole = chain_of_equalities((Letter(Symbol("ΣF", forces.guide)), symbolic_formula(sum_terms(told)), Number("0")))
-    rest = apply_sign(-own.along, sum_terms(told[1:]))
-    if isinstance(shares[0], Product):  # what is sought is not along the guide
-        rest = rest / shares[0].factors[1]
-    return whole, ComputedQuantity(own.acting.symbol, rest, own.acting.size, _("N"))
+    unknown = forces.found
+    components = [unknown, *(component for component in forces.parts if component is not unknown)]
+    projections = [_projection(component, number) for number, component in enumerate(components)]
+    terms = [
+        apply_sign(component.along, projection) for component, projection in zip(components, projections, strict=True)
+    ]
+    whole = chain_of_equalities((Letter(Symbol("ΣF", forces.guide)), symbolic_formula(sum_terms(terms)), Number("0")))
+    rest = apply_sign(-unknown.along, sum_terms(terms[1:]))
+    if isinstance(projections[0], Product):  # the unknown force is not parallel to the guide
+        rest = rest / projections[0].factors[1]
+    return whole, ComputedQuantity(unknown.acting.symbol, rest, unknown.acting.size, _("N"))
 
 
 def vector_sum_equation(vectors: Sequence[tuple[Symbol, int]]) -> Node:
     """Return an equation by which the sum of vectors is zero. Each vector is given by its symbol and number of
     underlines.
     """
-    parts = [part for symbol, lines in vectors for part in ("+", Letter(symbol, vector=True, lines=lines))]
-    return chain_of_equalities((row(*parts[1:]), Number("0")))
+    nodes = [node for symbol, lines in vectors for node in ("+", Letter(symbol, vector=True, lines=lines))]
+    return chain_of_equalities((row(*nodes[1:]), Number("0")))
 
 
 def _moment_term(term: MomentTerm, mu: float | None = None) -> Expression:
@@ -98,8 +102,8 @@ def _arm_leaf(term: MomentTerm, mu: float | None) -> Leaf:
     return Leaf(term.letter, term.arm if mu is None else term.arm / mu)
 
 
-def _projection(part: GuideComponent, number: int) -> Expression:
-    force = Leaf(part.acting.symbol, part.acting.size)
-    if math.isclose(part.cosine, 1.0, rel_tol=ALONG):
+def _projection(component: GuideComponent, number: int) -> Expression:
+    force = Leaf(component.acting.symbol, component.acting.size)
+    if math.isclose(component.cosine, 1.0, rel_tol=ALONG):
         return force
-    return force * Leaf(Symbol("cos α", str(number)), part.cosine)
+    return force * Leaf(Symbol("cos α", str(number)), component.cosine)

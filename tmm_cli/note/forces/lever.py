@@ -34,14 +34,14 @@ def write_lever(subject: Subject, k: int, heading: str, *, explained: bool) -> I
         k,
     )
     yield write_sentence(_("The equation of moments about the pole {p}:"), p=Symbol("p"))
-    found = solve_moment_equation(plan.equation, unit)
-    if found is None:
+    quantity = solve_moment_equation(plan.equation, unit)
+    if quantity is None:
         yield write_sentence(_("No force has a moment about the pole, so there is nothing to balance."))
     elif plan.equation.sought is None:
-        yield found
+        yield quantity
         yield from _write_reduced_balance(subject, k, unit)
     else:
-        yield from (Equation(moment_equation(plan.equation)), found)
+        yield from (Equation(moment_equation(plan.equation)), quantity)
         yield from _write_difference(subject, k)
         yield from _write_drawn_check(subject, k)
 
@@ -89,8 +89,8 @@ def _write_couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]
             M=Symbol("M").primed,
         )
     for load, turned in plan.couples:
-        own = Product((Leaf(load_symbols(load)[1], abs(float(load.moment[k]))), *_velocity_ratio(subject, load, k)))
-        yield ComputedQuantity(turned.symbol, own, turned.size, _("N·m") if driver_rotates(subject) else _("N"))
+        product = Product((Leaf(load_symbols(load)[1], abs(float(load.moment[k]))), *_velocity_ratio(subject, load, k)))
+        yield ComputedQuantity(turned.symbol, product, turned.size, _("N·m") if driver_rotates(subject) else _("N"))
 
 
 def driver_rotates(subject: Subject) -> bool:
@@ -123,9 +123,9 @@ def _write_reduced_balance(subject: Subject, k: int, unit: str) -> Iterable[Bloc
     for balance in reactions.balances:
         driver = balance.driver.link
         symbol = balance_symbol(driver, several=True, turns=balance.moment is not None)
-        own = Leaf(symbol, float(balance.generalized[k]))
+        balance_leaf = Leaf(symbol, float(balance.generalized[k]))
         ratio = Leaf(Symbol("i", driver), float(np.broadcast_to(motion.drives[driver].first, motion.q.shape)[k]))
-        terms.append(own if balance is first else own * ratio)
+        terms.append(balance_leaf if balance is first else balance_leaf * ratio)
     name = balance_symbol(first.driver.link, several=False, turns=first.moment is not None)
     yield write_sentence(
         _(
@@ -144,9 +144,9 @@ def _write_difference(subject: Subject, k: int) -> Iterable[Block]:
     balance, lever = subject.reactions.balance, subject.lever
     moment = balance.kind == "moment"
     name = balance_symbol(balance.driver.link, several=False, turns=moment)
-    arm = 1.0 if moment or balance.moment is None else balance.arm  # of a force on a crank's end
-    sense = -1 if lever.balancing[k] < 0 else 1  # the equation has the size, as it is drawn
-    plan, own = sense * float(balance.generalized[k]) / arm, sense * float(lever.balancing[k]) / arm
+    arm = 1.0 if moment or balance.moment is None else balance.arm  # of a balancing force at the end of a crank
+    sense = -1 if lever.balancing[k] < 0 else 1  # the equation gives a magnitude, in the drawn sense
+    by_plan, by_lever = sense * float(balance.generalized[k]) / arm, sense * float(lever.balancing[k]) / arm
     largest = float(np.nanmax(np.abs(np.where(subject.motion.moving, balance.generalized, 0.0)))) / arm
     if not largest:
         return
@@ -159,7 +159,7 @@ def _write_difference(subject: Subject, k: int) -> Iterable[Block]:
         plan=Symbol(name.letter, name.below, "R"),
         largest=Symbol(name.letter, "max"),
     )
-    gap = Function("abs", Leaf(Symbol(name.letter, name.below, "R"), plan) - Leaf(name, own))
+    gap = Function("abs", Leaf(Symbol(name.letter, name.below, "R"), by_plan) - Leaf(name, by_lever))
     whole = gap / Leaf(Symbol(name.letter, "max"), largest) * 100.0
     percent = 100 * float(lever.difference[k])
     yield ComputedQuantity(Symbol("Δ"), whole, percent if percent > NO_DIFFERENCE else 0.0, "%")
@@ -170,9 +170,11 @@ def _write_drawn_check(subject: Subject, k: int) -> Iterable[Block]:
     drawn = balance_drawings(subject.motion, subject.reactions, subject.lever, k)
     if drawn is None:
         return
-    here, link = subject.position(k), f"link-{drawn.link.links[0]}"
+    position, link = subject.position(k), f"link-{drawn.link.links[0]}"
     names = ("group-loads", "forces", "lever")
-    stems = [file_safe_name(here.stem(name) if name == "lever" else f"{here.stem(name)}-{link}") for name in names]
+    stems = [
+        file_safe_name(position.stem(name) if name == "lever" else f"{position.stem(name)}-{link}") for name in names
+    ]
     scales = drawn.scales()
     if subject.drawn:
         scales = DrawingScales(*(subject.scale(name, k, stem) for name, stem in zip(names, stems, strict=True)))

@@ -31,8 +31,8 @@ def write_weights(subject: Subject) -> Iterable[Block]:
     """Write the weights of the links."""
     linkage = subject.results.linkage
     gravity = Leaf(Symbol("g"), abs(complex(linkage.gravity)))
-    own = [load for load in subject.results.loads if load.kind == "weight"]
-    if not own or not gravity.value:
+    weights = [load for load in subject.results.loads if load.kind == "weight"]
+    if not weights or not gravity.value:
         return
     yield write_sentence(
         _(
@@ -43,16 +43,21 @@ def write_weights(subject: Subject) -> Iterable[Block]:
         m=Symbol("m"),
         g=gravity.symbol,
     )
-    for load in own:
+    for load in weights:
         mass = Leaf(Symbol("m", load.link), float(linkage.links[load.link].mass))
-        size = float(np.abs(np.ravel(load.force)[0]))
-        yield ComputedQuantity(load_symbols(load)[0], mass * gravity, size, _("N"))
+        magnitude = float(np.abs(np.ravel(load.force)[0]))
+        yield ComputedQuantity(load_symbols(load)[0], mass * gravity, magnitude, _("N"))
 
 
 def write_inertia(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
     """Write the inertia forces and couples in one position. A sentence names those that are zero."""
-    found = [one for load in subject.results.loads if load.kind == "inertia" for one in _inertia_load(subject, load, k)]
-    if not found:
+    quantities = [
+        quantity
+        for load in subject.results.loads
+        if load.kind == "inertia"
+        for quantity in _inertia_load(subject, load, k)
+    ]
+    if not quantities:
         return
     explanation = (
         _(
@@ -66,16 +71,16 @@ def write_inertia(subject: Subject, k: int, *, explained: bool) -> Iterable[Bloc
     yield write_sentence(
         explanation, U=course_symbol("U"), M=course_symbol("M"), epsilon=Symbol("ε"), J=Symbol("J", "S")
     )
-    units = {one.unit for one in found}
-    largest = {unit: max(one.result for one in found if one.unit == unit) for unit in units}
-    there = [one for one in found if one.result > NO_FORCE * largest[one.unit]]
-    yield from there
-    nothing = [one.name for one in found if one not in there]
-    if nothing:
+    units = {quantity.unit for quantity in quantities}
+    largest = {unit: max(quantity.result for quantity in quantities if quantity.unit == unit) for unit in units}
+    nonzero = [quantity for quantity in quantities if quantity.result > NO_FORCE * largest[quantity.unit]]
+    yield from nonzero
+    zero_symbols = [quantity.name for quantity in quantities if quantity not in nonzero]
+    if zero_symbols:
         text = _("These are zero because the accelerations are zero: {names}.")
-        if len(nothing) == 1:
+        if len(zero_symbols) == 1:
             text = _("This is zero because the acceleration is zero: {names}.")
-        yield write_sentence(text, names=join_inline(nothing))
+        yield write_sentence(text, names=join_inline(zero_symbols))
 
 
 def _inertia_load(subject: Subject, load: AppliedLoad, k: int) -> Iterable[ComputedQuantity]:
@@ -94,7 +99,7 @@ def _inertia_load(subject: Subject, load: AppliedLoad, k: int) -> Iterable[Compu
 def write_springs(subject: Subject, k: int) -> Iterable[Block]:
     """Write the force or moment of each spring as a function of its length or angle and of their rates of change."""
     for spring in subject.results.linkage.springs:
-        load = next((one for one in subject.results.loads if one.name == spring.name), None)
+        load = next((candidate for candidate in subject.results.loads if candidate.name == spring.name), None)
         if load is not None:
             yield from _write_spring(subject, spring, load, k)
 
@@ -105,7 +110,7 @@ def _write_spring(subject: Subject, spring: Spring, load: AppliedLoad, k: int) -
         now, free = Leaf(Symbol("θ"), float(twist_angle(spring, motion)[k])), Leaf(Symbol("θ", "0"), 0.0)
         letter = "M"
         omegas = [float(motion.link(n).omega[k]) if n in motion.linkage.moving else 0.0 for n in (spring.j, spring.i)]
-        rate, size, unit = Leaf(Symbol("ω"), omegas[0] - omegas[1]), abs(float(load.moment[k])), _("N·m")
+        rate, magnitude, unit = Leaf(Symbol("ω"), omegas[0] - omegas[1]), abs(float(load.moment[k])), _("N·m")
         text = _(
             "The moment of the spring {name} depends on its angle {now} from the free position; {c} is its stiffness:"
         )
@@ -114,7 +119,7 @@ def _write_spring(subject: Subject, spring: Spring, load: AppliedLoad, k: int) -
         apart, faster = complex((j.x - i.x)[k]), complex((j.v - i.v)[k])
         letter, now, free = "F", Leaf(Symbol("l"), abs(apart)), Leaf(Symbol("l", "0"), float(spring.free))
         rate = Leaf(Symbol("v"), float(dot(apart, faster)) / (abs(apart) or 1.0))
-        size, unit = abs(complex(load.force[k])), _("N")
+        magnitude, unit = abs(complex(load.force[k])), _("N")
         text = _(
             "The force of the spring {name} depends on its length {now}; {c} is its stiffness, {free} its free length:"
         )
@@ -126,13 +131,13 @@ def _write_spring(subject: Subject, spring: Spring, load: AppliedLoad, k: int) -
     if spring.damping:
         whole = whole + Leaf(Symbol("b"), float(spring.damping)) * rate
     yield write_sentence(text, name=load_symbols(load)[0], now=now.symbol, c=c.symbol, free=free.symbol)
-    yield ComputedQuantity(load_symbols(load)[0], Function("abs", whole), size, unit)
+    yield ComputedQuantity(load_symbols(load)[0], Function("abs", whole), magnitude, unit)
 
 
 def write_friction(subject: Subject, k: int, *, explained: bool) -> Iterable[Block]:
     """Write the friction force or moment in each pair. It corresponds to the reactions found with friction."""
-    given = subject.results.linkage.friction
-    if not given:
+    frictions = subject.results.linkage.friction
+    if not frictions:
         return
     explanation = (
         _(
@@ -146,26 +151,28 @@ def write_friction(subject: Subject, k: int, *, explained: bool) -> Iterable[Blo
         else _("Friction for the reactions given below:")
     )
     yield write_sentence(explanation, T=Symbol("T"), r=Symbol("r"), f=Symbol("f"))
-    for one in given:
-        yield from _write_pair_friction(subject, one, k)
+    for pair_friction in frictions:
+        yield from _write_pair_friction(subject, pair_friction, k)
 
 
-def _write_pair_friction(subject: Subject, given: Friction, k: int) -> Iterable[Block]:
-    reaction = subject.reactions.of(given.pair)
-    own = [f"T{given.pair}{link}" for link in (reaction.on, reaction.by)]  # on the frame it is left out
-    loads = [x for x in subject.results.loads if x.kind == "friction" and x.name in own]
+def _write_pair_friction(subject: Subject, friction: Friction, k: int) -> Iterable[Block]:
+    reaction = subject.reactions.of(friction.pair)
+    names = [
+        f"T{friction.pair}{link}" for link in (reaction.on, reaction.by)
+    ]  # there is no load for friction on the frame
+    loads = [x for x in subject.results.loads if x.kind == "friction" and x.name in names]
     if not loads:
         return
     load = loads[0]
-    f, r = Leaf(Symbol("f", given.pair), given.coefficient), Leaf(Symbol("r", given.pair), given.radius)
+    f, r = Leaf(Symbol("f", friction.pair), friction.coefficient), Leaf(Symbol("r", friction.pair), friction.radius)
     normal = Leaf(reaction_symbol(reaction.by, reaction.on), abs(complex(reaction.force[k])))
     slides = reaction.pair.slide is not None
-    size = abs(complex(load.force[k])) if slides else abs(float(load.moment[k]))
-    if size:
+    magnitude = abs(complex(load.force[k])) if slides else abs(float(load.moment[k]))
+    if magnitude:
         factors = (f, normal) if slides else (f, r, normal)
-        yield ComputedQuantity(load_symbols(load)[0], Product(factors), size, _("N") if slides else _("N·m"))
+        yield ComputedQuantity(load_symbols(load)[0], Product(factors), magnitude, _("N") if slides else _("N·m"))
         if len(loads) > 1:
-            yield write_equality(*(load_symbols(one)[0] for one in reversed(loads)))
+            yield write_equality(*(load_symbols(opposite)[0] for opposite in reversed(loads)))
 
 
 def write_balance_without_friction(subject: Subject, k: int) -> Iterable[Block]:
@@ -178,8 +185,8 @@ def write_balance_without_friction(subject: Subject, k: int) -> Iterable[Block]:
     for balance in free.balances:
         turns = balance.moment is not None
         symbol = balance_symbol(balance.driver.link, len(free.balances) > 1, turns=turns)
-        size = abs(float(balance.generalized[k]))
-        yield state_value(replace(symbol, above="0"), size, _("N·m") if turns else _("N"))
+        magnitude = abs(float(balance.generalized[k]))
+        yield state_value(replace(symbol, above="0"), magnitude, _("N·m") if turns else _("N"))
 
 
 def write_load_table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
@@ -191,11 +198,11 @@ def write_load_table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
     for load in loads:
         (force, couple), push, moment = load_symbols(load), complex(load.force[k]), float(load.moment[k])
         if abs(push) > least:
-            told = f"{subject.format_result(abs(push))} {_('N')}"
-            rows.append(cells(force, load.link, told, subject.direction(push)))
+            magnitude = f"{subject.format_result(abs(push))} {_('N')}"
+            rows.append(cells(force, load.link, magnitude, subject.direction(push)))
         if abs(moment) > still:
-            told = f"{subject.format_result(abs(moment))} {_('N·m')}"
-            rows.append(cells(couple, load.link, told, name_sense(moment)))
+            magnitude = f"{subject.format_result(abs(moment))} {_('N·m')}"
+            rows.append(cells(couple, load.link, magnitude, name_sense(moment)))
     if rows:
         text = _("Table {table} lists everything that acts on the links in this position except the reactions.")
         head = cells(_("force or couple"), _("on link"), _("magnitude"), _("angle to the x axis, or sense"))
@@ -225,8 +232,8 @@ def write_losses(subject: Subject) -> Iterable[Block]:
         _("The work {work} of the driving forces and the work of friction in the pairs over the cycle:"),
         work=work.symbol,
     )
-    for one in (work, *taken):
-        yield state_value(one.symbol, one.value, _("J"))
+    for work_leaf in (work, *taken):
+        yield state_value(work_leaf.symbol, work_leaf.value, _("J"))
     if lost.efficiency is not None:
         yield write_sentence(_("The efficiency of the mechanism is:"))
         yield ComputedQuantity(Symbol("η"), sum_terms((work, *taken)) / work, lost.efficiency)

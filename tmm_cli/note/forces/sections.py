@@ -68,13 +68,18 @@ class AnalysedBody:
         """Symbols of the external reactions and of their components."""
         names = [(r.by, r.on) for r in self.external]
         return frozenset(
-            reaction_symbol(*n, part, letter) for n in names for part in ("", "n", "τ") for letter in ("R", "M")
+            reaction_symbol(*n, component, letter)
+            for n in names
+            for component in ("", "n", "τ")
+            for letter in ("R", "M")
         )
 
     @property
     def known_loads(self) -> list[ForceOrCouple]:
         """Forces and couples that are known before the equations of this body are solved."""
-        return [one for one in self.free_body.acting if one.symbol not in self.unknown_reactions and one.pair != DRIVE]
+        return [
+            load for load in self.free_body.acting if load.symbol not in self.unknown_reactions and load.pair != DRIVE
+        ]
 
     @property
     def solved_by_moments(self) -> frozenset[Symbol]:
@@ -89,14 +94,14 @@ class AnalysedBody:
     @property
     def loads_of_plan(self) -> frozenset[Symbol]:
         """Symbols of the loads in the force plan, without reactions and without balancing loads of drivers."""
-        drives = {one.symbol for one in self.free_body.acting if one.pair == DRIVE}
+        drives = {load.symbol for load in self.free_body.acting if load.pair == DRIVE}
         return frozenset(v.symbol for v in self.plan.plan.vectors) - self.unknown_reactions - drives
 
     @property
     def known_lines(self) -> frozenset[Symbol]:
         """Symbols of forces with a known line of action: reactions of guides and higher pairs, forces of drivers."""
         outer = {reaction_symbol(r.by, r.on) for r in self.external if r.pair.slide is not None or not r.pair.lower}
-        return frozenset(outer | {one.symbol for one in self.free_body.acting if one.pair == DRIVE})
+        return frozenset(outer | {load.symbol for load in self.free_body.acting if load.pair == DRIVE})
 
     @property
     def guide_sums(self) -> tuple[list[ForceSum], list[ForceSum]]:
@@ -108,11 +113,11 @@ class AnalysedBody:
         inner = () if self.forces is None else self.forces.inner
         both = {reaction_symbol(*names) for r in inner for names in ((r.by, r.on), (r.on, r.by))}
         unknown = (self.unknown_reactions | both) - self.solved_by_moments
-        found: tuple[list[ForceSum], list[ForceSum]] = [], []
-        for one in self.free_body.sums:
-            others = {part.acting.symbol for part in one.parts if part is not one.found}
-            found[bool(others & unknown)].append(one)
-        return found
+        sums: tuple[list[ForceSum], list[ForceSum]] = [], []
+        for force_sum in self.free_body.sums:
+            others = {component.acting.symbol for component in force_sum.parts if component is not force_sum.found}
+            sums[bool(others & unknown)].append(force_sum)
+        return sums
 
     @property
     def inner_first(self) -> bool:
@@ -165,53 +170,53 @@ class AnalysedBody:
 def list_bodies(subject: Subject, k: int) -> Iterable[AnalysedBody]:
     """Yield the groups in position k, from the last to the first, then the input links."""
     motion, reactions = subject.motion, subject.reactions
-    here = LoadedPosition.at(motion, reactions, k)
-    loaded, plans = list_free_bodies(motion, reactions, k), force_plans(reactions, k, motion)
+    position = LoadedPosition.at(motion, reactions, k)
+    free_bodies, plans = list_free_bodies(motion, reactions, k), force_plans(reactions, k, motion)
     owners: list[tuple[tuple[Reaction, ...], GroupForces | None]] = [(g.outer, g) for g in reversed(reactions.groups)]
     owners += [((frame,), None) for frame in reactions.frames]
-    for part, plan, (outer, forces) in zip(loaded, plans, owners, strict=True):
-        yield AnalysedBody(subject, here, part, plan, outer, forces)
+    for free_body, plan, (outer, forces) in zip(free_bodies, plans, owners, strict=True):
+        yield AnalysedBody(subject, position, free_body, plan, outer, forces)
 
 
-# The section of a group, or of a driving link: what is sought, equations of moments, force plan, whole reactions.
+# Section on a group or an input link: unknowns, moment equations, force plan, total reactions.
 
 
-SIZES = 2  # that a closed polygon gives
+SIZES = 2  # unknown magnitudes that a closed polygon gives
 
 
-def write_section(part: AnalysedBody, heading: Heading, *, first: bool) -> Iterable[Block]:
+def write_section(body: AnalysedBody, heading: Heading, *, first: bool) -> Iterable[Block]:
     """Write the section on a group or an input link.
 
     first: True for the first such section of the note, which explains how to read the vector sum.
     """
     yield heading
-    if not part.free_body.acting:
-        yield write_sentence(_("No loads act here ({links}): all reactions are zero."), links=_name_links(part.links))
+    if not body.free_body.acting:
+        yield write_sentence(_("No loads act here ({links}): all reactions are zero."), links=_name_links(body.links))
         return
-    yield from _write_free_body(part)
-    if part.needs_common_solution:
+    yield from _write_free_body(body)
+    if body.needs_common_solution:
         yield write_sentence(
             _(
                 "There is no point about which only one unknown has a moment, so the equilibrium equations of all "
                 "these links are solved together. As a check, the sum of the moments on each link is zero:"
             )
         )
-    ready, later = part.guide_sums
-    equations = [e for e in part.free_body.equations if e.sought is None or not e.sought.arm]
-    yield from chain.from_iterable(_write_moments(part, e) for e in equations if not e.special)
+    ready, later = body.guide_sums
+    equations = [e for e in body.free_body.equations if e.sought is None or not e.sought.arm]
+    yield from chain.from_iterable(_write_moments(body, e) for e in equations if not e.special)
     yield from chain.from_iterable(map(_write_projections, ready))
-    # what the sums give has moments there
-    yield from chain.from_iterable(_write_moments(part, e) for e in equations if e.special)
-    if part.inner_first:
-        yield from _write_guide_polygon(part)
-    yield from _write_force_plan(part, explained=first)
-    if not part.inner_first:
-        yield from _write_internal_reactions(part)
+    # the forces that the sums give have moments about Assur points
+    yield from chain.from_iterable(_write_moments(body, e) for e in equations if e.special)
+    if body.inner_first:
+        yield from _write_guide_polygon(body)
+    yield from _write_force_plan(body, explained=first)
+    if not body.inner_first:
+        yield from _write_internal_reactions(body)
     yield from chain.from_iterable(map(_write_projections, later))
     yield from chain.from_iterable(
-        _write_moments(part, e) for e in part.free_body.equations if e.sought and e.sought.arm
+        _write_moments(body, e) for e in body.free_body.equations if e.sought and e.sought.arm
     )
-    yield from _write_balancing_direction(part)
+    yield from _write_balancing_direction(body)
 
 
 def _name_links(names: Sequence[str]) -> str:
@@ -221,7 +226,7 @@ def _name_links(names: Sequence[str]) -> str:
 
 def _write_projections(forces: ForceSum) -> Iterable[Block]:
     """Write a sum of projections onto a guide, and the unknown that it gives."""
-    node, found = solve_guide_sum(forces)
+    node, unknown = solve_guide_sum(forces)
     yield write_sentence(
         _(
             "The sum of the projections of the forces onto the guide {guide} (link {link}) gives {symbol}; {angles} "
@@ -229,46 +234,46 @@ def _write_projections(forces: ForceSum) -> Iterable[Block]:
         ),
         guide=forces.guide,
         link=forces.link,
-        symbol=found.name,
+        symbol=unknown.name,
         angles=Symbol("α", "i"),
     )
-    yield from (Equation(node), found)
+    yield from (Equation(node), unknown)
 
 
-def _write_free_body(part: AnalysedBody) -> Iterable[Block]:
+def _write_free_body(body: AnalysedBody) -> Iterable[Block]:
     """Write the known loads and the unknown external reactions of a body, with its drawing."""
-    given = join_inline(dict.fromkeys(one.symbol for one in part.known_loads))
-    group = "" if part.forces is None else part.forces.group.title
+    known_loads = join_inline(dict.fromkeys(load.symbol for load in body.known_loads))
+    group = "" if body.forces is None else body.forces.group.title
     text = _("The input link is considered last. Known: {given}. To be found:")
     if group:
         text = _("Group {group} is separated from the mechanism. Known: {given}. To be found:")
-    if group and not given:
+    if group and not known_loads:
         text = _("Group {group} is separated from the mechanism. To be found:")
-    yield write_sentence(text, group=group, given=given or _("nothing"))
-    leads = [] if part.forces is None else external_pairs(part.position, part.forces.group)
+    yield write_sentence(text, group=group, given=known_loads or _("nothing"))
+    leads = [] if body.forces is None else external_pairs(body.position, body.forces.group)
     unknown = [
-        _describe_unknowns(r, next((lead for lead in leads if lead.pair == r.pair), None)) for r in part.external
+        _describe_unknowns(r, next((lead for lead in leads if lead.pair == r.pair), None)) for r in body.external
     ]
     moment, force = _("the balancing moment {symbol}"), _("the balancing force {symbol}")
-    balances = [one for one in part.free_body.acting if one.pair == DRIVE]
-    drives = [filled(moment if one.couple else force, symbol=one.symbol) for one in balances]
+    balances = [load for load in body.free_body.acting if load.pair == DRIVE]
+    drives = [filled(moment if load.couple else force, symbol=load.symbol) for load in balances]
     yield bulleted_list((*unknown, *drives))
-    if part.subject.results.problem.note_style.arms == "paper" and part.free_body.equations:
-        mu = part.arm_scale(part.free_body.equations[0])
+    if body.subject.results.problem.note_style.arms == "paper" and body.free_body.equations:
+        mu = body.arm_scale(body.free_body.equations[0])
         yield write_sentence(
             _(
                 "The moment arms are given in millimetres of the drawing, whose scale factor is {mu} = {value} "
                 "m/mm; couples are divided by this factor."
             ),
             mu=MU,
-            value=part.subject.text(mu or 1.0),
+            value=body.subject.text(mu or 1.0),
         )
-    yield from part.subject.figures(
+    yield from body.subject.figures(
         "group-loads",
         _("All loads and reactions are shown in figure {figure}: the forces not to scale, their moment arms to scale."),
-        _("Loads and reactions: {links}; {position}").format(links=_name_links(part.links), position=part.caption),
-        part.position.k,
-        part.drawing_name("group-loads"),
+        _("Loads and reactions: {links}; {position}").format(links=_name_links(body.links), position=body.caption),
+        body.position.k,
+        body.drawing_name("group-loads"),
         further=_("The other moment arms are shown in figure {figure}."),
     )
 
@@ -295,19 +300,19 @@ def _describe_unknowns(reaction: Reaction, lead: ExternalPair | None) -> Line:
             "at hinge {point}: two components of the reaction {R}, {n} along the guide of link {link} and {t} "
             "perpendicular to it"
         )
-    whole, n, t = (reaction_symbol(reaction.by, reaction.on, part) for part in ("", "n", "τ"))
-    places = {"guide": pair.name, "pair": pair.name, "point": pair.point, "link": reaction.on, "line": line}
-    return filled(text, **places, R=whole, n=n, t=t)
+    whole, n, t = (reaction_symbol(reaction.by, reaction.on, component) for component in ("", "n", "τ"))
+    fields = {"guide": pair.name, "pair": pair.name, "point": pair.point, "link": reaction.on, "line": line}
+    return filled(text, **fields, R=whole, n=n, t=t)
 
 
-def _write_moments(part: AnalysedBody, equation: MomentEquation) -> Iterable[Block]:
+def _write_moments(body: AnalysedBody, equation: MomentEquation) -> Iterable[Block]:
     """Write a moment equation and its unknown: a force, a couple, or the arm of a reaction of a guide."""
-    mu = part.arm_scale(equation)
-    found, sought = solve_moment_equation(equation, mu=mu), equation.sought
+    mu = body.arm_scale(equation)
+    quantity, sought = solve_moment_equation(equation, mu=mu), equation.sought
     if sought is None:
-        yield from () if found is None else (found,)
+        yield from () if quantity is None else (quantity,)
         return
-    if sought.arm and found is None:
+    if sought.arm and quantity is None:
         text = _("No other force has a moment about point {point} ({links}), so {symbol} passes through this point.")
     elif sought.arm and equation.found is not None and equation.found.acting.couple:
         text = _(
@@ -319,7 +324,7 @@ def _write_moments(part: AnalysedBody, equation: MomentEquation) -> Iterable[Blo
             "The equation of moments about point {point} ({links}) gives the distance from it to the line of "
             "action of the reaction {symbol}:"
         )
-    elif found is None and not equation.terms:
+    elif quantity is None and not equation.terms:
         text = _("No force has a moment about point {point} ({links}), so {symbol} is zero:")
     elif equation.special:
         text = _(
@@ -329,21 +334,21 @@ def _write_moments(part: AnalysedBody, equation: MomentEquation) -> Iterable[Blo
     else:
         text = _("The equation of moments about point {point} ({links}) gives {symbol}:")
     yield write_sentence(text, point=equation.about, links=_name_links(equation.links), symbol=sought.symbol)
-    if found is not None:
-        yield from (Equation(moment_equation(equation, mu)), found)
+    if quantity is not None:
+        yield from (Equation(moment_equation(equation, mu)), quantity)
     elif not sought.arm:
-        if equation.terms:  # they cancel
+        if equation.terms:  # the moments cancel
             yield Equation(moment_equation(equation, mu))
         yield state_value(sought.symbol, 0.0, _("N·m") if sought.symbol.letter == "M" else _("N"))
 
 
-def _write_force_plan(part: AnalysedBody, *, explained: bool) -> Iterable[Block]:
+def _write_force_plan(body: AnalysedBody, *, explained: bool) -> Iterable[Block]:
     """Write the closed force polygon, the values measured on it and the total reactions."""
-    known = part.known_before_plan | part.loads_of_plan
-    if part.inner_first:
-        known |= {reaction_symbol(r.by, r.on) for r in part.external if r.pair.slide is not None}
-    vectors = part.vectors
-    lines = part.known_lines | {v.symbol for v in vectors if v.kind in ("normal", "tangential")}
+    known_symbols = body.known_before_plan | body.loads_of_plan
+    if body.inner_first:
+        known_symbols |= {reaction_symbol(r.by, r.on) for r in body.external if r.pair.slide is not None}
+    vectors = body.vectors
+    lines = body.known_lines | {v.symbol for v in vectors if v.kind in ("normal", "tangential")}
     yield write_sentence(
         _(
             "The forces form a closed polygon. Vectors known in magnitude and direction are underlined twice, "
@@ -353,16 +358,18 @@ def _write_force_plan(part: AnalysedBody, *, explained: bool) -> Iterable[Block]
         else _("The forces form a closed polygon:")
     )
     yield Equation(
-        vector_sum_equation([(v.symbol, 2 if v.symbol in known else 1 if v.symbol in lines else 0) for v in vectors])
+        vector_sum_equation(
+            [(v.symbol, 2 if v.symbol in known_symbols else 1 if v.symbol in lines else 0) for v in vectors]
+        )
     )
-    yield from part.subject.figures(
+    yield from body.subject.figures(
         "forces",
         _("The force plan is drawn to scale in figure {figure}."),
-        _("Force plan: {links}; {position}").format(links=_name_links(part.links), position=part.caption),
-        part.position.k,
-        part.drawing_name("forces"),
+        _("Force plan: {links}; {position}").format(links=_name_links(body.links), position=body.caption),
+        body.position.k,
+        body.drawing_name("forces"),
     )
-    unknown = [v for v in vectors if v.symbol not in known]
+    unknown = [v for v in vectors if v.symbol not in known_symbols]
     if sum(1 if v.symbol in lines else 2 for v in unknown) > SIZES:
         yield write_sentence(
             _("The polygon closes with the following reactions, with which each link is also in equilibrium by itself:")
@@ -372,33 +379,33 @@ def _write_force_plan(part: AnalysedBody, *, explained: bool) -> Iterable[Block]
         yield write_sentence(text, mu=Symbol("μ", "F"))
     else:
         yield write_sentence(_("All its vectors are already known; the closure of the polygon serves as a check."))
-    least = NO_FORCE * part.plan.plan.size
+    least = NO_FORCE * body.plan.plan.size
     for vector in unknown:
-        size = abs(vector.value)
-        yield state_value(vector.symbol, size if size > least else 0.0, _("N"))
-    if part.plan.full:
+        magnitude = abs(vector.value)
+        yield state_value(vector.symbol, magnitude if magnitude > least else 0.0, _("N"))
+    if body.plan.full:
         yield write_sentence(_("The total reactions are:"))
-    for reaction in part.external:
-        yield from _write_total_reaction(part, reaction)
+    for reaction in body.external:
+        yield from _write_total_reaction(body, reaction)
 
 
-def _write_total_reaction(part: AnalysedBody, reaction: Reaction) -> Iterable[Block]:
+def _write_total_reaction(body: AnalysedBody, reaction: Reaction) -> Iterable[Block]:
     """Write a total reaction from its normal and tangential components."""
     names = reaction.by, reaction.on
-    parts = {v.symbol: abs(v.value) for v in part.plan.plan.vectors}
+    magnitudes = {v.symbol: abs(v.value) for v in body.plan.plan.vectors}
     along, across = reaction_symbol(*names, "n"), reaction_symbol(*names, "τ")
-    if along in parts and across in parts:
-        root = Function("sqrt", Leaf(along, parts[along]) ** 2 + Leaf(across, parts[across]) ** 2)
-        yield ComputedQuantity(reaction_symbol(*names), root, part.magnitude(reaction), _("N"))
+    if along in magnitudes and across in magnitudes:
+        root = Function("sqrt", Leaf(along, magnitudes[along]) ** 2 + Leaf(across, magnitudes[across]) ** 2)
+        yield ComputedQuantity(reaction_symbol(*names), root, body.magnitude(reaction), _("N"))
 
 
-def _write_guide_polygon(part: AnalysedBody) -> Iterable[Block]:
+def _write_guide_polygon(body: AnalysedBody) -> Iterable[Block]:
     """Write the force polygon of the link on which both guides of an RPP group act."""
-    assert part.forces is not None
-    inner = part.forces.inner[0]
-    outer = next(r for r in part.external if r.pair.slide is not None)
+    assert body.forces is not None
+    inner = body.forces.inner[0]
+    outer = next(r for r in body.external if r.pair.slide is not None)
     link = outer.on
-    own = reaction_symbol(inner.pair.other(link), link)
+    inner_symbol = reaction_symbol(inner.pair.other(link), link)
     yield write_sentence(
         _(
             "The reaction in the internal pair {pair} is perpendicular to the guide of this pair, so the "
@@ -407,22 +414,22 @@ def _write_guide_polygon(part: AnalysedBody) -> Iterable[Block]:
         pair=inner.pair.name,
         links=_name_links([link]),
     )
-    sought = {own: inner, reaction_symbol(outer.by, link): outer}
-    yield _polygon_of_link(part, link, dict.fromkeys(sought, 1))
+    sought = {inner_symbol: inner, reaction_symbol(outer.by, link): outer}
+    yield _polygon_of_link(body, link, dict.fromkeys(sought, 1))
     for symbol, reaction in sought.items():
-        yield state_value(symbol, part.magnitude(reaction), _("N"))
+        yield state_value(symbol, body.magnitude(reaction), _("N"))
 
 
-def _polygon_of_link(part: AnalysedBody, link: str, sought: Mapping[Symbol, int]) -> Equation:
+def _polygon_of_link(body: AnalysedBody, link: str, sought: Mapping[Symbol, int]) -> Equation:
     """Return the force polygon of one link as an equation. `sought` gives the number of underlines of each unknown."""
-    acting = part.position.acting([link], {})
-    known = [one.symbol for one in acting if not one.couple and one.symbol not in sought]
-    return Equation(vector_sum_equation([*((symbol, 2) for symbol in known), *sought.items()]))
+    acting = body.position.acting([link], {})
+    known_symbols = [load.symbol for load in acting if not load.couple and load.symbol not in sought]
+    return Equation(vector_sum_equation([*((symbol, 2) for symbol in known_symbols), *sought.items()]))
 
 
-def _write_internal_reactions(part: AnalysedBody) -> Iterable[Block]:
+def _write_internal_reactions(body: AnalysedBody) -> Iterable[Block]:
     """Write the internal reactions, each from the equilibrium of one of its two links."""
-    inner = () if part.forces is None else part.forces.inner
+    inner = () if body.forces is None else body.forces.inner
     if len(inner) == 1:
         (reaction,) = inner
         yield write_sentence(
@@ -433,19 +440,19 @@ def _write_internal_reactions(part: AnalysedBody) -> Iterable[Block]:
             pair=reaction.pair.name,
             links=_name_links([reaction.on]),
         )
-        yield _polygon_of_link(part, reaction.on, {reaction_symbol(reaction.by, reaction.on): 0})
+        yield _polygon_of_link(body, reaction.on, {reaction_symbol(reaction.by, reaction.on): 0})
     elif inner:
         yield write_sentence(
             _("The reactions in the internal pairs follow from the equilibrium of the individual links:")
         )
     for reaction in inner:
-        yield state_value(reaction_symbol(reaction.by, reaction.on), part.magnitude(reaction), _("N"))
+        yield state_value(reaction_symbol(reaction.by, reaction.on), body.magnitude(reaction), _("N"))
 
 
-def _write_balancing_direction(part: AnalysedBody) -> Iterable[Block]:
+def _write_balancing_direction(body: AnalysedBody) -> Iterable[Block]:
     """Write the sense of each balancing moment and the direction of each balancing force."""
-    for one in part.free_body.acting:
-        if one.pair == DRIVE:
-            way = name_sense(one.moment) if one.couple else part.subject.direction(one.force)
-            text = _("{symbol} acts {way}.") if one.couple else _("{symbol} acts at {way} to the x axis.")
-            yield write_sentence(text, symbol=one.symbol, way=way)
+    for load in body.free_body.acting:
+        if load.pair == DRIVE:
+            direction = name_sense(load.moment) if load.couple else body.subject.direction(load.force)
+            text = _("{symbol} acts {way}.") if load.couple else _("{symbol} acts at {way} to the x axis.")
+            yield write_sentence(text, symbol=load.symbol, way=direction)

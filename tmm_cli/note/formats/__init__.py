@@ -12,7 +12,7 @@ from tmm_cli.problem import ProblemError, parse_names
 
 
 def _docx(note: Note) -> bytes:
-    from tmm_cli.note.formats.docx import docx  # python-docx is an extra, and takes a quarter of a second to import
+    from tmm_cli.note.formats.docx import docx  # an optional package that takes 0.25 s to import
 
     return docx(note)
 
@@ -26,10 +26,10 @@ def formats_of(text: str) -> list[str]:
     Raises:
         ProblemError: A format is unknown, or python-docx is not installed.
     """
-    wanted = parse_names(text, FORMATS, "--as", _("unknown format of the note"))
-    if "docx" in wanted and find_spec("docx") is None:
+    names = parse_names(text, FORMATS, "--as", _("unknown format of the note"))
+    if "docx" in names and find_spec("docx") is None:
         raise ProblemError(
             _("DOCX requires the package python-docx, which is not installed"),
             allowed=_("html; or: pip install 'tmm-cli[note]'"),
         )
-    return wanted
+    return names

@@ -44,7 +44,7 @@ from tmm_cli.note.subject import localise_figures
 
 SPACES = nsdecls("w", "m", "r")
 FONT = '<w:rPr><w:rFonts w:ascii="Cambria Math" w:hAnsi="Cambria Math"/></w:rPr>'
-PLAIN, UPRIGHT, ITALIC = '<m:rPr><m:sty m:val="p"/></m:rPr>', "<m:rPr><m:nor/></m:rPr>", ""  # figures, words, letters
+PLAIN, UPRIGHT, ITALIC = '<m:rPr><m:sty m:val="p"/></m:rPr>', "<m:rPr><m:nor/></m:rPr>", ""  # numbers, words, symbols
 NOT_XML = dict.fromkeys((*range(9), 11, 12, *range(14, 32), *range(0xD800, 0xE000), 65534, 65535), "�")
 
 
@@ -53,12 +53,12 @@ def escape_xml(text: str) -> str:
     return escape(text.translate(NOT_XML))
 
 
-def inline_omml(node: Node, size: float = 0.0) -> str:
-    """Return a formula within text as OMML. size: font size in points; 0 for that of the text."""
-    shown = _omml(node)
-    if size:
-        shown = shown.replace(FONT, FONT.replace("</w:rPr>", f'<w:sz w:val="{round(2 * size)}"/></w:rPr>'))
-    return f"<m:oMath {SPACES}>{shown}</m:oMath>"
+def inline_omml(node: Node, font_size: float = 0.0) -> str:
+    """Return a formula within text as OMML. font_size: in points; 0 for that of the text."""
+    omml = _omml(node)
+    if font_size:
+        omml = omml.replace(FONT, FONT.replace("</w:rPr>", f'<w:sz w:val="{round(2 * font_size)}"/></w:rPr>'))
+    return f"<m:oMath {SPACES}>{omml}</m:oMath>"
 
 
 def display_omml(node: Node) -> list[str]:
@@ -80,21 +80,21 @@ def _omml(node: Node) -> str:
         case Words(text):
             return _run(text, UPRIGHT)
         case Letter(symbol, vector, lines):
-            shown = _symbol(symbol, vector)
+            omml = _symbol(symbol, vector)
             for _ in range(lines):
-                shown = _bar(shown, "bot")
-            return shown
+                omml = _bar(omml, "bot")
+            return omml
         case Row(nodes) | Lines(nodes):
             return "".join(_omml(n) for n in nodes)
         case Fraction(over, under):
             return f"<m:f><m:num>{_omml(over)}</m:num><m:den>{_omml(under)}</m:den></m:f>"
         case Power(base, exponent):
             return f"<m:sSup><m:e>{_omml(base)}</m:e><m:sup>{_omml(exponent)}</m:sup></m:sSup>"
-        case Root(of):
-            return f'<m:rad><m:radPr><m:degHide m:val="1"/></m:radPr><m:deg/><m:e>{_omml(of)}</m:e></m:rad>'
+        case Root(radicand):
+            return f'<m:rad><m:radPr><m:degHide m:val="1"/></m:radPr><m:deg/><m:e>{_omml(radicand)}</m:e></m:rad>'
         case Brackets(inside, opens, closes, bars):
-            own = {"begChr": "|" if bars else "(" if opens else "", "endChr": "|" if bars else ")" if closes else ""}
-            marks = "".join(f'<m:{kind} m:val="{mark}"/>' for kind, mark in own.items() if mark not in ("(", ")"))
+            ends = {"begChr": "|" if bars else "(" if opens else "", "endChr": "|" if bars else ")" if closes else ""}
+            marks = "".join(f'<m:{kind} m:val="{mark}"/>' for kind, mark in ends.items() if mark not in ("(", ")"))
             return f"<m:d>{f'<m:dPr>{marks}</m:dPr>' if marks else ''}<m:e>{_omml(inside)}</m:e></m:d>"
 
 
@@ -120,14 +120,14 @@ def _run(text: str, style: str = PLAIN) -> str:
     return f'<m:r>{style}{FONT}<m:t xml:space="preserve">{escape_xml(text)}</m:t></m:r>'
 
 
-# Parts of a file of Word for which python-docx has no call: numbered styles, fields, bookmarks, pictures.
+# Features of Word that python-docx does not offer: numbered headings, fields, bookmarks, EMF pictures.
 
 
-LANGUAGES = {"en": "en-GB", "ru": "ru-RU", "sr": "sr-Latn-RS"}  # as Word calls them, for its spelling
+LANGUAGES = {"en": "en-GB", "ru": "ru-RU", "sr": "sr-Latn-RS"}  # codes of Word, for its spelling checker
 SERIF = "Times New Roman"
 MARGINS = {"left_margin": 25, "right_margin": 10, "top_margin": 20, "bottom_margin": 20}  # mm
 TEXT = 210 - 25 - 10  # mm, width of a line
-EMU = 36000  # a millimetre
+EMU = 36000  # Word's drawing units per mm
 
 
 def replace_forbidden(text: str) -> str:
@@ -139,8 +139,8 @@ def prepare_document(document: Any, title: str, language: str) -> None:
     """Set paper, styles, page numbers and properties of a new document."""
     section = document.sections[0]
     section.page_width, section.page_height = Mm(210), Mm(297)
-    for name, size in MARGINS.items():
-        setattr(section, name, Mm(size))
+    for name, margin in MARGINS.items():
+        setattr(section, name, Mm(margin))
     section.different_first_page_header_footer = True  # the title page has no number
     footer = section.footer.paragraphs[0]
     footer.alignment = WD_ALIGN_PARAGRAPH.CENTER
@@ -158,8 +158,8 @@ def _set_styles(document: Any, language: str) -> None:
     (spoken,) = styles.element.xpath("w:docDefaults//w:lang")
     for kind in ("val", "eastAsia"):
         spoken.set(qn(f"w:{kind}"), language)
-    for name, size, before, after in (("Heading 1", 16, 18, 8), ("Heading 2", 13, 12, 6), ("Heading 3", 12, 8, 4)):
-        heading = _set_font(styles[name], size, bold=True)
+    for name, font_size, before, after in (("Heading 1", 16, 18, 8), ("Heading 2", 13, 12, 6), ("Heading 3", 12, 8, 4)):
+        heading = _set_font(styles[name], font_size, bold=True)
         heading.paragraph_format.space_before, heading.paragraph_format.space_after = Pt(before), Pt(after)
     _set_font(styles["Caption"], 11).paragraph_format.alignment = WD_ALIGN_PARAGRAPH.CENTER
     _set_font(styles["Title"], 22, bold=True).paragraph_format.alignment = WD_ALIGN_PARAGRAPH.CENTER
@@ -169,7 +169,7 @@ def _set_styles(document: Any, language: str) -> None:
         styles.add_style(name, WD_STYLE_TYPE.PARAGRAPH).base_style = normal
     formula = styles["Formula"].paragraph_format
     formula.left_indent = Mm(10)
-    formula.tab_stops.add_tab_stop(Mm(TEXT), WD_TAB_ALIGNMENT.RIGHT)  # for numbers that a student gives them
+    formula.tab_stops.add_tab_stop(Mm(TEXT), WD_TAB_ALIGNMENT.RIGHT)  # for formula numbers that a student may add
     picture = styles["Picture"].paragraph_format
     picture.alignment, picture.keep_with_next = WD_ALIGN_PARAGRAPH.CENTER, True
     table = styles["Table Text"]
@@ -182,12 +182,12 @@ def _set_styles(document: Any, language: str) -> None:
         entry.tab_stops.add_tab_stop(Mm(TEXT), WD_TAB_ALIGNMENT.RIGHT, WD_TAB_LEADER.DOTS)
 
 
-def _set_font(style: Any, size: float, *, bold: bool = False) -> Any:
-    style.font.name, style.font.size, style.font.color.rgb = SERIF, Pt(size), RGBColor(0, 0, 0)
+def _set_font(style: Any, font_size: float, *, bold: bool = False) -> Any:
+    style.font.name, style.font.size, style.font.color.rgb = SERIF, Pt(font_size), RGBColor(0, 0, 0)
     style.font.bold, style.font.italic = bold, False
     fonts = style.element.get_or_add_rPr().get_or_add_rFonts()
     for name in [name for name in fonts.attrib if name.endswith("Theme")]:
-        del fonts.attrib[name]  # a theme's font would stand before this one
+        del fonts.attrib[name]  # a font of the theme would take precedence
     for script in ("hAnsi", "cs", "eastAsia"):
         fonts.set(qn(f"w:{script}"), SERIF)
     return style
@@ -196,7 +196,7 @@ def _set_font(style: Any, size: float, *, bold: bool = False) -> Any:
 def _number_headings(document: Any) -> None:
     """Make Word number the headings decimally: 2, 2.1."""
     numbering = document.part.numbering_part.element
-    own = "90"
+    list_id = "90"
     levels = "".join(
         f'<w:lvl w:ilvl="{k}"><w:start w:val="1"/><w:numFmt w:val="decimal"/><w:pStyle w:val="Heading{k + 1}"/>'
         f'<w:lvlText w:val="{".".join(f"%{n + 1}" for n in range(k + 1))}"/><w:lvlJc w:val="left"/>'
@@ -204,19 +204,21 @@ def _number_headings(document: Any) -> None:
         for k in range(3)
     )
     kind = '<w:multiLevelType w:val="multilevel"/>'
-    abstract = f'<w:abstractNum {nsdecls("w")} w:abstractNumId="{own}">{kind}{levels}</w:abstractNum>'
+    abstract = f'<w:abstractNum {nsdecls("w")} w:abstractNumId="{list_id}">{kind}{levels}</w:abstractNum>'
     numbering.insert(0, parse_xml(abstract))
-    numbering.append(parse_xml(f'<w:num {nsdecls("w")} w:numId="{own}"><w:abstractNumId w:val="{own}"/></w:num>'))
+    numbering.append(
+        parse_xml(f'<w:num {nsdecls("w")} w:numId="{list_id}"><w:abstractNumId w:val="{list_id}"/></w:num>')
+    )
     for k in range(3):
         numbered = document.styles[f"Heading {k + 1}"].element.get_or_add_pPr().get_or_add_numPr()
         numbered.get_or_add_ilvl().val = k
-        numbered.get_or_add_numId().val = int(own)
+        numbered.get_or_add_numId().val = int(list_id)
 
 
-def add_field(paragraph: Any, code: str, shown: str, *, dirty: bool = False) -> None:
+def add_field(paragraph: Any, code: str, text: str, *, dirty: bool = False) -> None:
     """Add a Word field with its code and its displayed text. With `dirty`, Word updates it on opening the document."""
     _open_field(paragraph, code, dirty=dirty)
-    paragraph.add_run(shown)
+    paragraph.add_run(text)
     _add_field_mark(paragraph, "end")
 
 
@@ -229,8 +231,8 @@ def _open_field(paragraph: Any, code: str, *, dirty: bool) -> None:
 
 
 def _add_field_mark(paragraph: Any, kind: str, *, dirty: bool = False) -> None:
-    told = {"w:fldCharType": kind} | ({"w:dirty": "true"} if dirty else {})
-    paragraph.add_run()._r.append(OxmlElement("w:fldChar", {qn(name): value for name, value in told.items()}))
+    attributes = {"w:fldCharType": kind} | ({"w:dirty": "true"} if dirty else {})
+    paragraph.add_run()._r.append(OxmlElement("w:fldChar", {qn(name): value for name, value in attributes.items()}))
 
 
 class WordParts:
@@ -244,27 +246,27 @@ class WordParts:
     def add_bookmark(self, paragraph: Any, name: str, first: int) -> None:
         """Bookmark a paragraph from the child element with index `first` to its end."""
         self.marks += 1
-        own = {qn("w:id"): str(self.marks)}
-        paragraph._p.insert(first, OxmlElement("w:bookmarkStart", own | {qn("w:name"): name}))
-        paragraph._p.append(OxmlElement("w:bookmarkEnd", own))
+        bookmark_id = {qn("w:id"): str(self.marks)}
+        paragraph._p.insert(first, OxmlElement("w:bookmarkStart", bookmark_id | {qn("w:name"): name}))
+        paragraph._p.append(OxmlElement("w:bookmarkEnd", bookmark_id))
 
-    def add_picture(self, paragraph: Any, drawing: Drawing, share: float, told: str) -> None:
-        """Add a drawing to a paragraph, reduced to the fraction `share` of its size. told: alternative text."""
+    def add_picture(self, paragraph: Any, drawing: Drawing, share: float, alternative: str) -> None:
+        """Add a drawing to a paragraph, reduced to the fraction `share` of its size. alternative: alternative text."""
         self.pictures += 1
         uri = PackURI(f"/word/media/drawing{self.pictures}.emf")
-        part = Part(uri, "image/x-emf", write_emf(drawing), self.document.part.package)
-        link = self.document.part.relate_to(part, RELATIONSHIP_TYPE.IMAGE)
+        picture = Part(uri, "image/x-emf", write_emf(drawing), self.document.part.package)
+        link = self.document.part.relate_to(picture, RELATIONSHIP_TYPE.IMAGE)
         wide, high = (round(side * share * EMU) for side in drawing.paper)
-        size = f'cx="{wide}" cy="{high}"'
-        name = f'id="{self.pictures}" name="drawing {self.pictures}" descr="{escape_xml(told)}"'
+        extent = f'cx="{wide}" cy="{high}"'
+        name = f'id="{self.pictures}" name="drawing {self.pictures}" descr="{escape_xml(alternative)}"'
         paragraph.add_run()._r.append(
             parse_xml(
                 f'<w:drawing {nsdecls("w", "wp", "a", "pic", "r")}><wp:inline distT="0" distB="0" distL="0" distR="0">'
-                f"<wp:extent {size}/><wp:docPr {name}/><a:graphic>"
+                f"<wp:extent {extent}/><wp:docPr {name}/><a:graphic>"
                 f'<a:graphicData uri="http://schemas.openxmlformats.org/drawingml/2006/picture"><pic:pic><pic:nvPicPr>'
                 f"<pic:cNvPr {name}/><pic:cNvPicPr/></pic:nvPicPr>"
                 f'<pic:blipFill><a:blip r:embed="{link}"/><a:stretch><a:fillRect/></a:stretch></pic:blipFill>'
-                f'<pic:spPr><a:xfrm><a:off x="0" y="0"/><a:ext {size}/></a:xfrm><a:prstGeom prst="rect"><a:avLst/>'
+                f'<pic:spPr><a:xfrm><a:off x="0" y="0"/><a:ext {extent}/></a:xfrm><a:prstGeom prst="rect"><a:avLst/>'
                 f"</a:prstGeom></pic:spPr></pic:pic></a:graphicData></a:graphic></wp:inline></w:drawing>"
             )
         )
@@ -308,13 +310,13 @@ def add_title_page(document: Any, block: Title) -> None:
     centred(block.foot, Pt(150))
 
 
-# The note as DOCX: styles, captions, fields and formulas are Word's own, so that a student goes on writing in it.
+# Styles, captions, fields and formulas are Word's own, so that a student can continue the document.
 
 
-WHOLE = 13  # rows of a table that is not parted between pages
-ENDS = 3  # rows of a longer one that stay together at its beginning and at its end
-HIGH = 225.0  # mm, of a picture at most
-WIDE = 0.19  # mm, of a letter, a point of its size
+WHOLE = 13  # rows of the largest table that is not split between pages
+ENDS = 3  # rows of a longer table that stay together at its beginning and end
+HIGH = 225.0  # largest height of a picture (mm)
+WIDE = 0.19  # width of a letter per point of font size (mm)
 
 
 def docx(note: Note) -> bytes:
@@ -381,24 +383,24 @@ class _DocxWriter:
         return paragraph
 
     def _add_line(self, paragraph: Any, line: Line, **format: Any) -> None:
-        for part in line:
-            self._add_inline(paragraph, part, **format)
+        for inline in line:
+            self._add_inline(paragraph, inline, **format)
 
-    def _add_inline(self, paragraph: Any, part: Inline, size: float = 0.0, bold: bool = False) -> None:
-        match part:
+    def _add_inline(self, paragraph: Any, inline: Inline, font_size: float = 0.0, bold: bool = False) -> None:
+        match inline:
             case str():
-                run = paragraph.add_run(replace_forbidden(part))
+                run = paragraph.add_run(replace_forbidden(inline))
                 run.bold = bold or None
-                if size:
-                    run.font.size = Pt(size)
+                if font_size:
+                    run.font.size = Pt(font_size)
             case blocks.Ref(key):
                 add_field(paragraph, f"REF {self._bookmark_of(key)} \\h", self.numbers[key])
             case blocks.Link(key):
                 paragraph.add_run(f"[{self.numbers[key]}]")
             case Symbol():
-                paragraph._p.append(parse_xml(inline_omml(Letter(part), size)))
+                paragraph._p.append(parse_xml(inline_omml(Letter(inline), font_size)))
             case _:
-                paragraph._p.append(parse_xml(inline_omml(part, size)))
+                paragraph._p.append(parse_xml(inline_omml(inline, font_size)))
 
     def _bookmark_of(self, key: str) -> str:
         """Return the bookmark for references to a table, figure or source."""
@@ -432,8 +434,8 @@ class _DocxWriter:
         caption.alignment = WD_ALIGN_PARAGRAPH.LEFT
         table = self.document.add_table(rows=0, cols=len(block.head), style="Table Grid")
         table.alignment = WD_TABLE_ALIGNMENT.CENTER
-        size = 10.0 if len(block.head) <= 6 else 8.5
-        widths = _column_widths(block, size * WIDE)
+        font_size = 10.0 if len(block.head) <= 6 else 8.5
+        widths = _column_widths(block, font_size * WIDE)
         for column, wide in zip(table.columns, widths, strict=True):
             column.width = Mm(wide)
         for number, cells in enumerate((block.head, *block.rows)):
@@ -448,7 +450,7 @@ class _DocxWriter:
                     paragraph.paragraph_format.keep_with_next = True
                 if number and block.numeric[k]:
                     paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT if k else WD_ALIGN_PARAGRAPH.CENTER
-                self._add_line(paragraph, line, size=size, bold=number == 0)
+                self._add_line(paragraph, line, font_size=font_size, bold=number == 0)
         self._add_paragraph("TableText")
 
     def _add_figure(self, block: blocks.Figure) -> None:
@@ -470,19 +472,16 @@ def _stays_with_next(number: int, rows: int) -> bool:
 
 def _count_letters(line: Line) -> float:
     """Estimate the width of a cell in letters. Capital letters count more."""
-    capitals = sum(letter.isupper() for part in line if isinstance(part, str) for letter in part)
+    capitals = sum(letter.isupper() for inline in line if isinstance(inline, str) for letter in inline)
     return 0.3 * capitals + sum(
-        width(Letter(part) if isinstance(part, Symbol) else Words(part) if isinstance(part, str) else part)
-        for part in line
-        if not isinstance(part, blocks.Ref | blocks.Link)
+        width(Letter(inline) if isinstance(inline, Symbol) else Words(inline) if isinstance(inline, str) else inline)
+        for inline in line
+        if not isinstance(inline, blocks.Ref | blocks.Link)
     )
 
 
 def _column_widths(block: blocks.Rows, letter: float) -> list[float]:
-    """Return the column widths (mm), narrowed to fit the page without breaking words.
-
-    letter: width of a letter (mm).
-    """
+    """Return the column widths (mm), narrowed to fit the page without breaking words. letter: width of one in mm."""
     columns = list(zip(block.head, *block.rows, strict=True))
     whole = [letter * (3 + max(map(_count_letters, column))) for column in columns]
     least = [
@@ -494,7 +493,6 @@ def _column_widths(block: blocks.Rows, letter: float) -> list[float]:
 
 def _longest_word(line: Line) -> float:
     """Estimate the width of the longest word of a cell, in letters."""
-    words = [word for part in line if isinstance(part, str) for word in part.split(" ")]
-    return max(
-        [_count_letters((part,)) for part in (*words, *(p for p in line if not isinstance(p, str)))], default=0.0
-    )
+    words = [word for inline in line if isinstance(inline, str) for word in inline.split(" ")]
+    formulas = (inline for inline in line if not isinstance(inline, str))
+    return max([_count_letters((word,)) for word in (*words, *formulas)], default=0.0)

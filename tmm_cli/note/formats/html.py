@@ -29,8 +29,9 @@ def _mathml(node: Node) -> str:
         case Number(text):
             return f"<mn>{escape(text)}</mn>"
         case Letter(symbol, vector, lines):
-            shown = _symbol(symbol, vector)
-            return f'<mrow class="lines{lines}">{shown}</mrow>' if lines else shown  # lines under it, as long as it is
+            letter = _symbol(symbol, vector)
+            # the row is as wide as the letter, and so are its underlines
+            return f'<mrow class="lines{lines}">{letter}</mrow>' if lines else letter
         case Sign(text):
             return f"<mo>{escape(text)}</mo>"
         case Words(text):
@@ -41,8 +42,8 @@ def _mathml(node: Node) -> str:
             return f"<mfrac>{_mathml(over)}{_mathml(under)}</mfrac>"
         case Power(base, exponent):
             return f"<msup>{_mathml(base)}{_mathml(exponent)}</msup>"
-        case Root(of):
-            return f"<msqrt>{_mathml(of)}</msqrt>"
+        case Root(radicand):
+            return f"<msqrt>{_mathml(radicand)}</msqrt>"
         case Brackets(inside, opens, closes, bars):
             left, right = "||" if bars else "()"
             return f"<mrow>{f'<mo>{left}</mo>' * opens}{_mathml(inside)}{f'<mo>{right}</mo>' * closes}</mrow>"
@@ -52,9 +53,9 @@ def _mathml(node: Node) -> str:
 
 
 def _symbol(symbol: Symbol, vector: bool) -> str:
-    own = symbol.letter.rstrip("′")  # with its strokes it would be a name, which is upright
-    letter = f"<mi>{escape(own)}</mi>" + "<mo>′</mo>" * (len(symbol.letter) - len(own))
-    letter = letter if own == symbol.letter else f"<mrow>{letter}</mrow>"
+    base = symbol.letter.rstrip("′")  # letter and strokes in one element would be printed upright, as a name
+    letter = f"<mi>{escape(base)}</mi>" + "<mo>′</mo>" * (len(symbol.letter) - len(base))
+    letter = letter if base == symbol.letter else f"<mrow>{letter}</mrow>"
     if vector:
         letter = f'<mover accent="true">{letter}<mo stretchy="false">¯</mo></mover>'
     below, above = f"<mtext>{escape(symbol.below)}</mtext>", f"<mi>{escape(symbol.above)}</mi>"
@@ -69,8 +70,8 @@ def _symbol(symbol: Symbol, vector: bool) -> str:
 
 
 STOPS = ".,;:)"
-SHORT = 16  # letters of a cell that is not broken
-WHOLE = 13  # rows of a table that is not parted between pages
+SHORT = 16  # letters of a cell that is not broken into lines
+WHOLE = 13  # rows of the largest table that is not split between pages
 
 
 def html(note: Note) -> bytes:
@@ -116,8 +117,8 @@ class HtmlWriter:
             case blocks.Equation(node):
                 return f'<div class="equation">{mathml(node, display=True)}</div>'
             case ComputedQuantity():
-                shown = formula(block, partial(localise_figures, spoken=self.note.language))
-                return f'<div class="equation found">{mathml(shown, display=True)}</div>'
+                formula_node = formula(block, partial(localise_figures, spoken=self.note.language))
+                return f'<div class="equation found">{mathml(formula_node, display=True)}</div>'
             case blocks.Rows():
                 return self.write_table(block)
             case blocks.Figure():
@@ -132,25 +133,25 @@ class HtmlWriter:
 
     def write_line(self, line: Line) -> str:
         """Return a line of texts and formulas as HTML. Punctuation is kept on the line of the formula before it."""
-        texts = [self.write_inline(part) for part in line]
-        for k, part in enumerate(line[1:], 1):
-            if isinstance(part, str) and part[0] in STOPS and not isinstance(line[k - 1], str):
-                texts[k - 1] = f'<span class="joined">{texts[k - 1]}{part[0]}</span>'
-                texts[k] = escape_text(part[1:])
+        texts = [self.write_inline(inline) for inline in line]
+        for k, inline in enumerate(line[1:], 1):
+            if isinstance(inline, str) and inline[0] in STOPS and not isinstance(line[k - 1], str):
+                texts[k - 1] = f'<span class="joined">{texts[k - 1]}{inline[0]}</span>'
+                texts[k] = escape_text(inline[1:])
         return "".join(texts)
 
-    def write_inline(self, part: Inline) -> str:
+    def write_inline(self, inline: Inline) -> str:
         """Return one text, symbol, formula or reference of a line as HTML."""
-        match part:
+        match inline:
             case str():
-                return escape_text(part)
+                return escape_text(inline)
             case blocks.Ref(key):
                 return f'<a href="#{self.ids[key]}">{self.numbers[key]}</a>'
             case blocks.Link(key):
                 return f'[<a href="#{self.ids[key]}">{self.numbers[key]}</a>]'
             case Symbol():
-                return mathml(Letter(part))
-        return mathml(part)
+                return mathml(Letter(inline))
+        return mathml(inline)
 
     def write_table(self, rows: blocks.Rows) -> str:
         """Return a table with its caption above it."""
@@ -174,7 +175,7 @@ class HtmlWriter:
 
     def write_heading(self, cell: Line) -> str:
         """Return a column heading. Units such as rad/s are not broken between lines."""
-        if not all(isinstance(part, str) for part in cell):
+        if not all(isinstance(inline, str) for inline in cell):
             return self.write_line(cell)
         return re.sub(r"\S+/\S+", r'<span class="joined">\g<0></span>', escape_text("".join(map(str, cell))))
 
@@ -202,7 +203,7 @@ class HtmlWriter:
 
 def cell_class(cell: Line, number: bool) -> str:
     """Return the class attribute of a cell: "number", "short" for a text that is not broken, or none."""
-    short = all(isinstance(part, str) for part in cell) and sum(map(len, map(str, cell))) <= SHORT
+    short = all(isinstance(inline, str) for inline in cell) and sum(map(len, map(str, cell))) <= SHORT
     return ' class="number"' if number else ' class="short"' if short else ""
 
 

@@ -33,7 +33,7 @@ from tmm_cli.note.kinematics.plans import write_accelerations, write_velocities
 from tmm_cli.note.subject import Subject, table_over_positions
 from tmm_cli.reports import describe_interpolation, output_motion, position_states
 
-ROUND = 1e-9  # of a speed in rpm that was given as such
+ROUND = 1e-9  # relative deviation from a round number of rpm within which the speed was given in rpm
 
 
 def write_drivers(subject: Subject) -> Iterable[Block]:
@@ -55,8 +55,8 @@ def write_drivers(subject: Subject) -> Iterable[Block]:
 
 
 def _write_rotating_driver(subject: Subject, driver: Driver) -> Iterable[Block]:
-    own = driver.link if driver.base == FRAME else driver.link + driver.base
-    omega, n = Symbol("ω", "0" if driver.acceleration else own), driver.rate * 30 / np.pi
+    subscript = driver.link if driver.base == FRAME else driver.link + driver.base
+    omega, n = Symbol("ω", "0" if driver.acceleration else subscript), driver.rate * 30 / np.pi
     rpm = abs(n - float(f"{n:.7g}")) <= ROUND * n
     text = _("Input link {link} rotates about point {point} {sense} with the angular velocity")
     if driver.law is not None:
@@ -77,55 +77,59 @@ def _write_rotating_driver(subject: Subject, driver: Driver) -> Iterable[Block]:
         base=driver.base,
         sense=name_sense(driver.sense),
         how=how,
-        n=Symbol("n", own),
+        n=Symbol("n", subscript),
         speed=subject.text(n, 6),
     )
     if driver.law is not None:
         return
     if rpm:
         yield ComputedQuantity(
-            omega, Constant(float(np.pi), "π") * Leaf(Symbol("n", own), n) / 30, driver.rate, unit_of("ω")
+            omega, Constant(float(np.pi), "π") * Leaf(Symbol("n", subscript), n) / 30, driver.rate, unit_of("ω")
         )
     else:
         yield _value_equation(subject, omega, driver.rate)
     if driver.acceleration:
         yield write_sentence(_("in position 0 and with the constant angular acceleration"))
-        yield _value_equation(subject, Symbol("ε", own), driver.acceleration)
+        yield _value_equation(subject, Symbol("ε", subscript), driver.acceleration)
 
 
 def _write_sliding_driver(subject: Subject, driver: Driver) -> Iterable[Block]:
     slide = subject.results.linkage.slide(driver.joint)
-    own = slide.point if driver.base == FRAME else f"{slide.point}{slide.point}{slide.carrier}"
+    subscript = slide.point if driver.base == FRAME else f"{slide.point}{slide.point}{slide.carrier}"
     text = _("Input link {link} slides along its guide on the frame with the velocity")
     if driver.base != FRAME:
         text = _("Input link {link} moves along link {base} (a piston in its cylinder) with the relative velocity")
     yield write_sentence(text, link=driver.link, base=driver.base)
-    yield _value_equation(subject, Symbol("v", "0" if driver.acceleration else own), driver.rate)
+    yield _value_equation(subject, Symbol("v", "0" if driver.acceleration else subscript), driver.rate)
     if driver.acceleration:
         yield write_sentence(_("in position 0 and with the constant acceleration"))
-        yield _value_equation(subject, Symbol("a", own), driver.acceleration)
+        yield _value_equation(subject, Symbol("a", subscript), driver.acceleration)
 
 
 def _value_equation(subject: Subject, name: Symbol, value: float) -> Block:
     return Equation(row(Letter(name), "=", Number(subject.text(value)), Words(f" {unit_of(name.letter)}")))
 
 
-def write_driver_speed(here: PositionPlans) -> Iterable[Block]:
+def write_driver_speed(position: PositionPlans) -> Iterable[Block]:
     """Write the velocity of the first driver in a position. Nothing is written if it is constant."""
-    results, motion = here.subject.results, here.motion
+    results, motion = position.subject.results, position.motion
     driver, turns = motion.linkage.driver, motion.linkage.driver.kind == "turn"
     if driver.law is not None or results.running is not None:
         yield write_sentence(_("By the law of motion, its velocity and its acceleration in this position are"))
         for letter, values in zip("ωε" if turns else "va", (motion.rate, motion.acceleration), strict=True):
-            value = float(np.broadcast_to(values, motion.q.shape)[here.k])
-            yield _value_equation(here.subject, Symbol(letter, driver.link), value)
+            value = float(np.broadcast_to(values, motion.q.shape)[position.k])
+            yield _value_equation(position.subject, Symbol(letter, driver.link), value)
         return
     if not driver.acceleration:
         return
-    letter, rate, way = ("ω", "ε", "φ") if turns else ("v", "a", "s")
+    letter, rate, coordinate = ("ω", "ε", "φ") if turns else ("v", "a", "s")
     begins = results.linkage.sketch.at if results.linkage.others else results.start
-    gone = driver.sense * (float(motion.q[here.k]) - begins)
-    run, start, now = Leaf(Symbol(f"Δ{way}"), gone), Leaf(Symbol(letter, "0"), driver.rate), Symbol(letter, driver.link)
+    displacement = driver.sense * (float(motion.q[position.k]) - begins)
+    run, start, now = (
+        Leaf(Symbol(f"Δ{coordinate}"), displacement),
+        Leaf(Symbol(letter, "0"), driver.rate),
+        Symbol(letter, driver.link),
+    )
     yield write_sentence(
         _(
             "The input link has moved through {gone} since position 0; its velocity {speed} follows from the "
@@ -135,7 +139,7 @@ def write_driver_speed(here: PositionPlans) -> Iterable[Block]:
         speed=now,
     )
     root = Function("sqrt", start**2 + 2 * Leaf(Symbol(rate, driver.link), driver.acceleration) * run)
-    yield ComputedQuantity(now, root, abs(float(motion.rate[here.k])), unit_of(letter))
+    yield ComputedQuantity(now, root, abs(float(motion.rate[position.k])), unit_of(letter))
 
 
 def write_positions(subject: Subject) -> Iterable[Block]:
@@ -167,10 +171,10 @@ def write_positions(subject: Subject) -> Iterable[Block]:
 
 def _write_extremes(subject: Subject, strokes: Strokes) -> Iterable[Block]:
     """Write the extreme positions of the output, its stroke or swing angle, and the time ratio."""
-    places = ", ".join(f"{subject.text(_degrees(s.start % strokes.cycle))}°" for s in strokes.strokes)
+    angles = ", ".join(f"{subject.text(_degrees(s.start % strokes.cycle))}°" for s in strokes.strokes)
     slides = strokes.kind == "slide"
-    size, letter = (strokes.travel, "H") if slides else (float(np.degrees(strokes.travel)), "ψ")
-    shown = (Letter(Symbol(letter)), "=", Number(subject.text(size)), Words(" " + _("m") if slides else "°"))
+    range, letter = (strokes.travel, "H") if slides else (float(np.degrees(strokes.travel)), "ψ")
+    equation = (Letter(Symbol(letter)), "=", Number(subject.text(range)), Words(" " + _("m") if slides else "°"))
     text = _(
         "The output ({output}) is in its extreme positions at the input angles {phi} = {places}; its swing "
         "angle is {size}."
@@ -181,7 +185,7 @@ def _write_extremes(subject: Subject, strokes: Strokes) -> Iterable[Block]:
             "stroke is {size}."
         )
     yield write_sentence(
-        text, output=name_output(subject, strokes.link), phi=Symbol("φ"), places=places, size=row(*shown)
+        text, output=name_output(subject, strokes.link), phi=Symbol("φ"), places=angles, size=row(*equation)
     )
     if not np.isfinite(strokes.k):
         return
@@ -211,8 +215,8 @@ def _write_travel(subject: Subject, travel: OutputTravel) -> Iterable[Block]:
 
 def _degrees(angle: float) -> float:
     """Convert an angle from radians to degrees. Rounding errors of a zero are removed."""
-    found = float(np.degrees(angle))
-    return 0.0 if abs(found) < NO_VECTOR else found
+    degrees = float(np.degrees(angle))
+    return 0.0 if abs(degrees) < NO_VECTOR else degrees
 
 
 def name_output(subject: Subject, link: str) -> str:
@@ -220,21 +224,25 @@ def name_output(subject: Subject, link: str) -> str:
     return _("link {link}").format(link=link) if link in subject.results.linkage.links else link
 
 
-def write_driver_coordinate(here: PositionPlans) -> Block:
+def write_driver_coordinate(position: PositionPlans) -> Block:
     """Write the angle or displacement of the input link in a position."""
-    driver, q, number = here.motion.linkage.driver, float(here.motion.q[here.k]), here.subject.position_number(here.k)
+    driver, q, number = (
+        position.motion.linkage.driver,
+        float(position.motion.q[position.k]),
+        position.subject.position_number(position.k),
+    )
     if driver.kind == "turn":
         text = _("In position {number} the input link is at the angle {phi} = {angle}° to the x axis.")
-        angle = here.subject.text(_degrees(q % (2 * np.pi)))
+        angle = position.subject.text(_degrees(q % (2 * np.pi)))
         return write_sentence(text, number=number, phi=Symbol("φ", driver.link), angle=angle)
     text = _("In position {number} the displacement of the input link is {run} = {place} m.")
-    return write_sentence(text, number=number, run=Symbol("s", driver.link), place=here.subject.text(q))
+    return write_sentence(text, number=number, run=Symbol("s", driver.link), place=position.subject.text(q))
 
 
-BESIDE = 6  # columns of what links turn with in one table
+BESIDE = 6  # columns of angular velocities and accelerations in one table
 
 
-Column = tuple[Line, Real]  # head, values of a quantity in all positions in the unit of its head
+Column = tuple[Line, Real]  # heading, and values in all positions in the unit of the heading
 
 
 def write_tables(subject: Subject) -> Iterable[Block]:
@@ -245,8 +253,8 @@ def write_tables(subject: Subject) -> Iterable[Block]:
         units = ("°", unit_of("ω"), unit_of("ε")) if letters[0] == "φ" else (_("m"), unit_of("v"), unit_of("a"))
         columns = []
         for letter, per, (__, values, ___) in zip(letters, units, output_motion(results, motion, link), strict=True):
-            own = without_rounding(values, largest_magnitude(values))
-            columns.append(((Symbol(letter, link), f", {per}"), np.degrees(own) if per == "°" else own))
+            cleaned = without_rounding(values, largest_magnitude(values))
+            columns.append(((Symbol(letter, link), f", {per}"), np.degrees(cleaned) if per == "°" else cleaned))
         caption = _("Motion of the output ({output})").format(output=name_output(subject, link))
         text = _("The motion of the output in all positions is given in table {table}.")
         yield from write_table(text, _position_table(subject, caption, columns, f"output-{link}"))
@@ -276,7 +284,7 @@ def _write_rate_tables(subject: Subject) -> Iterable[Block]:
         yield from write_table(_("The angular accelerations of the links are given in table {table}."), rows)
 
 
-def _rate_columns(subject: Subject, letter: str, what: str) -> list[Column]:
+def _rate_columns(subject: Subject, letter: str, name: str) -> list[Column]:
     """Return the columns of angular velocities or accelerations.
 
     Links that rotate together share a column. Constant velocities and accelerations are left out.
@@ -284,20 +292,22 @@ def _rate_columns(subject: Subject, letter: str, what: str) -> list[Column]:
     Args:
         subject: Results that the note describes.
         letter: Letter of the quantity, ω or ε.
-        what: Name of the quantity in the motion of a link, omega or epsilon.
+        name: Name of the quantity in the motion of a link, omega or epsilon.
     """
     motion = subject.motion
-    every = {link: np.asarray(getattr(motion.link(link), what), float) for link in motion.linkage.moving}
-    most = max(map(largest_magnitude, every.values()), default=0.0)
+    rates = {link: np.asarray(getattr(motion.link(link), name), float) for link in motion.linkage.moving}
+    most = max(map(largest_magnitude, rates.values()), default=0.0)
     together: list[tuple[list[str], Real]] = []
-    for link, values in every.items():
+    for link, values in rates.items():
         if not largest_magnitude(values) > NO_VECTOR * most:
             continue
-        own = next((links for links, one in together if largest_magnitude(values - one) <= NO_VECTOR * most), None)
-        if own is None:
+        same_links = next(
+            (links for links, shared in together if largest_magnitude(values - shared) <= NO_VECTOR * most), None
+        )
+        if same_links is None:
             together.append(([link], without_rounding(values, most)))
         else:
-            own.append(link)
+            same_links.append(link)
     varied = [(links, v) for links, v in together if len(v) == 1 or np.nanmax(v) - np.nanmin(v) > NO_VECTOR * most]
     return [
         ((*join_inline((Symbol(letter, link) for link in links), " = "), f", {unit_of(letter)}"), values)
@@ -310,12 +320,12 @@ def _position_table(subject: Subject, caption: str, columns: Sequence[Column], k
 
     Its first columns are the driver coordinates. If some position cannot be assembled, a last column gives the state.
     """
-    every, told = (*_driver_columns(subject), *columns), position_states(subject.results)
+    all_columns, states = (*_driver_columns(subject), *columns), position_states(subject.results)
     texts = [
         (head, [subject.format_result(float(value)) if np.isfinite(value) else "–" for value in values])
-        for head, values in every
+        for head, values in all_columns
     ]
-    return table_over_positions(subject, caption, [*texts, *([((_("state"),), told)] if any(told) else [])], key)
+    return table_over_positions(subject, caption, [*texts, *([((_("state"),), states)] if any(states) else [])], key)
 
 
 def _driver_columns(subject: Subject) -> Iterable[Column]:
@@ -344,17 +354,17 @@ def write_kinematics(subject: Subject) -> Iterable[Block]:
     yield Heading(_("Input links and positions"), 2)
     yield from write_drivers(subject)
     yield from write_positions(subject)
-    every = solution_steps(results.linkage, results.structure.all_groups)
+    steps = solution_steps(results.linkage, results.structure.all_groups)
     for k in subject.detail:
-        yield from _write_position(PositionPlans(subject, k, k == subject.detail[0]), every)
+        yield from _write_position(PositionPlans(subject, k, k == subject.detail[0]), steps)
     yield Heading(_("Kinematics of all positions"), 2)
     yield from write_tables(subject)
 
 
-def _write_position(here: PositionPlans, every: list[SolutionStep]) -> Iterable[Block]:
-    subject, number = here.subject, here.subject.position_number(here.k)
+def _write_position(position: PositionPlans, steps: list[SolutionStep]) -> Iterable[Block]:
+    subject, number = position.subject, position.subject.position_number(position.k)
     yield Heading(_("Velocities, position {number}").format(number=number), 2)
-    if here.first:
+    if position.first:
         yield write_sentence(
             _(
                 "Velocities are found from velocity plans: first for the input links, then for the groups in the "
@@ -362,7 +372,7 @@ def _write_position(here: PositionPlans, every: list[SolutionStep]) -> Iterable[
                 "vector underlined once in direction only."
             )
         )
-        slid = next((e for step in every for e in step.equations if isinstance(e, MovingGuideEquation)), None)
+        slid = next((e for step in steps for e in step.equations if isinstance(e, MovingGuideEquation)), None)
         if slid is not None:
             yield write_sentence(
                 _(
@@ -374,24 +384,24 @@ def _write_position(here: PositionPlans, every: list[SolutionStep]) -> Iterable[
                 link=slid.slide.carrier,
                 point=slid.point.at,
             )
-    yield write_driver_coordinate(here)
-    yield from write_driver_speed(here)
+    yield write_driver_coordinate(position)
+    yield from write_driver_speed(position)
     yield from subject.figures(
         "velocity",
         _("The velocity plan is shown in figure {figure}."),
         _("Velocity plan, position {number}").format(number=number),
-        here.k,
+        position.k,
     )
-    yield from write_velocities(here, every)
+    yield from write_velocities(position, steps)
     yield Heading(_("Accelerations, position {number}").format(number=number), 2)
-    if here.first:
+    if position.first:
         yield write_sentence(
             _(
                 "The acceleration of a point relative to another point of its link has a normal component, directed "
                 "towards that other point, and a tangential one, perpendicular to the line between them."
             )
         )
-        if any(isinstance(e, MovingGuideEquation) for step in every for e in step.equations):
+        if any(isinstance(e, MovingGuideEquation) for step in steps for e in step.equations):
             yield write_sentence(
                 _(
                     "The acceleration of the sliding block relative to the coincident point of the guide has a "
@@ -403,6 +413,6 @@ def _write_position(here: PositionPlans, every: list[SolutionStep]) -> Iterable[
         "acceleration",
         _("The acceleration plan is shown in figure {figure}."),
         _("Acceleration plan, position {number}").format(number=number),
-        here.k,
+        position.k,
     )
-    yield from write_accelerations(here, every)
+    yield from write_accelerations(position, steps)

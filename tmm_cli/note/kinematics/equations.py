@@ -52,7 +52,7 @@ def simultaneous_equations(step: SolutionStep) -> list[VectorEquation]:
     return [e for e in step.equations if e not in alone and not (isinstance(e, FixedGuideEquation) and e.known)]
 
 
-def unknown_points(step: SolutionStep, known: Collection[str]) -> list[PlanPoint]:
+def unknown_points(step: SolutionStep, known_names: Collection[str]) -> list[PlanPoint]:
     """Return the points whose motion the simultaneous equations of a group give.
 
     Points are left out that belong to a link without rotation and therefore move like its other points.
@@ -60,17 +60,17 @@ def unknown_points(step: SolutionStep, known: Collection[str]) -> list[PlanPoint
     together = simultaneous_equations(step)
     others = [e for e in step.equations if e not in together or (isinstance(e, SameLinkEquation) and e.idle)]
     spots = [s for e in together for s in ([e.point] if isinstance(e, FixedGuideEquation) else [e.point, e.base])]
-    taken = {*known, *(e.point.name for e in others)}
-    return list(dict.fromkeys(s for s in spots if not s.fixed and s.name not in taken))
+    excluded = {*known_names, *(e.point.name for e in others)}
+    return list(dict.fromkeys(s for s in spots if not s.fixed and s.name not in excluded))
 
 
 def rotation_equations(together: Iterable[VectorEquation]) -> list[SameLinkEquation]:
     """Return one equation for each link of unknown rotation, from which its rotation follows."""
-    found: dict[str, SameLinkEquation] = {}
-    for one in together:
-        if isinstance(one, SameLinkEquation) and not one.known:
-            found.setdefault(one.link, one)
-    return list(found.values())
+    by_link: dict[str, SameLinkEquation] = {}
+    for equation in together:
+        if isinstance(equation, SameLinkEquation) and not equation.known:
+            by_link.setdefault(equation.link, equation)
+    return list(by_link.values())
 
 
 def further_points(step: SolutionStep) -> list[SameLinkEquation]:
@@ -80,32 +80,32 @@ def further_points(step: SolutionStep) -> list[SameLinkEquation]:
 
 def solved_points(step: SolutionStep) -> set[str]:
     """Return the names of the points whose motion is known after this step."""
-    found = {
+    names = {
         s.name for e in step.equations for s in ([e.point] if isinstance(e, FixedGuideEquation) else [e.point, e.base])
     }
-    return found | {about.point.name for about in further_points(step)}
+    return names | {about.point.name for about in further_points(step)}
 
 
 def write_equality(*symbols: Symbol) -> Block:
     """Return the equation a = b = ... of these symbols."""
-    letters = [Letter(one) for one in symbols]
-    return Equation(row(letters[0], *(part for one in letters[1:] for part in ("=", one))))
+    letters = [Letter(symbol) for symbol in symbols]
+    return Equation(row(letters[0], *(node for symbol in letters[1:] for node in ("=", symbol))))
 
 
-def introduce_equations(step: SolutionStep, points: Sequence[PlanPoint], one: str, several: str) -> Block:
+def introduce_equations(step: SolutionStep, points: Sequence[PlanPoint], for_one: str, for_several: str) -> Block:
     """Return the sentence before the equations of a group.
 
     Args:
         step: Step of the solution that belongs to a group.
         points: Points whose motion the equations give.
-        one: Sentence for one point.
-        several: Sentence for more points. For none, the sentence speaks of the remaining unknowns.
+        for_one: Sentence for one point.
+        for_several: Sentence for more points. For none, the sentence speaks of the remaining unknowns.
     """
     assert step.group is not None
     text = (
-        one
+        for_one
         if len(points) == 1
-        else several
+        else for_several
         if points
         else _("Group {group}: the remaining unknowns are found from the equations")
     )
@@ -132,36 +132,36 @@ def write_scale(plan: DrawnPlan, vectors: Sequence[DrawnVector], text: str, at_r
 
 
 def write_rotation(
-    here: PositionPlans,
+    position: PositionPlans,
     together: Iterable[VectorEquation],
     letter: str,
     vector_of: Callable[[SameLinkEquation], DrawnVector],
-    carried: str,
-    told: str,
+    explained: str,
+    brief: str,
 ) -> Iterable[Block]:
     """Write the angular velocity or acceleration of each link with its sense.
 
     Args:
-        here: Position with its plans.
+        position: Position with its plans.
         together: Equations solved together.
         letter: ω or ε.
         vector_of: Function that returns the vector from which the rotation of a link follows.
-        carried: Sentence in the first detailed position, where the method is explained.
-        told: Sentence in the other positions.
+        explained: Sentence in the first detailed position, where the method is explained.
+        brief: Sentence in the other positions.
     """
     for about in rotation_equations(together):
-        value, found = here.rates(letter).get(about.link, 0.0), vector_of(about)
+        value, vector = position.rates(letter).get(about.link, 0.0), vector_of(about)
         rate = Leaf(Symbol(letter, about.link), abs(value))
-        if not found.segment or not value:
+        if not vector.segment or not value:
             yield zero_equation(rate.symbol)
             continue
         yield ComputedQuantity(
-            rate.symbol, found.leaf / here.length(about.point, about.base), rate.value, unit_of(letter)
+            rate.symbol, vector.leaf / position.length(about.point, about.base), rate.value, unit_of(letter)
         )
         yield write_sentence(
-            carried if here.first else told,
-            v=vector_letter(found.symbol),
-            a=vector_letter(found.symbol),
+            explained if position.first else brief,
+            v=vector_letter(vector.symbol),
+            a=vector_letter(vector.symbol),
             epsilon=rate.symbol,
             point=point_symbol(about.point),
             link=about.link,
@@ -169,32 +169,34 @@ def write_rotation(
         )
 
 
-def write_common_rotation(here: PositionPlans, step: SolutionStep, letter: str) -> Iterable[Block]:
+def write_common_rotation(position: PositionPlans, step: SolutionStep, letter: str) -> Iterable[Block]:
     """Write the equal angular velocities or accelerations of links that rotate together."""
     for links in step.same:
-        if links[0] in here.rates(letter):
-            if here.first and not step.ratios:
+        if links[0] in position.rates(letter):
+            if position.first and not step.ratios:
                 yield write_sentence(_("Links {links} rotate together:"), links=", ".join(links))
             yield write_equality(*(Symbol(letter, link) for link in links))
 
 
-def write_remaining_points(here: PositionPlans, plan: DrawnPlan, known: Collection[str]) -> Iterable[Block]:
+def write_remaining_points(position: PositionPlans, plan: DrawnPlan, known_names: Collection[str]) -> Iterable[Block]:
     """Write the vectors of centres of mass and of points that no equation needed; they are found by similarity.
 
-    known: names of the points whose vectors are already written.
+    known_names: names of the points whose vectors are already written.
     """
-    linkage = here.motion.linkage
-    names = [p for p in linkage.moving_points if p not in known] + [f"S{link}" for link in links_with_mass(linkage)]
+    linkage = position.motion.linkage
+    names = [p for p in linkage.moving_points if p not in known_names] + [
+        f"S{link}" for link in links_with_mass(linkage)
+    ]
     if not names:
         return
-    if here.first:
+    if position.first:
         yield write_sentence(
             _(
                 "The ends of the vectors of all other points and of the centres of mass are found by similarity: "
                 "the image of a link on the plan is similar to the link."
             )
         )
-    named = [point for point in (*linkage.moving_points, *known) if point in known and point in plan.ends]
+    named = [point for point in (*linkage.moving_points, *known_names) if point in known_names and point in plan.ends]
     for name in names:
         vector = plan.vector_of(name)
         twin = next((other for other in named if vector.segment and plan.moves_alike(name, other)), None)
@@ -212,72 +214,75 @@ def explain_numerical_solution() -> Block:
     )
 
 
-# Vector equations in letters, with what is known of each vector: two lines under one known whole, one line under one
-# whose line is known; and the lines that are known.
+# Vector equations in symbols: two underlines for a vector known completely, one for a vector with known direction.
 
 
-WHOLE, DIRECTION, UNKNOWN = 2, 1, 0  # lines under a vector
+WHOLE, DIRECTION, UNKNOWN = 2, 1, 0  # underlines of a vector
 
 
 def write_equations(
-    here: PositionPlans, step: SolutionStep, chosen: Sequence[VectorEquation], letter: str, known: Collection[str]
+    position: PositionPlans,
+    step: SolutionStep,
+    chosen: Sequence[VectorEquation],
+    letter: str,
+    known_names: Collection[str],
 ) -> Iterable[Block]:
     """Write vector equations, and the directions of their vectors.
 
     Args:
-        here: Position with its plans.
+        position: Position with its plans.
         step: Step of the solution to which the equations belong.
         chosen: Equations to write.
         letter: v or a. Accelerations are divided into components.
-        known: Names of points with known motion.
+        known_names: Names of points with known motion.
     """
     lined = {
         e.point.name
         for e in step.equations
         if isinstance(e, FixedGuideEquation) or (isinstance(e, SameLinkEquation) and e.base.fixed and letter == "v")
     }
-    told: dict[Node, None] = {}
+    statements: dict[Node, None] = {}
     for equation in chosen:
         if isinstance(equation, FixedGuideEquation):
-            told[row(vector_letter(Symbol(letter, equation.point.name)), "∥", name_guide(equation.slide))] = None
+            statements[row(vector_letter(Symbol(letter, equation.point.name)), "∥", name_guide(equation.slide))] = None
             continue
-        terms = list(_relative_vectors(equation, letter, here.omega))
-        base = Letter(Symbol(letter, equation.base.name), True, _underlines(equation.base, known, lined))
-        point = Letter(Symbol(letter, equation.point.name), True, _underlines(equation.point, known, lined))
+        terms = list(_relative_vectors(equation, letter, position.omega))
+        base = Letter(Symbol(letter, equation.base.name), True, _underlines(equation.base, known_names, lined))
+        point = Letter(Symbol(letter, equation.point.name), True, _underlines(equation.point, known_names, lined))
         yield Equation(row(point, "=", base, *(node for term, __ in terms for node in ("+", term))))
         for spot in (equation.base, equation.point):
             if spot.fixed:
-                told[row(vector_letter(Symbol(letter, spot.name)), "=", Number("0"))] = None
-        told |= dict.fromkeys(direction for __, direction in terms)
-    yield from _write_side_by_side(list(told))
+                statements[row(vector_letter(Symbol(letter, spot.name)), "=", Number("0"))] = None
+        statements |= dict.fromkeys(direction for __, direction in terms)
+    yield from _write_side_by_side(list(statements))
 
 
 def write_point_of_known_link(
-    here: PositionPlans, about: SameLinkEquation, letter: str, known: Collection[str]
+    position: PositionPlans, about: SameLinkEquation, letter: str, known_names: Collection[str]
 ) -> Iterable[Block]:
     """Write the equation of a point of a link with known rotation, in the first detailed position only."""
-    if here.first:
+    if position.first:
         text = _("Point {point} belongs to link {link}, whose rotation is known:")
         yield write_sentence(text, point=point_symbol(about.point), link=about.link)
         if not about.base.fixed:
-            yield from write_equations(here, SolutionStep((), ()), [about], letter, known)
+            yield from write_equations(position, SolutionStep((), ()), [about], letter, known_names)
 
 
-def _write_side_by_side(told: Sequence[Node]) -> Iterable[Block]:
+def _write_side_by_side(statements: Sequence[Node]) -> Iterable[Block]:
     """Write short statements side by side, as many on a line as fit."""
-    shown: Node | None = None
-    for one in told:
-        longer = one if shown is None else row(shown, Words(",  "), one)
-        if shown is not None and width(longer) > LINE:
-            yield Equation(shown)
-            longer = one
-        shown = longer
-    if shown is not None:
-        yield Equation(shown)
+    line: Node | None = None
+    for statement in statements:
+        longer = statement if line is None else row(line, Words(",  "), statement)
+        if line is not None and width(longer) > LINE:
+            yield Equation(line)
+            longer = statement
+        line = longer
+    if line is not None:
+        yield Equation(line)
 
 
-def _underlines(spot: PlanPoint, known: Collection[str], lined: Collection[str]) -> int:
-    if spot.fixed or spot.name in known:
+def _underlines(spot: PlanPoint, known_names: Collection[str], lined: Collection[str]) -> int:
+    if spot.fixed or spot.name in known_names:
         return WHOLE
     return DIRECTION if spot.name in lined else UNKNOWN
 
@@ -287,26 +292,26 @@ def _relative_vectors(
 ) -> Iterable[tuple[Node, Node]]:
     """Yield each relative vector of an equation, and the statement of its direction, e.g. v_BA ⟂ AB."""
     index = equation.point.name + equation.base.name
-    sought = WHOLE if equation.known else DIRECTION
+    underlines = WHOLE if equation.known else DIRECTION
     if isinstance(equation, MovingGuideEquation):
-        way = name_guide(equation.slide)
+        line = name_guide(equation.slide)
         if letter == "v":
-            yield _vector_and_line(Symbol("v", index), sought, "∥", way)
+            yield _vector_and_line(Symbol("v", index), underlines, "∥", line)
             return
         if equation.slide.carrier in turning:
-            yield _vector_and_line(Symbol("a", index, "k"), WHOLE, "⟂", way)
-        yield _vector_and_line(Symbol("a", index, "r"), sought, "∥", way)
+            yield _vector_and_line(Symbol("a", index, "k"), WHOLE, "⟂", line)
+        yield _vector_and_line(Symbol("a", index, "r"), underlines, "∥", line)
         return
     if equation.idle:
         return
-    way = Words(equation.base.at + equation.point.at)
+    line = Words(equation.base.at + equation.point.at)
     if letter == "a":
-        yield _vector_and_line(Symbol("a", index, "n"), WHOLE, "∥", way)
-    yield _vector_and_line(Symbol(letter, index, "τ" if letter == "a" else ""), sought, "⟂", way)
+        yield _vector_and_line(Symbol("a", index, "n"), WHOLE, "∥", line)
+    yield _vector_and_line(Symbol(letter, index, "τ" if letter == "a" else ""), underlines, "⟂", line)
 
 
-def _vector_and_line(symbol: Symbol, lines: int, sign: str, way: Node) -> tuple[Node, Node]:
-    return Letter(symbol, True, lines), row(vector_letter(symbol), sign, way)
+def _vector_and_line(symbol: Symbol, underlines: int, sign: str, line: Node) -> tuple[Node, Node]:
+    return Letter(symbol, True, underlines), row(vector_letter(symbol), sign, line)
 
 
 def name_guide(slide: Slide) -> Node:

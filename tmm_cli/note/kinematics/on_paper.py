@@ -19,7 +19,7 @@ from tmm_cli.note.expression import ComputedQuantity, Expression, Leaf
 from tmm_cli.note.formula_tree import Letter, Number, row
 from tmm_cli.note.subject import OF_POSITION, Subject
 
-SMALL = 0.2  # of the largest known vector: a smaller one is not the one by which a scale is told
+SMALL = 0.2  # fraction of the largest known vector; a smaller vector does not set the scale
 
 
 @dataclass(frozen=True)
@@ -99,12 +99,12 @@ class DrawnPlan:
             above: Superscript of the component: n (normal), τ (tangential), k (Coriolis) or r (relative).
         """
         symbol = Symbol(self.kind.letter, point.name + base.name, above)
-        found = next(v for v in self.plan.vectors if v.symbol == symbol)
-        return self._vector(symbol, found.value, found.name)
+        vector = next(v for v in self.plan.vectors if v.symbol == symbol)
+        return self._vector(symbol, vector.value, vector.name)
 
-    def moves_alike(self, one: str, other: str) -> bool:
+    def moves_alike(self, first: str, second: str) -> bool:
         """Return True if two points have the same velocity or acceleration."""
-        return abs(self._end(one) - self._end(other)) <= NO_VECTOR * self.plan.size
+        return abs(self._end(first) - self._end(second)) <= NO_VECTOR * self.plan.size
 
     def measure(self, vector: DrawnVector) -> Block:
         """Write the magnitude of a vector as its segment on the plan times the scale."""
@@ -133,8 +133,8 @@ class DrawnPlan:
         return self.ends[name].name[len(self.kind.pole) :] if name in self.ends else ""
 
     def _vector(self, symbol: Symbol, value: complex, segment: str) -> DrawnVector:
-        there = abs(value) > NO_VECTOR * self.plan.size
-        return DrawnVector(symbol, abs(value) if there else 0.0, segment if there else "")
+        nonzero = abs(value) > NO_VECTOR * self.plan.size
+        return DrawnVector(symbol, abs(value) if nonzero else 0.0, segment if nonzero else "")
 
 
 @dataclass(frozen=True)
@@ -189,8 +189,8 @@ class PositionPlans:
 
     def length(self, point: PlanPoint, base: PlanPoint) -> Leaf:
         """Return the distance (m) between two points of a link in this position."""
-        places = [complex(self.motion.spot(spot.at)[self.k]) for spot in (base, point)]
-        return Leaf(Symbol("l", base.at + point.at), abs(places[1] - places[0]))
+        ends = [complex(self.motion.spot(spot.at)[self.k]) for spot in (base, point)]
+        return Leaf(Symbol("l", base.at + point.at), abs(ends[1] - ends[0]))
 
 
 def unit_of(letter: str) -> str:

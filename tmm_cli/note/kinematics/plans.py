@@ -23,16 +23,16 @@ from tmm_cli.note.kinematics.higher_pairs import write_higher_pairs
 from tmm_cli.note.kinematics.on_paper import DrawnVector, PositionPlans
 
 
-def write_velocities(here: PositionPlans, steps: Sequence[SolutionStep]) -> Iterable[Block]:
+def write_velocities(position: PositionPlans, steps: Sequence[SolutionStep]) -> Iterable[Block]:
     """Write the velocities of a position in the order in which the plan is drawn."""
-    known: set[str] = set()
+    known_names: set[str] = set()
     for step in steps:
         if step.group is None:
-            yield from _write_driver_velocities(here, step)
-            known |= words.solved_points(step)
+            yield from _write_driver_velocities(position, step)
+            known_names |= words.solved_points(step)
     yield from words.write_scale(
-        here.v,
-        [vector for step in steps for vector in _known_velocities(here, step)],
+        position.v,
+        [vector for step in steps for vector in _known_velocities(position, step)],
         _(
             "The velocity plan begins at its pole {pole}. The segment {segment} represents {v}; the scale "
             "factor of the plan is"
@@ -41,125 +41,133 @@ def write_velocities(here: PositionPlans, steps: Sequence[SolutionStep]) -> Iter
     )
     for step in steps:
         if step.group is not None:
-            yield from _write_group_velocities(here, step, known)
-            known |= words.solved_points(step)
-    yield from words.write_remaining_points(here, here.v, known)
+            yield from _write_group_velocities(position, step, known_names)
+            known_names |= words.solved_points(step)
+    yield from words.write_remaining_points(position, position.v, known_names)
 
 
-def _write_driver_velocities(here: PositionPlans, step: SolutionStep) -> Iterable[Block]:
+def _write_driver_velocities(position: PositionPlans, step: SolutionStep) -> Iterable[Block]:
     """Write the velocities of points of an input link."""
     turned = words.further_points(step)
-    if here.first and turned:
-        one = _(
+    if position.first and turned:
+        for_one = _(
             "The velocity of point {points} of the input link is perpendicular to {line} and directed in the "
             "sense of its rotation:"
         )
-        several = _(
+        for_several = _(
             "The velocities of points {points} of the input link are perpendicular to their radii and directed "
             "in the sense of its rotation:"
         )
         line = turned[0].base.at + turned[0].point.at
         points = join_inline(words.point_symbol(about.point) for about in turned)
-        yield write_sentence(one if len(turned) == 1 else several, points=points, line=line)
-    elif here.first and step.equations:
+        yield write_sentence(for_one if len(turned) == 1 else for_several, points=points, line=line)
+    elif position.first and step.equations:
         text = _("Link {link} does not rotate: all its points move with the given velocity {v}.")
-        yield write_sentence(text, link=step.links[0], v=here.v.vector_of(step.equations[0].point).symbol)
+        yield write_sentence(text, link=step.links[0], v=position.v.vector_of(step.equations[0].point).symbol)
     for about in turned:
-        yield _rotational_velocity(here, about)
+        yield _rotational_velocity(position, about)
 
 
-def _rotational_velocity(here: PositionPlans, about: SameLinkEquation) -> Block:
+def _rotational_velocity(position: PositionPlans, about: SameLinkEquation) -> Block:
     """Return the velocity v = ω l of a point relative to another point of its link."""
-    found = here.v.relative(about.point, about.base)
-    return here.v.write_magnitude(found, here.rate("ω", about.link) * here.length(about.point, about.base))
+    velocity = position.v.relative(about.point, about.base)
+    return position.v.write_magnitude(
+        velocity, position.rate("ω", about.link) * position.length(about.point, about.base)
+    )
 
 
-def _known_velocities(here: PositionPlans, step: SolutionStep) -> Iterable[DrawnVector]:
+def _known_velocities(position: PositionPlans, step: SolutionStep) -> Iterable[DrawnVector]:
     """Yield the velocities that are known before the plan is drawn."""
     for equation in (*step.equations, *(step.after if step.group is None else ())):
         if equation.known and isinstance(equation, FixedGuideEquation):
-            yield here.v.vector_of(equation.point)
+            yield position.v.vector_of(equation.point)
         elif equation.known and not isinstance(equation, FixedGuideEquation):
-            yield here.v.relative(equation.point, equation.base)
+            yield position.v.relative(equation.point, equation.base)
 
 
-def _write_group_velocities(here: PositionPlans, step: SolutionStep, known: Collection[str]) -> Iterable[Block]:
+def _write_group_velocities(
+    position: PositionPlans, step: SolutionStep, known_names: Collection[str]
+) -> Iterable[Block]:
     """Write the velocities of a group: ratios of higher pairs, vector equations, plan values, further points."""
-    points, together, found = words.unknown_points(step, known), words.simultaneous_equations(step), {*known}
-    yield from write_higher_pairs(here, step, "ω")
+    points, together, solved_names = (
+        words.unknown_points(step, known_names),
+        words.simultaneous_equations(step),
+        {*known_names},
+    )
+    yield from write_higher_pairs(position, step, "ω")
     for about in words.direct_equations(step):
-        yield from _write_velocity_on_known_link(here, about, found)
-        found.add(about.point.name)
-    if here.first and together:
-        one = _("Group {group}: the velocity of point {points} is found from the equations")
-        several = _("Group {group}: the velocities of points {points} are found from the equations")
-        yield words.introduce_equations(step, points, one, several)
-        yield from write_equations(here, step, together, "v", found)
+        yield from _write_velocity_on_known_link(position, about, solved_names)
+        solved_names.add(about.point.name)
+    if position.first and together:
+        for_one = _("Group {group}: the velocity of point {points} is found from the equations")
+        for_several = _("Group {group}: the velocities of points {points} are found from the equations")
+        yield words.introduce_equations(step, points, for_one, for_several)
+        yield from write_equations(position, step, together, "v", solved_names)
         for link in dict.fromkeys(e.link for e in together if isinstance(e, SameLinkEquation) and e.idle):
             yield write_sentence(_("Link {link} does not rotate, so all its points have the same velocity."), link=link)
         yield write_sentence(_("The plan gives:")) if step.on_paper else words.explain_numerical_solution()
     for spot in points:
-        yield here.v.measure(here.v.vector_of(spot))
+        yield position.v.measure(position.v.vector_of(spot))
     for equation in together:
         if not isinstance(equation, FixedGuideEquation) and not equation.known and not equation.base.fixed:
-            yield here.v.measure(here.v.relative(equation.point, equation.base))
+            yield position.v.measure(position.v.relative(equation.point, equation.base))
     yield from words.write_rotation(
-        here,
+        position,
         together,
         "ω",
-        lambda about: here.v.relative(about.point, about.base),
+        lambda about: position.v.relative(about.point, about.base),
         _("Vector {v}, transferred to point {point}, shows that link {link} rotates {sense}."),
         _("Link {link} rotates {sense}."),
     )
-    yield from words.write_common_rotation(here, step, "ω")
+    yield from words.write_common_rotation(position, step, "ω")
     for about in words.further_points(step):
-        yield from _write_velocity_on_known_link(here, about, found)
+        yield from _write_velocity_on_known_link(position, about, solved_names)
 
 
 def _write_velocity_on_known_link(
-    here: PositionPlans, about: SameLinkEquation, found: Collection[str]
+    position: PositionPlans, about: SameLinkEquation, solved_names: Collection[str]
 ) -> Iterable[Block]:
     """Write the velocity of a point of a link whose rotation is known.
 
-    solved: names of the points whose velocities are known.
+    solved_names: names of the points whose velocities are known.
     """
-    yield from write_point_of_known_link(here, about, "v", found)
-    yield _rotational_velocity(here, about)
+    yield from write_point_of_known_link(position, about, "v", solved_names)
+    yield _rotational_velocity(position, about)
     if not about.base.fixed:
-        yield here.v.measure(here.v.vector_of(about.point))
+        yield position.v.measure(position.v.vector_of(about.point))
 
 
 # Accelerations of a position: normal and Coriolis parts from velocities, the rest by vector equations and the plan.
 
 
-def write_accelerations(here: PositionPlans, steps: Sequence[SolutionStep]) -> Iterable[Block]:
+def write_accelerations(position: PositionPlans, steps: Sequence[SolutionStep]) -> Iterable[Block]:
     """Write the accelerations of a position in the order in which the plan is drawn."""
-    known: set[str] = set()
+    known_names: set[str] = set()
     driving, groups = ([step for step in steps if (step.group is None) is first] for first in (True, False))
     for step in driving:
-        yield from _write_driver_accelerations(here, step)
-        known |= words.solved_points(step)
+        yield from _write_driver_accelerations(position, step)
+        known_names |= words.solved_points(step)
     for step in groups:
-        yield from _write_equations_and_components(here, step, known)
+        yield from _write_equations_and_components(position, step, known_names)
         if step == groups[0]:
-            yield from _write_acceleration_scale(here, [*driving, step])
-        yield from _write_plan_solution(here, step, known)
-        known |= words.solved_points(step)
+            yield from _write_acceleration_scale(position, [*driving, step])
+        yield from _write_plan_solution(position, step, known_names)
+        known_names |= words.solved_points(step)
     if not groups:
-        yield from _write_acceleration_scale(here, steps)
-    yield from words.write_remaining_points(here, here.a, known)
+        yield from _write_acceleration_scale(position, steps)
+    yield from words.write_remaining_points(position, position.a, known_names)
 
 
-def _write_driver_accelerations(here: PositionPlans, step: SolutionStep) -> Iterable[Block]:
+def _write_driver_accelerations(position: PositionPlans, step: SolutionStep) -> Iterable[Block]:
     """Write the accelerations of points of an input link."""
     for equation in step.equations:
-        a = here.a.vector_of(equation.point)
+        a = position.a.vector_of(equation.point)
         text = _("Input link {link} moves uniformly, so {a} = 0.")
         if a.segment:
             text = _("All points of link {link} have the acceleration {a} of the driver.")
         yield write_sentence(text, link=step.links[0], a=a.symbol)
     turned = words.further_points(step)
-    if turned and here.first:
+    if turned and position.first:
         even = _(
             "Input link {link} rotates uniformly: the accelerations of its points are purely normal, directed "
             "towards the axis of rotation."
@@ -168,48 +176,52 @@ def _write_driver_accelerations(here: PositionPlans, step: SolutionStep) -> Iter
             "Input link {link} does not rotate uniformly: the accelerations of its points have normal and "
             "tangential components."
         )
-        yield write_sentence(uneven if step.links[0] in here.epsilon else even, link=step.links[0])
+        yield write_sentence(uneven if step.links[0] in position.epsilon else even, link=step.links[0])
     for about in turned:
-        yield from _write_components(here, about)
-        yield from _write_total_acceleration(here, about)
+        yield from _write_components(position, about)
+        yield from _write_total_acceleration(position, about)
 
 
-def _write_components(here: PositionPlans, about: SameLinkEquation) -> Iterable[Block]:
+def _write_components(position: PositionPlans, about: SameLinkEquation) -> Iterable[Block]:
     """Write the normal and the tangential acceleration of a point of a link whose rotation is known."""
-    yield _normal_acceleration(here, about)
-    tangential = _component(here, about, "τ")
-    if tangential.segment or about.link in here.epsilon:
-        yield here.a.write_magnitude(tangential, here.rate("ε", about.link) * here.length(about.point, about.base))
+    yield _normal_acceleration(position, about)
+    tangential = _component(position, about, "τ")
+    if tangential.segment or about.link in position.epsilon:
+        yield position.a.write_magnitude(
+            tangential, position.rate("ε", about.link) * position.length(about.point, about.base)
+        )
 
 
-def _normal_acceleration(here: PositionPlans, about: SameLinkEquation) -> Block:
-    length = here.length(about.point, about.base)
-    return here.a.write_magnitude(_component(here, about, "n"), here.rate("ω", about.link) ** 2 * length)
+def _normal_acceleration(position: PositionPlans, about: SameLinkEquation) -> Block:
+    length = position.length(about.point, about.base)
+    return position.a.write_magnitude(_component(position, about, "n"), position.rate("ω", about.link) ** 2 * length)
 
 
-def _component(here: PositionPlans, equation: SameLinkEquation | MovingGuideEquation, above: str) -> DrawnVector:
-    return here.a.component(equation.point, equation.base, above)
+def _component(position: PositionPlans, equation: SameLinkEquation | MovingGuideEquation, above: str) -> DrawnVector:
+    return position.a.component(equation.point, equation.base, above)
 
 
-def _write_total_acceleration(here: PositionPlans, about: SameLinkEquation) -> Iterable[Block]:
+def _write_total_acceleration(position: PositionPlans, about: SameLinkEquation) -> Iterable[Block]:
     """Write the acceleration of a point whose two components are known."""
-    a = here.a.vector_of(about.point)
-    if about.base.fixed and not _component(here, about, "τ").segment:
-        yield words.write_equality(a.symbol, _component(here, about, "n").symbol)
+    a = position.a.vector_of(about.point)
+    if about.base.fixed and not _component(position, about, "τ").segment:
+        yield words.write_equality(a.symbol, _component(position, about, "n").symbol)
     else:
-        yield here.a.measure(a)
+        yield position.a.measure(a)
 
 
-def _coriolis_acceleration(here: PositionPlans, along: MovingGuideEquation) -> Block:
+def _coriolis_acceleration(position: PositionPlans, along: MovingGuideEquation) -> Block:
     """Return the Coriolis acceleration 2 ω v of a sliding block."""
-    sliding = here.v.relative(along.point, along.base)
-    return here.a.write_magnitude(_component(here, along, "k"), 2 * here.rate("ω", along.slide.carrier) * sliding.leaf)
+    sliding = position.v.relative(along.point, along.base)
+    return position.a.write_magnitude(
+        _component(position, along, "k"), 2 * position.rate("ω", along.slide.carrier) * sliding.leaf
+    )
 
 
-def _write_acceleration_scale(here: PositionPlans, steps: Sequence[SolutionStep]) -> Iterable[Block]:
+def _write_acceleration_scale(position: PositionPlans, steps: Sequence[SolutionStep]) -> Iterable[Block]:
     return words.write_scale(
-        here.a,
-        [vector for step in steps for vector in _known_accelerations(here, step)],
+        position.a,
+        [vector for step in steps for vector in _known_accelerations(position, step)],
         _(
             "The acceleration plan begins at its pole {pole}. The segment {segment} represents {a}; the scale "
             "factor of the plan is"
@@ -218,75 +230,83 @@ def _write_acceleration_scale(here: PositionPlans, steps: Sequence[SolutionStep]
     )
 
 
-def _known_accelerations(here: PositionPlans, step: SolutionStep) -> Iterable[DrawnVector]:
+def _known_accelerations(position: PositionPlans, step: SolutionStep) -> Iterable[DrawnVector]:
     """Yield the accelerations and components that are known before the plan is drawn."""
     if step.group is None:
-        yield from (here.a.vector_of(equation.point) for equation in step.equations)
+        yield from (position.a.vector_of(equation.point) for equation in step.equations)
     for about in step.after if step.group is None else ():
         if not about.idle:
-            yield here.a.vector_of(about.point) if about.link not in here.epsilon else _component(here, about, "n")
+            yield (
+                position.a.vector_of(about.point)
+                if about.link not in position.epsilon
+                else _component(position, about, "n")
+            )
     for equation in step.equations:
         if isinstance(equation, MovingGuideEquation):
-            yield _component(here, equation, "k")
+            yield _component(position, equation, "k")
         elif isinstance(equation, SameLinkEquation) and not equation.idle:
-            yield _component(here, equation, "n")
+            yield _component(position, equation, "n")
 
 
-def _write_equations_and_components(here: PositionPlans, step: SolutionStep, known: Collection[str]) -> Iterable[Block]:
+def _write_equations_and_components(
+    position: PositionPlans, step: SolutionStep, known_names: Collection[str]
+) -> Iterable[Block]:
     """Write the equations of a group, and the components known from velocities and higher pairs."""
-    points, together = words.unknown_points(step, known), words.simultaneous_equations(step)
-    yield from write_higher_pairs(here, step, "ε")
-    if here.first and together:
-        one = _("Group {group}: the acceleration of point {points} is found from the equations")
-        several = _("Group {group}: the accelerations of points {points} are found from the equations")
-        yield words.introduce_equations(step, points, one, several)
+    points, together = words.unknown_points(step, known_names), words.simultaneous_equations(step)
+    yield from write_higher_pairs(position, step, "ε")
+    if position.first and together:
+        for_one = _("Group {group}: the acceleration of point {points} is found from the equations")
+        for_several = _("Group {group}: the accelerations of points {points} are found from the equations")
+        yield words.introduce_equations(step, points, for_one, for_several)
         yield from write_equations(
-            here, step, together, "a", {*known, *(about.point.name for about in words.direct_equations(step))}
+            position, step, together, "a", {*known_names, *(about.point.name for about in words.direct_equations(step))}
         )
-        if any(_has_known_component(here, equation) for equation in together):
+        if any(_has_known_component(position, equation) for equation in together):
             yield write_sentence(_("From the velocities:"))
     for about in words.direct_equations(step):
-        yield from _write_components(here, about)
+        yield from _write_components(position, about)
     for equation in together:
-        if _has_known_component(here, equation):
+        if _has_known_component(position, equation):
             assert not isinstance(equation, FixedGuideEquation)
             yield (
-                _normal_acceleration(here, equation)
+                _normal_acceleration(position, equation)
                 if isinstance(equation, SameLinkEquation)
-                else _coriolis_acceleration(here, equation)
+                else _coriolis_acceleration(position, equation)
             )
 
 
-def _has_known_component(here: PositionPlans, equation: VectorEquation) -> bool:
+def _has_known_component(position: PositionPlans, equation: VectorEquation) -> bool:
     """Return True if an equation has a normal or a Coriolis component."""
     if isinstance(equation, MovingGuideEquation):
-        return equation.slide.carrier in here.omega
+        return equation.slide.carrier in position.omega
     return isinstance(equation, SameLinkEquation) and not equation.idle
 
 
-def _write_plan_solution(here: PositionPlans, step: SolutionStep, known: Collection[str]) -> Iterable[Block]:
+def _write_plan_solution(position: PositionPlans, step: SolutionStep, known_names: Collection[str]) -> Iterable[Block]:
     """Write the accelerations that the plan of a group gives."""
-    points, together = words.unknown_points(step, known), words.simultaneous_equations(step)
+    points, together = words.unknown_points(step, known_names), words.simultaneous_equations(step)
     for about in words.direct_equations(step):
-        yield from _write_total_acceleration(here, about)
-    if here.first and together:
+        yield from _write_total_acceleration(position, about)
+    if position.first and together:
         yield write_sentence(_("The plan gives:")) if step.on_paper else words.explain_numerical_solution()
     for equation in together:
         if not isinstance(equation, FixedGuideEquation) and not equation.known:
-            yield here.a.measure(_component(here, equation, "τ" if isinstance(equation, SameLinkEquation) else "r"))
+            yield position.a.measure(
+                _component(position, equation, "τ" if isinstance(equation, SameLinkEquation) else "r")
+            )
     for spot in points:
-        yield here.a.measure(here.a.vector_of(spot))
+        yield position.a.measure(position.a.vector_of(spot))
     yield from words.write_rotation(
-        here,
+        position,
         together,
         "ε",
-        lambda about: _component(here, about, "τ"),
+        lambda about: _component(position, about, "τ"),
         _("Vector {a}, transferred to point {point}, shows that {epsilon} is {sense}."),
         _("Angular acceleration {epsilon} is {sense}."),
     )
-    yield from words.write_common_rotation(here, step, "ε")
-    found = {*known, *words.solved_points(step)}
+    yield from words.write_common_rotation(position, step, "ε")
+    solved_names = {*known_names, *words.solved_points(step)}
     for about in words.further_points(step):
-        yield from write_point_of_known_link(here, about, "a", found - {about.point.name})
-        yield from _write_components(here, about)
-        yield from _write_total_acceleration(here, about)
+        yield from write_point_of_known_link(position, about, "a", solved_names - {about.point.name})
+        yield from _write_components(position, about)
+        yield from _write_total_acceleration(position, about)
