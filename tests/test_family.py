@@ -10,7 +10,7 @@ from test_commands import ROOT
 
 from tmm_cli.batch import (
     DriverSamples,
-    NoTapeError,
+    NotTraceableError,
     SequentialVariants,
     TracedNumber,
     TracedVariants,
@@ -107,7 +107,7 @@ def test_arithmetic_of_a_file_on_numbers_that_vary(text):
         return evaluate_quantity(sample, {}, units).dimension
 
     found = trace_function(
-        lambda x, y: {"y": value(TracedNumber(0.02, x), TracedNumber(0.09, y), VariedUnits(units)).stand}, 1, 1
+        lambda x, y: {"y": value(TracedNumber(0.02, x), TracedNumber(0.09, y), VariedUnits(units)).placeholder}, 1, 1
     )(a, b)["y"]
     assert found[:, 0] == pytest.approx([value(x, y, units) for x, y in zip(a[:, 0], b[:, 0], strict=True)], rel=1e-13)
 
@@ -115,7 +115,7 @@ def test_arithmetic_of_a_file_on_numbers_that_vary(text):
 def test_groups_with_passive_constraints_are_not_on_the_tape_of_variants():
     name = "crossed-slots"
     make, first = maker(name, list(read_file(str(ROOT / f"problems/{name}.yaml")).data["parameters"])[:1])
-    with pytest.raises(NoTapeError):
+    with pytest.raises(NotTraceableError):
         TracedVariants(make, first, read_all)
 
 

@@ -384,7 +384,7 @@ def test_energy_of_a_moment_that_jumps_is_exact_over_the_cycle():
         mean = (10 * 120 + 40 * 240) / 360
         work = np.radians(120) * (mean - 10)
         largest = results.running.steady.law.energy
-        at = largest(largest.places())
+        at = largest(largest.sample_points())
         assert np.ptp(at) == pytest.approx(work, rel=1e-12)
         (load,) = [one for one in results.loads if one.name == "m"]
         assert load.moment == pytest.approx([40, 10, 10, 10, 40, 40], rel=1e-12)

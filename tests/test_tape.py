@@ -18,7 +18,7 @@ from tmm_cli.batch import (
     CHECKS,
     CHUNK,
     DependsOnData,
-    NotAlikeError,
+    IncompatibleLinkagesError,
     prepare_batch,
     read_all,
     trace_function,
@@ -166,7 +166,7 @@ def test_class_ii_problems_of_the_bank():
 
 
 def test_linkages_of_different_kinds_are_not_put_together():
-    with pytest.raises(NotAlikeError):
+    with pytest.raises(IncompatibleLinkagesError):
         varying_numbers([linkage_of("shaper"), linkage_of("six-bar")])
 
 

@@ -47,9 +47,9 @@ from .traced_variants import (
 from .variant import (
     WANTED as WANTED,
     DriverSamples as DriverSamples,
+    IncompatibleLinkagesError as IncompatibleLinkagesError,
     Make as Make,
-    NotAlikeError as NotAlikeError,
-    NoTapeError as NoTapeError,
+    NotTraceableError as NotTraceableError,
     Variant as Variant,
     compute_sketch as compute_sketch,
     numeric_leaves as numeric_leaves,

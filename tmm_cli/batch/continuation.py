@@ -120,7 +120,7 @@ def _components(vector: Any, angle: Any) -> tuple[Any, Any, Any]:
 
 
 @dataclass(frozen=True)
-class StartTable:
+class InitialGuessTable:
     """Unknowns of a group as cubic polynomials of the driver coordinate, on intervals of equal width.
 
     Attributes:
@@ -136,7 +136,7 @@ class StartTable:
     gain: Real | None
 
     @classmethod
-    def of(cls, q: Real, x: Real, v: Real, *, closed: bool) -> StartTable:
+    def of(cls, q: Real, x: Real, v: Real, *, closed: bool) -> InitialGuessTable:
         """Build the table from unknowns x and derivatives v, (unknowns, nodes), at evenly spaced driver coordinates.
 
         The unknowns are nan where they are not known.
@@ -173,7 +173,7 @@ class InitialGuesses:
         """Tabulate the unknowns of the groups that are solved by a fixed number of Newton steps."""
         iterated = [kernel for kernel in kernels if isinstance(kernel, UnrolledNewton) and not kernel.linear]
         traces = [kernel.trace for kernel in iterated if kernel.trace is not None]
-        self.tables: list[StartTable] = []
+        self.tables: list[InitialGuessTable] = []
         if not iterated:
             return
         closing = _closing_program(linkage, kernels)
@@ -186,7 +186,7 @@ class InitialGuesses:
             numbers = range(first, first + len(kernel.free))
             lost = np.where(closed["sure"], 0.0, np.nan)
             x, v = (np.stack([closed[f"{letter}{k}"] + lost for k in numbers]) for letter in "xv")
-            self.tables.append(StartTable.of(q, x, v, closed=trace.closed))
+            self.tables.append(InitialGuessTable.of(q, x, v, closed=trace.closed))
             first += len(kernel.free)
 
     def __call__(self, q: Real) -> list[Real]:
@@ -330,9 +330,9 @@ class Continuation:
             return {**free_unknowns(states), **dets}
 
         self.program = trace_function(stages, *[1] * (many + 1 + count_initial_guesses(kernels)))
-        _, self.signs = self._closed(self.first[None, :], np.array([self.at]), self.x[:, None], None)
+        _, self.signs = self._correct(self.first[None, :], np.array([self.at]), self.x[:, None], None)
 
-    def _closed(self, numbers: Real, q: Real, x: Real, signs: Real | None) -> tuple[Real, Real]:
+    def _correct(self, numbers: Real, q: Real, x: Real, signs: Real | None) -> tuple[Real, Real]:
         """Correct the unknowns x of variants by Newton's method.
 
         signs: signs of the determinants of the first linkage, (groups, 1). Variants that do not converge, or whose
@@ -353,13 +353,13 @@ class Continuation:
         corrected[0, :, ~sound] = np.nan
         return corrected, dets
 
-    def _near(self, corrected: Real, start: Real) -> Real:
+    def _is_small_correction(self, corrected: Real, start: Real) -> Real:
         """Return True for the variants whose correction was small, (variants,)."""
         with np.errstate(invalid="ignore"):
             near: Real = np.max(np.abs(corrected - start) / self.scale[:, None], axis=0) < LARGEST_CORRECTION
         return near
 
-    def sketched(self, numbers: Real) -> Real:
+    def continue_at_sketch(self, numbers: Real) -> Real:
         """Continue the unknowns to variants with these numbers (variants, n), at the position of the sketch.
 
         Returns:
@@ -373,8 +373,8 @@ class Continuation:
             share = np.minimum(gone + stride, 1.0)
             start = current[0] + slope * (share - gone)
             between = self.first + share[:, None] * (numbers - self.first)
-            corrected, _ = self._closed(between, np.full(variants, self.at), start, self.signs)
-            good = self._near(corrected[0], start) & (gone < 1)
+            corrected, _ = self._correct(between, np.full(variants, self.at), start, self.signs)
+            good = self._is_small_correction(corrected[0], start) & (gone < 1)
             moved = np.where(good, share - gone, 1.0)
             slope = np.where(good, (corrected[0] - current[0]) / moved, slope)
             current = np.where(good, corrected, current)
@@ -399,7 +399,7 @@ class Continuation:
         n = -(-count // 2) if closed else count
         ends = np.stack([low[:, 0], high[:, 0]]) - self.at
         ends[0], ends[1] = np.minimum(ends[0], 0.0), np.maximum(ends[1], 0.0)
-        x, v = self._continue_in_steps(numbers, self.sketched(numbers), ends / n, n)
+        x, v = self._continue_in_steps(numbers, self.continue_at_sketch(numbers), ends / n, n)
         gain = None
         if closed:
             gain = x[:, :, -1:] - x[:, :, :1]
@@ -430,8 +430,8 @@ class Continuation:
         while np.any(active):
             step = h * step_share
             start = now[0] + step * (now[1] + step / 2 * bend)
-            corrected, _ = self._closed(both, self.at + h * gone + step, start, self.signs)
-            good = self._near(corrected[0], start) & active
+            corrected, _ = self._correct(both, self.at + h * gone + step, start, self.signs)
+            good = self._is_small_correction(corrected[0], start) & active
             with np.errstate(invalid="ignore", divide="ignore"):
                 bend = np.where(good & (step != 0), (corrected[1] - now[1]) / step, bend)
             now = np.where(good, corrected, now)

@@ -17,7 +17,7 @@ import numpy as np
 from tmm_cli.batch.continuation import LARGEST_CORRECTION, STEPS_PER_TURN, Continuation, ContinuedPaths, LinkageMaker
 from tmm_cli.batch.prepare import traceable_groups
 from tmm_cli.batch.traced_arrays import DependsOnData, TracedNumber
-from tmm_cli.batch.variant import Make, NoTapeError, placeholder_linkage, resolve_traced, split_columns
+from tmm_cli.batch.variant import Make, NotTraceableError, placeholder_linkage, resolve_traced, split_columns
 from tmm_cli.mechanics.analysis import Inputs, Mechanism
 from tmm_cli.mechanics.assembly import SKETCH_CLOSE, analyse_mobile_structure, assemble, sketched_angles
 from tmm_cli.mechanics.errors import LinkageError
@@ -76,7 +76,7 @@ class ContinuedGroup(NewtonSolver):
         x, turned = (np.stack(np.broadcast_arrays(*components), axis=-1) for components in zip(*parts, strict=True))
         return GroupState(x, turned), np.full(x.shape[:-1], -1.0)
 
-    def kept(self, states: LinkStates) -> Real:
+    def follows_path(self, states: LinkStates) -> Real:
         """Return True for the variants whose group follows its path, far from dead positions, in the assembly of their
         sketch.
 
@@ -114,14 +114,14 @@ def continue_groups(
         kernels: its group solvers.
 
     Raises:
-        NoTapeError, DependsOnData: the groups cannot be traced.
+        NotTraceableError, DependsOnData: the groups cannot be traced.
     """
     traces = [kernel.trace for kernel in kernels if isinstance(kernel, NewtonSolver) and not kernel.by_angle]
     if not traces:
         return kernels
     lines = traceable_groups(linkage, kernels)
     if lines is None or any(trace is None or not trace.closed or trace.dead.size for trace in traces):
-        raise NoTapeError
+        raise NotTraceableError
     half = np.full((len(columns), 1), np.pi)
     paths = Continuation(varied, columns[0].tolist(), linkage, lines)(columns, -half, half, STEPS_PER_TURN, closed=True)
     continued: list[GroupSolver] = []
@@ -237,7 +237,7 @@ def build_family(make: Make, columns: Real) -> VariantFamily | None:
         kernels = continue_groups(
             lambda data: placeholder_linkage(make, first, data, plain.sketch), columns, plain, kernels
         )
-    except (DependsOnData, NoTapeError, LinkageError):
+    except (DependsOnData, NotTraceableError, LinkageError):
         return None
     linkage = replace(resolve_traced(varied.linkage), sketch=plain.sketch)
     structure = structure.rebind(linkage)
@@ -296,7 +296,7 @@ def _output_strokes(
     sound = np.all(whole.moving, axis=1)
     for kernel in kernels:
         if isinstance(kernel, ContinuedGroup):
-            sound = sound & kernel.kept(whole)
+            sound = sound & kernel.follows_path(whole)
     if link is None or not (linkage.slides_on_frame(link) or linkage.hinged_to_frame(link)):
         return None, sound
     curve = OutputCurve(linkage, solvers_towards(kernels, [link]), link)

@@ -114,7 +114,7 @@ class Batch:
             Requested results by name, (variants, positions), or (positions,) for a single linkage. They are
             meaningless where the linkage cannot be assembled, see `sound`.
         """
-        return self._one_by_one(q) if self.program is None else self._replay(self.program, q)
+        return self._solve_one_by_one(q) if self.program is None else self._replay(self.program, q)
 
     def sound(self, q: Real) -> TraceOutputs | Mapping[str, Real]:
         """Check whether the linkages can be solved at driver coordinates q.
@@ -124,7 +124,7 @@ class Batch:
             position. `margin`: least distance of a group from a dead position, at most 1; results lose about as
             many of their 16 digits as the margin has leading zeros. `solve` gives bounds of the errors.
         """
-        return self._one_by_one(q) if self.checks is None else self._replay(self.checks, q)
+        return self._solve_one_by_one(q) if self.checks is None else self._replay(self.checks, q)
 
     def closed(self, q: Real) -> Real:
         """Return True at driver coordinates q where the traced operations alone solve all groups."""
@@ -144,10 +144,10 @@ class Batch:
             return outputs
         sure, outputs = np.reshape(outputs.part(CONVERGED), outputs.several_shape), outputs.without(CONVERGED)
         for k in np.flatnonzero(~np.all(sure, axis=1)).tolist():
-            outputs = outputs.put(k, ~sure[k], self._solved(k, (q[k] if q.ndim > 1 else q)[~sure[k]]))
+            outputs = outputs.replace_values(k, ~sure[k], self._solve_one(k, (q[k] if q.ndim > 1 else q)[~sure[k]]))
         return outputs
 
-    def _solved(self, k: int, q: Real) -> Mapping[str, Real]:
+    def _solve_one(self, k: int, q: Real) -> Mapping[str, Real]:
         """Solve linkage number k by the ordinary stages."""
         linkage = self.linkages[k]
         if k not in self.others:
@@ -159,8 +159,8 @@ class Batch:
             if name not in (CONVERGED, ANGLES_AGREE)
         }
 
-    def _one_by_one(self, q: Real) -> Mapping[str, Real]:
-        solved = [self._solved(k, q[k] if np.ndim(q) > 1 else q) for k in range(len(self.linkages))]
+    def _solve_one_by_one(self, q: Real) -> Mapping[str, Real]:
+        solved = [self._solve_one(k, q[k] if np.ndim(q) > 1 else q) for k in range(len(self.linkages))]
         if len(solved) == 1:
             return solved[0]
         return {name: np.stack([output[name] for output in solved]) for name in solved[0]}
@@ -185,7 +185,7 @@ def prepare_batch(
             positions.
 
     Raises:
-        NotAlikeError: the linkages differ in more than their numbers.
+        IncompatibleLinkagesError: the linkages differ in more than their numbers.
         ValueError: there are several linkages, with loads that depend on strokes.
         LinkageError: a linkage cannot be assembled.
     """
@@ -248,8 +248,8 @@ def continue_linkages(
     turns = (high - low) / (2 * np.pi) if first.driver.kind == "turn" else 1.0
     closed = all(trace.closed for trace in traces)
     ones = np.ones((len(numbers), 1))
-    march = Continuation(varied, numbers[0].tolist(), first, lines)
-    return march(numbers, low * ones, high * ones, int(np.ceil(STEPS_PER_TURN * turns)), closed=closed)
+    continuation = Continuation(varied, numbers[0].tolist(), first, lines)
+    return continuation(numbers, low * ones, high * ones, int(np.ceil(STEPS_PER_TURN * turns)), closed=closed)
 
 
 def traceable_groups(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> tuple[GroupSolver, ...] | None:

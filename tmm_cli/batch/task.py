@@ -218,7 +218,7 @@ class Task:
         """Pickle only the file; everything else is computed again in the other process."""
         return Task, (self.tree,)
 
-    def revealing(self) -> Task:
+    def reveal_values(self) -> Task:
         """Return the task with the option `reveal` on: the feedback shows the right values."""
         rules = {**self.tree.data["grading"], "reveal": True}
         return Task(replace(self.tree, data={**self.tree.data, "grading": rules}))
@@ -254,10 +254,12 @@ class Task:
             return tuple(
                 question
                 for n, rule in enumerate(rules.answers)
-                for question in self._of_rule(rule, rules, values, last, ("grading", "answers", n))
+                for question in self._questions_of_rule(rule, rules, values, last, ("grading", "answers", n))
             )
 
-    def _of_rule(self, rule: AnswerRule, rules: Grading, values: ValueReader, last: int, path: Path) -> list[Question]:
+    def _questions_of_rule(
+        self, rule: AnswerRule, rules: Grading, values: ValueReader, last: int, path: Path
+    ) -> list[Question]:
         quantity = self.quantities.get(rule.of)
         if quantity is None:
             one_of_each = {_quantity_kind(name): name for name in reversed(self.quantities)}.values()
@@ -310,7 +312,7 @@ class Task:
     def _shape(self) -> Any:
         return validate_planar(self.tree)
 
-    def own(self, names: Sequence[str]) -> tuple[PhysicalValue, ...]:
+    def values_in_file(self, names: Sequence[str]) -> tuple[PhysicalValue, ...]:
         """Return the values that parameters have in the file."""
         parameters = self._parameters({})
         for name in names:
@@ -321,7 +323,7 @@ class Task:
 
     def dimensions(self, names: Sequence[str]) -> tuple[Dimension | None, ...]:
         """Return the dimension of each parameter; None for a plain number."""
-        return tuple(value.dimension for value in self.own(names))
+        return tuple(value.dimension for value in self.values_in_file(names))
 
     def number(self, value: PhysicalValue, dimension: Dimension | None) -> float:
         """Return a value in SI, or unchanged if there is no dimension."""

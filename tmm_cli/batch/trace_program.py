@@ -55,7 +55,7 @@ class TraceOutputs(Mapping[str, Array]):
         """Numbers of variants and positions."""
         return self.shape[::-1] if self.turned else self.shape
 
-    def put(self, variant: int, where: Array, values: Mapping[str, Array]) -> TraceOutputs:
+    def replace_values(self, variant: int, where: Array, values: Mapping[str, Array]) -> TraceOutputs:
         """Return the results with values of one variant replaced at the positions where the mask `where` is True."""
         planes = dict(self.planes)
         for name, parts in self.names.items():
@@ -131,11 +131,11 @@ class TraceProgram:
         several = any(axes & 1 for axes in self.inputs)
         turned = positions < variants  # the longer axis last
         shape = (positions, variants) if turned else (variants, positions)
-        laid = [_laid_out(d, axes, turned) for d, axes in zip(columns, self.inputs, strict=True)]
+        laid = [_arrange_axes(d, axes, turned) for d, axes in zip(columns, self.inputs, strict=True)]
         return TraceOutputs(self.outputs, self._code.run(laid, shape), turned, several, shape)
 
 
-def _laid_out(value: Array, axes: int, turned: bool) -> Array:
+def _arrange_axes(value: Array, axes: int, turned: bool) -> Array:
     """Arrange data so that their axes match those of the registers."""
     if axes == 3:
         return np.ascontiguousarray(value.T if turned else value)
@@ -168,7 +168,7 @@ class _CompiledProgram:
         self.operations, self.kinds, self.outer = len(writer.lines), writer.kinds, writer.outer
         names: dict[str, Any] = {f"f_{name}": function for name, function in UFUNCS.items()}
         names |= {"copy": np.copyto, "where": np.where, "read": _interpolate, "call": _call} | writer.constants
-        exec(compile(writer.source, "<tape>", "exec"), names)  # made of names of NumPy functions and registers alone
+        exec(compile(writer.source, "<trace>", "exec"), names)  # made of names of NumPy functions and registers alone
         self.function = names["program"]
         self.space: dict[tuple[int, int], list[Array]] = {}
 

@@ -158,14 +158,14 @@ class Trace:
             self.known[term.number] = known_value
         return self.known[term.number]
 
-    def settled(self, truth: Any) -> Any:
+    def settle_condition(self, truth: Any) -> Any:
         """Return a condition as a bool if it has the same truth for all known data, else unchanged."""
         known_value = self.value(truth) if isinstance(truth, Term) else None
         return truth if known_value is None or np.any(known_value != known_value.flat[0]) else bool(known_value.flat[0])
 
     def where(self, truth: Any, chosen: Any, other: Any) -> Any:
         """Select one of two numbers by a condition, as np.where does."""
-        truth = self.settled(truth)
+        truth = self.settle_condition(truth)
         if not isinstance(truth, Term):
             return chosen if truth else other
         if chosen is other or (not isinstance(chosen, Term) and not isinstance(other, Term) and chosen == other):
@@ -189,48 +189,48 @@ def negated_operand(value: Any) -> Any:
     return value.args[0] if isinstance(value, Term) and value.op == "negative" else None
 
 
-def _add(tape: Trace, a: Any, b: Any) -> Any:
+def _add(trace: Trace, a: Any, b: Any) -> Any:
     if is_number(a, 0):
         return b
     if is_number(b, 0):
         return a
     if negated_operand(b) is not None:
-        return tape.apply("subtract", a, negated_operand(b))
+        return trace.apply("subtract", a, negated_operand(b))
     if negated_operand(a) is not None:
-        return tape.apply("subtract", b, negated_operand(a))
+        return trace.apply("subtract", b, negated_operand(a))
     return None
 
 
-def _subtract(tape: Trace, a: Any, b: Any) -> Any:
+def _subtract(trace: Trace, a: Any, b: Any) -> Any:
     if is_number(b, 0):
         return a
     if is_number(a, 0):
-        return tape.apply("negative", b)
+        return trace.apply("negative", b)
     if a is b:
         return 0.0
     if negated_operand(b) is not None:
-        return tape.apply("add", a, negated_operand(b))
+        return trace.apply("add", a, negated_operand(b))
     if negated_operand(a) is not None:
-        return tape.apply("negative", tape.apply("add", negated_operand(a), b))
+        return trace.apply("negative", trace.apply("add", negated_operand(a), b))
     return None
 
 
-def _multiply(tape: Trace, a: Any, b: Any) -> Any:
+def _multiply(trace: Trace, a: Any, b: Any) -> Any:
     for factor, other in ((a, b), (b, a)):
         if is_number(factor, 0):
             return 0.0
         if is_number(factor, 1):
             return other
         if is_number(factor, -1):
-            return tape.apply("negative", other)
+            return trace.apply("negative", other)
         if negated_operand(factor) is not None:
-            return tape.apply("negative", tape.apply("multiply", negated_operand(factor), other))
+            return trace.apply("negative", trace.apply("multiply", negated_operand(factor), other))
         if not isinstance(factor, Term) and factor < 0:
-            return tape.apply("negative", tape.apply("multiply", -factor, other))
-    return _group_factors(tape, a, b)
+            return trace.apply("negative", trace.apply("multiply", -factor, other))
+    return _group_factors(trace, a, b)
 
 
-def _group_factors(tape: Trace, a: Any, b: Any) -> Any:
+def _group_factors(trace: Trace, a: Any, b: Any) -> Any:
     """Reorder a product so that factors that depend on fewer axes are multiplied first."""
     for product, other in ((a, b), (b, a)):
         if (
@@ -241,7 +241,7 @@ def _group_factors(tape: Trace, a: Any, b: Any) -> Any:
         ):
             return product.args[0]  # (x / y) y
     if isinstance(a, Term) and a is b and a.op == "absolute":
-        return tape.apply("multiply", a.args[0], a.args[0])
+        return trace.apply("multiply", a.args[0], a.args[0])
     for product, other in ((a, b), (b, a)):
         if isinstance(product, Term) and product.op == "multiply" and axes_of(other) < product.axes:
             for x, factor in (product.args, product.args[::-1]):
@@ -250,34 +250,34 @@ def _group_factors(tape: Trace, a: Any, b: Any) -> Any:
                     and axes_of(x) == product.axes
                     and axes_of(factor) | axes_of(other) != x.axes
                 ):
-                    return tape.apply("multiply", x, tape.apply("multiply", factor, other))
+                    return trace.apply("multiply", x, trace.apply("multiply", factor, other))
     return None
 
 
-def _sqrt(tape: Trace, a: Any) -> Any:
-    return tape.apply("absolute", a.args[0]) if a.op == "multiply" and a.args[0] is a.args[1] else None
+def _sqrt(trace: Trace, a: Any) -> Any:
+    return trace.apply("absolute", a.args[0]) if a.op == "multiply" and a.args[0] is a.args[1] else None
 
 
-def _divide(tape: Trace, a: Any, b: Any) -> Any:
+def _divide(trace: Trace, a: Any, b: Any) -> Any:
     if is_number(a, 0):
         return 0.0
     if is_number(b, 1):
         return a
     if isinstance(b, Term) and b.op == "multiply" and a in b.args:  # x / (x y)
-        return tape.apply("divide", 1.0, b.args[1] if b.args[0] is a else b.args[0])
+        return trace.apply("divide", 1.0, b.args[1] if b.args[0] is a else b.args[0])
     for k, operand in enumerate((a, b)):
         if negated_operand(operand) is not None:
-            return tape.apply(
-                "negative", tape.apply("divide", *((operand.args[0], b) if k == 0 else (a, operand.args[0])))
+            return trace.apply(
+                "negative", trace.apply("divide", *((operand.args[0], b) if k == 0 else (a, operand.args[0])))
             )
     return None
 
 
-def _negative(tape: Trace, a: Any) -> Any:
+def _negative(trace: Trace, a: Any) -> Any:
     if a.op == "negative":
         return a.args[0]
     if a.op == "subtract":
-        return tape.apply("subtract", a.args[1], a.args[0])
+        return trace.apply("subtract", a.args[1], a.args[0])
     return None
 
 
@@ -287,7 +287,7 @@ def _simplify_logic(settles: bool) -> Callable[[Trace, Any, Any], Any]:
     settles: value of an operand that decides the result: False for `and`, True for `or`.
     """
 
-    def joined(tape: Trace, a: Any, b: Any) -> Any:
+    def joined(trace: Trace, a: Any, b: Any) -> Any:
         for operand, other in ((a, b), (b, a)):
             if not isinstance(operand, Term):
                 return settles if bool(operand) == settles else other
@@ -296,8 +296,8 @@ def _simplify_logic(settles: bool) -> Callable[[Trace, Any, Any], Any]:
     return joined
 
 
-def _absolute(tape: Trace, a: Any) -> Any:
-    return tape.apply("absolute", a.args[0]) if a.op == "negative" else a if a.op in ("absolute", "sqrt") else None
+def _absolute(trace: Trace, a: Any) -> Any:
+    return trace.apply("absolute", a.args[0]) if a.op == "negative" else a if a.op in ("absolute", "sqrt") else None
 
 
 SIMPLIFICATIONS = {

@@ -26,12 +26,12 @@ class TracedArray(NDArrayOperatorsMixin):
     """Placeholder for an array: a traced number with one value for each variant and position.
 
     Attributes:
-        tape: the trace.
+        trace: the trace.
         re: real part, a term or a number.
         im: imaginary part; None for real numbers and conditions.
     """
 
-    tape: Trace
+    trace: Trace
     re: Any
     im: Any = None
 
@@ -51,21 +51,21 @@ class TracedArray(NDArrayOperatorsMixin):
 
     @property
     def real(self) -> TracedArray:
-        return TracedArray(self.tape, self.re)
+        return TracedArray(self.trace, self.re)
 
     @property
     def imag(self) -> TracedArray:
-        return TracedArray(self.tape, 0.0 if self.im is None else self.im)
+        return TracedArray(self.trace, 0.0 if self.im is None else self.im)
 
     def astype(self, _: Any) -> TracedArray:
         """Return self, since a trace has only one number type."""
         return self
 
     def conjugate(self) -> TracedArray:
-        return self if self.im is None else TracedArray(self.tape, self.re, self.tape.apply("negative", self.im))
+        return self if self.im is None else TracedArray(self.trace, self.re, self.trace.apply("negative", self.im))
 
     def __bool__(self) -> bool:
-        truth = self.tape.settled(self.re)
+        truth = self.trace.settle_condition(self.re)
         if self.im is None and not isinstance(truth, Term):
             return bool(truth)
         raise DependsOnData("a branch of the code depends on the data")
@@ -73,30 +73,30 @@ class TracedArray(NDArrayOperatorsMixin):
     def __float__(self) -> float:
         if self.im is None and not isinstance(self.re, Term):
             return float(self.re)
-        raise DependsOnData("a number is wanted that depends on the data")
+        raise DependsOnData("a number is needed that depends on the data")
 
     def __array__(self, *_: Any, **__: Any) -> Any:
-        raise DependsOnData("an array is wanted that depends on the data")
+        raise DependsOnData("an array is needed that depends on the data")
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **more: Any) -> Any:
         if method != "__call__" or any(v is not None for v in more.values()):
-            raise DependsOnData(f"{ufunc.__name__}.{method} cannot be written on a tape")
+            raise DependsOnData(f"{ufunc.__name__}.{method} cannot be traced")
         if ufunc is np.power and isinstance(inputs[1], int) and inputs[1] == 2:
             ufunc, inputs = np.multiply, (inputs[0], inputs[0])
         parts = [self._of(value) for value in inputs]
         operation = COMPLEX.get(ufunc.__name__)
         if operation is not None and any(im is not None for _, im in parts):
-            return TracedArray(self.tape, *operation(self.tape, *parts))
+            return TracedArray(self.trace, *operation(self.trace, *parts))
         if ufunc.__name__ == "conjugate":
             return inputs[0]
         if ufunc.__name__ not in UFUNCS or any(im is not None for _, im in parts):
-            raise DependsOnData(f"{ufunc.__name__} cannot be written on a tape")
-        return TracedArray(self.tape, self.tape.apply(ufunc.__name__, *(re for re, _ in parts)))
+            raise DependsOnData(f"{ufunc.__name__} cannot be traced")
+        return TracedArray(self.trace, self.trace.apply(ufunc.__name__, *(re for re, _ in parts)))
 
     def __array_function__(self, function: Any, types: Any, args: Any, kwargs: Any) -> Any:
         traced = FUNCTIONS.get(function)
         if traced is None or kwargs:
-            raise DependsOnData(f"{function.__name__} cannot be written on a tape")
+            raise DependsOnData(f"{function.__name__} cannot be traced")
         return traced(self, *args)
 
     def _of(self, value: Any) -> tuple[Any, Any]:
@@ -106,26 +106,26 @@ class TracedArray(NDArrayOperatorsMixin):
         array = np.asarray(value)
         number = array.ravel()[0] if array.size else 0.0
         if array.size > 1 and not np.all((array == number) | ((array != array) & (number != number))):
-            raise DependsOnData("an array of different numbers is no part of the data")
+            raise DependsOnData("an array of different numbers cannot be traced")
         if array.dtype.kind == "c":
             return number.real, number.imag
         return (number if array.dtype.kind in "bf" else float(number)), None
 
     def where(self, truth: Any, chosen: Any, other: Any) -> TracedArray:
         truth, chosen, other = (self._of(v) for v in (truth, chosen, other))
-        re = self.tape.where(truth[0], chosen[0], other[0])
+        re = self.trace.where(truth[0], chosen[0], other[0])
         if chosen[1] is None and other[1] is None:
-            return TracedArray(self.tape, re)
-        return TracedArray(self.tape, re, self.tape.where(truth[0], _im(chosen), _im(other)))
+            return TracedArray(self.trace, re)
+        return TracedArray(self.trace, re, self.trace.where(truth[0], _im(chosen), _im(other)))
 
     def called(self, function: Any, *operands: Any) -> TracedArray:
         """Record a function of whole real arrays as a single operation."""
-        return TracedArray(self.tape, self.tape.term("call", (function,), *(self._of(x)[0] for x in operands)))
+        return TracedArray(self.trace, self.trace.term("call", (function,), *(self._of(x)[0] for x in operands)))
 
     def interp(self, x: Any, at: Any, values: Any) -> TracedArray:
         """Record linear interpolation in a table, as np.interp does."""
         table = (tuple(float(v) for v in at), tuple(float(v) for v in values))
-        return TracedArray(self.tape, self.tape.term("table", self._of(x)[0], table))
+        return TracedArray(self.trace, self.trace.term("table", self._of(x)[0], table))
 
 
 def _is_truth(re: Any) -> bool:
@@ -140,36 +140,36 @@ ComplexParts = tuple[Any, Any]
 
 
 def _componentwise(op: str) -> Callable[[Trace, ComplexParts, ComplexParts], ComplexParts]:
-    return lambda tape, a, b: (tape.apply(op, a[0], b[0]), tape.apply(op, _im(a), _im(b)))
+    return lambda trace, a, b: (trace.apply(op, a[0], b[0]), trace.apply(op, _im(a), _im(b)))
 
 
-def _product(tape: Trace, a: ComplexParts, b: ComplexParts) -> ComplexParts:
+def _product(trace: Trace, a: ComplexParts, b: ComplexParts) -> ComplexParts:
     def times(x: Any, y: Any) -> Any:
-        return tape.apply("multiply", x, y)
+        return trace.apply("multiply", x, y)
 
     if a[1] is None or b[1] is None:
         (x, _), (re, im) = (a, b) if a[1] is None else (b, a)
         return times(x, re), times(x, im)
     return (
-        tape.apply("subtract", times(a[0], b[0]), times(a[1], b[1])),
-        tape.apply("add", times(a[0], b[1]), times(a[1], b[0])),
+        trace.apply("subtract", times(a[0], b[0]), times(a[1], b[1])),
+        trace.apply("add", times(a[0], b[1]), times(a[1], b[0])),
     )
 
 
-def _quotient(tape: Trace, a: ComplexParts, b: ComplexParts) -> ComplexParts:
+def _quotient(trace: Trace, a: ComplexParts, b: ComplexParts) -> ComplexParts:
     if b[1] is None:
-        return tape.apply("divide", a[0], b[0]), tape.apply("divide", a[1], b[0])
-    square = _square(tape, b)
-    re, im = _product(tape, a if a[1] is not None else (a[0], 0.0), (b[0], tape.apply("negative", b[1])))
-    return tape.apply("divide", re, square), tape.apply("divide", im, square)
+        return trace.apply("divide", a[0], b[0]), trace.apply("divide", a[1], b[0])
+    square = _square(trace, b)
+    re, im = _product(trace, a if a[1] is not None else (a[0], 0.0), (b[0], trace.apply("negative", b[1])))
+    return trace.apply("divide", re, square), trace.apply("divide", im, square)
 
 
-def _square(tape: Trace, a: ComplexParts) -> Any:
-    return tape.apply("add", *(tape.apply("multiply", x, x) for x in a))
+def _square(trace: Trace, a: ComplexParts) -> Any:
+    return trace.apply("add", *(trace.apply("multiply", x, x) for x in a))
 
 
-def _compare_parts(tape: Trace, op: str, joined: str, a: ComplexParts, b: ComplexParts) -> Any:
-    return tape.apply(joined, tape.apply(op, a[0], b[0]), tape.apply(op, _im(a), _im(b)))
+def _compare_parts(trace: Trace, op: str, joined: str, a: ComplexParts, b: ComplexParts) -> Any:
+    return trace.apply(joined, trace.apply(op, a[0], b[0]), trace.apply(op, _im(a), _im(b)))
 
 
 COMPLEX: dict[str, Callable[..., ComplexParts]] = {
@@ -177,28 +177,28 @@ COMPLEX: dict[str, Callable[..., ComplexParts]] = {
     "subtract": _componentwise("subtract"),
     "multiply": _product,
     "divide": _quotient,
-    "negative": lambda tape, a: (tape.apply("negative", a[0]), tape.apply("negative", a[1])),
-    "positive": lambda tape, a: a,
-    "conjugate": lambda tape, a: (a[0], tape.apply("negative", a[1])),
-    "absolute": lambda tape, a: (tape.apply("sqrt", _square(tape, a)), None),
-    "equal": lambda tape, a, b: (_compare_parts(tape, "equal", "bitwise_and", a, b), None),
-    "not_equal": lambda tape, a, b: (_compare_parts(tape, "not_equal", "bitwise_or", a, b), None),
-    "isfinite": lambda tape, a: (
-        tape.apply("bitwise_and", tape.apply("isfinite", a[0]), tape.apply("isfinite", a[1])),
+    "negative": lambda trace, a: (trace.apply("negative", a[0]), trace.apply("negative", a[1])),
+    "positive": lambda trace, a: a,
+    "conjugate": lambda trace, a: (a[0], trace.apply("negative", a[1])),
+    "absolute": lambda trace, a: (trace.apply("sqrt", _square(trace, a)), None),
+    "equal": lambda trace, a, b: (_compare_parts(trace, "equal", "bitwise_and", a, b), None),
+    "not_equal": lambda trace, a, b: (_compare_parts(trace, "not_equal", "bitwise_or", a, b), None),
+    "isfinite": lambda trace, a: (
+        trace.apply("bitwise_and", trace.apply("isfinite", a[0]), trace.apply("isfinite", a[1])),
         None,
     ),
 }
 
 FUNCTIONS: dict[Any, Callable[..., Any]] = {
     np.where: TracedArray.where,
-    np.shape: lambda stand, value: value.shape,
-    np.atleast_1d: lambda stand, value: value,
-    np.real: lambda stand, value: value.real,
-    np.imag: lambda stand, value: value.imag,
-    np.angle: lambda stand, value: np.arctan2(value.imag, value.real),
+    np.shape: lambda placeholder, value: value.shape,
+    np.atleast_1d: lambda placeholder, value: value,
+    np.real: lambda placeholder, value: value.real,
+    np.imag: lambda placeholder, value: value.imag,
+    np.angle: lambda placeholder, value: np.arctan2(value.imag, value.real),
     np.interp: TracedArray.interp,
-    np.round: lambda stand, value: np.rint(value),
-    np.any: lambda stand, value: isinstance(value.re, Term) or bool(value.re),  # of some variant it may be true
+    np.round: lambda placeholder, value: np.rint(value),
+    np.any: lambda placeholder, value: isinstance(value.re, Term) or bool(value.re),  # of some variant it may be true
 }
 
 
@@ -215,8 +215,8 @@ def trace_function(
     Raises:
         DependsOnData: the code branches on numbers that differ.
     """
-    tape = Trace(dict(data or {}))
-    placeholders = [TracedArray(tape, tape.term("input", k, axes=axis)) for k, axis in enumerate(axes)]
+    trace = Trace(dict(data or {}))
+    placeholders = [TracedArray(trace, trace.term("input", k, axes=axis)) for k, axis in enumerate(axes)]
     outputs = {}
     for name, value in function(*placeholders).items():
         if isinstance(value, TracedArray):
@@ -224,7 +224,7 @@ def trace_function(
         else:
             number = np.ravel(value)[0]
             outputs[name] = (number.real, number.imag) if np.iscomplexobj(number) else (number, None)
-    return TraceProgram(tuple(tape.terms), axes, outputs)
+    return TraceProgram(tuple(trace.terms), axes, outputs)
 
 
 # Numbers that vary between linkages, for code that builds a linkage: they branch like numbers and are recorded.
@@ -240,24 +240,24 @@ class TracedNumber(NDArrayOperatorsMixin):
 
     Attributes:
         value: number of one linkage.
-        stand: placeholder for the numbers of all linkages.
+        placeholder: placeholder for the numbers of all linkages.
         otherwise: list to which each branch appends a mask of the variants that would have branched
             differently; None if this is not needed.
     """
 
     __hash__ = object.__hash__
 
-    def __init__(self, value: Any, stand: Any, otherwise: list[Any] | None = None) -> None:
-        self.value, self.stand, self.otherwise = value, stand, otherwise
+    def __init__(self, value: Any, placeholder: Any, otherwise: list[Any] | None = None) -> None:
+        self.value, self.placeholder, self.otherwise = value, placeholder, otherwise
 
     def __float__(self) -> float:
         if self.otherwise is not None:
-            self.otherwise.append(self.stand != self.value)
+            self.otherwise.append(self.placeholder != self.value)
         return float(self.value)
 
     def __bool__(self) -> bool:
         if self.otherwise is not None:
-            self.otherwise.append((self.stand != 0) != bool(self.value))
+            self.otherwise.append((self.placeholder != 0) != bool(self.value))
         return bool(self.value)
 
     def __repr__(self) -> str:
@@ -267,19 +267,19 @@ class TracedNumber(NDArrayOperatorsMixin):
         return format(self.value, how)
 
     def __array__(self, *_: Any, **__: Any) -> Any:
-        raise DependsOnData("an array is wanted that depends on the data")
+        raise DependsOnData("an array is needed that depends on the data")
 
     @property
     def real(self) -> TracedNumber:
-        return TracedNumber(np.real(self.value), np.real(self.stand), self.otherwise)
+        return TracedNumber(np.real(self.value), np.real(self.placeholder), self.otherwise)
 
     @property
     def imag(self) -> TracedNumber:
-        return TracedNumber(np.imag(self.value), np.imag(self.stand), self.otherwise)
+        return TracedNumber(np.imag(self.value), np.imag(self.placeholder), self.otherwise)
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **_: Any) -> Any:
         if method != "__call__" or ufunc is np.floor:  # what is whole for one linkage may not be so for another
-            raise DependsOnData(f"{ufunc.__name__}, {method}, cannot be written on a tape")
+            raise DependsOnData(f"{ufunc.__name__}, {method}, cannot be traced")
         value = ufunc(*(_value(x) for x in inputs))
         otherwise = next((x.otherwise for x in inputs if isinstance(x, TracedNumber) and x.otherwise is not None), None)
         if isinstance(value, bool | np.bool_):
@@ -290,7 +290,7 @@ class TracedNumber(NDArrayOperatorsMixin):
 
     def __array_function__(self, function: Any, types: Any, args: Any, kwargs: Any) -> Any:
         if function is not np.angle:
-            raise DependsOnData(f"{function.__name__} cannot be written on a tape")
+            raise DependsOnData(f"{function.__name__} cannot be traced")
         return np.arctan2(self.imag, self.real)
 
 
@@ -299,13 +299,13 @@ def _value(x: Any) -> Any:
 
 
 def _placeholder(x: Any) -> Any:
-    return x.stand if isinstance(x, TracedNumber) else x
+    return x.placeholder if isinstance(x, TracedNumber) else x
 
 
 def _power(base: Any, exponent: Any) -> Any:
     """Compute a power by products and, for half powers, a square root."""
     if isinstance(exponent, TracedArray) or 2 * exponent != int(2 * exponent):
-        raise DependsOnData("such a power cannot be written on a tape")
+        raise DependsOnData("a power other than an integer or half-integer one cannot be traced")
     product, whole = 1.0, int(abs(exponent))
     for _ in range(whole):
         product = product * base

@@ -30,7 +30,7 @@ from tmm_cli.batch.variant import (
     DriverRanges,
     DriverSamples,
     Make,
-    NoTapeError,
+    NotTraceableError,
     Variant,
     compute_sketch,
     placeholder_linkage,
@@ -62,7 +62,7 @@ class TracedVariants:
             forces: True if the results need reactions.
 
         Raises:
-            NoTapeError, DependsOnData: the operations cannot be traced.
+            NotTraceableError, DependsOnData: the operations cannot be traced.
             LinkageError: the first linkage cannot be assembled.
         """
         self.make, self.first, self.variant = make, first, make(first)
@@ -70,7 +70,7 @@ class TracedVariants:
         self.structure = analyse_mobile_structure(self.linkage)
         self.kernels = assemble(self.linkage, self.structure)
         if self.linkage.friction or (forces and self.linkage.by_strokes):
-            raise NoTapeError
+            raise NotTraceableError
         self.lines = _traceable_groups(self.linkage, self.kernels)
         self.turns = cycle_turns(self.linkage, self.kernels) or 1
         varied = make([TracedNumber(x, x) for x in first])
@@ -78,25 +78,27 @@ class TracedVariants:
         # several drivers pass through the sketched coordinates together: a trace holds those of the first linkage
         apart = bool(self.linkage.others) and isinstance(varied.linkage.sketch.at, TracedNumber)
         if apart or isinstance(self.start, TracedNumber):
-            raise NoTapeError
+            raise NotTraceableError
         by_variant = any(isinstance(number, TracedNumber) for number in _extra_numbers(varied))
         self.ends = trace_function(self._ends, *[1] * len(first)) if by_variant else None
-        self.program = self._program(read, forces, by_variant)
+        self.program = self._trace_stages(read, forces, by_variant)
         self.continuation = (
-            Continuation(self._varied, first, self.linkage, self.lines) if count_initial_guesses(self.lines) else None
+            Continuation(self._placeholder_linkage, first, self.linkage, self.lines)
+            if count_initial_guesses(self.lines)
+            else None
         )
         self._last: tuple[bytes, ContinuedPaths] | None = None
 
-    def _varied(self, data: Sequence[Any]) -> Linkage:
+    def _placeholder_linkage(self, data: Sequence[Any]) -> Linkage:
         return placeholder_linkage(self.make, self.first, data, self.linkage.sketch)
 
-    def _program(self, read: OutputReader, forces: bool, by_variant: bool) -> TraceProgram:
+    def _trace_stages(self, read: OutputReader, forces: bool, by_variant: bool) -> TraceProgram:
         """Trace the stages; by_variant: each variant has its own driver coordinates."""
 
         many = len(self.first)
 
         def stages(*data: TracedArray) -> Mapping[str, Any]:
-            linkage, q, placeholders = self._varied(data[:many]), data[many], data[many + 1 :]
+            linkage, q, placeholders = self._placeholder_linkage(data[:many]), data[many], data[many + 1 :]
             kernels = tuple(kernel.rebind(linkage) for kernel in self.lines)
             kernels = with_initial_guesses(kernels, placeholders, VARIANT_NEWTON_STEPS)
             structure = self.structure.rebind(linkage)
@@ -111,7 +113,7 @@ class TracedVariants:
         """
         varied = self.make([TracedNumber(x, c) for x, c in zip(self.first, columns, strict=True)])
         return {
-            str(k): place.stand if isinstance(place, TracedNumber) else place
+            str(k): place.placeholder if isinstance(place, TracedNumber) else place
             for k, place in enumerate(_extra_numbers(varied))
         }
 
@@ -141,7 +143,7 @@ class TracedVariants:
         kernels: Sequence[GroupSolver] = [kernel.rebind(linkage) for kernel in self.lines]
         if self.continuation is not None:
             kernels = with_initial_guesses(
-                kernels, list(self.continuation.sketched(np.array([numbers]))[0]), VARIANT_NEWTON_STEPS
+                kernels, list(self.continuation.continue_at_sketch(np.array([numbers]))[0]), VARIANT_NEWTON_STEPS
             )
         return compute_sketch(linkage, kernels)
 
@@ -149,14 +151,14 @@ class TracedVariants:
         ranges = self.driver_range(columns[:1] if self.ends is None else columns)
         q = ranges.at(samples)[0] if self.ends is None else ranges.at(samples)
         replayed = self.program(
-            *split_columns(columns), q, *(self._ways(columns, ranges)(q) if self.continuation else ())
+            *split_columns(columns), q, *(self._continued_paths(columns, ranges)(q) if self.continuation else ())
         )
         outputs: Mapping[str, Real] = replayed.without(ANGLES_AGREE)
         if not np.all(replayed[ANGLES_AGREE]):  # accumulated angles of gears differ from those of the first linkage
             outputs = {name: np.where(replayed[ANGLES_AGREE], value, np.nan) for name, value in outputs.items()}
         return {**outputs, WANTED: ranges.wanted_at(samples)} if self.variant.wanted else outputs
 
-    def _ways(self, columns: Real, ranges: DriverRanges) -> ContinuedPaths:
+    def _continued_paths(self, columns: Real, ranges: DriverRanges) -> ContinuedPaths:
         """Continue the variants over their driver ranges; the paths of the last call are cached."""
         assert self.continuation is not None
         key = columns.tobytes()
@@ -172,15 +174,15 @@ def _traceable_groups(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> tup
     """Return the group solvers in a form that can be traced for many variants.
 
     Raises:
-        NoTapeError: there is no such form.
+        NotTraceableError: there is no such form.
     """
     lines = traceable_groups(linkage, kernels)
     if lines is None:
-        raise NoTapeError
+        raise NotTraceableError
     for kernel in lines:
         trace = kernel.followed
         if trace is not None and trace.dead.size:  # on the other side of it the determinant has another sign
-            raise NoTapeError
+            raise NotTraceableError
     return lines
 
 
@@ -218,7 +220,7 @@ class SequentialVariants:
         self.turns = cycle_turns(self.linkage, self.kernels) or 1
         self.by_strokes = forces and self.linkage.by_strokes
         self.known: dict[tuple[float, ...], tuple[Variant, Mechanism]] = {}
-        self.names = tuple(self._one(tuple(first), DriverSamples(np.zeros(1), np.zeros(0))))
+        self.names = tuple(self._solve_one(tuple(first), DriverSamples(np.zeros(1), np.zeros(0))))
 
     def driver_range(self, columns: Real) -> DriverRanges:
         """Return the driver range of the first linkage, once for each variant."""
@@ -241,25 +243,25 @@ class SequentialVariants:
         rows = []
         for row in columns:
             try:
-                rows.append(self._one(tuple(row.tolist()), samples))
+                rows.append(self._solve_one(tuple(row.tolist()), samples))
             except LinkageError:
                 rows.append({})
         lost = np.full(self.driver_range(columns[:1]).at(samples).shape[1], np.nan)
         return {name: np.stack([row.get(name, lost) for row in rows]) for name in self.names}
 
-    def _moved(self, numbers: tuple[float, ...]) -> tuple[Variant, Mechanism]:
+    def _cached_variant(self, numbers: tuple[float, ...]) -> tuple[Variant, Mechanism]:
         """Build a variant, or take it from the cache."""
         if numbers not in self.known:
             if len(self.known) > MOST_KEPT:
                 self.known.clear()
             variant = self.make(list(numbers))
             structure = self.structure.rebind(variant.linkage)
-            kernels = assemble(variant.linkage, structure, like=self._nearest(numbers))
-            mechanism = Mechanism(Inputs(variant.linkage), structure).known(kernels=kernels)
+            kernels = assemble(variant.linkage, structure, like=self._nearest_kernels(numbers))
+            mechanism = Mechanism(Inputs(variant.linkage), structure).with_known(kernels=kernels)
             self.known[numbers] = variant, mechanism
         return self.known[numbers]
 
-    def _nearest(self, numbers: tuple[float, ...]) -> tuple[GroupSolver, ...]:
+    def _nearest_kernels(self, numbers: tuple[float, ...]) -> tuple[GroupSolver, ...]:
         """Return the group solvers of the cached variant with the smallest relative differences in its numbers."""
         if not self.known:
             return self.kernels
@@ -267,8 +269,8 @@ class SequentialVariants:
         apart = np.sum(np.abs(solved - point) / (np.abs(solved) + np.abs(point) + 1e-300), axis=1)
         return list(self.known.values())[int(np.argmin(apart))][1].kernels
 
-    def _one(self, numbers: tuple[float, ...], samples: DriverSamples) -> dict[str, Real]:
-        variant, mechanism = self._moved(numbers)
+    def _solve_one(self, numbers: tuple[float, ...], samples: DriverSamples) -> dict[str, Real]:
+        variant, mechanism = self._cached_variant(numbers)
         linkage = variant.linkage
         strokes = mechanism.strokes if self.by_strokes and mechanism.driver_range.full else None
         start = None
@@ -312,6 +314,6 @@ def make_variants(
     if one_sense:
         try:
             return TracedVariants(make, first, read, forces=forces)
-        except (NoTapeError, DependsOnData):
+        except (NotTraceableError, DependsOnData):
             pass
     return SequentialVariants(make, first, read, forces=forces)

@@ -17,7 +17,7 @@ from tmm_cli.mechanics.numerics import SAME_SKETCH, Real, map_record, record_lea
 NOT_COMPARED = ("sketch",)  # describes the assembly of a linkage, not the linkage
 
 
-class NotAlikeError(ValueError):
+class IncompatibleLinkagesError(ValueError):
     """Two linkages differ in more than their numbers; path: where they differ."""
 
     def __init__(self, path: str) -> None:
@@ -39,7 +39,9 @@ def with_numbers(record: Any, new: Mapping[str, Any]) -> Any:
 
 def resolve_traced(record: Any) -> Any:
     """Replace the traced numbers in a record by the arrays or placeholders that they represent."""
-    return with_numbers(record, {path: x.stand for path, x in numeric_leaves(record) if isinstance(x, TracedNumber)})
+    return with_numbers(
+        record, {path: x.placeholder for path, x in numeric_leaves(record) if isinstance(x, TracedNumber)}
+    )
 
 
 def split_columns(columns: Real) -> list[Real]:
@@ -51,20 +53,20 @@ def varying_numbers(linkages: Sequence[Linkage]) -> dict[str, Real]:
     """Return the numbers that differ between linkages, (variants, 1), by path.
 
     Raises:
-        NotAlikeError: the linkages differ in more than their numbers.
+        IncompatibleLinkagesError: the linkages differ in more than their numbers.
     """
     first = dict(numeric_leaves(linkages[0]))
     rows = [list(first.values())]
     for linkage in linkages[1:]:
         leaves = dict(numeric_leaves(linkage))
         if leaves.keys() != first.keys():
-            raise NotAlikeError(next(iter(leaves.keys() ^ first.keys())))
+            raise IncompatibleLinkagesError(next(iter(leaves.keys() ^ first.keys())))
         rows.append([leaves[path] for path in first])
     varying = {}
     for path, values in zip(first, zip(*rows, strict=True), strict=True):
         if any(value != values[0] for value in values):
             if not all(isinstance(value, (int, float, complex)) and not isinstance(value, bool) for value in values):
-                raise NotAlikeError(path)
+                raise IncompatibleLinkagesError(path)
             varying[path] = np.array(values)[:, None]
     return varying
 
@@ -105,7 +107,7 @@ def split_real_columns(varying: Mapping[str, Real]) -> tuple[list[Real], Callabl
 WANTED = "wanted"  # output name of required numbers at requested positions
 
 
-class NoTapeError(ValueError):
+class NotTraceableError(ValueError):
     """The operations cannot be traced: friction, loads that depend on strokes, redundant constraints, or dead
     positions on the path.
     """
@@ -139,7 +141,7 @@ class Variant:
         """Driver coordinate (rad or m) of position 0; None if it does not matter.
 
         Raises:
-            NoTapeError: it can be found only by solving the motion, through strokes or the range of the driver.
+            NotTraceableError: it can be found only by solving the motion, through strokes or the range of the driver.
         """
         if not self.accelerated:
             return None
@@ -150,7 +152,7 @@ class Variant:
             return request.start
         if self.ends is not None and driver.stroke is not None:
             return driver.stroke[0] if driver.sense > 0 else driver.stroke[1]
-        raise NoTapeError
+        raise NotTraceableError
 
 
 Make = Callable[[Sequence[Any]], Variant]  # a variant for numbers, which may be TracedNumbers
@@ -164,7 +166,7 @@ def placeholder_linkage(make: Make, first: Sequence[float], data: Sequence[Any],
         first, sketch: numbers and sketch of the first variant.
         data: placeholders or columns.
     """
-    varied = make([TracedNumber(x, stand) for x, stand in zip(first, data, strict=True)])
+    varied = make([TracedNumber(x, placeholder) for x, placeholder in zip(first, data, strict=True)])
     linkage: Linkage = replace(resolve_traced(varied.linkage), sketch=sketch)
     return linkage
 

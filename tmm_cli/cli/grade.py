@@ -117,7 +117,7 @@ def _grade_group(
         text = _("stopped: {done} of {count} graded; the next run keeps them and grades the others")
         say(text.format(done=len(marks), count=len(handed)))
         return CHECK_FAILED
-    write_gradebook(out, Gradebook(task.revealing() if reveal else task, marks, users=table.rows), names, jobs)
+    write_gradebook(out, Gradebook(task.reveal_values() if reveal else task, marks, users=table.rows), names, jobs)
     for statistics in statistics_tables(task, marks):
         print_on_terminal(statistics, task.units, console())
     return _print_summary(handed, marks, out)

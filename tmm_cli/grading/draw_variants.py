@@ -206,7 +206,7 @@ class VariantGenerator:
         self.dimensions = tuple(choice.dimension for choice in self.free)
         self.numbers = [parameter_values(task, choice) for choice in self.free]
         self.asked: tuple[Question, ...] = task.asked if task.blocks.grading else ()
-        own = [task.number(v, d) for v, d in zip(task.own(self.names), self.dimensions, strict=True)]
+        own = [task.number(v, d) for v, d in zip(task.values_in_file(self.names), self.dimensions, strict=True)]
         self.own = np.array([own])
         self.size = math.prod(len(choice.texts) for choice in self.free)
         self.rejected: Counter[str] = Counter()

@@ -171,7 +171,7 @@ def _parameter_dimensions(task: Task) -> dict[str, Dimension | None]:
     """Return the dimension of each parameter; for a number without a unit, the first that the task accepts."""
     found: dict[str, Dimension | None] = {}
     for name in task.tree.data.get("parameters") or {}:
-        (own,) = task.own((name,))
+        (own,) = task.values_in_file((name,))
         found[name] = own.dimension or next((d for d in MEASURES if _accepts_dimension(task, name, own.value, d)), None)
     return found
 

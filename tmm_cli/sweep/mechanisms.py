@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_cli.batch import DependsOnData, NoTapeError, Task, compute_sketch
+from tmm_cli.batch import DependsOnData, NotTraceableError, Task, compute_sketch
 from tmm_cli.language import _
 from tmm_cli.mechanics.analysis import Results, pipeline
 from tmm_cli.mechanics.errors import AssemblyError, LinkageError
@@ -114,7 +114,9 @@ class SweptMechanisms:
         problem = self.task.problem.whole
         if "synthesis" in self.task.tree.data or problem.dynamics is not None:
             return None
-        file_numbers = [self.task.number(v, d) for v, d in zip(self.task.own(self.names), self.dimensions, strict=True)]
+        file_numbers = [
+            self.task.number(v, d) for v, d in zip(self.task.values_in_file(self.names), self.dimensions, strict=True)
+        ]
         at_positions = [quantity for quantity in self.shown if not quantity.whole]
 
         def read(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
@@ -134,7 +136,7 @@ class SweptMechanisms:
             with np.errstate(all="ignore"):
                 scanned = scan_variants(crank_variants, np.array([file_numbers]), ScanRequest())
             return crank_variants if scanned.does[0] == SCAN_WORKS and scanned.sure[0] else None
-        except (NoTapeError, DependsOnData):
+        except (NotTraceableError, DependsOnData):
             return None
         except LinkageError as error:
             raise located_problem_error(error, problem) from None
@@ -224,7 +226,7 @@ class SweptMechanisms:
                     solved.values[indices[rows]], solved.reach[indices[rows]] = self._read_traced_quantities(
                         columns[rows], scanned.take(rows), kept
                     )
-                except NoTapeError:
+                except NotTraceableError:
                     return indices, nothing
         return indices[unsure], indices[otherwise]
 

@@ -17,7 +17,7 @@ from tmm_cli.batch import (
     CHECKS,
     CONVERGED,
     Make,
-    NoTapeError,
+    NotTraceableError,
     TracedNumber,
     TraceProgram,
     Variant,
@@ -131,7 +131,7 @@ class CrankVariants:
         forces: True if these quantities need reactions.
 
     Raises:
-        NoTapeError, DependsOnData: The calculation cannot be traced.
+        NotTraceableError, DependsOnData: The calculation cannot be traced.
         LinkageError: The first variant cannot be assembled.
     """
 
@@ -148,11 +148,11 @@ class CrankVariants:
         driver = linkage.driver
         turns = driver.kind == "turn" and driver.stroke is None and turns_of_cycle(linkage) == linkage.turns == 1
         if not turns or driver.law is not None or linkage.others or linkage.meshes or linkage.friction:
-            raise NoTapeError
+            raise NotTraceableError
         self.structure = analyse_mobile_structure(linkage)
         self.kernels = assemble(linkage, self.structure)
         if not all(isinstance(kernel, ClosedFormSolver) and kernel.plain for kernel in self.kernels):
-            raise NoTapeError
+            raise NotTraceableError
         self.single = [k for k, kernel in enumerate(self.kernels) if getattr(kernel, "assemblies", 0) == 1]
         leads = [lead for kernel in self.kernels for lead in driven_links(kernel.group)]
         self.slots = [slide for slide in linkage.slides if slide.ends is not None]
@@ -164,7 +164,7 @@ class CrankVariants:
         whole = link is not None and (linkage.slides_on_frame(link) or linkage.hinged_to_frame(link))
         self.output = link if whole else None
         if linkage.stroke_links and self.output is None:
-            raise NoTapeError
+            raise NotTraceableError
         self.stroke_links = (*([self.output] if self.output else []), *linkage.stroke_links)
         self.scan, self.close = (trace_function(self._states, *[1] * len(first), axis) for axis in (2, 3))
         self.forces = trace_function(
@@ -187,14 +187,14 @@ class CrankVariants:
         """Number of strokes of each link in `stroke_links` in the first variant: two or none.
 
         Raises:
-            NoTapeError: The main output has more than two strokes, or another link does not have exactly two.
+            NotTraceableError: The main output has more than two strokes, or another link does not have exactly two.
         """
         coordinates = self.linkage.sketch.at + 2 * np.pi * np.arange(FINE_SCAN) / FINE_SCAN
         names = [f"slope{k}" for k in range(len(self.stroke_links))]
         slopes = self.scan.only(*names)(*(np.array([[x]]) for x in self.first), coordinates)
         counts = tuple(int(np.sum(sign_changes(slopes[name]))) for name in names)
         if any(count > 2 for count in counts) or any(count != 2 for count in counts[1:]):
-            raise NoTapeError
+            raise NotTraceableError
         return counts
 
     def _linkage(self, data: Sequence[Any]) -> Any:

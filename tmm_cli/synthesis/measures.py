@@ -272,7 +272,7 @@ def _replace_output_link(link: str | None, results: Results) -> Results:
     if link is None or link == mechanism.output:
         return results
     inputs = replace(results.inputs, linkage=replace(results.linkage, output=Output(link), outputs=(Output(link),)))
-    other = replace(mechanism, inputs=inputs).known(kernels=mechanism.kernels, driver_range=mechanism.driver_range)
+    other = replace(mechanism, inputs=inputs).with_known(kernels=mechanism.kernels, driver_range=mechanism.driver_range)
     return replace(results, inputs=inputs, mechanism=other)
 
 

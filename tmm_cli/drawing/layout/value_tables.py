@@ -206,7 +206,7 @@ def draw_forces_table(position: Position) -> Iterator[tuple[str, Drawing]]:
     reactions, units = results.reactions, results.problem.units
     if reactions is None:
         return
-    loads = LoadedPosition.at(position.motion, reactions, k).given()
+    loads = LoadedPosition.at(position.motion, reactions, k).loads_and_drives()
     forces = [(load.symbol, load.force) for load in loads if not load.couple]
     forces += [(reaction_symbol(r.by, r.on), complex(r.force[k])) for r in reactions.all]
     moments = [(load.symbol, load.moment) for load in loads if load.couple]
@@ -289,7 +289,7 @@ def draw_law_tables(results: Results) -> Iterator[tuple[str, Drawing]]:
 def _law_columns(results: Results) -> list[QuantityColumn]:
     running, motion = results.steady, results.motion
     assert running is not None and motion is not None
-    law, travel = running.steady.law, running.way(motion.q)
+    law, travel = running.steady.law, running.travel(motion.q)
     machine, sense = running.steady.machine, running.sense
     return [
         (Symbol("J"), machine.inertia(travel), INERTIA),

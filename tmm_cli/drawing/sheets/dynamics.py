@@ -77,7 +77,7 @@ def draw_law_curves(results: Results) -> Iterable[tuple[str, Drawing]]:
     if running is None or results.motion is None:
         return
     travel, borders = _dense_travel(running)
-    q, computed = running.start + running.sense * travel, running.way(results.motion.q)
+    q, computed = running.start + running.sense * travel, running.travel(results.motion.q)
     moments = _("Reduced moments, work and energy; driving moments are positive; dots: computed positions")
     yield from plot_over_driver(
         results, "law-moments", moments, q, borders, _load_plots(results, running, travel, computed)
@@ -292,7 +292,7 @@ def energy_mass_sheet(results: Results, running: SteadyRunning, travel: Real) ->
     def diagram(x: Real, colour: str = DARK_COLOUR, *, dots: bool = False) -> ChartCurve:
         return ChartCurve(steady.machine.inertia(x) / factor, steady.work(x), colour=colour, dots=dots)
 
-    whole, dotted = diagram(travel), diagram(running.way(results.motion.q), dots=True)
+    whole, dotted = diagram(travel), diagram(running.travel(results.motion.q), dots=True)
     start, longest = axis_extent(sheet)
     axis = round_axis(*_axis_ends(whole.xs, _massless_width(steady) / factor), start, longest)
     words = with_unit(_("reduced inertia J of the links"), INERTIA, units)
@@ -416,7 +416,7 @@ def draw_single_run(results: Results) -> Iterable[tuple[str, Drawing]]:
     )
     times, states = (np.concatenate(arrays, axis=-1) for arrays in zip(*pieces, strict=True))
     ends = (np.cumsum([len(piece_times) for piece_times, __ in pieces])[:-1] - 1).tolist()
-    computed = single.way(results.motion.q)
+    computed = single.travel(results.motion.q)
     time, speed = single.run.at(computed)
     sheet = DrawingSheet(
         results.problem.title,

@@ -207,7 +207,7 @@ def draw_position(position: Position) -> Iterable[tuple[str, Drawing]]:
     results, motion, k = position.results, position.motion, position.k
     linkage, reactions = results.linkage, results.reactions
     scene = MechanismScene(linkage, results.structure, motion.poses, k)
-    loads = () if reactions is None else LoadedPosition.at(motion, reactions, k).given()
+    loads = () if reactions is None else LoadedPosition.at(motion, reactions, k).loads_and_drives()
     points = [*frame_pivots(linkage), *(scene.point(p) for p in linkage.moving_points)]
     points += [scene.place(n, complex(linkage.links[n].centre)) for n in linkage.moving]
     figure, notes = FigureExtent(), [_("loads not to scale")] if reactions is not None else []

@@ -137,7 +137,7 @@ def solve_bare_linkage(linkage: Linkage, q: Real, structure: Structure, kernels:
     if bool(np.any(where)):
         motion = refine_near_dead(motion, as_double_doubles(linkage), to_double_double(q[where]), law, where)
     inputs = Inputs(linkage)
-    mechanism = Mechanism(inputs, structure).known(
+    mechanism = Mechanism(inputs, structure).with_known(
         kernels=kernels,
         driver_range=DriverRange(float(np.min(q)), float(np.max(q)), False),
         asked=q,
@@ -293,7 +293,7 @@ def results_with_linkage(
         results,
         inputs=replace(results.inputs, linkage=linkage),
         structure=results.structure.rebind(linkage),
-        mechanism=results.mechanism.changed(kernels=kernels, strokes=strokes),
+        mechanism=results.mechanism.with_changed(kernels=kernels, strokes=strokes),
         motion=moved,
         numbers=numbers,
     )

@@ -378,7 +378,7 @@ def _shifted_results(results: Results, by: Mapping[str, float]) -> Results:
 
     parts = {path.partition(".")[0].partition("[")[0] for path in by}
     return replace(
-        results, mechanism=results.mechanism.changed(**{field: moved(field) for field in parts | {"pressure"}})
+        results, mechanism=results.mechanism.with_changed(**{field: moved(field) for field in parts | {"pressure"}})
     )
 
 

@@ -94,7 +94,7 @@ def with_assemblies(inputs: Inputs, positions: Sequence[int] | None, problem: An
     try:
         results = solve(inputs, "kinematics", positions, problem=problem)
     except AmbiguousSketchError as error:
-        return _undecided_assemblies(inputs, error.group, positions or (), problem)
+        return _find_undecided_assemblies(inputs, error.group, positions or (), problem)
     numbers = positions or inputs.request.detail[:1] or (0,)
     return replace(
         results,
@@ -105,7 +105,7 @@ def with_assemblies(inputs: Inputs, positions: Sequence[int] | None, problem: An
     )
 
 
-def _undecided_assemblies(inputs: Inputs, group: Group, positions: Sequence[int], problem: Any) -> Results:
+def _find_undecided_assemblies(inputs: Inputs, group: Group, positions: Sequence[int], problem: Any) -> Results:
     """Find the assemblies of the groups up to the one that the sketch does not determine.
 
     They are found at the given positions if the file lists coordinates, else at the position of the sketch.

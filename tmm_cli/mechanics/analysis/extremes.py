@@ -108,7 +108,7 @@ def find_extremes(
     """
     courses = list(sample(q))
     rows, turning = _value_rows(courses, q), np.array([c.turns for c in courses])
-    rows[turning] = _unwrapped(rows[turning])
+    rows[turning] = _unwrap_rows(rows[turning])
     spread = np.array([np.ptp(row[np.isfinite(row)]) if np.isfinite(row).any() else 0.0 for row in rows])
     kept = (spread > 0) & ~(turning & (spread > FULL_TURN))
     # what is least is the largest of what has the other sign: each row comes twice
@@ -144,7 +144,7 @@ def _value_rows(courses: Iterable[SampledQuantity], q: Real) -> Real:
     return np.stack([np.broadcast_to(to_float(np.asarray(c.values)), q.shape) for c in courses]).astype(float)
 
 
-def _unwrapped(rows: Real) -> Real:
+def _unwrap_rows(rows: Real) -> Real:
     """Unwrap the angles in each row, skipping missing positions."""
     unwrapped = rows.copy()
     for row in unwrapped:

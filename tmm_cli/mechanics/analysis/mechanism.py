@@ -100,15 +100,15 @@ class Mechanism:
     def linkage(self) -> Linkage:
         return self.inputs.linkage
 
-    def known(self, **parts: Any) -> Mechanism:
+    def with_known(self, **parts: Any) -> Mechanism:
         """Return a new mechanism in which the given properties are already computed."""
         other = Mechanism(self.inputs, self.structure)
         other.__dict__.update(parts)
         return other
 
-    def changed(self, **parts: Any) -> Mechanism:
+    def with_changed(self, **parts: Any) -> Mechanism:
         """Return the mechanism with the given properties replaced; the values of all other properties are kept."""
-        return self.known(**{name: getattr(self, name) for name in CACHED_PARTS} | parts)
+        return self.with_known(**{name: getattr(self, name) for name in CACHED_PARTS} | parts)
 
     @cached_property
     def kernels(self) -> tuple[GroupSolver, ...]:
@@ -201,27 +201,27 @@ class Mechanism:
         def turns(link: str) -> bool:
             if not self.assembles:
                 return link == self.linkage.driver.link and self.linkage.driver.kind == "turn"
-            return self._turning.get(link, False)
+            return self._rotates_fully.get(link, False)
 
         return link_roles(self.linkage, turns)
 
     @property
     def turned(self) -> bool:
         """True if the motion had to be solved for the kinds of links."""
-        return bool(self.roles) and "_turning" in vars(self)
+        return bool(self.roles) and "_rotates_fully" in vars(self)
 
     @cached_property
-    def _turning(self) -> dict[str, bool]:
+    def _rotates_fully(self) -> dict[str, bool]:
         """For each link, True if it rotates through 360 degrees over the driver range."""
         linkage, driver_range = self.linkage, self.driver_range
         turned = {d.link: driver_range.full and d.kind == "turn" for d in linkage.cranks}
         groups = [k.group for k in self.kernels]
-        hung = [g for g in groups if any(linkage.hinged_to_frame(link) for link in g.links)]
-        if hung and driver_range.full:
+        on_frame = [g for g in groups if any(linkage.hinged_to_frame(link) for link in g.links)]
+        if on_frame and driver_range.full:
             q = np.linspace(driver_range.start, driver_range.end, 720 * driver_range.turns + 1)
-            kernels = solvers_towards(self.kernels, [link for group in hung for link in group.links])
+            kernels = solvers_towards(self.kernels, [link for group in on_frame for link in group.links])
             motion = compute_motion(linkage, kernels, q, DriverMotion(driver_range.start, 1.0, 0.0, 1), 0)
-            for link in (link for group in hung for link in group.links):
+            for link in (link for group in on_frame for link in group.links):
                 angle = np.unwrap(np.angle(motion.poses[link].z))
                 turned[link] = bool(abs(angle[-1] - angle[0]) > np.pi)
         return turned

@@ -108,7 +108,7 @@ def energy_at_mean_speed(
         The energy (J) and the coefficient of fluctuation. Both are nan if the machine stops at that mean speed,
         or has no inertia somewhere.
     """
-    nodes = work.places()
+    nodes = work.sample_points()
     if flywheel + float(np.min(machine.inertia(nodes))) <= 0:
         return float("nan"), float("nan")
 
@@ -144,7 +144,7 @@ def find_tangent(machine: ReducedMachine, work: PanelCurve, slope: float, *, top
     def height(x: Real) -> Real:
         return sign * (work(x) - slope * machine.inertia(x))
 
-    x, __ = find_minimum(height, work.places())
+    x, __ = find_minimum(height, work.sample_points())
     rate = work.slope()
 
     def steepness(x: Real) -> Real:

@@ -79,7 +79,7 @@ def constant_moment_law(machine: ReducedMachine, flywheel: float, energy: float,
         StandstillError: the energy falls to zero somewhere.
     """
     work = fit_curves(lambda x: (energy + machine.work(x) + moment * x,), machine.work.edges)[0]
-    nodes = work.places()
+    nodes = work.sample_points()
     values = work(nodes)
     if not np.all(values > 0):
         raise StandstillError(float(nodes[np.argmin(values)]))
@@ -88,7 +88,7 @@ def constant_moment_law(machine: ReducedMachine, flywheel: float, energy: float,
         return np.sqrt((flywheel + machine.inertia(x)) / (2 * work(x))), np.full(np.shape(x), moment)
 
     pace, driving = fit_curves(parts, work.edges)
-    return SteadyLaw(machine, flywheel, work, driving, pace.summed())
+    return SteadyLaw(machine, flywheel, work, driving, pace.integrate())
 
 
 # Steady running of a machine driven by a motor with a given characteristic: the motion that repeats every cycle.
@@ -167,7 +167,7 @@ class MotorCycle:
             RunawayError: the load drives the machine harder than the motor can brake it.
         """
         mean_moment = -machine.work_of_cycle / machine.length
-        x = machine.moment.places()
+        x = machine.moment.sample_points()
         if mean_moment >= motor.most:
             raise WeakMotorError(mean_moment, motor.most, float(x[np.argmin(machine.moment(x))]))
         if -mean_moment >= motor.holds:
@@ -210,7 +210,7 @@ class MotorCycle:
             )  # so heavy a flywheel that a cycle's change of its energy is rounding
         # on the rising branch of the characteristic it is a good beginning for the next flywheel
         self.slip = slip if np.all(self.motor.at_slip(values)[1] > 0) else 0.0
-        return SteadyLaw(self.machine, flywheel, energy, driving, pace.summed())
+        return SteadyLaw(self.machine, flywheel, energy, driving, pace.integrate())
 
     def _unsteady_error(self, values: Real) -> LinkageError:
         """Return the error for a machine that runs away, or that stops where its slip is largest."""
@@ -378,7 +378,7 @@ class SpeedTableLaw:
         rows = np.array([float(to_float(value)) for value in squares.values])
         if np.min(rows) <= LEAST_SQUARE * np.max(rows):
             return PanelCurve(np.array([0.0, self._length]), np.full((1, 1), np.nan))
-        return fit_curves(pace, edges)[0].summed()
+        return fit_curves(pace, edges)[0].integrate()
 
     def _laps_and_time(self, q: Real) -> tuple[Real, Real]:
         """Return the number of whole cycles since the first end of the table, and the time (s) in the current cycle."""

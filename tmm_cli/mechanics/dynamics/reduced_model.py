@@ -61,7 +61,7 @@ class PanelCurve:
         """Return the derivative of the function."""
         return PanelCurve(self.edges, chebyshev.chebder(self.coefficients) / (np.diff(self.edges) / 2))
 
-    def summed(self) -> PanelCurve:
+    def integrate(self) -> PanelCurve:
         """Return the integral of the function from 0 as a function of its upper limit."""
         half = np.diff(self.edges) / 2
         integrals = chebyshev.chebint(self.coefficients, lbnd=-1) * half
@@ -75,7 +75,7 @@ class PanelCurve:
         integrals = chebyshev.chebval(1.0, chebyshev.chebint(self.coefficients, lbnd=-1))
         return float(np.sum(np.diff(self.edges) / 2 * integrals))
 
-    def places(self) -> Real:
+    def sample_points(self) -> Real:
         """Return closely spaced arguments: the nodes of each panel, and two points just inside its ends."""
         return panel_nodes(self.edges, ends=True)
 
@@ -187,4 +187,4 @@ def reduce_machine(sample: Sample, edges: Sequence[float], constant: float = 0.0
     edges: driver travels at which loads may jump, including both ends of the cycle.
     """
     inertia, slope, moment = fit_curves(sample, edges)
-    return ReducedMachine(inertia, slope, moment, moment.summed(), constant)
+    return ReducedMachine(inertia, slope, moment, moment.integrate(), constant)

@@ -114,7 +114,7 @@ def integrate_run(machine: ReducedMachine, task: RunTask) -> RunHistory:
         StandstillError: the machine does not start.
         LongRunError: the number of evaluations exceeds the limit.
     """
-    nodes = machine.inertia.places()
+    nodes = machine.inertia.sample_points()
     inertia = task.flywheel + machine.inertia(nodes)
     if not np.min(inertia) > ROUNDOFF * np.max(inertia):
         raise NoInertiaError(round(float(nodes[np.argmin(inertia)]), 9))
@@ -178,7 +178,7 @@ def _integrate_piece(
     gone.terminal = rests.terminal = True  # type: ignore[attr-defined]
     gone.direction, rests.direction = 1.0, -1.0  # type: ignore[attr-defined]
     scale = max(abs(state[1]), 1e-3)
-    energy = max(float(np.max(machine.inertia(machine.inertia.places()))) * scale**2, 1e-9)
+    energy = max(float(np.max(machine.inertia(machine.inertia.sample_points()))) * scale**2, 1e-9)
     method, error = ("LSODA", TOLERANCE / 10) if _is_stiff(machine, task) else ("DOP853", TOLERANCE)
     exact = {"rtol": error, "atol": [error * machine.length, error * scale, *[error * energy] * 3]}
     done = solve_ivp(rates, times, state, method, events=(gone, rests), dense_output=True, **exact)
@@ -207,7 +207,7 @@ def _is_stiff(machine: ReducedMachine, task: RunTask) -> bool:
     """Return True if the motor changes the speed much faster than the machine covers its travel."""
     if task.motor is None:
         return False
-    inertia = task.flywheel + float(np.min(machine.inertia(machine.inertia.places())))
+    inertia = task.flywheel + float(np.min(machine.inertia(machine.inertia.sample_points())))
     steepest = float(task.motor.at_slip(np.zeros(1))[1][0]) / task.motor.idle
     return steepest * machine.length > STIFF_RATIO * inertia * task.motor.idle
 
@@ -249,7 +249,7 @@ def _pieces(moment: PanelCurve, way_edges: Sequence[float]) -> Iterator[tuple[fl
     """Yield the intervals of travel between points where the load moment jumps or the drive has a jump or a kink."""
     inner = moment.edges[1:-1]
     before, after = moment(np.nextafter(inner, 0.0)), moment(inner)
-    jumps = inner[np.abs(after - before) > NO_JUMP * float(np.max(np.abs(moment(moment.places()))))]
+    jumps = inner[np.abs(after - before) > NO_JUMP * float(np.max(np.abs(moment(moment.sample_points()))))]
     edges = {edge for edge in way_edges if 0 < edge < moment.length} | set(jumps.tolist())
     yield from pairwise([0.0, *sorted(edges), moment.length])
 
@@ -290,7 +290,7 @@ class SingleRun:
         """Return `count` evenly spaced driver coordinates from the beginning of the run to its end."""
         return self.first + self.sense * np.linspace(0, float(self.run.way[-1]), count)
 
-    def way(self, q: Real) -> Real:
+    def travel(self, q: Real) -> Real:
         """Return the distance that the driver has covered when it reaches the coordinate q."""
         gone: Real = self.sense * (to_float(q) - self.first)
         again = gone if self.turn is None else np.mod(gone + SAME_DRIVER_POSITION, self.turn) - SAME_DRIVER_POSITION
@@ -308,15 +308,15 @@ class SingleRun:
 
     def speed(self, q: Real) -> Real:
         """Return the speed with its sign, rad/s or m/s; nan at coordinates that the run does not reach."""
-        return self.sense * self.run.at(self.way(q))[1]
+        return self.sense * self.run.at(self.travel(q))[1]
 
     def time(self, q: Real) -> Real:
         """Return the time since the beginning, s; nan at coordinates that the run does not reach."""
-        return self.run.at(self.way(q))[0]
+        return self.run.at(self.travel(q))[0]
 
     def kinetic(self, q: Real) -> Real:
         """Return the kinetic energy, J; nan at coordinates that the run does not reach."""
-        return self.energy(self.way(q), self.speed(q))
+        return self.energy(self.travel(q), self.speed(q))
 
     def energy(self, travel: Real, speed: Real) -> Real:
         """Compute the kinetic energy (J) from the distance covered by the driver and its speed."""
@@ -329,7 +329,7 @@ class SingleRun:
 
     def accelerated(self, q: Real) -> Real:
         """Return the acceleration with its sign, rad/s2 or m/s2; nan at coordinates that the run does not reach."""
-        travel = self.way(q)
+        travel = self.travel(q)
         time, speed = self.run.at(travel)
         return self.sense * self.acceleration(time, travel, speed)
 

@@ -154,7 +154,7 @@ class SteadySolution:
 
 def speed_extremes(law: SteadyLaw) -> tuple[float, float]:
     """Return the least and the largest speed over the cycle."""
-    nodes, signs = law.energy.places(), np.array([1.0, -1.0])
+    nodes, signs = law.energy.sample_points(), np.array([1.0, -1.0])
     values = law.speed(nodes)
     best = np.argmin(signs[:, None] * values, axis=1)
     low, high = (nodes[np.clip(best + side, 0, len(nodes) - 1)] for side in (-1, 1))
@@ -165,7 +165,7 @@ def speed_extremes(law: SteadyLaw) -> tuple[float, float]:
 
 def speed_extreme_places(law: SteadyLaw) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return two pairs: driver travel and speed where the speed is least, and where it is largest."""
-    nodes = law.energy.places()
+    nodes = law.energy.sample_points()
     (slowest, low), (quickest, high) = find_minimum(law.speed, nodes), find_minimum(lambda x: -law.speed(x), nodes)
     length = law.energy.length
     return (
@@ -195,7 +195,7 @@ def find_steady_running(machine: ReducedMachine, task: SteadyTask) -> SteadySolu
     energy, fluctuation = energy_at_mean_speed(machine, work, task.mean, task.flywheel)
     if task.delta is None:
         if np.isnan(energy):
-            raise StandstillError(find_minimum(work, work.places())[0])
+            raise StandstillError(find_minimum(work, work.sample_points())[0])
         law = constant_moment_law(machine, task.flywheel, energy, moment)
         return SteadySolution(task, machine, moment, work, law, fluctuation)
     arguments = (machine, work, task.mean, task.delta)
@@ -222,7 +222,7 @@ def _steady_with_motor(machine: ReducedMachine, task: SteadyTask, motor: MotorCh
     A flywheel changes the driving moment, so its inertia is found iteratively.
     """
 
-    cycle, nodes = MotorCycle.of(machine, motor), machine.inertia.places()
+    cycle, nodes = MotorCycle.of(machine, motor), machine.inertia.sample_points()
     inertia = machine.inertia(nodes)
     heaviest, lightest = float(np.max(inertia)), float(np.min(inertia))
     if task.delta is None and not task.flywheel + lightest > ROUNDOFF * heaviest:
@@ -368,30 +368,30 @@ class SteadyRunning:
     def task(self) -> SteadyTask:
         return self.steady.task
 
-    def way(self, q: Real) -> Real:
+    def travel(self, q: Real) -> Real:
         """Return the travel of the driver (rad) from the beginning of the cycle to the coordinate q."""
         gone = np.mod(self.sense * (to_float(q) - self.start) + SEAM, self.steady.machine.length) - SEAM
         return np.asarray(np.maximum(gone, 0.0))
 
     def speed(self, q: Real) -> Real:
         """Return the angular velocity with its sign, rad/s."""
-        return self.sense * self.steady.law.speed(self.way(q))
+        return self.sense * self.steady.law.speed(self.travel(q))
 
     def accelerated(self, q: Real) -> Real:
         """Return the angular acceleration with its sign, rad/s2."""
-        return self.sense * self.steady.law.acceleration(self.way(q))
+        return self.sense * self.steady.law.acceleration(self.travel(q))
 
     def time(self, q: Real) -> Real:
         """Return the time since the beginning of the cycle, s."""
-        return self.steady.law.time(self.way(q))
+        return self.steady.law.time(self.travel(q))
 
     def driving(self, q: Real) -> Real:
         """Return the driving moment (N m), positive in the sense of rotation."""
-        return self.steady.law.driving(self.way(q))
+        return self.steady.law.driving(self.travel(q))
 
     def work(self, q: Real) -> Real:
         """Return the work of all moments since the beginning of the cycle, J."""
-        return self.steady.work(self.way(q))
+        return self.steady.work(self.travel(q))
 
 
 def find_running_law(mechanism: Mechanism, start: float, task: SteadyTask) -> SteadyRunning:

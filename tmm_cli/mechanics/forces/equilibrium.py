@@ -119,7 +119,7 @@ def _sum_along_guide(
     The unknown is the component of the given kind in the given pair.
     """
     u = position.guide(guide)
-    forces = [a for a in position.acting((link,), axes) if not a.couple]
+    forces = [a for a in position.external_forces((link,), axes) if not a.couple]
     largest = max((a.size for a in forces), default=0.0)
     parts = [GuideComponent(a, float(dot(u, a.force))) for a in forces]
     parts = [component for component in parts if abs(component.along) > NO_FORCE * largest]
@@ -254,7 +254,7 @@ def _group_body(position: LoadedPosition, forces: GroupForces) -> FreeBody:
     else:
         equations += _equations_of_guides(position, group, axes)
     sums = sums_along_guides(position, group, leads, axes)
-    return FreeBody(group.links, position.acting(group.links, axes), number_arms(equations), sums)
+    return FreeBody(group.links, position.external_forces(group.links, axes), number_arms(equations), sums)
 
 
 def _equations_of_external_pairs(
@@ -333,7 +333,7 @@ def _driving_link_body(position: LoadedPosition, frame: Reaction) -> FreeBody:
         sought = EquationUnknown(balance_symbol(link, len(position.reactions.balances) > 1, turns=turns), DRIVE)
     equation = _moment_equation(position, {}, (link,), pair.point or pair.name, position.pair(pair), sought)
     sums = sums_of_driver(position, pair) if pair.slide is not None else ()
-    return FreeBody((link,), position.acting((link,), {}), number_arms([equation]), sums, driving=True)
+    return FreeBody((link,), position.external_forces((link,), {}), number_arms([equation]), sums, driving=True)
 
 
 def _unknown_component(group: Group, pair: Pair, kind: VectorKind) -> EquationUnknown:
@@ -373,7 +373,9 @@ def _moment_equation(
     """
     to = carried or {}
     acting = [
-        moved for force in position.acting(links, axes) for moved in _moved_to(force, to.get(force.pair), position.size)
+        moved
+        for force in position.external_forces(links, axes)
+        for moved in _move_force(force, to.get(force.pair), position.size)
     ]
     return MomentEquation(tuple(links), about, centre, moment_terms(acting, centre, position.size), sought)
 
@@ -399,7 +401,7 @@ def moment_terms(acting: Iterable[ForceOrCouple], centre: complex, extent: float
     return tuple(term for term in terms if abs(term.moment) > least)
 
 
-def _moved_to(acting: ForceOrCouple, place: complex | None, size: float) -> Iterable[ForceOrCouple]:
+def _move_force(acting: ForceOrCouple, place: complex | None, size: float) -> Iterable[ForceOrCouple]:
     if place is None or acting.couple:
         yield acting
         return

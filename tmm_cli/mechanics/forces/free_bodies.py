@@ -176,7 +176,7 @@ class LoadedPosition:
         turned = 1.0 if carrier == FRAME else complex(self.motion.poses[carrier].z[self.k])
         return complex(turned * unit(pair.slide.direction))
 
-    def acting(self, links: Collection[str], axes: Mapping[str, complex]) -> tuple[ForceOrCouple, ...]:
+    def external_forces(self, links: Collection[str], axes: Mapping[str, complex]) -> tuple[ForceOrCouple, ...]:
         """Return the external forces and couples on some links; those negligible compared with the largest are left
         out.
 
@@ -190,7 +190,7 @@ class LoadedPosition:
                 forces += self._reaction(reaction, link, axes.get(reaction.pair.name))
         return drop_negligible(forces, self.size)
 
-    def given(self) -> tuple[ForceOrCouple, ...]:
+    def loads_and_drives(self) -> tuple[ForceOrCouple, ...]:
         """Return the loads on all links and the balancing force or couple of each driver on the link that it drives."""
         drives = [self._drive(balance, balance.driver.link, 1) for balance in self.reactions.balances]
         return drop_negligible([*self._loads(self.motion.linkage.moving), *drives], self.size)
@@ -360,7 +360,7 @@ def hinge_names(pairs: Iterable[Pair], links: Collection[str]) -> list[str]:
 
 def _external_pair(position: LoadedPosition, group: Group, pair: Pair) -> ExternalPair:
     own = group.own(pair)
-    links = _sliding_together(group, own)
+    links = _links_rotating_together(group, own)
     inner = hinge_names(group.inner, links)
     if pair.slide is not None:
         hinges = hinge_names(group.inner, (own,))
@@ -382,7 +382,7 @@ def _external_pair(position: LoadedPosition, group: Group, pair: Pair) -> Extern
     return ExternalPair(pair, links)
 
 
-def _sliding_together(group: Group, link: str) -> tuple[str, ...]:
+def _links_rotating_together(group: Group, link: str) -> tuple[str, ...]:
     joined = {link}
     for _ in group.links:
         for pair in group.inner:

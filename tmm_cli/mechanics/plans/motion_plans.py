@@ -128,11 +128,11 @@ def velocity_plan(motion: Motion, k: int) -> Plan:
     linkage = motion.linkage
     ends = plan_ends(linkage, "p", lambda point: motion.named(point).v[k])
     vectors, names = relative_vectors(motion, ends), {letter: point for point, letter in plan_letters(linkage).items()}
-    for stone in sliding_blocks(motion, ends, k):
-        slide, under = stone.slide, stone.under
-        ends[under], names[under] = complex(motion.point(slide.carrier, stone.local).v[k]), stone.below
-        runner, symbol = complex(motion.point(slide.runner, slide.at).v[k]), Symbol("v", stone.name + stone.below)
-        segment = under + (stone.letter if stone.letter in ends else "p")  # a pivot of the frame is the pole
+    for block in sliding_blocks(motion, ends, k):
+        slide, under = block.slide, block.under
+        ends[under], names[under] = complex(motion.point(slide.carrier, block.local).v[k]), block.below
+        runner, symbol = complex(motion.point(slide.runner, slide.at).v[k]), Symbol("v", block.name + block.below)
+        segment = under + (block.letter if block.letter in ends else "p")  # a pivot of the frame is the pole
         vectors.append(NamedVector(segment, ends[under], runner, "sliding", symbol))
     for name, wheel, place in pitch_points(motion, k):
         pose, letter = motion.poses[wheel], distinct_letter(ends, name.lower())
@@ -185,18 +185,18 @@ def acceleration_plan(motion: Motion, k: int) -> Plan:
     linkage = motion.linkage
     ends = plan_ends(linkage, ACCELERATION_POLE, lambda point: motion.named(point).a[k])
     names = {letter: point for point, letter in plan_letters(linkage).items()}
-    blocks = {stone.slide.name: stone for stone in sliding_blocks(motion, ends, k)}
-    for stone in blocks.values():
-        ends[stone.under] = complex(motion.point(stone.slide.carrier, stone.local).a[k])
-        names[stone.under] = stone.below
+    blocks = {block.slide.name: block for block in sliding_blocks(motion, ends, k)}
+    for block in blocks.values():
+        ends[block.under] = complex(motion.point(block.slide.carrier, block.local).a[k])
+        names[block.under] = block.below
     ended = {name: ends[letter] for letter, name in names.items() if letter in ends}
-    local = {stone.below: stone.local for stone in blocks.values()}
+    local = {block.below: block.local for block in blocks.values()}
     pairs: list[VectorPair] = []
     for step in solution_steps(linkage, groups_of(motion)):
         for equation in (*step.equations, *step.after):
             if isinstance(equation, MovingGuideEquation):
-                stone = blocks[equation.slide.name]
-                pairs.append(_sliding_parts(motion, k, stone, ends[stone.under]))
+                block = blocks[equation.slide.name]
+                pairs.append(_sliding_parts(motion, k, block, ends[block.under]))
             elif isinstance(equation, SameLinkEquation) and not equation.idle:
                 pairs.append(_rotation_parts(motion, k, equation, local, ended.get(equation.base.name, 0j)))
     for link in links_with_mass(linkage):
@@ -233,13 +233,13 @@ def _rotation_parts(
     )
 
 
-def _sliding_parts(motion: Motion, k: int, stone: SlidingBlock, start: complex) -> VectorPair:
+def _sliding_parts(motion: Motion, k: int, block: SlidingBlock, start: complex) -> VectorPair:
     """Compute the Coriolis and the sliding component of a block's acceleration relative to the coincident point of
     its guide.
 
     start: end of the acceleration of that point, where the Coriolis component begins.
     """
-    sliding, index = motion.slide(stone.slide), stone.name + stone.below
+    sliding, index = motion.slide(block.slide), block.name + block.below
     bend = start + complex(sliding.coriolis[k])
     end = bend + complex(sliding.a[k] * sliding.u[k])
     return (
