@@ -73,15 +73,9 @@ class SteadyPosition:
         upper, __ = self.tangents
         return upper.slope * self.steady.law.flywheel - upper.offset
 
-<<<<<<< HEAD
     def value_of(self, curve: PanelCurve) -> float:
         """Return the value in this position of a curve plotted against the angle of the input link."""
-        return float(curve(self.running.way(self.motion.q))[self.k])
-=======
-    def of(self, curve: PanelCurve) -> float:
-        """Return the value of a curve over the input angle at this position."""
         return float(curve(self.running.travel(self.motion.q))[self.k])
->>>>>>> c34887ad (Name errors, methods and locals of batches, traces and dynamics after what they do)
 
 
 # Reduced moment of inertia and reduced moment in one position: terms of the links and of the loads.

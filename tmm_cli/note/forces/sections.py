@@ -420,19 +420,11 @@ def _write_guide_polygon(body: AnalysedBody) -> Iterable[Block]:
         yield state_value(symbol, body.magnitude(reaction), _("N"))
 
 
-<<<<<<< HEAD
 def _polygon_of_link(body: AnalysedBody, link: str, sought: Mapping[Symbol, int]) -> Equation:
     """Return the force polygon of one link as an equation. `sought` gives the number of underlines of each unknown."""
-    acting = body.position.acting([link], {})
+    acting = body.position.external_forces([link], {})
     known_symbols = [load.symbol for load in acting if not load.couple and load.symbol not in sought]
     return Equation(vector_sum_equation([*((symbol, 2) for symbol in known_symbols), *sought.items()]))
-=======
-def _polygon(part: Part, link: str, sought: Mapping[Symbol, int]) -> Equation:
-    """Return the force polygon of one link; each unknown with its number of underlines."""
-    acting = part.here.external_forces([link], {})
-    known = [one.symbol for one in acting if not one.couple and one.symbol not in sought]
-    return Equation(vector_sum([*((symbol, 2) for symbol in known), *sought.items()]))
->>>>>>> c34887ad (Name errors, methods and locals of batches, traces and dynamics after what they do)
 
 
 def _write_internal_reactions(body: AnalysedBody) -> Iterable[Block]:
