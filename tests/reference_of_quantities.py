@@ -13,7 +13,7 @@ from test_commands import ROOT
 from tmm_cli import load, solve
 from tmm_cli.mechanics import quantities as register
 from tmm_cli.mechanics.analysis import NamedQuantity, list_quantities, relative_angles, wheel_quantities
-from tmm_cli.mechanics.quantities import DIMENSIONS, Dimension
+from tmm_cli.mechanics.quantities import ANGULAR_JERK, DIMENSIONS, Dimension
 from tmm_cli.synthesis import QUANTITIES
 
 HEAD = """# Reference: quantities
@@ -56,6 +56,8 @@ MEANINGS: dict[str, tuple[str, str]] = {  # by the pattern of the name: meaning,
     "y of P": ("coordinate of a point", "y_P"),
     "v of P": ("velocity of a point; a vector", "v_P"),
     "a of P": ("acceleration of a point; a vector", "a_P"),
+    "jerk of P": ("jerk of a point, the derivative of its acceleration; a vector", "j_P"),
+    "jerk of n": ("angular jerk of a link, the derivative of its angular acceleration", ""),
     "phi of n": ("angle of the x axis of a link", "φ_n"),
     "omega of n": ("angular velocity of a link", "ω_n"),
     "epsilon of n": ("angular acceleration of a link", "ε_n"),
@@ -104,6 +106,8 @@ def pattern(name: str, quantity: NamedQuantity) -> str:
         return f"{re.sub(r'step [0-9]+', 'step i', head)} of w"
     if " on " in thing:
         return f"{head} of n on m"
+    if head == "jerk":
+        return "jerk of n" if quantity.dimension == ANGULAR_JERK else "jerk of P"
     link = head in ("phi", "omega", "epsilon", "s", "U", "M", "M_b", "F_b")
     return f"{head} of {'n' if link else 'P'}"
 

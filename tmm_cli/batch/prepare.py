@@ -37,10 +37,8 @@ from tmm_cli.mechanics.forces import Reactions, collect_loads, solve_friction, s
 from tmm_cli.mechanics.groups import (
     ClosedFormSolver,
     DriverMotion,
-    DriverState,
     GroupSolver,
     NotUnrolledError,
-    drives_at,
 )
 from tmm_cli.mechanics.kinematics import Motion, Strokes, compute_motion
 from tmm_cli.mechanics.linkage import Linkage
@@ -55,7 +53,6 @@ CONVERGED, ANGLES_AGREE = (
     "wound",
 )  # Newton steps of the trace converged; accumulated angles of gears agree with its tables
 CHECK_OUTPUTS = (*CHECKS, CONVERGED, ANGLES_AGREE)
-TIME_LAW = DriverMotion(0.0, 1.0, 0.0, 1)  # the parameter of the motion is time
 
 
 def read_all(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
@@ -293,14 +290,7 @@ def solve_stages(
     """
     lead = linkage.driver
     law = DriverMotion(linkage.sketch.at if start is None else start, lead.rate, lead.acceleration, lead.sense)
-    speed = law.speed(q)
-    drives = {
-        link: DriverState(
-            d.value, d.first * speed, d.second * speed * speed + d.first * (lead.sense * lead.acceleration)
-        )
-        for link, d in drives_at(linkage, q).items()
-    }
-    motion = compute_motion(linkage, kernels, q, TIME_LAW, blank=blank, drives=drives)
+    motion = compute_motion(linkage, kernels, q, law, blank=blank, in_time=bool(np.any(lead.rate != 0)))
     reactions = solve_forces(motion, structure, strokes) if forces else None
     margin = reduce(np.minimum, [at.margin for at in motion.placements], np.ones(np.shape(q)))
     checks = {"placed": motion.placed, "moving": motion.moving, "margin": margin}

@@ -15,6 +15,7 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from tmm_cli.batch.trace_program import TraceProgram
 from tmm_cli.batch.trace_terms import UFUNCS, Term, Trace
+from tmm_cli.mechanics.numerics import Dual
 
 
 class DependsOnData(TypeError):  # noqa: N818 - what it says, not an error of somebody's
@@ -79,6 +80,8 @@ class TracedArray(NDArrayOperatorsMixin):
         raise DependsOnData("an array is needed that depends on the data")
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **more: Any) -> Any:
+        if any(isinstance(x, Dual) for x in inputs):
+            return NotImplemented  # a dual number contains traced arrays, not the reverse
         if method != "__call__" or any(v is not None for v in more.values()):
             raise DependsOnData(f"{ufunc.__name__}.{method} cannot be traced")
         if ufunc is np.power and isinstance(inputs[1], int) and inputs[1] == 2:
@@ -94,6 +97,8 @@ class TracedArray(NDArrayOperatorsMixin):
         return TracedArray(self.trace, self.trace.apply(ufunc.__name__, *(re for re, _ in parts)))
 
     def __array_function__(self, function: Any, types: Any, args: Any, kwargs: Any) -> Any:
+        if Dual in types:
+            return NotImplemented
         traced = FUNCTIONS.get(function)
         if traced is None or kwargs:
             raise DependsOnData(f"{function.__name__} cannot be traced")
@@ -193,6 +198,7 @@ FUNCTIONS: dict[Any, Callable[..., Any]] = {
     np.where: TracedArray.where,
     np.shape: lambda placeholder, value: value.shape,
     np.atleast_1d: lambda placeholder, value: value,
+    np.iscomplexobj: lambda placeholder, value: value.im is not None,
     np.real: lambda placeholder, value: value.real,
     np.imag: lambda placeholder, value: value.imag,
     np.angle: lambda placeholder, value: np.arctan2(value.imag, value.real),

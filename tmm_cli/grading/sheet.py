@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -14,15 +14,7 @@ from tmm_cli.mechanics.analysis import NamedQuantity
 from tmm_cli.mechanics.groups import ClosedFormSolver
 from tmm_cli.mechanics.numerics import Real, Vector
 from tmm_cli.mechanics.quantities import (
-    ACCELERATION,
-    ANGLE,
-    ANGULAR_ACCELERATION,
-    ANGULAR_SPEED,
-    FORCE,
-    LENGTH,
     MOMENT,
-    NUMBER,
-    SPEED,
     Dimension,
 )
 
@@ -156,12 +148,12 @@ def _reference_values(asked: Sequence[Question], solution: Solution) -> Real:
     usual = _typical_magnitudes(solution)
     for k, one in enumerate(asked):
         if one.quantity.against in ("largest", "range"):
-            size = usual[one.quantity.dimension]
+            size = usual(one.quantity.dimension)
             found[:, k] = np.where(found[:, k] > NOTHING * size, found[:, k], size)
     return found
 
 
-def _typical_magnitudes(solution: Solution) -> dict[Dimension, Real]:
+def _typical_magnitudes(solution: Solution) -> Callable[[Dimension], Real]:
     """Return typical magnitudes (SI) by dimension, (variants,), from longest link, driver speed and loads."""
     motion, loads = solution.motion, solution.reactions.applied
     size = np.reshape(np.max([np.max(kernel.size, initial=0.0) for kernel in motion.kernels] or [1.0]), (-1,))
@@ -169,17 +161,15 @@ def _typical_magnitudes(solution: Solution) -> dict[Dimension, Real]:
     turn = rate if motion.linkage.driver.kind == "turn" else rate / size
     force = np.maximum(sum(np.nanmax(np.abs(load.force), axis=1) for load in loads), NOTHING)
     moment = size * force + sum(np.nanmax(np.abs(load.moment), axis=1) for load in loads)
-    return {
-        LENGTH: size,
-        SPEED: size * turn,
-        ACCELERATION: size * turn**2,
-        ANGULAR_SPEED: turn,
-        ANGULAR_ACCELERATION: turn**2,
-        FORCE: force,
-        MOMENT: moment,
-        NUMBER: np.ones(1),
-        ANGLE: np.ones(1),
-    }
+
+    def typical(dimension: Dimension) -> Real:
+        if dimension == MOMENT:
+            return np.asarray(moment)
+        masses = dimension.mass  # a force stands for the mass, which it accelerates by size turn^2
+        magnitude = force**masses * size ** (dimension.length - masses) * turn ** -(dimension.time + 2 * masses)
+        return np.asarray(magnitude)
+
+    return typical
 
 
 def _reference_value(quantity: NamedQuantity, solution: Solution) -> Real:

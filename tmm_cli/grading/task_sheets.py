@@ -46,6 +46,7 @@ MEANINGS = {  # of what is asked, by the name before ` of ` or `_`
     "s": N_("displacement along the guide from its reference point; of an oscillating output, its angle"),
     "omega": N_("angular velocity, positive counterclockwise"),
     "epsilon": N_("angular acceleration, positive counterclockwise"),
+    "jerk": N_("jerk, the derivative of the acceleration; of a link, of its angular acceleration"),
     "v on": N_("relative motion of one link along its guide on the other"),
     "a on": N_("relative motion of one link along its guide on the other"),
     "Coriolis": N_("Coriolis acceleration, a vector"),

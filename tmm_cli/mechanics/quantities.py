@@ -113,6 +113,8 @@ SPEED: Final = Dimension(1, 0, -1)
 ACCELERATION: Final = Dimension(1, 0, -2)
 ANGULAR_SPEED: Final = Dimension(0, 0, -1, 1)
 ANGULAR_ACCELERATION: Final = Dimension(0, 0, -2, 1)
+JERK: Final = Dimension(1, 0, -3)
+ANGULAR_JERK: Final = Dimension(0, 0, -3, 1)
 STIFFNESS: Final = Dimension(0, 1, -2)
 TORSION: Final = Dimension(2, 1, -2, -1)
 DAMPING: Final = Dimension(0, 1, -1)
@@ -131,6 +133,8 @@ DIMENSIONS: Final[Mapping[str, NamedDimension]] = {
     "acceleration": NamedDimension(ACCELERATION, "m/s^2", "3 m/s^2"),
     "angular speed": NamedDimension(ANGULAR_SPEED, "rad/s", "82 rpm or 8.6 rad/s"),
     "angular acceleration": NamedDimension(ANGULAR_ACCELERATION, "rad/s^2", "5 rad/s^2"),
+    "jerk": NamedDimension(JERK, "m/s^3", "40 m/s^3"),
+    "angular jerk": NamedDimension(ANGULAR_JERK, "rad/s^3", "90 rad/s^3"),
     "stiffness": NamedDimension(STIFFNESS, "N/m", "800 N/m"),
     "torsional stiffness": NamedDimension(TORSION, "N*m/rad", "2 N*m/rad"),
     "damping": NamedDimension(DAMPING, "N*s/m", "50 N*s/m"),
@@ -154,6 +158,8 @@ NAMES_WITH_ARTICLE: Final[Mapping[str, str]] = {
     "pressure": N_("a pressure"),
     "angular speed": N_("an angular speed"),
     "angular acceleration": N_("an angular acceleration"),
+    "jerk": N_("a jerk"),
+    "angular jerk": N_("an angular jerk"),
     "stiffness": N_("a stiffness"),
     "torsional stiffness": N_("a torsional stiffness"),
     "damping": N_("a damping coefficient"),

@@ -21,9 +21,17 @@ from tmm_cli.mechanics.analysis import (
     results_at,
     wheel_quantities,
 )
-from tmm_cli.mechanics.groups import link_extent
+from tmm_cli.mechanics.groups import DriverMotion, link_extent
 from tmm_cli.mechanics.numerics import Real, find_roots, greatest_values
-from tmm_cli.mechanics.quantities import ANGLE, LENGTH, NUMBER, Dimension, coordinate_dimension
+from tmm_cli.mechanics.quantities import (
+    ANGLE,
+    ANGULAR_JERK,
+    JERK,
+    LENGTH,
+    NUMBER,
+    Dimension,
+    coordinate_dimension,
+)
 from tmm_cli.mechanics.structure import ChainResults, analyse_structure
 from tmm_cli.problem import (
     Path,
@@ -125,6 +133,9 @@ def _linkage_property(name: str, task: ShownKeys, results: Results) -> ShownProp
         raise ProblemError(_("without a hinge only the structure can be computed"), path=("of",), found=quote(task.of))
     if not _has_run(quantity, results):
         return None
+    if quantity.dimension in (JERK, ANGULAR_JERK) and not isinstance(results.motion.law, DriverMotion):
+        message = _("the jerk is computed only for a driver with constant speed or constant acceleration")
+        raise ProblemError(message, path=("of",), found=quote(task.of))
     by = known.get(task.per) if isinstance(task.per, str) else None
     ratio = by is not None and task.over in ("largest", "least")
     if by is not None:

@@ -75,6 +75,7 @@ class Case:
             time=law.time(q),
             rate=law.speed(q),
             acceleration=acceleration,
+            law=law,
         )
 
     def loads(self, motion: Motion) -> tuple[AppliedLoad, ...]:

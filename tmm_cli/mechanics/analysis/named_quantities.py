@@ -17,8 +17,10 @@ from tmm_cli.mechanics.quantities import (
     ACCELERATION,
     ANGLE,
     ANGULAR_ACCELERATION,
+    ANGULAR_JERK,
     ANGULAR_SPEED,
     FORCE,
+    JERK,
     LENGTH,
     MOMENT,
     NUMBER,
@@ -206,7 +208,16 @@ def motion_quantities(linkage: Linkage, structure: Structure) -> dict[str, Named
                 thing=point,
             )
         )
+        if not linkage.driver.law:
+            put(
+                NamedQuantity(
+                    f"jerk of {point}", "accelerations", JERK, partial(_read_jerk, point, place), True, thing=point
+                )
+            )
     for link in linkage.moving:
+        if not linkage.driver.law and f"jerk of {link}" not in quantities:
+            angular = partial(_read_angular_jerk, link)
+            put(NamedQuantity(f"jerk of {link}", "accelerations", ANGULAR_JERK, angular, thing=link))
         put(
             NamedQuantity(
                 f"phi of {link}", "places", ANGLE, partial(_read_link, link, "angle"), against="angle", thing=link
@@ -284,6 +295,15 @@ def _read_point(point: str, place: tuple[str, complex], field: str, solution: So
     if point in motion.linkage.links[link].points:
         return getattr(motion.named(point), field)
     return getattr(motion.centre(link), field)
+
+
+def _read_jerk(point: str, place: tuple[str, complex], solution: SolvedState) -> Any:
+    link, motion = place[0], solution.motion
+    return motion.jerk(point) if point in motion.linkage.links[link].points else motion.jerk_of_centre(link)
+
+
+def _read_angular_jerk(link: str, solution: SolvedState) -> Any:
+    return solution.motion.angular_jerk(link)
 
 
 def _read_coordinate(point: str, place: tuple[str, complex], component: str, solution: SolvedState) -> Any:

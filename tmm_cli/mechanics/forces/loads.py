@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from tmm_cli.mechanics.kinematics import Motion, Strokes, output_coordinate, zero_at_rest
+from tmm_cli.mechanics.kinematics import ForwardMotion, Motion, Strokes, output_coordinate, zero_at_rest
 from tmm_cli.mechanics.linkage import FRAME, Linkage, Load, LoadTable, Spring
 from tmm_cli.mechanics.numerics import SAME_DRIVER_POSITION, SEAM, Real, Vector, cross, dot, pi, unit
 
@@ -167,14 +167,16 @@ def motion_direction(load: Load, motion: Motion) -> tuple[Vector, Real]:
         Unit vector of the velocity of the load's point, and sense of rotation of its link (+1 or -1), both
         relative to the load's base link. Both are zero at rest.
     """
-    largest = motion.largest
-    velocity, spin = motion_on_base(load, motion)
+    forward = motion.forward()
+    largest = forward.largest
+    velocity, spin = motion_on_base(load, motion, forward)
     velocity, spin = zero_at_rest(velocity, largest.speed), zero_at_rest(spin, largest.speed / largest.size)
     if motion.order > 1:
-        pose, other = motion.poses[load.link], motion.second[load.base]
+        rates, accels = forward.rates, forward.accels
+        pose, other = motion.poses[load.link], accels[load.base]
         arm, far = load.at * pose.z, pose.at(load.at) - motion.poses[load.base].x
-        second = motion.second[load.link]
-        gain = second.at(arm, motion.first[load.link].w) - other.at(far, motion.first[load.base].w)
+        second = accels[load.link]
+        gain = second.at(arm, rates[load.link].w) - other.at(far, rates[load.base].w)
         velocity = np.where(velocity == 0, zero_at_rest(gain, largest.acceleration), velocity)
         spin = np.where(spin == 0, zero_at_rest(second.e - other.e, largest.acceleration / largest.size), spin)
     length = np.abs(velocity)
@@ -182,16 +184,16 @@ def motion_direction(load: Load, motion: Motion) -> tuple[Vector, Real]:
         return np.where(length > 0, velocity / length, 0j), np.sign(spin)
 
 
-def motion_on_base(load: Load, motion: Motion) -> tuple[Vector, Real]:
+def motion_on_base(load: Load, motion: Motion, forward: ForwardMotion | None = None) -> tuple[Vector, Real]:
     """Compute the velocity of a load's point and the angular velocity of its link, both relative to the load's
     base link.
 
-    They are divided by the magnitude of the driver's velocity.
+    They are derivatives by the parameter of `forward` (default: that of the motion), in the direction of the motion.
     """
-    sense = np.where(motion.rate == 0, motion.linkage.driver.sense, np.sign(motion.rate))
-    pose, first, base = motion.poses[load.link], motion.first[load.link], motion.first[load.base]
+    forward = motion.forward() if forward is None else forward
+    pose, rate, base = motion.poses[load.link], forward.rates[load.link], forward.rates[load.base]
     far = pose.at(load.at) - motion.poses[load.base].x
-    return sense * (first.at(load.at * pose.z) - base.at(far)), sense * (first.w - base.w)
+    return forward.sense * (rate.at(load.at * pose.z) - base.at(far)), forward.sense * (rate.w - base.w)
 
 
 def in_window(window: tuple[float, float], q: Real, linkage: Linkage) -> Real:

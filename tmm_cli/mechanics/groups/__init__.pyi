@@ -43,6 +43,7 @@ from .sequence import (
     NotComputed as NotComputed,
     driven_state as driven_state,
     drives_at as drives_at,
+    drives_in_time as drives_in_time,
     frame_state as frame_state,
     link_states as link_states,
     solvers_towards as solvers_towards,

@@ -116,11 +116,15 @@ class LinkStates:
 
     def slope(self, slide: Slide) -> Real:
         """Return the derivative of the displacement in a prismatic pair with respect to q."""
+        return self.sliding_rate(slide, self.first)
+
+    def sliding_rate(self, slide: Slide, rates: Mapping[str, Rate]) -> Real:
+        """Return the derivative of the displacement in a prismatic pair with respect to the parameter of `rates`."""
         carrier, runner = self.poses[slide.carrier], self.poses[slide.runner]
         arm = runner.at(slide.at) - carrier.x
-        relative = self.first[slide.runner].at(slide.at * runner.z) - self.first[slide.carrier].at(arm)
-        slope: Real = dot(carrier.z * unit(slide.direction), relative)
-        return slope
+        relative = rates[slide.runner].at(slide.at * runner.z) - rates[slide.carrier].at(arm)
+        rate: Real = dot(carrier.z * unit(slide.direction), relative)
+        return rate
 
 
 class NotComputed(LookupError):  # noqa: N818  the name is the message
@@ -199,6 +203,19 @@ def drives_at(linkage: Linkage, q: Real) -> dict[str, DriverState]:
             second = (driver.sense * driver.acceleration - first * lead.sense * lead.acceleration) / speed**2
             states[driver.link] = DriverState(value, first, second)
     return states
+
+
+def drives_in_time(drives: DriverStates, speed: Real, acceleration: Real) -> dict[str, DriverState]:
+    """Return the coordinates of all drivers with their derivatives by time instead of by the first coordinate.
+
+    Args:
+        drives: as from drives_at.
+        speed, acceleration: those of the first driver, signed (rad/s or m/s).
+    """
+    return {
+        link: DriverState(d.value, d.first * speed, d.second * speed * speed + d.first * acceleration)
+        for link, d in drives.items()
+    }
 
 
 def link_states(

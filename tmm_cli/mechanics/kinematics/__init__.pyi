@@ -19,6 +19,7 @@ from .instantaneous_centres import (
 )
 from .motion import (
     FIELDS_WITHOUT_POSITIONS as FIELDS_WITHOUT_POSITIONS,
+    ForwardMotion as ForwardMotion,
     LinkMotion as LinkMotion,
     Motion as Motion,
     PointMotion as PointMotion,

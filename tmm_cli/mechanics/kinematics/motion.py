@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, reduce
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from tmm_cli.mechanics.groups import DriverStates, GroupSolver, LawOfMotion, LinkStates, link_states
+from tmm_cli.mechanics.groups import (
+    Accel,
+    DriverMotion,
+    GroupSolver,
+    LawOfMotion,
+    LinkStates,
+    Rate,
+    drives_at,
+    drives_in_time,
+    link_states,
+)
+from tmm_cli.mechanics.kinematics.jerk import ThirdDerivative, third_derivatives
 from tmm_cli.mechanics.linkage import Linkage, Slide
 from tmm_cli.mechanics.numerics import (
     AT_REST,
@@ -23,10 +34,13 @@ from tmm_cli.mechanics.numerics import (
     map_record,
     to_float,
     unit,
+    with_slope,
 )
 
+Value = TypeVar("Value")
+
 FIELDS_WITHOUT_POSITIONS = frozenset(
-    {"linkage", "kernels", "group", "pair", "driver", "finer", "where", "order", "bare"}
+    {"linkage", "kernels", "group", "pair", "driver", "finer", "where", "order", "bare", "law"}
 )
 """Names of fields of a motion, and of records derived from it, that are not arrays over positions."""
 
@@ -89,14 +103,42 @@ class SlidingMotion:
     second: Real
 
 
+@dataclass(frozen=True)
+class TimeDerivatives:
+    """Velocities (m/s, rad/s) and accelerations (m/s2, rad/s2) of the links, by name."""
+
+    rates: Mapping[str, Rate]
+    accels: Mapping[str, Accel]
+
+
+@dataclass(frozen=True)
+class ForwardMotion:
+    """Derivatives of the links by a parameter that grows as the mechanism moves, and their largest values.
+
+    The parameter is time, or the driver coordinate counted in its sense, whichever the motion was solved with: so only
+    directions and signs may be read from them.
+    """
+
+    rates: Mapping[str, Rate]
+    accels: Mapping[str, Accel]
+    largest: LargestRates
+    sense: Real | float
+
+
 @dataclass(frozen=True, kw_only=True)
 class Motion(LinkStates):
     """States of the links in time; values are nan where the driver never arrives.
+
+    `first` and `second` are derivatives by the coordinate of the first driver, `rate` and `acceleration` are those of
+    this coordinate by time, however the motion was solved. The transfer functions of a motion that was solved in time
+    are computed when they are read.
 
     Attributes:
         time: time (s) at which the driver reaches each position.
         rate: velocity of the driver (rad/s or m/s).
         acceleration: acceleration of the driver (rad/s2 or m/s2).
+        law: law of motion of the driver, from which these three follow.
+        in_time: derivatives of the links by time, if the groups were solved with time as the parameter; or None.
         finer: motion in extended precision, at the positions of the mask `where`; or None.
         where: mask of positions that are also computed in extended precision, or None.
         limits: mask of change points in which velocities and accelerations are limit values (see fill_in_limits), or
@@ -107,6 +149,8 @@ class Motion(LinkStates):
     time: Real
     rate: Real
     acceleration: Real
+    law: LawOfMotion
+    in_time: TimeDerivatives | None = None
     finer: Motion | None = None
     where: Real | None = None
     limits: Real | None = None
@@ -131,8 +175,32 @@ class Motion(LinkStates):
 
     @cached_property
     def largest(self) -> LargestRates:
-        """Largest velocities and accelerations in the mechanism at every position."""
+        """Largest rates of the links at every position, per unit of the driver coordinate."""
         return LargestRates.of(self)
+
+    @property
+    def _solved(self) -> tuple[Mapping[str, Rate], Mapping[str, Accel]]:
+        """Derivatives of the links by the parameter with which the groups were solved."""
+        return (self.first, self.second) if self.in_time is None else (self.in_time.rates, self.in_time.accels)
+
+    def forward(self) -> ForwardMotion:
+        """Return derivatives of the links in the direction of the motion; of a driver at rest, in its sense."""
+        rates, accels = self._solved
+        if self.in_time is not None:
+            return ForwardMotion(rates, accels, LargestRates.of(self, rates, accels), 1.0)
+        sense = np.where(self.rate == 0, self.linkage.driver.sense, np.sign(self.rate))
+        return ForwardMotion(rates, accels, self.largest, sense)
+
+    def _both_ways(self, first: Any, second: Any) -> tuple[Any, Any, Any, Any]:
+        """Return velocity, acceleration, and first and second transfer function of a quantity.
+
+        first, second: its derivatives by the parameter with which the groups were solved.
+        """
+        if self.in_time is None:
+            return first * self.rate, second * self.rate**2 + first * self.acceleration, first, second
+        with np.errstate(invalid="ignore", divide="ignore"):  # of a driver at rest they are unknown
+            ratio = first / self.rate
+            return first, second, ratio, (second - ratio * self.acceleration) / self.rate**2
 
     def _finest(self, evaluate: Callable[[Motion], Record]) -> Record:
         """Evaluate a function of the motion, in extended precision where this is available."""
@@ -144,10 +212,10 @@ class Motion(LinkStates):
         )
 
     def _point(self, link: str, local: complex) -> PointMotion:
-        pose, first, second = self.poses[link], self.first[link], self.second[link]
+        rates, accels = self._solved
+        pose, rate = self.poses[link], rates[link]
         arm = local * pose.z
-        v1, a1 = first.at(arm), second.at(arm, first.w)
-        return PointMotion(pose.x + arm, v1 * self.rate, a1 * self.rate**2 + v1 * self.acceleration, v1, a1)
+        return PointMotion(pose.x + arm, *self._both_ways(rate.at(arm), accels[link].at(arm, rate.w)))
 
     def named(self, point: str) -> PointMotion:
         """Return the motion of a named point.
@@ -162,8 +230,9 @@ class Motion(LinkStates):
 
     def _sway(self, link: str, point: str) -> float:
         """Return the largest magnitude of the terms that add up to the acceleration of a point of a link."""
-        first, second, arm = self.first[link], self.second[link], abs(self.linkage.local(link, point))
-        terms = np.abs(to_float(second.a)) + (np.abs(to_float(second.e)) + to_float(first.w) ** 2) * to_float(arm)
+        rates, accels = self._solved
+        rate, accel, arm = rates[link], accels[link], abs(self.linkage.local(link, point))
+        terms = np.abs(to_float(accel.a)) + (np.abs(to_float(accel.e)) + to_float(rate.w) ** 2) * to_float(arm)
         return float(np.max(np.where(np.isfinite(terms), terms, 0.0), initial=0.0))
 
     def named_on(self, link: str, point: str) -> PointMotion:
@@ -182,8 +251,8 @@ class Motion(LinkStates):
         """Return the angle, angular velocity and angular acceleration of a link."""
 
         def turning() -> LinkMotion:
-            w1, e1 = self.first[name].w, self.second[name].e
-            return LinkMotion(self.angle(name), w1 * self.rate, e1 * self.rate**2 + w1 * self.acceleration, w1, e1)
+            rates, accels = self._solved
+            return LinkMotion(self.angle(name), *self._both_ways(rates[name].w, accels[name].e))
 
         return self._once("link", name, turning)
 
@@ -196,15 +265,72 @@ class Motion(LinkStates):
     def _slide(self, slide: Slide) -> SlidingMotion:
         carrier, runner = self.poses[slide.carrier], self.poses[slide.runner]
         u = carrier.z * unit(slide.direction)
-        point = self._point(slide.runner, slide.at)
-        w = self.first[slide.carrier].w
-        arm = runner.at(slide.at) - carrier.x
-        run, first = super().run(slide), super().slope(slide)
+        rates, accels = self._solved
+        w = rates[slide.carrier].w
+        arm, on_runner = runner.at(slide.at) - carrier.x, slide.at * runner.z
+        first = super().sliding_rate(slide, rates)
         # along the guide the Coriolis part vanishes, so the rest of the difference is the relative acceleration
-        second = dot(u, point.second - self.second[slide.carrier].at(arm, w))
-        v = first * self.rate
-        coriolis = 2j * (w * self.rate) * v * u
-        return SlidingMotion(run, v, second * self.rate**2 + first * self.acceleration, coriolis, u, first, second)
+        runner_accel = accels[slide.runner].at(on_runner, rates[slide.runner].w)
+        second = dot(u, runner_accel - accels[slide.carrier].at(arm, w))
+        v, a, first, second = self._both_ways(first, second)
+        coriolis = 2j * (w if self.in_time else w * self.rate) * v * u
+        return SlidingMotion(super().run(slide), v, a, coriolis, u, first, second)
+
+    def jerk(self, point: str) -> Vector:
+        """Return the jerk of a named point (m/s3), the derivative of its acceleration.
+
+        It is nan under a law of motion whose third derivative is not known (a motor, a table of speeds).
+        """
+        owners = [link for link in self.linkage.carriers(point) if link in self.poses]
+        link = min(owners, key=lambda name: self._sway(name, point))
+        return self._jerk_at(link, lambda motion: motion.linkage.local(link, point))
+
+    def jerk_of_centre(self, link: str) -> Vector:
+        """Return the jerk of the centre of mass of a link (m/s3)."""
+        return self._jerk_at(link, lambda motion: motion.linkage.links[link].centre)
+
+    def _jerk_at(self, link: str, local: Callable[[Motion], Any]) -> Vector:
+        def evaluate(motion: Motion) -> Vector:
+            rates, accels = motion._solved
+            arm = local(motion) * motion.poses[link].z
+            rate, accel = rates[link], accels[link]
+            parts = rate.at(arm), accel.at(arm, rate.w), motion.third[link].at(arm, rate, accel)
+            jerk: Vector = motion._third_in_time(*parts)
+            return jerk
+
+        return self._finest(evaluate)
+
+    def angular_jerk(self, link: str) -> Real:
+        """Return the derivative of the angular acceleration of a link (rad/s3)."""
+
+        def evaluate(motion: Motion) -> Real:
+            rates, accels = motion._solved
+            jerk: Real = motion._third_in_time(rates[link].w, accels[link].e, motion.third[link].i)
+            return jerk
+
+        return self._finest(evaluate)
+
+    def _third_in_time(self, first: Any, second: Any, third: Any) -> Any:
+        """Return the third derivative by time; first to third: by the parameter with which the groups were solved."""
+        if not isinstance(self.law, DriverMotion):
+            return third * np.nan
+        if self.in_time is not None:
+            return third
+        rate, acceleration = self.rate, self.acceleration
+        return rate * (third * rate * rate + 3 * second * acceleration)
+
+    @cached_property
+    def third(self) -> Mapping[str, ThirdDerivative]:
+        """Third derivatives of the links by the parameter with which the groups were solved.
+
+        The driver must have a constant acceleration.
+        """
+        rates, accels = self._solved
+        q = with_slope(self.q, 1.0 + 0 * self.q if self.in_time is None else self.rate)
+        drives = drives_at(self.linkage, q)
+        if self.in_time is not None:
+            drives = drives_in_time(drives, self.law.speed(q), self.law.accelerated(q))
+        return third_derivatives(self, rates, accels, drives)
 
     def run(self, slide: Slide) -> Real:
         """Return the displacement in a prismatic pair (m)."""
@@ -223,21 +349,75 @@ def compute_motion(
     order: int = 2,
     *,
     blank: bool = True,
-    drives: DriverStates | None = None,
+    in_time: bool = False,
 ) -> Motion:
     """Compute the motion of all links at the coordinates q of the first driver (rad or m).
 
     Args:
         linkage: the linkage.
         kernels: solvers of its groups, as in link_states.
-        q: driver coordinates, shape (positions,).
-        law: law of motion of the driver; if `drives` have another parameter than q, the law of this parameter.
-        order, blank, drives: as in link_states.
+        q: coordinates of the first driver, shape (positions,).
+        law: law of motion of the driver.
+        order, blank: as in link_states.
+        in_time: solve the groups with time as the parameter, which saves operations where only velocities and
+            accelerations are read. The result means the same.
     """
-    states = link_states(linkage, kernels, q, order, blank=blank, drives=drives)
-    rate = law.speed(states.q)
-    whole = vars(states) | {"moving": states.moving & np.isfinite(rate)}
-    return Motion(**whole, time=law.time(states.q), rate=rate, acceleration=law.accelerated(states.q))
+    q = np.atleast_1d(q)
+    rate, acceleration, time = law.speed(q), law.accelerated(q), law.time(q)
+    if not in_time:
+        states = link_states(linkage, kernels, q, order, blank=blank)
+        whole = vars(states) | {"moving": states.moving & np.isfinite(rate)}
+        return Motion(**whole, time=time, rate=rate, acceleration=acceleration, law=law)
+    drives = drives_at(linkage, q)
+    states = link_states(linkage, kernels, q, order, blank=blank, drives=drives_in_time(drives, rate, acceleration))
+    first, second = _transfer_functions(states, rate, acceleration)
+    whole = vars(states) | {
+        "moving": states.moving & np.isfinite(rate),
+        "drives": drives,
+        "first": first,
+        "second": second,
+    }
+    timed = TimeDerivatives(states.first, states.second)
+    return Motion(**whole, time=time, rate=rate, acceleration=acceleration, law=law, in_time=timed)
+
+
+def _transfer_functions(
+    states: LinkStates, rate: Real, acceleration: Real
+) -> tuple[Mapping[str, Rate], Mapping[str, Accel]]:
+    """Return first and second derivatives by the driver coordinate of states that were solved in time."""
+
+    def first(link: str) -> Rate:
+        by_time = states.first[link]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return Rate(by_time.v / rate, by_time.w / rate)
+
+    def second(link: str) -> Accel:
+        by_time, slope = states.second[link], firsts[link]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            square = rate**2
+            return Accel((by_time.a - slope.v * acceleration) / square, (by_time.e - slope.w * acceleration) / square)
+
+    firsts = _OnAccess(states.first, first)
+    return firsts, _OnAccess(states.second, second)
+
+
+class _OnAccess(Mapping[str, Value]):
+    """Mapping whose values are computed when they are first read."""
+
+    def __init__(self, names: Mapping[str, Any], compute: Callable[[str], Value]) -> None:
+        self._names, self._compute = names, compute
+        self._computed: dict[str, Value] = {}
+
+    def __getitem__(self, name: str) -> Value:
+        if name not in self._computed:
+            self._computed[name] = self._compute(name)
+        return self._computed[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
 
 
 @dataclass(frozen=True)
@@ -257,20 +437,27 @@ class LargestRates:
     acceleration: Real
 
     @classmethod
-    def of(cls, states: LinkStates) -> LargestRates:
+    def of(
+        cls,
+        states: LinkStates,
+        rates: Mapping[str, Rate] | None = None,
+        accels: Mapping[str, Accel] | None = None,
+    ) -> LargestRates:
         """Find the largest velocities and accelerations of all links.
 
-        Accelerations are estimated from velocities if they were not computed.
+        Accelerations are estimated from velocities if they were not computed. `rates` and `accels` are derivatives by
+        another parameter than the driver coordinate.
         """
         linkage = states.linkage
+        rates, accels = (states.first, states.second) if rates is None or accels is None else (rates, accels)
         size: Any = reduce(np.maximum, [kernel.size for kernel in states.kernels], 0.0)
         size = np.where(size > 0, size, 1.0)  # all links have a single point and only slide
         speeds, gains = [], []
-        for link, rate in states.first.items():
+        for link, rate in rates.items():
             arm = next(iter(linkage.links[link].points.values()), 0j) * states.poses[link].z
             speeds += [np.abs(rate.at(arm)), np.abs(rate.w) * size]
             if states.order > 1:
-                accel = states.second[link]
+                accel = accels[link]
                 gains += [np.abs(accel.at(arm, rate.w)), np.abs(accel.e) * size]
         speed = reduce(np.maximum, speeds)
         return cls(size, speed, reduce(np.maximum, gains, speed * speed / size))

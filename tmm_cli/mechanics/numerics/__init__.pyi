@@ -1,4 +1,5 @@
-"""Numerical tools: planar vectors, roots and extremes, interpolation, tolerances, linear equations, double-doubles."""
+"""Numerical tools: planar vectors, roots and extremes, interpolation, tolerances, linear equations, double-doubles,
+dual numbers."""
 
 from .double_double import (
     EPS as EPS,
@@ -8,6 +9,7 @@ from .double_double import (
     to_double_double as to_double_double,
     to_float as to_float,
 )
+from .dual import Dual as Dual, split_dual as split_dual, with_slope as with_slope
 from .interpolation import InterpolationTable as InterpolationTable
 from .linear import (
     EliminatedSystem as EliminatedSystem,

@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
+from tmm_cli.mechanics.numerics.dual import Dual
+
 EPS = 2.0**-103  # bound of the relative error of a sum, product, quotient or root
 EXACT = Context(prec=60)
 
@@ -156,12 +158,16 @@ class DoubleDouble(NDArrayOperatorsMixin):
         raise TypeError("as a plain array it would lose half of its digits; astype(float) rounds")
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **more: Any) -> Any:
+        if any(isinstance(x, Dual) for x in inputs):
+            return NotImplemented  # a dual number contains double-doubles, not the reverse
         implementation = UFUNCS.get(ufunc.__name__)
         if implementation is None or method != "__call__" or any(value is not None for value in more.values()):
             return NotImplemented
         return implementation(*inputs)
 
     def __array_function__(self, function: Any, types: Any, args: Any, kwargs: Any) -> Any:
+        if Dual in types:
+            return NotImplemented
         if function in FUNCTIONS:
             return FUNCTIONS[function](*args, **kwargs)
         if function in ROUNDED:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.mechanics.numerics.double_double import to_double_double, to_float
+from tmm_cli.mechanics.numerics.dual import Dual, split_dual
 from tmm_cli.mechanics.numerics.tolerances import TRUNCATED
 from tmm_cli.mechanics.numerics.vectors import Real
 
@@ -26,6 +27,10 @@ def solve(matrix: Real, right: Real) -> Real:
     Returns:
         The solutions x, shape (..., n).
     """
+    if isinstance(matrix, Dual) or isinstance(right, Dual):
+        (values, slopes), (right_values, right_slopes) = split_dual(matrix), split_dual(right)
+        solution = solve(values, right_values)
+        return Dual(solution, solve(values, right_slopes - np.sum(slopes * solution[..., None, :], axis=-1)))
     if not (isinstance(matrix, np.ndarray) and isinstance(right, np.ndarray)):
         return _solve_refined(matrix, right)
     rows, columns = matrix.shape[-2:]
