@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import mpmath
 import numpy as np
@@ -18,7 +18,6 @@ from tmm_cli.mechanics.analysis import results_at
 from tmm_cli.mechanics.groups import DriverMotion
 from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.numerics import Dual, to_double_double, to_float
-from tmm_cli.sweep.mechanisms import FirstLinkMotion
 
 NODES = np.cos(np.pi * (np.arange(24) + 0.5) / 24)
 WINDOWS = (0.04, 0.01, 0.002)  # shares of the travel of the driver; the widest is exact but where a cam changes its law
@@ -89,7 +88,6 @@ def test_a_trace_gives_the_jerk_of_the_stages():
     linkage, q = results.linkage, results.motion.q
 
     def read(motion, _):
-        motion = FirstLinkMotion(**{f.name: getattr(motion, f.name) for f in fields(motion)})
         return {link: motion.angular_jerk(link) for link in linkage.moving}
 
     batch = prepare_batch(linkage, read, forces=False)

@@ -132,6 +132,8 @@ def test_defaults_of_bare_numbers() -> None:
         "m/s^2",
         "rad/s",
         "rad/s^2",
+        "m/s^3",
+        "rad/s^3",
         "N/m",
         "N*m/rad",
         "N*s/m",
@@ -187,7 +189,7 @@ def test_a_file_chooses() -> None:
             {"lenght": "mm"},
             "lenght: unknown key\n  found:   'lenght'"
             "\n  allowed: length, angle, time, mass, force, moment, "
-            "inertia, speed, acceleration, angular speed, angular acceleration, stiffness, "
+            "inertia, speed, acceleration, angular speed, angular acceleration, jerk, angular jerk, stiffness, "
             "torsional stiffness, damping, torsional damping, pressure, density"
             "\n  did you mean 'length'?",
         ),

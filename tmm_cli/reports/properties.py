@@ -133,7 +133,8 @@ def _linkage_property(name: str, task: ShownKeys, results: Results) -> ShownProp
         raise ProblemError(_("without a hinge only the structure can be computed"), path=("of",), found=quote(task.of))
     if not _has_run(quantity, results):
         return None
-    if quantity.dimension in (JERK, ANGULAR_JERK) and not isinstance(results.motion.law, DriverMotion):
+    law = None if results.motion is None else results.motion.law
+    if quantity.dimension in (JERK, ANGULAR_JERK) and not isinstance(law, DriverMotion):
         message = _("the jerk is computed only for a driver with constant speed or constant acceleration")
         raise ProblemError(message, path=("of",), found=quote(task.of))
     by = known.get(task.per) if isinstance(task.per, str) else None

@@ -25,7 +25,6 @@ from .motion import (
     PointMotion as PointMotion,
     SlidingMotion as SlidingMotion,
     compute_motion as compute_motion,
-    fill_in_limits as fill_in_limits,
     splice_positions as splice_positions,
     zero_at_rest as zero_at_rest,
 )
@@ -39,6 +38,7 @@ from .pressure_angles import (
     pressure_at as pressure_at,
     pressure_sine_and_cosine as pressure_sine_and_cosine,
 )
+from .smooth_limits import fill_in_limits as fill_in_limits
 from .strokes import (
     OutputCurve as OutputCurve,
     OutputTravel as OutputTravel,
