@@ -285,7 +285,7 @@ def test_check_finds_what_differs_and_update_takes_it_over(tmp_path):
     done = tmm("check", tmp_path, "--junit", report)
     assert done.returncode == 1
     assert "kinematics.points.E.x.x" in done.stdout
-    assert "problems: 2, different: 1" in done.stderr
+    assert "problems: 2, of which with differences: 1" in done.stderr
     suite = ElementTree.parse(report).getroot()
     assert (suite.get("tests"), suite.get("failures"), suite.get("errors")) == ("2", "1", "0")
     assert [len(case) for case in suite] == [0, 1]

@@ -281,7 +281,9 @@ def test_what_cannot_be_assembled_is_not_drawn(tmp_path):
     assert list(all_sheets(results)) == []
     done = tmm("structure", problem, "--drawings", cwd=tmp_path)
     assert done.returncode == 0
-    assert "not drawn: the groups of apart cannot be assembled in the sketched position" in done.stderr
+    assert (
+        "the scheme is not drawn: the groups of apart cannot be assembled in the position of the sketch" in done.stderr
+    )
     assert not (tmp_path / "outputs").exists()
 
 

@@ -61,7 +61,10 @@ def test_a_part_of_a_run_goes_beside_a_whole_one(options, part, tmp_path):
     done = tmm(*options, SINE, "-o", tmp_path)
     assert done.returncode == 0, done.stderr
     assert content(whole) == before
-    assert f"written: {tmp_path}/sine-{part}; {whole} with the results of another run is unchanged\n" in done.stderr
+    assert (
+        f"written: {tmp_path}/sine-{part}; the folder {whole} with the results of another run is unchanged\n"
+        in done.stderr
+    )
     assert json.loads((tmp_path / f"sine-{part}" / "result.json").read_text(encoding="utf-8"))["part"] == part
 
 
@@ -86,7 +89,7 @@ def test_what_a_whole_run_removes_is_said(tmp_path):
     run_of(tmp_path / "sine", "cycle.csv", "old.csv", "lever-11.png", part="no-drawings")
     done = tmm("run", SINE, "--no-drawings", "-o", tmp_path)
     folder = tmp_path / "sine"
-    said = "as only an earlier run had written them: lever-11.png, old.csv\n"
+    said = "as this run does not write them: lever-11.png, old.csv\n"
     assert f"removed from {folder}, {said}" in done.stderr
     assert not (folder / "old.csv").exists()
 
@@ -95,7 +98,7 @@ def test_drawings_of_the_structure_alone_do_not_take_the_place_of_those_of_a_run
     run_of(tmp_path / "outputs" / "sine", "structure.png")
     done = tmm("structure", SINE, "--drawings", cwd=tmp_path)
     own, usual = Path("outputs") / "sine-drawings", Path("outputs") / "sine"
-    assert f"written: {own}; {usual} with the results of another run is unchanged\n" in done.stderr
+    assert f"written: {own}; the folder {usual} with the results of another run is unchanged\n" in done.stderr
     assert (tmp_path / usual / "structure.png").read_bytes() == b"new"
     assert (tmp_path / own / "structure.png").read_bytes().startswith(b"\x89PNG")
 

@@ -441,7 +441,7 @@ def test_what_is_exported_to_pylinkage_comes_back_as_the_same_linkage(tmp_path):
     done = tmm("export", str(ours), "--to", "pylinkage", "-o", "it.json", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     done = tmm("import", "it.json", cwd=tmp_path)
-    assert done.returncode == 0 and done.stderr.endswith("written: it.yaml; next: tmm run it.yaml\n")
+    assert done.returncode == 0 and done.stderr.endswith("written: it.yaml; next step: tmm run it.yaml\n")
     one, other = (solve(load(str(file)), "kinematics") for file in (ours, tmp_path / "it.yaml"))
     for angle in (0.3, 2.0, 5.0):
         assert places(other, angle, "AB") == pytest.approx(places(one, angle, "AB"), abs=1e-14)
@@ -463,7 +463,7 @@ def test_no_file_is_overwritten_and_what_pylinkage_does_not_know_is_refused(tmp_
     done = tmm("import", "it.pmks", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (
         2,
-        ("error: it.yaml already exists\n  allowed: another file, with -o FILE\n"),
+        ("error: it.yaml already exists\n  allowed: another file name, given with -o FILE\n"),
     )
     assert (tmp_path / "it.yaml").read_text(encoding="utf-8") == "mine\n"
     done = tmm("export", str(ROOT / "problems" / "shaper.yaml"), "--to", "pylinkage", "-o", "-", cwd=tmp_path)

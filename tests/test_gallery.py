@@ -154,7 +154,7 @@ def test_a_broken_file_is_said_and_left_out(tmp_path):
         f"error: {tmp_path / 'broken.yaml'}:3:1: a value is missing",
         "  allowed: a value",
         f"written: {index}",
-        "omitted: 1",
+        "files omitted: 1",
     ]
     assert len(data_of(index.read_text(encoding="utf-8"))["cards"]) == 1
     (tmp_path / "deep/sine.yaml").unlink()

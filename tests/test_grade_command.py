@@ -39,7 +39,7 @@ def points(course):
 def test_all_are_graded_and_all_is_written(course):
     done = graded(course)
     assert done.returncode == 0
-    assert after_the_echo(done.stderr) == "written: marks; graded: 11, without an answer: 1, could not be graded: 0\n"
+    assert after_the_echo(done.stderr) == "written: marks; students graded: 11, without an answer: 1, not gradable: 0\n"
     assert set(points(course).values()) == {"2", "0"}
     assert {"marks.csv", "marks.xlsx", "moodle.csv", "junit.xml", "gradescope", "feedback", ".graded"} <= {
         path.name for path in (course / "marks").iterdir()
@@ -52,7 +52,7 @@ def test_what_cannot_be_read_is_told_and_stops_nothing(course):
     (course / "handed" / "stranger.csv").write_text(RIGHT.format(H=180, v=1), encoding="utf-8")
     done = graded(course, "--formats", "csv")
     assert done.returncode == 1
-    assert done.stderr.endswith("marks; graded: 9, without an answer: 2, could not be graded: 2\n")
+    assert done.stderr.endswith("marks; students graded: 9, without an answer: 2, not gradable: 2\n")
     assert "this student has no variant" in done.stdout and "there is no answer in S6.csv" in done.stdout
     assert points(course)["S4"] == "2" and points(course)["S3"] == "0"
     assert {path.name for path in (course / "marks").iterdir()} == {".graded", "marks.csv", "answers.csv"}
@@ -79,8 +79,8 @@ def test_a_run_that_is_stopped_keeps_what_is_graded(course, monkeypatch):
     done = graded(course, "--jobs", 1)
     assert done.returncode == 1
     assert after_the_echo(done.stderr).splitlines() == [
-        "stopping when the submissions being graded are finished",
-        "stopped: 5 of 12 graded; the next run keeps them and grades the others",
+        "stopping as soon as the submissions now being graded are finished",
+        "stopped; submissions graded: 5 of 12; the next run keeps their marks and grades the others",
     ]
     assert not (course / "marks" / "marks.csv").exists()
     monkeypatch.undo()
@@ -122,7 +122,7 @@ def test_an_empty_sheet_is_written_and_no_more(name, course):
         (
             ["--variants", "variants.csv", "--submissions", "handed", "--formats", "csv,moodel"],
             (
-                "error: --formats: no such format of the gradebook\n"
+                "error: --formats: there is no gradebook format of that name\n"
                 "  found:   'moodel'\n"
                 "  allowed: csv, xlsx, feedback, gradescope, moodle, junit, drawing\n"
                 "  did you mean 'moodle'?\n"

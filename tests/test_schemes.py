@@ -18,7 +18,7 @@ from rich.console import Console
 from test_commands import tmm
 
 from tmm_cli import solve
-from tmm_cli.cli import read_group_types, schemes as scheme_files, write_scheme
+from tmm_cli.cli import make_scheme_file, read_group_types, schemes as scheme_files
 from tmm_cli.drawing.sheets import GROUP_EXAMPLES
 from tmm_cli.mechanics.linkage import Driver, Hinge, Link, Linkage, Sketch
 from tmm_cli.mechanics.structure import ROMAN, analyse_structure, group_class
@@ -217,7 +217,7 @@ def test_the_problem_of_a_class_ii_scheme_is_that_scheme_and_runs(links, groups,
 
 
 def is_that_scheme_and_runs(scheme):
-    made = write_scheme(scheme, "a scheme")
+    made = make_scheme_file(scheme, "a scheme")
     problem = build_problem(read_text(made.text, "scheme.yaml"))
     results = solve(problem)
     structure = results.structure
@@ -237,7 +237,7 @@ def is_that_scheme_and_runs(scheme):
 def test_the_problem_of_a_higher_scheme_has_its_structure(links, groups, some, monkeypatch):
     monkeypatch.setattr(scheme_files, "FEW_CANDIDATES", 2)  # poses
     for scheme in schemes(links, 1, read_group_types(groups))[some]:
-        problem = build_problem(read_text(write_scheme(scheme, "a scheme").text, "scheme.yaml"))
+        problem = build_problem(read_text(make_scheme_file(scheme, "a scheme").text, "scheme.yaml"))
         structure = analyse_structure(problem.linkage)
         assert structure.formula == scheme.formula
         assert (structure.mobility, structure.freedom) == (1, 1)
@@ -246,14 +246,14 @@ def test_the_problem_of_a_higher_scheme_has_its_structure(links, groups, some, m
 
 def test_a_crank_rocker_and_crank_sliders_of_all_kinds_turn_fully():
     for scheme in (*schemes(3)[:4], *schemes(5, 1, ("RRR", "RRP"))[::10]):
-        problem = build_problem(read_text(write_scheme(scheme, "a scheme").text, "scheme.yaml"))
+        problem = build_problem(read_text(make_scheme_file(scheme, "a scheme").text, "scheme.yaml"))
         assert solve(problem, "kinematics").driver_range.full, scheme.joints
 
 
 def test_a_problem_is_the_same_every_time_and_its_dimensions_are_whole():
     scheme = schemes(5, 1, ("RPR", "RPP"))[7]
-    text = write_scheme(scheme, "a scheme").text
-    assert text == write_scheme(scheme, "a scheme").text
+    text = make_scheme_file(scheme, "a scheme").text
+    assert text == make_scheme_file(scheme, "a scheme").text
     sizes = re.findall(r"length: ([^,}]+)|\[([-0-9.]+), ([-0-9.]+)\]", text.split("masses:")[0].split("points:", 1)[1])
     assert sizes and all(re.fullmatch(r"-?\d+", number) for row in sizes for number in row if number)
 
@@ -307,13 +307,13 @@ def test_the_command_counts_chains_by_assortment():
     [
         ((), "--links N for schemes, --chains N"),
         (("--links", 5, "--chains", 6), "--links N for schemes, --chains N"),
-        (("--links", 4), "for W = 1: 3, 5, 7, 9"),
-        (("--links", 10**9), "for W = 1: 3, 5, 7, 9"),
+        (("--links", 4), "for W = 1 the number of links can be: 3, 5, 7, 9"),
+        (("--links", 10**9), "for W = 1 the number of links can be: 3, 5, 7, 9"),
         (("--links", 9), "more than 2000"),
         (("--links", 5, "--mobility", 0), "1 to 3"),
         (("--links", 3, "--groups", "RRR,RRX"), "did you mean 'RRR'?"),
         (("--links", 7, "--groups", "RRR,RRP", "--out", "out"), "at most 300"),
-        (("--chains", 12), "for W = 1: 4, 6, 8, 10"),
+        (("--chains", 12), "for W = 1 the number of links can be: 4, 6, 8, 10"),
         (("--chains", 8, "--mobility", -1), "1 to 8"),
         (("--chains", 8, "--out", "out"), "no problem files can be written for kinematic chains"),
     ],
@@ -329,7 +329,7 @@ def test_what_cannot_be_built_is_refused_in_one_message(arguments, words, tmp_pa
 def test_schemes_of_more_freedoms_get_as_many_drivers_and_run(links, mobility):
     every = {4: 2, 5: 3, 6: 16}[links]
     for scheme in schemes(links, mobility, read_group_types("RRR,RRP"))[::every]:
-        made = write_scheme(scheme, scheme.formula)
+        made = make_scheme_file(scheme, scheme.formula)
         assert made is not None
         results = solve(build_problem(read_text(made.text, "scheme.yaml")))
         assert len(results.linkage.drivers) == results.structure.mobility == mobility

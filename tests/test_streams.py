@@ -113,7 +113,9 @@ def test_check_names_what_cannot_be_written(tmp_path):
     (tmp_path / "expected").write_text("a file", encoding="utf-8")
     done = tmm("check", tmp_path, "--update")
     assert done.returncode == 2
-    assert done.stderr == f"error: sine: {tmp_path / 'expected'}: File exists\nproblems: 1, different: 1\n"
+    assert (
+        done.stderr == f"error: sine: {tmp_path / 'expected'}: File exists\nproblems: 1, of which with differences: 1\n"
+    )
     done = tmm("check", tmp_path, "--junit", tmp_path)
     assert done.returncode == 2
     assert done.stderr.splitlines()[-1] == f"error: {tmp_path}: Is a directory"
@@ -127,8 +129,11 @@ def test_expected_values_nested_without_end_are_none(tmp_path):
     (tmp_path / "expected" / "sine.json").write_text("[" * 100_000, encoding="utf-8")
     done = tmm("check", tmp_path)
     assert done.returncode == 1
-    wrong = "not a file of expected values (its brackets are nested too deeply)"
-    assert done.stderr == f"error: sine: {tmp_path / 'expected' / 'sine.json'}: {wrong}\nproblems: 1, different: 1\n"
+    wrong = "this is not a file of expected values (its brackets are nested too deeply)"
+    assert (
+        done.stderr
+        == f"error: sine: {tmp_path / 'expected' / 'sine.json'}: {wrong}\nproblems: 1, of which with differences: 1\n"
+    )
 
 
 @pytest.mark.parametrize(
@@ -252,7 +257,7 @@ def test_an_address_of_a_network_is_no_place_of_results(words, tmp_path):
         done = tmm(*words, "-o", address, cwd=tmp_path)
         assert done.returncode == 2 and done.stdout == ""
         said = address.replace(":///", "://")
-        assert done.stderr == (f"error: {said} is a network address; give a local folder or file for the results\n")
+        assert done.stderr == (f"error: {said} is a network address; specify a local folder or file for the results\n")
     assert not list(tmp_path.iterdir())
 
 
@@ -265,7 +270,7 @@ def test_an_internal_fault_is_one_line_with_what_to_report_and_has_an_exit_code_
     assert done.returncode == 3 and done.stdout == ""
     assert re.fullmatch(
         r"internal error: ZeroDivisionError at tmm_cli/cli/opening\.py:\d+ \(tmm 0\.1\.0, command forces\): "
-        r"please report this line and the file; TMM_TRACEBACK=1 prints the traceback\n",
+        r"please report this line and send the problem file; with TMM_TRACEBACK=1 the traceback is printed\n",
         done.stderr,
     )
     monkeypatch.setenv("TMM_TRACEBACK", "1")

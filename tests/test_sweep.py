@@ -311,7 +311,7 @@ def test_the_command_writes_what_it_shows(tmp_path):
         tmp_path,
     )
     assert done.returncode == 0, done.stderr
-    assert "mechanisms: 7, solved together" in done.stderr
+    assert "mechanisms to solve: 7, all together" in done.stderr
     folder = tmp_path / "crank-rocker-sweep"
     with (folder / "sweep.csv").open(encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))

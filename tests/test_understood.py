@@ -53,7 +53,7 @@ def test_every_command_says_it_and_keeps_its_results_clean(command, tmp_path):
 
 def test_a_bank_is_checked_without_it():
     done = tmm("check", SHAPER)
-    assert (done.returncode, done.stderr) == (0, "problems: 1, different: 0\n")
+    assert (done.returncode, done.stderr) == (0, "problems: 1, of which with differences: 0\n")
 
 
 def test_a_driver_is_said_in_turns_and_its_sense():

@@ -43,7 +43,7 @@ def written(tmp_path_factory):
 
 def test_every_student_has_a_sheet_and_a_problem_that_is_his_variant(written):
     out, done = written
-    assert "variants: 4, free parameters: OA, DE, n1, candidates tried: 100" in done.stderr
+    assert "variants: 4, varied parameters: OA, DE, n1, candidates tried: 100" in done.stderr
     table = read_table(out / "variants.csv", task())
     assert table == read_table(out / "variants.xlsx", task()) and set(table.rows) == set(NAMES)
     values = dict(zip(table.names, table.rows["Иванов Иван"], strict=True))
@@ -115,7 +115,7 @@ def test_one_variant_of_a_table_is_run_by_its_number_or_its_student(tmp_path):
     for name in ("run", "forces", "structure"):
         done = tmm(name, SHAPER, "--variants", table)
         assert done.stderr == (
-            "error: give both the table of variants and the variant\n  allowed: --variants FILE --variant 7\n"
+            "error: specify both the table of variants and the variant\n  allowed: --variants FILE --variant 7\n"
         )
     done = tmm("forces", SHAPER, "--variants", table, "--variant", "3")
     assert done.returncode == 2 and done.stderr == (
@@ -127,8 +127,8 @@ def test_too_few_variants_are_refused():
     file = SHAPER.relative_to(SHAPER.parents[1])
     done = tmm("variants", file, "--vary", "OA=100..104:2", "--count", "9", "-o", "nowhere")
     assert done.returncode == 2 and done.stderr.splitlines()[-3:] == [
-        f"error: {file}: the ranges give too few feasible and distinct variants: 3",
-        "  found:   9 required",
+        f"error: {file}: the ranges yield too few feasible and distinct variants: 3",
+        "  found:   number of variants required: 9",
         "  allowed: wider ranges or smaller steps",
     ]
     assert not (SHAPER.parents[1] / "nowhere").exists()

@@ -1,4 +1,7 @@
-"""Command line: the commands parse, call and print. Heavy packages are imported when their command runs."""
+"""Command line of `tmm`.
+
+Commands only parse arguments, call other packages and print. Heavy packages are imported when their command runs.
+"""
 
 from tmm_cli.interfaces import lazy
 

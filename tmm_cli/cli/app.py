@@ -1,4 +1,4 @@
-"""The command `tmm` and its list of commands. The module of a command is imported when it is called."""
+"""The program `tmm` and its list of commands. The module of a command is imported only when the command is called."""
 
 from __future__ import annotations
 
@@ -19,14 +19,15 @@ from tmm_cli.language import _
 
 
 def add_commands(app: typer.Typer, lines: Mapping[str, str], words: Sequence[str], home: Callable[[str], str]) -> None:
-    """Add the command that a command line requests, or the names and help lines of all.
+    """Add the requested command to the application; without a known one, add the names and help lines of all commands.
 
     Args:
-        lines: line of help of each command, by name. If no known command is requested all are listed, for help and
-            for comparison with a misspelt name.
-        words: the command line.
-        home: gives the module of a command in `tmm_cli.cli`. It has a function of the command's name, or a function
-            `group` that makes a group of commands from the further words.
+        app: application or command group to which the commands are added.
+        lines: help line of each command, by name. All are added if the command line names none of them, for `--help`
+            and for the suggestion after a misspelt name.
+        words: arguments of the command line.
+        home: returns the name of the module in `tmm_cli.cli` that defines a command. The module has a function with the
+            name of the command, or a function `group` that returns a group of commands for the remaining arguments.
     """
     requested = [word for word in words if not word.startswith("-")]
     if not requested or requested[0] not in lines:
@@ -43,11 +44,11 @@ def add_commands(app: typer.Typer, lines: Mapping[str, str], words: Sequence[str
 
 
 def _list_only() -> None:
-    """Placeholder of a command that is only listed."""
+    """Do nothing: placeholder for a command that appears only in the list of commands."""
 
 
-# The command `tmm`. A new command is a function of its name in the module of its name, or in one named in HOMES, and a
-# line here.
+# To add a command, write a function with its name in a module with its name (or in a module listed in HOMES), and add
+# its help line here.
 
 
 COMMANDS = {
@@ -60,9 +61,9 @@ COMMANDS = {
     "explain": "Explain how a file is understood and what is computed.",
     "new": "Start a problem file from a commented template.",
     "schema": "Print the JSON Schema of problem files, for editors.",
-    "schemes": "Enumerate all schemes built of Assur groups.",
+    "schemes": "Enumerate all schemes composed of Assur groups.",
     "synthesis": "Find the lengths of a mechanism from its requirements.",
-    "sweep": "Show quantities over parameters and feasible regions.",
+    "sweep": "Show how quantities depend on one or two parameters.",
     "variants": "Generate variants of a task for a group of students.",
     "grade": "Mark the submissions of a group of students.",
     "import": "Convert a file of another program to a problem file.",
@@ -74,7 +75,7 @@ COMMANDS = {
     "bench": "Measure speed, accuracy, stability, savings, synthesis.",
 }
 
-HOMES = {  # modules of commands that share one
+HOMES = {  # modules that define several commands
     **dict.fromkeys(("structure", "kinematics", "forces", "dynamics"), "stages"),
     **dict.fromkeys(("import", "export"), "other_programs"),
     **dict.fromkeys(("animate", "gallery"), "web_pages"),
@@ -82,7 +83,11 @@ HOMES = {  # modules of commands that share one
 
 
 def application(words: Sequence[str]) -> typer.Typer:
-    """Return the application with the command that a command line requests, or with the names of all commands."""
+    """Create the application for a command line, with the requested command or with the names of all commands.
+
+    Args:
+        words: arguments of the command line, without the program name.
+    """
     app = typer.Typer(
         name="tmm",
         help="Calculator for course projects on planar linkages (theory of mechanisms and machines).",
@@ -112,12 +117,12 @@ def _options(
 
 
 def main() -> None:
-    """Run the command line."""
-    warnings.simplefilter("ignore", RuntimeWarning)  # of numbers: what has no value is said in the product's own words
-    gc.set_threshold(100_000)  # a short run makes little rubbish, and importing makes much that only looks like it
-    # looking for plugins of pydantic reads every installed package; there is nothing here for them to do
+    """Run the command line and exit: the entry point of the program."""
+    warnings.simplefilter("ignore", RuntimeWarning)  # from NumPy: missing values are reported by our own messages
+    gc.set_threshold(100_000)  # imports create many objects that live on; collecting them would waste time
+    # the search for pydantic plugins reads the metadata of every installed package; none is needed
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
-    os.environ["MPLBACKEND"] = "agg"  # whatever the environment has: no window is opened
+    os.environ["MPLBACKEND"] = "agg"  # no window is opened, whatever the environment specifies
     _open_streams()
     try:
         application(sys.argv[1:])()
@@ -132,8 +137,10 @@ def main() -> None:
 
 
 def _open_streams() -> None:
-    """Prepare the standard streams: a closed one discards output; unencodable characters (cp866) become question
-    marks.
+    """Prepare the standard streams.
+
+    A closed stream is replaced by one that discards its output. Characters that the encoding of the terminal (e.g.
+    cp866) lacks are printed as question marks.
     """
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
@@ -144,11 +151,14 @@ def _open_streams() -> None:
 
 
 def _flush_output(code: Any) -> Any:
-    """Return the exit code after flushing output: a full disk is an error, a reader that has left is none."""
+    """Flush standard output and return the exit code.
+
+    A full disk is an error; a closed pipe (`tmm ... | head`) is not.
+    """
     try:
         sys.stdout.flush()
     except OSError as error:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or Python tries once more, and complains
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # else Python flushes again at exit
         if not isinstance(error, BrokenPipeError) and code in (OK, None):
             say(_os_error_text(error))
             return BAD_INPUT

@@ -1,4 +1,7 @@
-"""`tmm bench`: measurements. A new one is a function here, with its measurement and its charts in `tmm_cli/bench`."""
+"""Command `tmm bench`: measurements of speed, accuracy and other properties.
+
+To add a measurement, write a function here; its computation and charts belong in `tmm_cli/bench`.
+"""
 
 from __future__ import annotations
 
@@ -36,8 +39,8 @@ from tmm_cli.reports import csv_text, json_bytes, print_on_terminal, write_atomi
 
 MEASUREMENTS = {
     "accuracy": "Time per position and error of many methods.",
-    "grading": "Time and memory of grading, correctly named mistakes.",
-    "savings": "Savings by computing only what is requested.",
+    "grading": "Time and memory of grading; mistakes identified.",
+    "savings": "Work saved by computing only what is requested.",
     "speed": "Time per position, compared with other programs.",
     "stability": "Errors of every method near singular positions.",
     "synthesis": "Candidates per second and quality of the optimum.",
@@ -45,7 +48,7 @@ MEASUREMENTS = {
 
 
 def group(words: Sequence[str]) -> typer.Typer:
-    """Return the command group with the requested measurement."""
+    """Create the command group `tmm bench` with the requested measurement."""
     app = typer.Typer(
         name="bench",
         help="Measure speed, accuracy, stability, savings and synthesis on this machine.",
@@ -58,25 +61,31 @@ def group(words: Sequence[str]) -> typer.Typer:
 
 
 def _keep_group() -> None:
-    """Make a command group even for a single measurement."""
+    """Do nothing: with this callback typer makes a command group even for a single measurement."""
 
 
-Charts = Mapping[str, Figure]  # by the names of their files
+Charts = Mapping[str, Figure]  # by file name
 M = TypeVar("M", bound=Measurement)
 
-Reduced = Annotated[bool, typer.Option("--reduced", help="Measure less; targets are twice as wide.")]
+Reduced = Annotated[
+    bool, typer.Option("--reduced", help="Run a shorter measurement; each target may be missed by a factor of two.")
+]
 Out = Annotated[
     Path | None,
     typer.Option("--out", "-o", metavar="DIR", help="Write JSON, CSV and charts to this folder.", show_default=False),
 ]
 
 
-def requested_names(asked: Sequence[str] | None, names: Iterable[str], unknown: str) -> list[str]:
-    """Return the requested names, or all; exit with the message `unknown` (with {name} and {names}) for an
-    unknown one.
+def requested_names(requested: Sequence[str] | None, names: Iterable[str], unknown: str) -> list[str]:
+    """Return the requested names, or all names if none is requested. An unknown name ends the program with an error.
+
+    Args:
+        requested: names given on the command line.
+        names: allowed names.
+        unknown: error message for an unknown name, with the fields {name} and {names}.
     """
     available = list(names)
-    chosen = list(dict.fromkeys(asked or available))
+    chosen = list(dict.fromkeys(requested or available))
     for name in chosen:
         if name not in available:
             say("error: " + unknown.format(name=name, names=", ".join(available)))
@@ -85,7 +94,7 @@ def requested_names(asked: Sequence[str] | None, names: Iterable[str], unknown: 
 
 
 def show_and_write(name: str, measured: M, charts: Callable[[M], Charts], out: Path | None, as_json: bool) -> NoReturn:
-    """Show tables or JSON, write the files, print the verdict and exit."""
+    """Print a measurement as tables or JSON, write its files, report missed targets and exit."""
     if as_json:
         emit_json(measured.to_dict())
     else:
@@ -107,7 +116,10 @@ def show_and_write(name: str, measured: M, charts: Callable[[M], Charts], out: P
 
 
 def _write(name: str, measured: Measurement, charts: Charts, folder: Path) -> str:
-    """Write NAME.json, NAME.csv of the lines or of the only table, and charts."""
+    """Write NAME.json, NAME.csv and the charts; return the paths of the files, separated by commas.
+
+    The CSV file contains the lines of the measurement, or its table if it has only one and no lines.
+    """
     contents = {f"{name}.json": json_bytes(measured.to_dict())}
     lines = io.StringIO()
     csv.writer(lines, lineterminator="\n").writerows(measured.lines())
@@ -128,9 +140,11 @@ Linkages = Annotated[
 
 
 def accuracy(linkage: Linkages = None, reduced: Reduced = False, out: Out = None, as_json: Json = False) -> None:
-    """Measure time per position and largest relative error of many methods on five linkages known to 50 digits.
+    """Measure time per position and largest relative error of many methods.
 
-    Exit code 1 if tmm misses its targets: 1e-14 for positions, 1e-13 for everything else.
+    The methods solve five linkages whose motion is known to 50 digits.
+
+    Exit code 1 if tmm misses its targets: an error of 1e-14 for positions, 1e-13 for everything else.
     """
     names = requested_names(linkage, REFERENCE_NAMES, "there is no reference linkage {name}; there are {names}")
     show_and_write("accuracy", measure_accuracy(names, reduced=reduced, progress=say), accuracy_charts, out, as_json)
@@ -142,22 +156,25 @@ def grading(
     out: Out = None,
     as_json: Json = False,
 ) -> None:
-    """Measure time and memory of grading a group, their growth, and how often mistakes are named correctly.
+    """Measure time and memory of grading a group of students, and how often mistakes are identified correctly.
 
-    Exit code 1 if a target is missed, in a reduced run by more than a factor of two.
+    Exit code 1 if a target is missed; in a reduced run, if it is missed by more than a factor of two.
     """
     show_and_write("grading", measure_grading(reduced=reduced, full=full, progress=say), lambda _: {}, out, as_json)
 
 
 def savings(reduced: Reduced = False, as_json: Json = False, out: Out = None) -> None:
-    """Count and time the savings by computing only what is requested; exit code 1 if something is not saved."""
+    """Measure how much work is saved when only the requested quantities are computed.
+
+    Exit code 1 if something that was not requested is computed.
+    """
     show_and_write("savings", measure_savings(reduced=reduced, progress=say), savings_charts, out, as_json)
 
 
 def speed(reduced: Reduced = False, out: Out = None, as_json: Json = False) -> None:
-    """Measure time per position against hand-written code, other programs, and problems of growing size.
+    """Measure time per position and compare it with hand-written code and other programs; also for large problems.
 
-    Exit code 1 if a target is missed, in a reduced run by more than a factor of two.
+    Exit code 1 if a target is missed; in a reduced run, if it is missed by more than a factor of two.
     """
     show_and_write("speed", measure_speed(reduced=reduced, progress=say), speed_charts, out, as_json)
 
@@ -169,18 +186,18 @@ Families = Annotated[
 
 
 def stability(family: Families = None, reduced: Reduced = False, out: Out = None, as_json: Json = False) -> None:
-    """Compare every method near singular positions with 50 digits; find the distance at which it first fails.
+    """Compare every method near singular positions with a solution to 50 digits, and find where it first fails.
 
-    Exit code 1 if an error of tmm exceeds its bound, or if fewer than nine of ten bounds are within 100 times the
-    true error.
+    Exit code 1 if an error of tmm exceeds its error bound, or if fewer than nine of ten error bounds are within 100
+    times the true error.
     """
     names = requested_names(family, FAMILIES_BY_NAME, "there is no family {name}; there are {names}")
     show_and_write("stability", measure_stability(names, reduced=reduced, progress=say), stability_charts, out, as_json)
 
 
 def synthesis(reduced: Reduced = False, out: Out = None, as_json: Json = False) -> None:
-    """Measure candidates per second of the optimal synthesis, and how near 10 seeds come to the best known.
+    """Measure candidates per second of the optimal synthesis, and how close 10 seeds come to the best known solution.
 
-    Exit code 1 if a target is missed, in a reduced run by more than a factor of two.
+    Exit code 1 if a target is missed; in a reduced run, if it is missed by more than a factor of two.
     """
     show_and_write("synthesis", measure_searches(reduced=reduced, progress=say), search_charts, out, as_json)

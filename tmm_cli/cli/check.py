@@ -1,4 +1,4 @@
-"""`tmm check`: compute problems again and compare them with their golden runs."""
+"""Command `tmm check`: compute problems again and compare the results with those of an earlier version."""
 
 from __future__ import annotations
 
@@ -33,7 +33,14 @@ TOLERANCE = 1e-9
 
 
 class CheckOutcome(NamedTuple):
-    """Result for one problem: an error of the whole problem, differences, exit code."""
+    """Outcome of the check of one problem.
+
+    Attributes:
+        name: name of the problem.
+        wrong: error message if the problem could not be checked; empty otherwise.
+        different: quantities that differ from their expected values.
+        code: exit code for this problem.
+    """
 
     name: str
     wrong: str = ""
@@ -42,7 +49,7 @@ class CheckOutcome(NamedTuple):
 
 
 def check_problem(file: Path, update: bool) -> CheckOutcome:
-    """Compute a problem again and compare it with its expected values; update: write them anew."""
+    """Compute a problem again and compare it with its expected values; with `update`, replace the expected values."""
     expected_file = file.parent / "expected" / f"{file.stem}.json"
     return _check_expected(
         file.stem, expected_file, lambda: to_json(compute_file(str(file), "forces", silent=True)), update
@@ -50,7 +57,7 @@ def check_problem(file: Path, update: bool) -> CheckOutcome:
 
 
 def check_grades(task: Path, update: bool) -> CheckOutcome:
-    """Grade an example again and compare it with expected.json beside its task."""
+    """Grade an example again and compare the marks with expected.json beside its task file."""
     return _check_expected(
         f"grading/{task.parent.name}", task.parent / "expected.json", lambda: grade_example(task), update
     )
@@ -85,22 +92,22 @@ def _check_expected(
 
 
 def _read_expected(file: Path) -> Any:
-    """Return the expected values, or an error message."""
+    """Read a file of expected values; return an error message if this fails."""
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
         float(content["tolerance"])
         content["result"].items()
     except FileNotFoundError:
-        return _("no expected values; `tmm check --update` writes them")
+        return _("there are no expected values yet; run `tmm check --update` to write them")
     except RecursionError:
-        return _("not a file of expected values (its brackets are nested too deeply)")
+        return _("this is not a file of expected values (its brackets are nested too deeply)")
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        return _("not a file of expected values ({error})").format(error=error)
+        return _("this is not a file of expected values ({error})").format(error=error)
     return content
 
 
 def show_outcomes(outcomes: Sequence[CheckOutcome]) -> None:
-    """Show differences as a table, and errors of whole problems."""
+    """Print the differences as a table, and the error messages of problems that could not be checked."""
     table = difference_table({outcome.name: outcome.different for outcome in outcomes})
     if table.rows:
         print_on_terminal(table, UnitSystem(), console(), more=_("... further rows: {rows}"))
@@ -110,7 +117,7 @@ def show_outcomes(outcomes: Sequence[CheckOutcome]) -> None:
 
 
 def write_junit(path: Path, outcomes: Sequence[CheckOutcome]) -> None:
-    """Write the outcomes as a JUnit report."""
+    """Write the outcomes as a report in JUnit XML."""
     failures = sum(bool(outcome.different) for outcome in outcomes)
     errors = sum(bool(outcome.wrong) for outcome in outcomes)
     suite = ElementTree.Element(
@@ -144,11 +151,11 @@ def check(
         Path | None, typer.Option("--junit", metavar="FILE", help="Also write a JUnit report.", show_default=False)
     ] = None,
 ) -> None:
-    """Compute every problem again and compare it with expected/<problem>.json beside it; subfolders are included.
+    """Compute every problem again and compare it with expected/<problem>.json beside it.
 
-    Graded examples are graded again. Expected values are a golden run: results of an earlier version. Every quantity
-    of result.json is compared relative to its largest value in the cycle; the tolerance is in the expected file.
-    Exit code 1 if something differs.
+    Folders are searched with their subfolders. Examples of grading are graded again. Expected values are results of an
+    earlier version. The difference of a quantity in result.json is divided by its largest value in the cycle; the
+    tolerance is stored in the file of expected values. Exit code 1 if something differs.
     """
     tables = [
         table for path in paths if path.is_dir() for depth in GRADED_EXAMPLES for table in sorted(path.glob(depth))
@@ -164,5 +171,5 @@ def check(
         with reporting_errors():
             write_junit(junit, outcomes)
     differing = sum(bool(outcome.wrong or outcome.different) for outcome in outcomes)
-    say(_("problems: {count}, different: {differing}").format(count=len(outcomes), differing=differing))
+    say(_("problems: {count}, of which with differences: {differing}").format(count=len(outcomes), differing=differing))
     raise typer.Exit(max(outcome.code for outcome in outcomes))

@@ -1,4 +1,4 @@
-"""Common parts of the commands: options, reading several files, errors, exit codes."""
+"""Shared parts of the commands: options, processing of several files, error reports, exit codes."""
 
 from __future__ import annotations
 
@@ -58,7 +58,9 @@ Scheduler = Annotated[
 Tables = Annotated[
     SpreadsheetKind | None,
     typer.Option(
-        "--tables", help="Also write tables for a spreadsheet: rounded, in your language.", show_default=False
+        "--tables",
+        help="Also write tables for a spreadsheet, with rounded values, in your language.",
+        show_default=False,
     ),
 ]
 
@@ -66,17 +68,23 @@ Pictures = Iterable[tuple[str, bytes]]
 
 
 def draw_pictures(
-    what: Literal["whole", "hodographs", "centres", "assemblies", "synthesis", "group-table"], *of: Any, **how: Any
+    kind: Literal["whole", "hodographs", "centres", "assemblies", "synthesis", "group-table"],
+    *arguments: Any,
+    **options: Any,
 ) -> Pictures:
-    """Return pictures by file name; the drawing modules are imported only here. what: kind of drawings, `whole`
-    for a run.
+    """Draw pictures and return their file names and contents. The drawing modules are imported only here.
+
+    Args:
+        kind: kind of drawings; `whole` means all drawings of a run.
+        arguments: positional arguments of the drawing function.
+        options: keyword arguments of the drawing function.
     """
-    pictures: Pictures = import_module("tmm_cli.cli.pictures").PICTURES[what](*of, **how)
+    pictures: Pictures = import_module("tmm_cli.cli.pictures").PICTURES[kind](*arguments, **options)
     return pictures
 
 
 class _VisibleConsole(Console):
-    """Console that escapes control characters in texts, but keeps its own terminal commands."""
+    """Console that escapes control characters in the printed texts, so that a file cannot control the terminal."""
 
     def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterable[Segment]:
         for segment in super().render(renderable, options):
@@ -85,7 +93,7 @@ class _VisibleConsole(Console):
 
 
 def console() -> Console:
-    """Return the console for results on standard output; 200 columns wide if it is not a terminal."""
+    """Create a console for results on standard output; it is 200 columns wide if the output is not a terminal."""
     return _VisibleConsole(width=None if sys.stdout.isatty() else 200, highlight=False, markup=False)
 
 
@@ -97,16 +105,19 @@ def for_each_file(
     headed: bool = True,
     out: Path | None = None,
 ) -> NoReturn:
-    """Do the work on every file, with a progress bar for several, and exit with the worst code.
+    """Process every file, with a progress bar for several, and exit with the highest exit code.
 
-    An error in one file is reported and does not stop the others.
+    An error in one file is reported and does not stop the processing of the others.
 
     Args:
         files: problem files.
-        work: processes a file and returns an exit code.
-        as_json: errors are also printed as JSON.
-        headed: results of several files are printed under their names.
-        out: folder with a subfolder for each file, whose names must differ.
+        work: processes one file and returns an exit code.
+        as_json: print errors as JSON as well.
+        headed: print the name of each file above its results if there are several files.
+        out: output folder with a subfolder for each file. Two files with the same name are refused.
+
+    Raises:
+        typer.Exit: always, with the exit code.
     """
     worst = OK
     if out is not None:
@@ -123,7 +134,7 @@ def for_each_file(
             code = refused.exit_code
         except OSError:
             raise
-        except Exception as error:  # of this file: the others are worked on
+        except Exception as error:  # the other files are still processed
             code = report_fault(error, sys.argv[1:])
         worst = max(worst, code)
     raise typer.Exit(worst)
@@ -131,9 +142,14 @@ def for_each_file(
 
 @contextmanager
 def reporting_errors(as_json: bool = False, name: str = "") -> Iterator[None]:
-    """Report input errors of the enclosed code, with --json also as JSON. Raises typer.Exit.
+    """Report input errors of the enclosed code and exit with the code for bad input.
 
-    name: name of what is read or written, where the system does not give it.
+    Args:
+        as_json: print the error as JSON as well.
+        name: name of the file for messages, used if the operating system reports none.
+
+    Raises:
+        typer.Exit: the enclosed code raised ProblemError or OSError.
     """
     try:
         yield
@@ -150,29 +166,35 @@ def reporting_errors(as_json: bool = False, name: str = "") -> Iterator[None]:
 
 
 def _refuse_same_folder(files: Sequence[str]) -> None:
-    """Refuse files whose results would go into the same folder."""
+    """Refuse files whose results would be written to the same folder."""
     first: dict[str, str] = {}
     for file in files:
         other = first.setdefault(folder_name(Path(file).stem).casefold(), file)
         if Path(other).resolve() != Path(file).resolve():
             say(
-                _("error: {first} and {second} have the same name and would share a folder").format(
-                    first=printable(other), second=printable(file)
-                )
+                _(
+                    "error: {first} and {second} have the same name, so their results would be written to the "
+                    "same folder"
+                ).format(first=printable(other), second=printable(file))
             )
             raise typer.Exit(BAD_INPUT)
 
 
 def write_new_file(file: Path, text: str) -> bool:
-    """Write a new file and return True; for `-` print the text and return False. Raises ProblemError if it
-    exists.
+    """Write a text to a new file; for the name `-`, print it instead.
+
+    Returns:
+        True if a file was written.
+
+    Raises:
+        ProblemError: the file already exists.
     """
     if str(file) == "-":
         typer.echo(text, nl=False)
         return False
     if file.exists():
         raise ProblemError(
-            _("{file} already exists").format(file=printable(file)), allowed=_("another file, with -o FILE")
+            _("{file} already exists").format(file=printable(file)), allowed=_("another file name, given with -o FILE")
         )
     with file.open("x", encoding="utf-8") as stream:
         stream.write(text)
@@ -180,8 +202,14 @@ def write_new_file(file: Path, text: str) -> bool:
 
 
 def problems_in(paths: Sequence[Path], further: Sequence[Path] = ()) -> list[Path]:
-    """Return the given files, the problems in folders and their subfolders, and further files. Raises
-    typer.Exit.
+    """List the given files and the problem files (*.yaml) in the given folders and their subfolders.
+
+    Args:
+        paths: files and folders.
+        further: files to append to the list.
+
+    Raises:
+        typer.Exit: there is no file.
     """
     depths = ("*.yaml", "*/*.yaml")
     files = [f for p in paths for f in ([f for d in depths for f in sorted(p.glob(d))] if p.is_dir() else [p])]
@@ -193,17 +221,17 @@ def problems_in(paths: Sequence[Path], further: Sequence[Path] = ()) -> list[Pat
 
 
 def with_progress(files: Sequence[Any]) -> Iterable[Any]:
-    """Iterate over files, with a progress bar if there are several."""
+    """Return an iterator over the files that shows a progress bar if there are several."""
     if len(files) < 2:
         return files
     return track(files, description="", console=Console(stderr=True), transient=True)
 
 
 def progress_bars(quiet: bool = False) -> Progress:
-    """Return progress bars for a terminal; elsewhere, or when quiet, they are disabled."""
+    """Create progress bars; they are hidden if `quiet` or if standard error is not a terminal."""
     return Progress(console=Console(stderr=True), transient=True, disable=quiet or not sys.stderr.isatty())
 
 
 def emit_json(content: dict[str, Any]) -> None:
-    """Print JSON on standard output, one document per file."""
+    """Print a JSON document on standard output."""
     sys.stdout.write(json.dumps(content, ensure_ascii=False, allow_nan=False, indent=1) + "\n")

@@ -1,4 +1,4 @@
-"""Drawing on all cores, with a progress bar."""
+"""Drawing on all processor cores, with a progress bar."""
 
 from __future__ import annotations
 
@@ -15,16 +15,20 @@ from tmm_cli.cli.common import progress_bars
 from tmm_cli.drawing.formats import run_in_process
 from tmm_cli.language import _, course, speaking
 
-FORKS = sys.platform == "linux"  # there a process begins as a copy of this one, with all that it has loaded
-LEAST_JOBS = 2 if FORKS else 4  # jobs that are done before other processes have started
+FORKS = sys.platform == "linux"  # a forked process starts with all modules that this one has loaded
+LEAST_JOBS = 2 if FORKS else 4  # fewer jobs are finished before other processes have started
 
 JobResult = TypeVar("JobResult")
 
 
 def run_on_all_cores(jobs: Sequence[Callable[[], JobResult]], *, quiet: bool = False) -> Iterable[JobResult]:
-    """Yield the results of jobs in their order, computed by all cores. quiet: no progress bar.
+    """Run jobs on all cores and yield their results in the order of the jobs.
 
-    Other processes start at the end of the list, while this one starts at its beginning.
+    The worker processes begin with the last jobs while this process begins with the first.
+
+    Args:
+        jobs: functions without arguments.
+        quiet: show no progress bar.
     """
     others = min(os.cpu_count() or 1, len(jobs)) - 1
     if others < 1 or len(jobs) < LEAST_JOBS:
@@ -33,19 +37,19 @@ def run_on_all_cores(jobs: Sequence[Callable[[], JobResult]], *, quiet: bool = F
     with ProcessPoolExecutor(others, get_context("fork" if FORKS else "spawn"), initialize_worker) as pool:
         futures = [
             pool.submit(speaking, course(), job) for job in reversed(jobs)
-        ]  # before the bar has its thread: threads are not copied
+        ]  # before the progress bar starts its thread: a fork does not copy threads
         try:
             with progress_bars(quiet) as progress:
-                task = progress.add_task(_("drawn"), total=len(jobs))
+                task = progress.add_task(_("drawings finished"), total=len(jobs))
                 for job, future in zip(jobs, reversed(futures), strict=True):
                     yield job() if future.cancel() else _fetch_result(future, job)
                     progress.advance(task)
-        finally:  # stopped: what is in work comes to its end
+        finally:  # after an interruption running jobs are completed
             pool.shutdown(wait=False, cancel_futures=True)
 
 
 def _fetch_result(future: Future[JobResult], job: Callable[[], JobResult]) -> JobResult:
-    """Result of another process; if that was killed, for instance by lack of memory, the job is done here."""
+    """Return the result of a worker process; if the process was killed (e.g. for lack of memory), run the job here."""
     try:
         return future.result()
     except BrokenProcessPool:

@@ -1,4 +1,4 @@
-"""Command `tmm explain`: how a file was read and what is computed from it."""
+"""Command `tmm explain`: explains how a file is understood and what is computed from it."""
 
 from __future__ import annotations
 
@@ -13,11 +13,13 @@ from tmm_cli.language import typeset
 from tmm_cli.reports import explain_tables as tables, narrate_structure, print_on_terminal
 from tmm_cli.synthesis import solve
 
-Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Also show at how many positions each stage computes.")]
+Verbose = Annotated[
+    bool, typer.Option("--verbose", "-v", help="Also show for how many positions each stage is computed.")
+]
 
 
 def explain(files: Files, settings: Settings = None, verbose: Verbose = False) -> None:
-    """Explain how a file is understood, what will be computed for which group, what is skipped and why.
+    """Explain how a file is understood, what is computed for each group, and what is omitted and why.
 
     The structure is described in sentences that can be used in an explanatory note.
     """
@@ -29,9 +31,7 @@ def explain(files: Files, settings: Settings = None, verbose: Verbose = False) -
         for sentence in map(typeset, narrate_structure(results)):
             screen.print(sentence)
         for table in tables(results, verbose):
-            print_on_terminal(
-                table, results.problem.units, screen, most=None
-            )  # there is no other place that has them all
+            print_on_terminal(table, results.problem.units, screen, most=None)  # no file contains all rows
         return OK
 
     for_each_file(files, work)

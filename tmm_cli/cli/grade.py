@@ -1,4 +1,4 @@
-"""`tmm grade`: mark the submissions of a group and explain the mistakes."""
+"""Command `tmm grade`: grade the submissions of a group of students and explain their mistakes."""
 
 from __future__ import annotations
 
@@ -49,7 +49,9 @@ Formats = Annotated[
 ]
 Template = Annotated[
     Path | None,
-    typer.Option(metavar="FILE", help="Write an empty answer sheet: .xlsx, .csv, .yaml", show_default=False),
+    typer.Option(
+        metavar="FILE", help="Write an empty answer sheet to this file (.xlsx, .csv or .yaml).", show_default=False
+    ),
 ]
 
 
@@ -64,9 +66,9 @@ def grade(
     scheduler: Scheduler = None,
     template: Template = None,
 ) -> None:
-    """Mark the submissions of a group; a second run marks only what has changed.
+    """Mark the submissions of a group; a second run marks only those that have changed.
 
-    Exit code 1 if some could not be marked. With --template only an empty answer sheet is written.
+    Exit code 1 if a submission could not be marked. With --template only an empty answer sheet is written.
     """
     with reporting_errors():
         task = read_task(read_in_file_language(file))
@@ -91,30 +93,30 @@ def _grade_group(
     jobs: int | None,
     scheduler: str | None,
 ) -> int:
-    """Grade, write and show; returns the exit code. Raises ProblemError, OSError."""
-    reason = _("no such format of the gradebook")
+    """Grade the submissions, write and print the marks, and return the exit code. Raises ProblemError or OSError."""
+    reason = _("there is no gradebook format of that name")
     names = list(EXPORTS) if formats is None else parse_names(formats, EXPORTS, "--formats", reason)
     print_file_summary(task.problem)
     table = read_table(variants, task)
-    with suppress(ProblemError):  # an unreadable value is reported to its student
+    with suppress(ProblemError):  # an unreadable value is reported when the student is graded
         for slip in check_load_tables(task, table):
             warn(f"{task.problem.name}: {slip}")
     jobs = jobs or os.cpu_count() or 1
     runner = on_cluster(scheduler) if scheduler else in_processes(jobs)
     with progress_bars() as progress, _stop_on_interrupt() as stopped:
-        reading = progress.add_task(_("read"), total=len(table.rows))
+        reading = progress.add_task(_("submissions read"), total=len(table.rows))
         handed = []
         for submission in read_submissions(submissions, task, table.rows):
             handed.append(submission)
             progress.advance(reading)
         place = {student: n for n, student in enumerate(table.rows)}
         handed.sort(key=lambda submission: place.get(submission.student, len(place)))
-        grading = progress.add_task(_("graded"), total=len(handed))
+        grading = progress.add_task(_("submissions graded"), total=len(handed))
         marks = grade_group(
             task, table, handed, runner, out / CACHE_FOLDER, lambda count: progress.advance(grading, count), stopped
         )
     if len(marks) < len(handed):
-        text = _("stopped: {done} of {count} graded; the next run keeps them and grades the others")
+        text = _("stopped; submissions graded: {done} of {count}; the next run keeps their marks and grades the others")
         say(text.format(done=len(marks), count=len(handed)))
         return CHECK_FAILED
     write_gradebook(out, Gradebook(task.reveal_values() if reveal else task, marks, users=table.rows), names, jobs)
@@ -125,15 +127,17 @@ def _grade_group(
 
 @contextmanager
 def _stop_on_interrupt() -> Iterator[Callable[[], bool]]:
-    """On the first Ctrl-C let running work finish; on the second end the command. Yields a function that tells
-    whether to stop.
+    """Let running work finish after the first Ctrl-C; the second one ends the command.
+
+    Yields:
+        A function that returns True after the first Ctrl-C.
     """
     pressed = []
 
     def note(number: int, frame: FrameType | None) -> None:
         pressed.append(number)
         signal.signal(signal.SIGINT, before)
-        say(_("stopping when the submissions being graded are finished"))
+        say(_("stopping as soon as the submissions now being graded are finished"))
 
     before = signal.signal(signal.SIGINT, note)
     try:
@@ -143,7 +147,7 @@ def _stop_on_interrupt() -> Iterator[Callable[[], bool]]:
 
 
 def _print_summary(handed: Sequence[Submission], marks: Sequence[StudentMarks], out: Path) -> int:
-    """Print the numbers of graded students; returns the exit code."""
+    """Print how many students were graded, and return the exit code."""
     both = list(zip(handed, marks, strict=True))
     left = sum(submission.unread or grade.problems != submission.problems for submission, grade in both)
     none = sum(
@@ -151,6 +155,6 @@ def _print_summary(handed: Sequence[Submission], marks: Sequence[StudentMarks], 
         for submission, grade in both
         if grade.problems == submission.problems
     )
-    text = _("written: {folder}; graded: {count}, without an answer: {none}, could not be graded: {left}")
+    text = _("written: {folder}; students graded: {count}, without an answer: {none}, not gradable: {left}")
     say(text.format(folder=printable(out), count=len(both) - none - left, none=none, left=left))
     return CHECK_FAILED if left else OK

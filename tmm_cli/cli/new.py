@@ -1,4 +1,4 @@
-"""Command `tmm new`: a commented problem file to start from."""
+"""Command `tmm new`: writes a commented problem file to start from."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ def new(
     with reporting_errors():
         if template not in templates:
             raise ProblemError(
-                _("no template is called '{template}'").format(template=template),
+                _("there is no template called '{template}'").format(template=template),
                 allowed=", ".join(templates),
                 near=nearest_name(template, templates),
             )
         file = out or Path(f"{template}.yaml")
         named = None if str(file) == "-" else printable(file)
         if write_new_file(file, template_text(template, language(), named)):
-            say(_("written: {file}; next: tmm run {file}").format(file=printable(file)))
+            say(_("written: {file}; next step: tmm run {file}").format(file=printable(file)))

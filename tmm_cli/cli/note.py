@@ -1,4 +1,4 @@
-"""Command `tmm note`: the explanatory note."""
+"""Command `tmm note`: writes the explanatory note of a course project."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def note(
     variants: Variants = None,
     variant: Variant = None,
 ) -> None:
-    """Write the explanatory note of a course project, DIR/<problem>/note.html: formulas, numbers, results."""
+    """Write the explanatory note of a course project with formulas, numbers and results to DIR/<problem>/note.html."""
 
     def work(file: str) -> int:
         formats_chosen = formats_of(formats)

@@ -1,4 +1,4 @@
-"""Reading a problem file and printing how it was understood, before anything is computed."""
+"""Reading a problem file, and printing a summary of it before anything is computed."""
 
 from __future__ import annotations
 
@@ -23,12 +23,20 @@ from tmm_cli.reports import describe_units, find_slips, summarise_file
 
 
 def read_tree(file: str, settings: Sequence[str] | None = None) -> Tree:
-    """Read a file with other parameters, and switch to its language. Raises ProblemError."""
+    """Read a file, apply the settings of the command line, and switch to the language of the file.
+
+    Args:
+        file: name of the problem file.
+        settings: texts such as `OA=120`, each of which sets a parameter.
+
+    Raises:
+        ProblemError: the file or a setting is wrong.
+    """
     return apply_settings(read_in_file_language(file), settings or ())
 
 
 def read_in_file_language(file: str) -> Tree:
-    """Read a file and switch to its language, also for errors in the file itself. Raises ProblemError."""
+    """Read a file and switch to its language, in which errors of the file are also reported. Raises ProblemError."""
     data = read_bytes(file)
     use_file_language(find_language(data))
     tree = read_text(decode_text(data, file), file)
@@ -40,9 +48,16 @@ def read_in_file_language(file: str) -> Tree:
 def open_problem(
     file: str, settings: Sequence[str] | None = None, positions: Sequence[int] | None = None, digits: bool = False
 ) -> Problem | TaskProblem:
-    """Read the problem of a file with other parameters, and print its summary.
+    """Read a problem file, apply the settings of the command line, and print a summary of the file.
 
-    positions, digits: requested options. Raises ProblemError, also if they are too much work.
+    Args:
+        file: name of the problem file.
+        settings: texts such as `OA=120`, each of which sets a parameter.
+        positions: numbers of the requested positions; None for all.
+        digits: True if error bounds are requested; this work is then checked against the limit.
+
+    Raises:
+        ProblemError: the file or a setting is wrong, or the requested work exceeds the limit.
     """
     problem = build_any_problem(read_tree(file, settings))
     print_file_summary(problem)
@@ -52,14 +67,26 @@ def open_problem(
 
 
 def variant_settings(file: str, variants: str | None, variant: str | None, settings: Sequence[str] | None) -> list[str]:
-    """Return the settings of one variant of a table, and the given ones. Raises ProblemError."""
+    """Return the parameter values of one variant from a table, followed by the settings of the command line.
+
+    Args:
+        file: name of the problem file.
+        variants: name of the table of variants, or None.
+        variant: number of the variant or name of the student, or None.
+        settings: settings of the command line, such as `OA=120`.
+
+    Raises:
+        ProblemError: only one of table and variant is given, or the table has no such variant.
+    """
     own_settings = list(settings or ())
     if variants is None and variant is None:
         return own_settings
     if variants is None or variant is None:
-        raise ProblemError(_("give both the table of variants and the variant"), allowed="--variants FILE --variant 7")
+        raise ProblemError(
+            _("specify both the table of variants and the variant"), allowed="--variants FILE --variant 7"
+        )
     from tmm_cli.batch import read_task
-    from tmm_cli.grading import find_variant, read_table  # few runs have a table
+    from tmm_cli.grading import find_variant, read_table  # imported late: few runs use a table
 
     try:
         values = find_variant(read_table(variants, read_task(read_tree(file))), variant)
@@ -78,7 +105,11 @@ def refuse_excess_work(
     plans: int = 0,
     centres: int = 0,
 ) -> None:
-    """Refuse work beyond the budget before it starts, see `refuse_options`. Raises ProblemError."""
+    """Refuse work that exceeds the limit, before it starts; the arguments are those of `refuse_options`.
+
+    Raises:
+        ProblemError: the work exceeds the limit.
+    """
     request = problem.request
     count = len(positions or request.places) or request.count
     try:
@@ -88,12 +119,17 @@ def refuse_excess_work(
 
 
 def count_detailed_positions(problem: Problem) -> int:
-    """Number of detailed positions; if the file names none, one."""
+    """Return the number of positions to draw in detail: those that the file requests, at least one."""
     return len(problem.request.detail) or 1
 
 
 def print_file_summary(problem: Problem | TaskProblem, *, drafted: bool = False) -> None:
-    """Print how the file was understood, and probable slips. drafted: without what a synthesis would find."""
+    """Print how the file was understood, and warn of probable mistakes in it.
+
+    Args:
+        problem: problem of the file.
+        drafted: print only the units if the file has a synthesis task, without solving the task.
+    """
     if drafted and isinstance(problem, TaskProblem):
         say(f"{problem.name}: {describe_units(problem.units)}")
         return

@@ -1,4 +1,4 @@
-"""Exchange with other programs: `tmm import`, `tmm export`."""
+"""Commands `tmm import` and `tmm export`: exchange with other programs."""
 
 from __future__ import annotations
 
@@ -41,15 +41,15 @@ def import_(
         target = out or Path(f"{Path(file).stem}.yaml")
         text = problem_file_text(foreign, Path(file).name)
         try:
-            build_any_problem(read_text(text, str(target)))  # what is written can be read
-        except ProblemError as error:  # its lines are of a file that nobody sees
-            told = _("the resulting problem file would be invalid: {reason}")
+            build_any_problem(read_text(text, str(target)))  # the written file must be readable
+        except ProblemError as error:  # without line numbers: the user does not see this file
+            message = _("the resulting problem file would be invalid: {reason}")
             reason = ": ".join(piece for piece in (format_path(error.path), error.message) if piece)
             raise ProblemError(
-                told.format(reason=reason), found=error.found, allowed=error.allowed, file=file
+                message.format(reason=reason), found=error.found, allowed=error.allowed, file=file
             ) from None
         if write_new_file(target, text):
-            say(_("written: {file}; next: tmm run {file}").format(file=printable(target)))
+            say(_("written: {file}; next step: tmm run {file}").format(file=printable(target)))
         for line in foreign.left:
             say(_("not converted: {line}").format(line=clean(line, 300)))
 

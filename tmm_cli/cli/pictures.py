@@ -1,4 +1,4 @@
-"""Drawings of the commands; imported only when pictures are requested, as matplotlib is slow to load."""
+"""Drawings of the commands. The module is imported only when pictures are requested, as matplotlib loads slowly."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Computing a problem file and showing or writing the results."""
+"""Computing a problem file, and printing or writing its results."""
 
 from __future__ import annotations
 
@@ -46,17 +46,21 @@ def compute_file(
     digits: bool = False,
     drawings: bool = False,
 ) -> Results | ChainResults:
-    """Read and compute a problem file, of a mechanism or a chain. Raises ProblemError.
+    """Read and compute a problem file, of a planar mechanism or of a spatial chain.
 
     Args:
-        file: the problem file.
-        stage: last stage.
-        positions: numbers of positions; None: all.
-        driver: link that drives instead of the file's own driver.
-        drafted: structure only, without the lengths that a synthesis finds.
-        silent: without the summary of the file.
-        settings: other values of parameters.
-        digits, drawings: options that add work, which is checked against the budget.
+        file: name of the problem file.
+        stage: last stage to compute.
+        positions: numbers of the positions to compute; None for all.
+        driver: link to use as input link; None for the one in the file.
+        drafted: compute only the structure, without solving a synthesis task of the file.
+        silent: do not print a summary of the file.
+        settings: texts such as `OA=120`, each of which sets a parameter.
+        digits: error bounds will be requested; their work is checked against the limit.
+        drawings: drawings will be requested; their work is checked against the limit.
+
+    Raises:
+        ProblemError: the file cannot be computed.
     """
     tree = read_tree(file, settings)
     if is_chain(tree):
@@ -74,13 +78,22 @@ def compute_file(
     return structure_of(problem) if drafted else solve(problem, stage, positions)
 
 
-def accuracy_of(results: Results | ChainResults, digits: bool, shown: Collection[str] = ()) -> AccuracyReport | None:
-    """Return the accuracy of results, complete with `digits`; None if nothing moves. shown: tables that are
-    shown, if not all.
+def accuracy_of(
+    results: Results | ChainResults, digits: bool, table_names: Collection[str] = ()
+) -> AccuracyReport | None:
+    """Assess the accuracy of results.
+
+    Args:
+        results: results of a problem.
+        digits: also estimate the sensitivity of each value to the data.
+        table_names: names of the tables that are shown; empty for all.
+
+    Returns:
+        The report on accuracy, or None if no motion was computed.
     """
     if isinstance(results, ChainResults) or results.motion is None:
         return None
-    return assess_accuracy(results, digits, shown)
+    return assess_accuracy(results, digits, table_names)
 
 
 def report(
@@ -91,12 +104,18 @@ def report(
     digits: bool = False,
     people: SpreadsheetKind | None = None,
 ) -> int:
-    """Show results as tables or JSON, write files if requested, print warnings; returns the exit code.
+    """Print results as tables or JSON, write the requested files, print warnings, and return the exit code.
 
-    digits: show bounds and sensitivities beside the values. people: also write tables for spreadsheets.
+    Args:
+        results: results of a problem.
+        names: names of the tables to print.
+        as_json: print result.json instead of tables.
+        out: folder for the files; None if none are written.
+        digits: print error bounds and sensitivities beside the values.
+        people: kind of spreadsheet to write as well.
     """
     if not properties_met(results):
-        names = {*names, "properties"}  # they end the command with an exit code
+        names = {*names, "properties"}  # they determine the exit code
     accuracy = accuracy_of(results, digits, () if as_json or out is not None else names)
     if as_json:
         emit_results(results, accuracy)
@@ -110,7 +129,11 @@ def report(
 
 
 def find_exit_code(results: Results | ChainResults) -> int:
-    """Return the exit code: properties as expected, lever within its limit, synthesis met."""
+    """Return the exit code of a run.
+
+    It reports a failed check if a property differs from its expected value, the Zhukovsky lever from the force
+    analysis, or a synthesised mechanism from a requirement.
+    """
     if not properties_met(results):
         return CHECK_FAILED
     if isinstance(results, ChainResults) or results.motion is None:
@@ -119,24 +142,30 @@ def find_exit_code(results: Results | ChainResults) -> int:
 
 
 def properties_met(results: Results | ChainResults) -> bool:
-    """Return True if the shown properties have their expected values."""
-    return all(shown.met for shown in shown_properties(results))
+    """Return True if all properties requested in the file have their expected values."""
+    return all(shown_property.met for shown_property in shown_properties(results))
 
 
 def emit_results(results: Results | ChainResults, digits: AccuracyReport | None = None) -> None:
-    """Write result.json to standard output piece by piece."""
+    """Write result.json to standard output in pieces, to save memory."""
     with words_of_files():
         sys.stdout.writelines(json_text(sections(results, None if digits is None else digits.json())))
 
 
-def write_pictures(results: Results, out: Path | None, pictures: Mapping[str, bytes], part: str = "") -> None:
-    """Write pictures with the tables into the requested folder, or alone beside the usual results, without
-    replacing them.
+def write_pictures(results: Results, out: Path | None, pictures: Mapping[str, bytes], picture_kind: str = "") -> None:
+    """Write pictures to files.
 
-    part: kind of the pictures, where the results do not tell it.
+    With an output folder they are written there together with the tables. Otherwise only the pictures are written to
+    the usual folder of the problem; if that already contains files of the same names, to a separate folder.
+
+    Args:
+        results: results that the pictures show.
+        out: requested output folder, or None.
+        pictures: contents by file name.
+        picture_kind: kind of the pictures, if the results do not determine it.
     """
     if out is not None:
-        print_written(write_results(results, out, pictures.items(), part=part))
+        print_written(write_results(results, out, pictures.items(), part=picture_kind))
     elif pictures:
         usual, separate = (Path("outputs") / folder_name(f"{results.problem.name}{end}") for end in ("", "-drawings"))
         taken = not listed_files(usual).isdisjoint(pictures)
@@ -147,7 +176,7 @@ def write_pictures(results: Results, out: Path | None, pictures: Mapping[str, by
 
 
 def write_sheets(results: Results, out: Path, pictures: Iterable[tuple[str, bytes]]) -> None:
-    """Write sheets beside the results of the problem, replacing sheets of the same formats from an earlier run."""
+    """Write sheets to the folder of the problem, and delete its older sheets of the same formats."""
     with StagedFolder(out / folder_name(results.problem.name)) as staged:
         for name, content in pictures:
             staged.write(name, (content,))
@@ -159,23 +188,23 @@ def write_sheets(results: Results, out: Path, pictures: Iterable[tuple[str, byte
 
 
 def print_written(written: WrittenFolder) -> None:
-    """Print where the results are, and which files of earlier runs were removed or kept."""
+    """Print where the results were written, and which files of earlier runs were removed or kept."""
     folder, removed, kept = written
     if kept is None:
         say(_("written: {folder}").format(folder=printable(folder)))
     else:
         say(
-            _("written: {folder}; {kept} with the results of another run is unchanged").format(
+            _("written: {folder}; the folder {kept} with the results of another run is unchanged").format(
                 folder=printable(folder), kept=printable(kept)
             )
         )
     if removed:
-        text = _("removed from {folder}, as only an earlier run had written them: {files}")
+        text = _("files of an earlier run removed from {folder}, as this run does not write them: {files}")
         say(text.format(folder=printable(folder), files=", ".join(removed)))
 
 
 def show_tables(results: Results | ChainResults, names: Iterable[str], accuracy: AccuracyReport | None = None) -> None:
-    """Print tables by name, of a chain all; of long ones only detailed positions."""
+    """Print the named tables (all tables of a chain); of long tables only the rows of detailed positions."""
     screen = console()
     tables = walk(results, () if isinstance(results, ChainResults) else set(names))
     if accuracy is not None:
@@ -186,7 +215,10 @@ def show_tables(results: Results | ChainResults, names: Iterable[str], accuracy:
 
 
 def detailed_rows(results: Results | ChainResults, table: Table) -> set[int] | None:
-    """Rows of a long table that belong to detailed positions, or to the first one; None: all rows."""
+    """Return the indices of the rows of a long table that belong to detailed positions; None for all rows.
+
+    If no detailed positions are requested, the rows of the first position are returned.
+    """
     if isinstance(results, ChainResults) or not table.long:
         return None
     chosen = {results.numbers.index(n) for n in results.problem.request.detail if n in results.numbers}

@@ -1,4 +1,4 @@
-"""Command `tmm run`: compute problems and write tables, drawings and result.json."""
+"""Command `tmm run`: computes problems and writes tables, drawings and result.json."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Command `tmm schema`: the JSON Schema of problem files or of result.json."""
+"""Command `tmm schema`: prints the JSON Schema of problem files or of result.json."""
 
 from __future__ import annotations
 

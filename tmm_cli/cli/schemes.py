@@ -1,4 +1,4 @@
-"""`tmm schemes`: schemes and kinematic chains, and problem files of schemes with a good pose."""
+"""Command `tmm schemes`: enumerates schemes and kinematic chains, and writes problem files of schemes."""
 
 from __future__ import annotations
 
@@ -42,14 +42,20 @@ from tmm_cli.synthesis import (
     solve,
 )
 
-CANDIDATES = 24  # poses that are solved before the best of them is taken
-FEW_CANDIDATES = 6  # the same, of schemes with groups that are not solved in closed form
-MOST_FILES = 300  # each takes some tenths of a second
+CANDIDATES = 24  # largest number of layouts to solve before the best is chosen
+FEW_CANDIDATES = 6  # the same for schemes with groups that have no closed-form solution
+MOST_FILES = 300  # each takes a few tenths of a second
 
 
 @dataclass(frozen=True)
 class SchemeFile:
-    """Problem file of a scheme. solved: it was computed with forces; else only its structure was."""
+    """Problem file of a scheme.
+
+    Attributes:
+        text: text of the file.
+        solved: True if the problem was solved with forces; False if only its structure was analysed.
+        warnings: number of warnings of the solution.
+    """
 
     text: str
     solved: bool
@@ -60,9 +66,17 @@ class SchemeFile:
         return not self.solved, self.warnings
 
 
-def write_scheme(scheme: Scheme, title: str) -> SchemeFile | None:
-    """Return the problem file of the first good pose, or that with fewest warnings; None if no pose can be
-    assembled.
+def make_scheme_file(scheme: Scheme, title: str) -> SchemeFile | None:
+    """Make a problem file for a scheme, in memory.
+
+    The first layout whose solution has no warnings is used, otherwise the one with the fewest warnings.
+
+    Args:
+        scheme: scheme of a mechanism.
+        title: title of the problem.
+
+    Returns:
+        The file, or None if the mechanism cannot be assembled with any layout.
     """
     closed = all(group.type.grade == 2 for group in scheme.groups)
     best: SchemeFile | None = None
@@ -76,8 +90,10 @@ def write_scheme(scheme: Scheme, title: str) -> SchemeFile | None:
 
 
 def _try_layout(text: str, scheme: Scheme, closed: bool) -> SchemeFile | None:
-    """Compute a problem with its forces; for groups without closed form, whose assembly may not be found, its
-    structure.
+    """Solve a problem with its forces, and return it as a file; None if it cannot be solved.
+
+    Groups without a closed-form solution may fail because their assembly is not found; then only the structure is
+    analysed.
     """
     problem = build_problem(read_text(text, scheme.name))
     try:
@@ -90,11 +106,21 @@ def _try_layout(text: str, scheme: Scheme, closed: bool) -> SchemeFile | None:
     return SchemeFile(text, True, sum(1 for __ in collect_warnings(results))) if results.lever_holds else None
 
 
-def write_scheme_files(schemes: Sequence[Scheme], folder: Path, each: Iterable[Scheme]) -> WrittenSchemes:
-    """Write one problem file per scheme into the folder. Raises ProblemError.
+def write_scheme_files(schemes: Sequence[Scheme], folder: Path, tracked_schemes: Iterable[Scheme]) -> WrittenSchemes:
+    """Write one problem file per scheme into a folder.
 
-    Nothing is written before all files are ready, and no existing file with other contents is replaced. each:
-    the schemes again, counted by a progress bar.
+    Nothing is written until all files are ready, and no existing file with other contents is replaced.
+
+    Args:
+        schemes: the schemes.
+        folder: output folder.
+        tracked_schemes: iterator over the same schemes that shows a progress bar.
+
+    Returns:
+        For each scheme its path and whether it was solved with forces; None if it cannot be assembled.
+
+    Raises:
+        ProblemError: there are too many schemes, or a file with other contents exists.
     """
     if len(schemes) > MOST_FILES:
         raise ProblemError(
@@ -106,8 +132,8 @@ def write_scheme_files(schemes: Sequence[Scheme], folder: Path, each: Iterable[S
     digits = max(2, len(str(len(schemes))))
     texts: dict[Path, str] = {}
     written: list[tuple[Path, bool] | None] = []
-    for number, scheme in enumerate(each, 1):
-        scheme_file = write_scheme(
+    for number, scheme in enumerate(tracked_schemes, 1):
+        scheme_file = make_scheme_file(
             scheme, _("Scheme {number}, {formula}").format(number=number, formula=scheme.formula)
         )
         path = folder / f"scheme-{number:0{digits}d}-{scheme.name}.yaml"
@@ -128,7 +154,14 @@ def write_scheme_files(schemes: Sequence[Scheme], folder: Path, each: Iterable[S
 
 
 def read_group_types(text: str) -> tuple[str, ...]:
-    """Read a list of group types and classes, `RRR,RRP` or `II,III`. Raises ProblemError."""
+    """Read a comma-separated list of types and classes of Assur groups, such as `RRR,RRP` or `II,III`.
+
+    Returns:
+        Types of groups; a class is replaced by its types.
+
+    Raises:
+        ProblemError: a name is unknown.
+    """
     types: list[str] = []
     for word in text.split(","):
         name = word.strip().upper()
@@ -140,13 +173,13 @@ def read_group_types(text: str) -> tuple[str, ...]:
 
 
 def find_schemes(links: int, mobility: int, types: tuple[str, ...]) -> tuple[Scheme, ...]:
-    """Return the schemes. Raises ProblemError with the allowed numbers."""
+    """Enumerate the schemes with these numbers. Raises ProblemError, with the allowed numbers, if there can be none."""
     _refuse_numbers(links, "--links", mobility, MOST_CRANKS, range(mobility + 2, MOST_LINKS_OF_SCHEME + 1, 2))
     try:
         return all_schemes(links, mobility, types)
     except TooManySchemes:
         raise ProblemError(
-            _("too many schemes: more than {most}").format(most=MOST_SCHEMES),
+            _("there are too many schemes: more than {most}").format(most=MOST_SCHEMES),
             path=("--links",),
             found=str(links),
             allowed=_("fewer links, or fewer types of groups (--groups)"),
@@ -154,13 +187,15 @@ def find_schemes(links: int, mobility: int, types: tuple[str, ...]) -> tuple[Sch
 
 
 def find_chains(links: int, mobility: int) -> tuple[KinematicChain, ...]:
-    """Return the kinematic chains. Raises ProblemError with the allowed numbers."""
+    """Enumerate the kinematic chains with these numbers. Raises ProblemError, with the allowed numbers, if there can be
+    none.
+    """
     _refuse_numbers(links, "--chains", mobility, MOST_CHAIN_LINKS - 3, range(mobility + 3, MOST_CHAIN_LINKS + 1, 2))
     return enumerate_chains(links, mobility)
 
 
 def _refuse_numbers(links: int, option: str, mobility: int, most: int, allowed: range) -> None:
-    """Refuse a mobility above the largest, and numbers of links that are impossible for this mobility."""
+    """Refuse a mobility that is not supported, and a number of links that is impossible for this mobility."""
     if not 1 <= mobility <= most:
         raise ProblemError(
             _("structures of this mobility are not supported"),
@@ -170,10 +205,12 @@ def _refuse_numbers(links: int, option: str, mobility: int, most: int, allowed: 
         )
     if links not in allowed:
         raise ProblemError(
-            _("no structure of mobility {mobility} has this number of links").format(mobility=mobility),
+            _("there is no structure of mobility {mobility} with this number of links").format(mobility=mobility),
             path=(option,),
             found=str(links),
-            allowed=_("for W = {mobility}: {links}").format(mobility=mobility, links=", ".join(map(str, allowed))),
+            allowed=_("for W = {mobility} the number of links can be: {links}").format(
+                mobility=mobility, links=", ".join(map(str, allowed))
+            ),
         )
 
 
@@ -206,7 +243,7 @@ def schemes(
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """Enumerate all schemes built of Assur groups, or kinematic chains (structural synthesis)."""
+    """Enumerate all schemes of mechanisms that consist of Assur groups, or all kinematic chains (number synthesis)."""
     written = None
     with reporting_errors(as_json, str(out or "")):
         if table and (links, chains) == (None, None):
@@ -242,9 +279,9 @@ def schemes(
                 "--links N for schemes, --chains N for kinematic chains, or --table for the table of groups"
             )
             raise ProblemError(
-                _("neither schemes nor chains nor the table of groups were requested, or several of them"),
+                _("request exactly one of these: schemes, kinematic chains, or the table of groups"),
                 allowed=alternatives,
             )
     if out is not None and written:
         count = sum(x is not None for x in written)
-        say(_("files written to {out}: {count}; next: tmm run {out}/FILE").format(count=count, out=printable(out)))
+        say(_("files written to {out}: {count}; next step: tmm run {out}/FILE").format(count=count, out=printable(out)))

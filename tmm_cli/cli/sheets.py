@@ -1,4 +1,4 @@
-"""Command `tmm sheets`: framed sheets to hand in."""
+"""Command `tmm sheets`: draws framed sheets to hand in."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ from tmm_cli.problem import ProblemError, translate_errors
 from tmm_cli.synthesis import inputs_of, solve
 
 Drawings = Annotated[
-    bool, typer.Option("--drawings", help="Draw the structural scheme and the separate groups: PNG, SVG in outputs/.")
+    bool, typer.Option("--drawings", help="Draw the structural scheme and each group, as PNG and SVG in outputs/.")
 ]
 Driver = Annotated[
     str | None,
@@ -53,7 +53,11 @@ def structure(
     variant: Variant = None,
     tables: Tables = None,
 ) -> None:
-    """Show mobility, pairs, Assur groups, link names, contours, redundant constraints in space; also for chains."""
+    """Show the structure: mobility, pairs, Assur groups, link names, closed loops, redundant constraints.
+
+    Redundant constraints are counted for the mechanism in space. A file may also give a spatial chain by its pairs
+    alone.
+    """
     names = ("structure", "properties", "links", "pairs", "groups", "contours", "space", "replacements")
 
     def work(file: str) -> int:
@@ -66,7 +70,9 @@ def structure(
         code = report(results, names, as_json, None)
         pictures = dict(draw_pictures("whole", results))
         if not pictures:
-            text = _("not drawn: the groups of {problem} cannot be assembled in the sketched position")
+            text = _(
+                "the scheme is not drawn: the groups of {problem} cannot be assembled in the position of the sketch"
+            )
             say(text.format(problem=results.problem.name))
         write_pictures(results, out, pictures)
         return code
@@ -79,7 +85,7 @@ Assemblies = Annotated[
     bool, typer.Option("--assemblies", help="List and draw all real assemblies of the groups at one position.")
 ]
 Centres = Annotated[
-    bool, typer.Option("--centres", help="Find instantaneous centres and mechanical advantage in detailed positions.")
+    bool, typer.Option("--centres", help="Find instantaneous centres and mechanical advantage at detailed positions.")
 ]
 ExtremePlaces = Annotated[
     bool, typer.Option("--extremes", help="Find extreme positions of all points, links and sliding blocks.")
@@ -87,7 +93,10 @@ ExtremePlaces = Annotated[
 Of = Annotated[
     str,
     typer.Option(
-        "--of", metavar="NAMES", help="Compute only these points, links, centres of mass: E,5,S3", show_default=False
+        "--of",
+        metavar="NAMES",
+        help="Compute only these points, links, centres of mass, e.g. E,5,S3.",
+        show_default=False,
     ),
 ]
 
@@ -132,7 +141,7 @@ def kinematics(
 
 
 def _draw_centres(results: Results, as_json: bool, out: Path | None) -> int:
-    """List and draw instantaneous centres; returns the exit code."""
+    """List and draw the instantaneous centres, and return the exit code."""
     code = report(results, ("extremes", "centres", "advantage"), as_json, None)
     write_pictures(results, out, dict(draw_pictures("centres", results)))
     return code
@@ -141,7 +150,7 @@ def _draw_centres(results: Results, as_json: bool, out: Path | None) -> int:
 def _list_assemblies(
     file: str, as_json: bool, out: Path | None, positions: Sequence[int] | None, settings: Sequence[str] | None
 ) -> int:
-    """List and draw every real assembly of the groups; returns the exit code. Raises ProblemError."""
+    """List and draw every real assembly of the groups, and return the exit code. Raises ProblemError."""
     problem = open_problem(file, settings).whole
     with translate_errors(problem):
         results = with_assemblies(inputs_of(problem), positions, problem)
@@ -151,9 +160,19 @@ def _list_assemblies(
             text = _("the sketch does not determine the assembly of {group}; all assemblies are listed")
             say(text.format(group=listed.undecided.title))
             if positions and listed.number is None:
-                say(_("without a determined assembly positions have no numbers; listed for the sketched position"))
+                say(
+                    _(
+                        "positions have no numbers until the assembly is determined; the list is for the position "
+                        "of the "
+                        "sketch"
+                    )
+                )
         for group in listed.lost:
-            say(_("{group} is omitted: the links it depends on cannot be assembled here").format(group=group.title))
+            say(
+                _(
+                    "group {group} is omitted: the links to which it is attached cannot be assembled in this position"
+                ).format(group=group.title)
+            )
     write_pictures(results, out, dict(draw_pictures("assemblies", results)))
     return code
 
@@ -220,7 +239,7 @@ def dynamics(
     variants: Variants = None,
     variant: Variant = None,
 ) -> None:
-    """Show the law of motion: driving moment or motor, flywheel, speeds of the driver; and balancing."""
+    """Show the law of motion (driving moment or motor, flywheel, speeds of the driver) and balancing."""
 
     def work(file: str) -> int:
         problem = open_problem(file, variant_settings(file, variants, variant, settings), position, digits).whole

@@ -1,4 +1,4 @@
-"""Command `tmm sweep`: quantities over one or two parameters."""
+"""Command `tmm sweep`: shows quantities as functions of one or two parameters."""
 
 from __future__ import annotations
 
@@ -66,9 +66,10 @@ def sweep(
     scheduler: Scheduler = None,
     as_json: Json = False,
 ) -> None:
-    """Show quantities over one or two parameters, and the borders of assembly, full rotation and limits.
+    """Show quantities as functions of one or two parameters, and boundaries where the mechanism stops working.
 
-    Every point is a variant in the assembly of the file.
+    Boundaries of assembly, of full rotation and of limits are found. Every point is a variant of the mechanism, in the
+    assembly of the file.
     """
     with reporting_errors(as_json):
         if out is not None:
@@ -89,7 +90,7 @@ def sweep(
             say(_("warning: {warning}").format(warning=f"{problem.name}: {doubt}"))
         runner = on_cluster(scheduler) if scheduler else in_processes(cores)
         with progress_bars() as progress:
-            work = progress.add_task(_("solved"), total=points)
+            work = progress.add_task(_("mechanisms solved"), total=points)
             swept = run_sweep(mechanisms, runner, lambda count: progress.advance(work, count))
         for slip in warn_of_load_tables(problem.linkage, problem.units, swept.reach):
             warn(f"{problem.name}: {slip}")
@@ -105,13 +106,17 @@ def sweep(
 
 
 def _announce(points: int, taped: bool) -> None:
-    """Print the amount of work before it starts."""
-    text = _("mechanisms: {points}, solved together") if taped else _("mechanisms: {points}, solved one after another")
+    """Print the number of mechanisms before they are solved."""
+    text = (
+        _("mechanisms to solve: {points}, all together")
+        if taped
+        else _("mechanisms to solve: {points}, one after another")
+    )
     say(text.format(points=points))
 
 
 def _write(swept: SweepResults, problem: Problem, out: Path) -> None:
-    """Write all files at once, or none. Raises OSError."""
+    """Write all files of a sweep, or none if one fails. Raises OSError."""
     folder = out / folder_name(f"{problem.name}-sweep")
     with StagedFolder(folder) as staged:
         with words_of_files():

@@ -1,4 +1,4 @@
-"""Command `tmm synthesis`: dimensions from requirements."""
+"""Command `tmm synthesis`: finds dimensions from requirements."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def synthesis(files: Files, as_json: Json = False, out: Out = None, settings: Se
     """Find the lengths of a mechanism from its requirements, analyse it, and check the requirements.
 
     The file has a block `synthesis`, whose results become parameters of its linkage. Exit code 1 if a requirement is
-    not met within 1e-9. With -o also write the tables and a drawing of the construction.
+    not met within 1e-9. With -o, tables and a drawing of the construction are also written.
     """
 
     def work(file: str) -> int:
@@ -41,7 +41,7 @@ def synthesis(files: Files, as_json: Json = False, out: Out = None, settings: Se
 
 
 def _solve_and_report(file: str, as_json: bool, out: Path | None, settings: Sequence[str] | None) -> int:
-    """Solve the synthesis of a file, show and write the results; returns the exit code. Raises ProblemError."""
+    """Solve the synthesis task of a file, show the results, and return the exit code. Raises ProblemError."""
     name, title, synthesised, units, results = _solve_task(file, settings)
     measured = None if results is None else measure_problem(results)
     with words_of_files():
@@ -54,7 +54,7 @@ def _solve_and_report(file: str, as_json: bool, out: Path | None, settings: Sequ
             if not table.long:
                 print_on_terminal(table, units, screen, most=None)
         if measured is None:
-            say(_("the file has no linkage, so the requirements were not checked"))
+            say(_("the file describes no mechanism, so the requirements were not checked"))
     if out is not None:
         folder = out / folder_name(name if recorded_part(out / folder_name(name)) is None else f"{name}-synthesis")
         with StagedFolder(folder) as staged:
@@ -73,13 +73,18 @@ def _solve_and_report(file: str, as_json: bool, out: Path | None, settings: Sequ
 
 
 def _solve_task(file: str, settings: Sequence[str] | None) -> tuple[str, str, Synthesised, UnitSystem, Results | None]:
-    """Return name and title of the problem, synthesis results, units, and the motion if there is a linkage.
+    """Solve the synthesis task of a file.
 
-    Raises ProblemError.
+    Returns:
+        Name and title of the problem, result of the task, units, and the motion of the mechanism (None if the file has
+        no linkage).
+
+    Raises:
+        ProblemError: the file is wrong, has no synthesis task, or the task has no solution.
     """
     tree = read_tree(file, settings)
     if "synthesis" not in tree.data:
-        build_synthesised(tree)  # refuses a misspelt key
+        build_synthesised(tree)  # reports a misspelt key, if any
         raise ProblemError(_("the file has no block `synthesis`"), allowed="synthesis: {task: ...}", file=file)
     if "links" not in tree.data:
         solution = solve_alone(tree)

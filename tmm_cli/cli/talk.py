@@ -20,7 +20,7 @@ from tmm_cli.problem import clean, escape_controls
 
 OK, CHECK_FAILED, BAD_INPUT, FAULT = 0, 1, 2, 3
 TRACEBACK = "TMM_TRACEBACK"  # environment variable: 1 prints the traceback of an internal fault
-ADDRESS = re.compile(r"[a-z][a-z0-9+.-]+:[/\\]", re.IGNORECASE)  # s3://bucket as a Path has it; a drive has one letter
+ADDRESS = re.compile(r"[a-z][a-z0-9+.-]+:[/\\]", re.IGNORECASE)  # s3://; one letter only is a drive
 
 Language = Literal["en", "ru", "sr"]
 Lang = Annotated[
@@ -28,7 +28,7 @@ Lang = Annotated[
     typer.Option("--lang", envvar="TMM_LANG", help="Language, overrides that of the file.", show_default=False),
 ]
 
-_requested_language: ContextVar[str | None] = ContextVar("asked_for", default=None)
+_requested_language: ContextVar[str | None] = ContextVar("requested_language", default=None)
 
 
 def say(text: str) -> None:
@@ -37,19 +37,23 @@ def say(text: str) -> None:
 
 
 def warn(text: str) -> None:
-    """Print a warning."""
+    """Print a warning to standard error."""
     say(_("warning: {warning}").format(warning=text))
 
 
 def printable(path: object) -> str:
-    """Return a path on one line, safe to print."""
+    """Return a path as one line of text without control characters."""
     return clean(str(path), 300)
 
 
 def report_fault(error: Exception, words: Sequence[str]) -> int:
-    """Print one line to report an internal fault, or that memory is exhausted; returns the exit code.
+    """Print one line that reports an internal error, or that memory is exhausted, and return the exit code.
 
-    words: the command line. The traceback is printed if the environment variable TMM_TRACEBACK is set.
+    The traceback is printed as well if the environment variable TMM_TRACEBACK is set.
+
+    Args:
+        error: exception that no other code has handled.
+        words: arguments of the command line.
     """
     if os.environ.get(TRACEBACK, "0") not in ("", "0"):
         traceback.print_exception(error)
@@ -60,7 +64,7 @@ def report_fault(error: Exception, words: Sequence[str]) -> int:
     command = next((word for word in words if not word.startswith("-")), "")
     text = _(
         "internal error: {name} at {place} (tmm {version}, command {command}): please report this line and "
-        "the file; {variable}=1 prints the traceback"
+        "send the problem file; with {variable}=1 the traceback is printed"
     )
     name, version = type(error).__name__, tmm_cli.__version__
     say(text.format(name=name, place=place, version=version, command=clean(command, 40), variable=TRACEBACK))
@@ -68,7 +72,9 @@ def report_fault(error: Exception, words: Sequence[str]) -> int:
 
 
 def _program_line(error: Exception) -> str:
-    """Innermost line of this program in a traceback, also of another process."""
+    """Return file and line of the innermost frame that belongs to this program; the error may come from a worker
+    process.
+    """
     remote = getattr(error.__cause__, "tb", "")  # text of the traceback in another process
     frames = re.findall(r'File "([^"]+)", line (\d+)', remote if isinstance(remote, str) else "")
     frames = frames or [(frame.filename, frame.lineno) for frame in traceback.extract_tb(error.__traceback__)]
@@ -82,18 +88,18 @@ def _program_line(error: Exception) -> str:
 
 
 def refuse_addresses(named: Mapping[str, Any]) -> None:
-    """Refuse network addresses as places for results. Raises typer.Exit."""
+    """Refuse network addresses as output folders or files. Raises typer.Exit."""
     for name in ("out", "template", "junit"):
         path = named.get(name)
         if isinstance(path, Path) and ADDRESS.match(str(path)):
             address = re.sub(r"^([^:]+):[/\\]+", r"\1://", str(path))
-            text = _("error: {address} is a network address; give a local folder or file for the results")
+            text = _("error: {address} is a network address; specify a local folder or file for the results")
             say(text.format(address=printable(address)))
             raise typer.Exit(BAD_INPUT)
 
 
 def with_language_option(command: Callable[..., None]) -> Callable[..., None]:
-    """Add the option --lang to a command; it overrides the language of a file."""
+    """Add the option --lang to a command. It takes precedence over the language of a file."""
 
     @wraps(command)
     def spoken_command(*arguments: Any, lang: Language | None = None, **named: Any) -> None:
@@ -108,19 +114,19 @@ def with_language_option(command: Callable[..., None]) -> Callable[..., None]:
     original = signature(command, eval_str=True)
     option = Parameter("lang", Parameter.KEYWORD_ONLY, default=None, annotation=Lang)
     shape = original.replace(parameters=[*original.parameters.values(), option])
-    vars(spoken_command).update(__signature__=shape, __wrapped__=None)  # typer reads the shape, and looks no further
+    vars(spoken_command).update(__signature__=shape, __wrapped__=None)  # typer reads this signature
     spoken_command.__annotations__ = {name: parameter.annotation for name, parameter in shape.parameters.items()}
     return spoken_command
 
 
 def use_file_language(language: object) -> None:
-    """Use the language of a file from now on, unless --lang was given."""
+    """Switch to the language of a file, unless --lang was given."""
     if _requested_language.get() is None and language in get_args(Language):
         speak(str(language))
 
 
 def use_file_notation(file: Mapping[str, object]) -> None:
-    """Use the frame number and the letter of inertia forces of a file from now on, unchecked."""
+    """Use the frame number and the letter of inertia forces from a file whose keys are not yet validated."""
     note = file.get("note")
     letter = note.get("inertia") if isinstance(note, dict) else ""
     write(str(file.get("frame", USUAL.frame)), str(letter))

@@ -1,4 +1,4 @@
-"""Command `tmm variants`: variants of a task for a group of students."""
+"""Command `tmm variants`: generates variants of a task for a group of students."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def variants(
     students: Students = None,
     vary: Vary = None,
 ) -> None:
-    """Generate variants of a task for a group: table, sheet and problem file for each student, answer key."""
+    """Generate variants of a task for a group: table, answer key, and sheet and problem file for each student."""
     with reporting_errors():
         refuse_unwritable(out, folder=True)
         task = read_task(with_vary(read_in_file_language(file), vary or ()))
@@ -72,8 +72,8 @@ def variants(
             warn(f"{task.problem.name}: {slip}")
         if len(table.rows) < count:
             raise ProblemError(
-                _("the ranges give too few feasible and distinct variants: {found}").format(found=len(table.rows)),
-                found=_("{count} required").format(count=count),
+                _("the ranges yield too few feasible and distinct variants: {found}").format(found=len(table.rows)),
+                found=_("number of variants required: {count}").format(count=count),
                 allowed=_("wider ranges or smaller steps"),
                 file=file,
             )
@@ -81,17 +81,17 @@ def variants(
 
 
 def _print_drawn(variety: VariantGenerator, table: VariantTable) -> None:
-    """Print how many variants were drawn and rejected."""
+    """Print how many variants were drawn, and how many candidates were rejected for which reason."""
     rows = [(why, str(count)) for why, count in variety.rejected.most_common() if count]
-    text = _("variants: {count}, free parameters: {free}, candidates tried: {tried}")
+    text = _("variants: {count}, varied parameters: {free}, candidates tried: {tried}")
     say(text.format(count=len(table.rows), free=", ".join(table.names), tried=variety.tried))
     if rows:
-        rejected = text_table("rejected", _("Rejected candidates"), (_("reason"), _("candidates")), rows)
+        rejected = text_table("rejected", _("Rejected candidates"), (_("reason"), _("number of candidates")), rows)
         print_on_terminal(rejected, variety.task.units, console())
 
 
 def _write(task: Task, text: str, table: VariantTable, out: Path) -> None:
-    """Write all files at once, or none. Raises ProblemError, OSError."""
+    """Write all files, or none if one fails. Raises ProblemError or OSError."""
     with StagedFolder(out) as folder:
         rows = variant_table_rows(table)
         folder.write(TABLE, [csv_bytes(rows)])

@@ -1,4 +1,4 @@
-"""Pages for the browser: `tmm animate`, `tmm gallery`."""
+"""Commands `tmm animate` and `tmm gallery`: web pages with moving mechanisms."""
 
 from __future__ import annotations
 
@@ -35,17 +35,17 @@ def animate(
     variants: Variants = None,
     variant: Variant = None,
 ) -> None:
-    """Write a web page with the moving mechanism, its motion plans and diagrams; it works offline."""
+    """Write a web page with the moving mechanism, its motion plans and its diagrams. The page works offline."""
     with reporting_errors():
         if out is not None:
             refuse_unwritable(out, folder=False)
         problem = open_problem(file, variant_settings(file, variants, variant, settings))
         results = solve(problem)
-        target = out or Path("outputs") / f"{folder_name(results.problem.name)}.html"
-        write_atomically(target, animation_page(results).encode())
+        page = out or Path("outputs") / f"{folder_name(results.problem.name)}.html"
+        write_atomically(page, animation_page(results).encode())
         for warning in collect_warnings(results):
             warn(warning)
-        say(_("written: {folder}").format(folder=printable(target)))
+        say(_("written: {folder}").format(folder=printable(page)))
 
 
 def gallery(
@@ -56,9 +56,10 @@ def gallery(
         "outputs/gallery"
     ),
 ) -> None:
-    """Write a web page with many moving mechanisms, searchable by class, group, purpose and property; it works offline.
+    """Write a web page with many moving mechanisms. The page works offline.
 
-    A file that cannot be computed is reported and omitted: exit code 1.
+    Mechanisms can be searched by class, group, purpose and property. A file that cannot be computed is reported and
+    omitted; the exit code is then 1.
     """
     with reporting_errors():
         refuse_unwritable(out / "index.html", folder=False)
@@ -74,12 +75,12 @@ def gallery(
         write_atomically(target, gallery_page(cards).encode())
         say(_("written: {folder}").format(folder=printable(target)))
     if len(cards) < len(outcomes):
-        say(_("omitted: {count}").format(count=len(outcomes) - len(cards)))
+        say(_("files omitted: {count}").format(count=len(outcomes) - len(cards)))
         raise typer.Exit(CHECK_FAILED)
 
 
 def _try_card(file: str) -> Card | str:
-    """Card of a file, or an error message."""
+    """Create the gallery card of a file; return an error message if the file cannot be computed."""
     try:
         return make_card(file)
     except ProblemError as error:
