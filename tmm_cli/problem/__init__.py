@@ -1,4 +1,4 @@
-"""Problem files: text to a linkage, with every message at its line and column."""
+"""Problem files: reading a text and building a linkage from it; every error names its line and column."""
 
 from tmm_cli.interfaces import lazy
 

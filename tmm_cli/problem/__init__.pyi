@@ -1,12 +1,10 @@
-"""Problem files: text to a linkage, with every message at its line and column."""
+"""Problem files: reading a text and building a linkage from it; every error names its line and column."""
 
 from . import schema as schema
 from .arithmetic import (
     Parser as Parser,
-    check_parameter as check_parameter,
     evaluate as evaluate,
     evaluate_quantity as evaluate_quantity,
-    resolve_parameters as resolve_parameters,
 )
 from .blocks.loads import stroke_dimension as stroke_dimension
 from .build import (
@@ -48,6 +46,7 @@ from .errors import (
 from .formats import read_mechanism as read_mechanism
 from .formats.imported_mechanism import problem_file_text as problem_file_text
 from .formats.pmks_link import DIGITS as DIGITS
+from .parameters import check_parameter as check_parameter, resolve_parameters as resolve_parameters
 from .problems import (
     ChainProblem as ChainProblem,
     Problem as Problem,
@@ -57,7 +56,6 @@ from .problems import (
 from .reader import (
     MAX_BYTES as MAX_BYTES,
     Composer as Composer,
-    apply_settings as apply_settings,
     decimal_comma_hint as decimal_comma_hint,
     decode_text as decode_text,
     find_language as find_language,
@@ -65,7 +63,6 @@ from .reader import (
     read_file as read_file,
     read_file_text as read_file_text,
     read_text as read_text,
-    unused_parameters as unused_parameters,
 )
 from .scalars import finite_float as finite_float, plain_value as plain_value
 from .schema import (
@@ -85,6 +82,7 @@ from .schema_types import (
     Vector as Vector,
     checked_value as checked_value,
 )
+from .settings import apply_settings as apply_settings, unused_parameters as unused_parameters
 from .templates import (
     list_templates as list_templates,
     load_translations as load_translations,

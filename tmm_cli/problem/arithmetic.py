@@ -1,8 +1,8 @@
-"""Evaluate arithmetic on quantities with units and parameters; expressions are parsed, never run as Python.
+"""Evaluation of arithmetic expressions with units and parameters. Expressions are parsed, never run as Python code.
 
-The parser climbs precedence over the text and is bounded in depth. A bare number (a number without a unit) is flexible:
-beside a quantity with a dimension it is taken in the file's unit of that dimension, and so is a bare result where a
-dimension is required.
+The recursive-descent parser limits the nesting of an expression. A bare number (without a unit) takes its unit from the
+context: next to a quantity with a dimension, or where a dimension is required, it is read in the file's unit of that
+dimension.
 """
 
 from __future__ import annotations
@@ -10,12 +10,11 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping
-from graphlib import CycleError, TopologicalSorter
 from typing import Final
 
 from tmm_cli.language import _
 from tmm_cli.mechanics.quantities import ACCELERATION, ANGLE, ANGULAR_SPEED, DIMENSIONS, NUMBER, Dimension
-from tmm_cli.problem.errors import Path, ProblemError, WrittenNumber, prefix_errors, quote, unknown_name_error
+from tmm_cli.problem.errors import ProblemError, WrittenNumber, quote, unknown_name_error
 from tmm_cli.problem.scalars import decimal_comma_error
 from tmm_cli.problem.units import (
     PER_TIME,
@@ -53,14 +52,26 @@ FUNCTIONS: Final = (*_OF_ANGLE, *_TO_ANGLE, *_MANY_ARGUMENTS, "sqrt", "abs")
 
 
 def to_si(quantity: PhysicalValue, want: Dimension, units: UnitSystem) -> float | None:
-    """Return a value in SI, a bare number taken in the file's unit of `want`; None if the dimension does not fit."""
+    """Convert a quantity to SI; return None if its dimension is not the required one.
+
+    A bare number is read in the file's unit of the dimension `want`.
+    """
     if quantity.dimension is None:
         return units.si(quantity.value, want)
     return quantity.value if quantity.dimension.fits(want) else None
 
 
 class Parser:
-    """Recursive-descent parser of one expression: sums, products, powers, signs, function calls."""
+    """Recursive-descent parser of one expression with sums, products, powers, signs and function calls.
+
+    Attributes:
+        text: expression.
+        parameters: values of the parameters, by name.
+        units: units of bare numbers.
+        pi: dimension of the constant pi; None makes it a bare number.
+        at: index of the next character to parse.
+        depth: current number of nested brackets.
+    """
 
     def __init__(
         self, text: str, parameters: Mapping[str, PhysicalValue], units: UnitSystem, pi: Dimension | None = ANGLE
@@ -70,8 +81,10 @@ class Parser:
         self.depth = 0
 
     def names(self) -> list[str]:
-        """Return the parameters that the text uses. A unit does not count, even if a parameter has its name: `L: 5 m,
-        m: 2*L`.
+        """Return the names of the parameters that the text uses.
+
+        A unit is not counted as a parameter, even if one has the same name: in `L: 5 m, m: 2*L` parameter L does not
+        use m.
         """
         names = []
         while self.at < len(self.text):
@@ -183,7 +196,10 @@ class Parser:
         raise self.fault(_("expected a number here") if self.text[self.at :].strip() else _("a number is missing"))
 
     def with_unit(self, number: float) -> PhysicalValue:
-        """Return the number with the longest unit that follows it (in `10 mm * k` this is mm, as k is a parameter)."""
+        """Read the longest unit that follows a number and return the quantity.
+
+        In `10 mm * k` the unit is mm, as k is a parameter.
+        """
         unit_match = _UNIT.match(self.text, self.at)
         if dotted := _DOTTED.match(self.text, self.at):
             raise dotted_unit_error(dotted[1])
@@ -264,7 +280,7 @@ class Parser:
         return PhysicalValue(value, root if name == "sqrt" else ANGLE)
 
     def of_many(self, name: str, arguments: list[PhysicalValue]) -> PhysicalValue:
-        """Compute atan2, hypot, min or max of values of one dimension, or of bare numbers."""
+        """Compute atan2, hypot, min or max. The arguments must have the same dimension; bare numbers take it over."""
         compute = self.units.functions[name]
         dimension = next((argument.dimension for argument in arguments if argument.dimension is not None), None)
         values = [self.alike(PhysicalValue(0.0, dimension), argument)[1] for argument in arguments]
@@ -272,7 +288,10 @@ class Parser:
         return self.finite(value, ANGLE if name == "atan2" else dimension)
 
     def alike(self, left: PhysicalValue, right: PhysicalValue) -> tuple[float, float, Dimension | None]:
-        """Return both values in one dimension; a bare one is taken in the file's unit of the other's dimension."""
+        """Return the values of two quantities and their common dimension.
+
+        A bare number is read in the file's unit of the other dimension. Raises ProblemError if the dimensions differ.
+        """
         a, b = left.dimension, right.dimension
         if a is None and b is not None:
             return self.finite(self.units.si(left.value, b), b).value, right.value, b
@@ -283,19 +302,17 @@ class Parser:
         return left.value, right.value, a
 
     def finite(self, value: float, dimension: Dimension | None) -> PhysicalValue:
-        """Return a result of one step of the arithmetic. Raises ProblemError if it is not finite, so no later step
-        meets nan.
-        """
+        """Return a quantity with this value. Raises ProblemError if the value is infinite or nan."""
         if not math.isfinite(value):
             raise ProblemError(_("this number is too large"), found=quote(self.text))
         return PhysicalValue(value, dimension)
 
     @staticmethod
     def joined(left: PhysicalValue, right: PhysicalValue, power: int) -> Dimension | None:
-        """Return the dimension of a product or quotient.
+        """Return the dimension of a product (power 1) or quotient (power -1) of two quantities; None for a bare number.
 
-        A bare number is a pure factor, and stays bare beside a number; a ratio of lengths is a number, not bare, so
-        that it cannot be taken for degrees or millimetres.
+        A bare factor does not change the dimension. The ratio of two lengths is a dimensionless number but not a bare
+        one, so that it is never read in degrees or millimetres.
         """
         joined = (left.dimension or NUMBER).times(right.dimension or NUMBER, power)
         return None if joined == NUMBER and None in (left.dimension, right.dimension) else joined
@@ -321,16 +338,16 @@ MAX_LENGTH: Final = 200
 
 
 def evaluate(source: object, parameters: Mapping[str, PhysicalValue], units: UnitSystem, want: Dimension) -> float:
-    """Evaluate a value of the file in SI and radians.
+    """Evaluate a value of the file and return it in SI and radians.
 
     Args:
         source: number or text of the file.
-        parameters: values of the parameters by name.
+        parameters: values of the parameters, by name.
         units: units of bare numbers.
         want: required dimension.
 
     Raises:
-        ProblemError: the text is not valid arithmetic, or its dimension does not fit; without a path.
+        ProblemError: the text is not valid arithmetic, or has another dimension. The error contains no path.
     """
     try:
         return _checked_si(source, evaluate_quantity(source, parameters, units), units, want)
@@ -347,19 +364,25 @@ def evaluate(source: object, parameters: Mapping[str, PhysicalValue], units: Uni
     def fits(others: Mapping[str, PhysicalValue]) -> bool:
         return to_si(evaluate_quantity(source, others, units), want, units) is not None
 
-    raise _missing_unit_error(source, parameters, units, fits) or first from None
+    raise missing_unit_error(source, parameters, units, fits) or first from None
 
 
-def _missing_unit_error(
+def missing_unit_error(
     source: str,
     parameters: Mapping[str, PhysicalValue],
     units: UnitSystem,
     fits: Callable[[Mapping[str, PhysicalValue]], bool],
 ) -> ProblemError | None:
-    """Return the error for a value whose dimensions do not fit because one of its parameters lacks a unit, unlike the
-    others.
+    """Return the error for an expression whose dimension is wrong because one of its parameters has no unit.
 
-    Each kind of unit is tried on each parameter without one. Returns None if no unit makes the value fit.
+    Each unit of the file is tried on each parameter without a unit. Returns None if this never gives the right
+    dimension, or if no parameter in the expression has a unit.
+
+    Args:
+        source: expression.
+        parameters: values of the parameters, by name.
+        units: units of the file.
+        fits: returns True if the expression has the right dimension with these parameters.
     """
     used = dict.fromkeys(Parser(plain_text(source[:MAX_LENGTH]), parameters, units).names())
     bare = [name for name in used if parameters[name].dimension is None]
@@ -398,10 +421,20 @@ def _checked_si(source: object, quantity: PhysicalValue, units: UnitSystem, want
 def evaluate_quantity(
     source: object, parameters: Mapping[str, PhysicalValue], units: UnitSystem, pi: Dimension | None = ANGLE
 ) -> PhysicalValue:
-    """Evaluate a value with its dimension; the dimension of a bare number is None.
+    """Evaluate a value of the file together with its dimension.
 
-    pi: dimension of the constant pi. By default it is an angle in radians, so that pi/2 is a right angle whatever the
-    file's unit of angles; None makes it a bare number. Raises ProblemError without a path.
+    Args:
+        source: number or text of the file.
+        parameters: values of the parameters, by name.
+        units: units of bare numbers.
+        pi: dimension of the constant pi. By default it is an angle in radians, so that pi/2 is a right angle in any
+            unit of angle; None makes it a bare number.
+
+    Returns:
+        The quantity in SI and radians; the dimension of a bare number is None.
+
+    Raises:
+        ProblemError: the text is not valid arithmetic. The error contains no path.
     """
     if isinstance(source, bool) or not isinstance(source, int | float | str):
         raise ProblemError(
@@ -420,65 +453,3 @@ def evaluate_quantity(
             allowed=_("at most {max_length} characters").format(max_length=MAX_LENGTH),
         )
     return Parser(plain_text(source), parameters, units, pi).whole()
-
-
-def check_parameter(name: str, path: Path, *, key: bool = True) -> None:
-    """Raise ProblemError if this cannot be the name of a parameter."""
-    if not re.fullmatch(r"[^\W\d]\w{0,39}", name):
-        raise ProblemError(
-            _("invalid name of a parameter"),
-            path=path,
-            found=quote(name),
-            allowed=_("letters, digits and _, beginning with a letter"),
-            key=key,
-        )
-    if name in FUNCTIONS or name == "pi":
-        raise ProblemError(
-            _("this is the name of a function or constant of arithmetic; choose another one"),
-            path=path,
-            found=quote(name),
-            key=key,
-        )
-
-
-def resolve_parameters(
-    raw: Mapping[str, object], units: UnitSystem, given: Mapping[str, PhysicalValue] | None = None
-) -> dict[str, PhysicalValue]:
-    """Evaluate parameters, in any order; each may depend on the others and on the already known ones in `given`.
-
-    Raises ProblemError with the name of the parameter as its path.
-    """
-    parameters: dict[str, PhysicalValue] = dict(given or {})
-    for name in raw:
-        check_parameter(name, (name,))
-    placeholders = dict.fromkeys(raw, PhysicalValue(0.0))
-    needs = {
-        name: Parser(plain_text(source[:MAX_LENGTH]), placeholders, units).names() if isinstance(source, str) else []
-        for name, source in raw.items()
-    }
-    try:
-        order = list(TopologicalSorter(needs).static_order())
-    except CycleError as error:
-        cycle: list[str] = error.args[1][::-1]
-        raise ProblemError(
-            _("these parameters refer to each other in a circle"), path=(cycle[0],), found=" -> ".join(cycle)
-        ) from None
-    for name in order:
-        with prefix_errors(name):
-            parameters[name] = _evaluate_parameter(raw[name], parameters, units)
-    return {name: parameters[name] for name in raw}
-
-
-def _evaluate_parameter(source: object, parameters: Mapping[str, PhysicalValue], units: UnitSystem) -> PhysicalValue:
-    """Evaluate a parameter of any dimension."""
-    try:
-        return evaluate_quantity(source, parameters, units)
-    except ProblemError as error:
-        if not isinstance(source, str):
-            raise
-        first = error
-
-    def fits(others: Mapping[str, PhysicalValue]) -> bool:
-        return bool(evaluate_quantity(source, others, units))
-
-    raise _missing_unit_error(source, parameters, units, fits) or first from None

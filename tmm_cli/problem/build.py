@@ -1,4 +1,4 @@
-"""Build problems from files that have been read: names are looked up, numbers get their units."""
+"""Building of problems from files that have been read: names are resolved and numbers are converted to SI."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ from tmm_cli.mechanics.linkage import FRAME, Link, Linkage, Mesh, Output
 from tmm_cli.mechanics.quantities import ANGLE
 from tmm_cli.mechanics.structure import PAIR_FREEDOMS, SpatialChain, SpatialPair, links_joined_to_frame
 from tmm_cli.problem import schema
-from tmm_cli.problem.arithmetic import resolve_parameters
 from tmm_cli.problem.blocks.drivers import build_cycle, build_drivers, build_request, build_sketch
 from tmm_cli.problem.blocks.links import build_links, refuse_attachments, refuse_unused
-from tmm_cli.problem.blocks.loads import add_masses, build_loads
+from tmm_cli.problem.blocks.loads import build_loads
+from tmm_cli.problem.blocks.masses import add_masses
 from tmm_cli.problem.blocks.meshes import build_meshes
 from tmm_cli.problem.blocks.springs import add_springs
 from tmm_cli.problem.errors import Path, ProblemError, Tree, locate_errors_in, prefix_errors
+from tmm_cli.problem.parameters import resolve_parameters
 from tmm_cli.problem.problems import ChainProblem, Problem, TaskProblem
 from tmm_cli.problem.schema_errors import shape_error
 from tmm_cli.problem.schema_types import MAX_LINKS
@@ -41,16 +42,21 @@ Model = TypeVar("Model", bound=BaseModel)
 
 
 def is_chain(tree: Tree) -> bool:
-    """Return True if the file gives a spatial chain by its pairs alone (structure.spatial) and no planar linkage."""
+    """Return True if the file describes a spatial chain by its pairs (structure.spatial), not a planar linkage."""
     structure = tree.data.get("structure")
     named = isinstance(structure, dict) and "spatial" in structure
     return named or ("structure" in tree.data and "links" not in tree.data)
 
 
 def build_problem(tree: Tree, *, extended: bool = False) -> Problem:
-    """Build a problem from a file that has been read and has no synthesis task (for these see synthesis.reading).
+    """Build the problem of a file without a synthesis task (for files with a task see synthesis.reading).
 
-    extended: use double-double numbers. Raises ProblemError.
+    Args:
+        tree: content of the file.
+        extended: compute with double-double numbers, about 31 digits.
+
+    Raises:
+        ProblemError: the file is wrong.
     """
     shape = validate_planar(tree)
     with locate_errors_in(tree):
@@ -60,7 +66,9 @@ def build_problem(tree: Tree, *, extended: bool = False) -> Problem:
 
 
 def validate_planar(tree: Tree) -> schema.File:
-    """Validate the keys of a planar problem file. Raises ProblemError."""
+    """Validate the keys of a file with a planar linkage. Raises ProblemError, also if the file describes a spatial
+    chain.
+    """
     if is_chain(tree):
         raise ProblemError(
             _("this file gives only links and pairs, without dimensions: only the structure can be analysed"),
@@ -72,7 +80,11 @@ def validate_planar(tree: Tree) -> schema.File:
 
 
 def validate_shape(model: type[Model], tree: Tree) -> Model:
-    """Validate the keys of a file against a model. Raises ProblemError, located in the file."""
+    """Validate the keys of a file against a pydantic model and return an instance of the model.
+
+    Raises:
+        ProblemError: a key or value is wrong; the error contains line and column.
+    """
     try:
         return model.model_validate(tree.data)
     except ValidationError as error:
@@ -80,7 +92,15 @@ def validate_shape(model: type[Model], tree: Tree) -> Model:
 
 
 def build_unit_system(names: Mapping[str, str], *, extended: bool = False) -> UnitSystem:
-    """Return the units of bare numbers of a file; extended: with double-double numbers. Raises ProblemError."""
+    """Build the unit system of a file from its block `units`.
+
+    Args:
+        names: unit by kind of quantity, e.g. `{length: mm}`.
+        extended: use double-double numbers, about 31 digits.
+
+    Raises:
+        ProblemError: a kind or unit is unknown.
+    """
     with prefix_errors("units"):
         return ExtendedUnits(names) if extended else UnitSystem(names)
 
@@ -88,13 +108,22 @@ def build_unit_system(names: Mapping[str, str], *, extended: bool = False) -> Un
 def build_parameters(
     raw: Mapping[str, object], units: UnitSystem, known: Mapping[str, PhysicalValue] | None = None
 ) -> dict[str, PhysicalValue]:
-    """Evaluate the parameters of a file; they may depend on the already known ones in `given`. Raises ProblemError."""
+    """Evaluate the parameters of a file.
+
+    Args:
+        raw: numbers or expressions of the file, by parameter name.
+        units: units of bare numbers.
+        known: values of further parameters that the expressions may use.
+
+    Raises:
+        ProblemError: an expression is wrong.
+    """
     with prefix_errors("parameters"):
         return resolve_parameters(raw, units, known)
 
 
 def _refuse_frame_of_a_link(shape: schema.File, links: Mapping[str, Link]) -> None:
-    """Refuse a printed number of the frame that belongs to a link or roller."""
+    """Refuse a number for the frame (key `frame`) that a link or roller already has."""
     taken = {*links, *(cam.roller for cam in shape.cams.values() if cam.roller)}
     if shape.frame != FRAME and shape.frame in taken:
         free = next(number for number in count(1) if str(number) not in taken)
@@ -107,8 +136,15 @@ def _refuse_frame_of_a_link(shape: schema.File, links: Mapping[str, Link]) -> No
 
 
 def build_from_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Problem:
-    """Build the problem from validated keys, block by block in order of dependence. Raises ProblemError, not yet
-    located.
+    """Build the problem from validated keys, in the order in which the blocks depend on one another.
+
+    Args:
+        shape: validated keys of the file.
+        tree: content of the file.
+        values: reader of values, with the parameters and units of the file.
+
+    Raises:
+        ProblemError: a value is wrong; the error contains no line and column.
     """
     members = build_links(shape, values)
     _refuse_frame_of_a_link(shape, members.links)
@@ -172,14 +208,15 @@ def build_from_shape(shape: schema.File, tree: Tree, values: ValueReader) -> Pro
 
 
 def has_bare_speed(driver: schema.DriverKeys, values: ValueReader) -> bool:
-    """Return True if the driver speed is given without a unit."""
+    """Return True if the speed of the driver is given without a unit."""
     speeds = [row[1] for row in driver.speed.table] if isinstance(driver.speed, schema.Speeds) else [driver.speed]
     return any(values.is_bare(speed) for speed in speeds if speed != 0)  # rest is rest in any unit
 
 
 def _refuse_law_with_table(shape: schema.File) -> None:
-    """Refuse a table of speeds together with `dynamics`, or either with variants or optimization. Raises
-    ProblemError.
+    """Refuse a table of speeds together with the block `dynamics`. Raises ProblemError.
+
+    Variants and optimal synthesis allow neither of the two.
     """
     by_table = isinstance(shape.driver, schema.DriverKeys) and isinstance(shape.driver.speed, schema.Speeds)
     if by_table and shape.dynamics is not None:
@@ -198,7 +235,15 @@ def _refuse_law_with_table(shape: schema.File) -> None:
 
 
 def refuse_variable_speed(by_table: bool, dynamics: bool) -> None:
-    """Refuse a table of speeds or the block `dynamics` where only a constant speed or acceleration is supported."""
+    """Refuse a table of speeds or the block `dynamics` where only a constant speed or acceleration is supported.
+
+    Args:
+        by_table: True if the file gives the speed by a table.
+        dynamics: True if the file has the block `dynamics`.
+
+    Raises:
+        ProblemError: one of the two is present.
+    """
     if by_table or dynamics:
         raise ProblemError(
             _(
@@ -212,7 +257,7 @@ def refuse_variable_speed(by_table: bool, dynamics: bool) -> None:
 
 
 def _build_optional_task(block: str, shape: schema.File, linkage: Linkage, values: ValueReader) -> Any:
-    """Build the task of an optional block; the module that builds it is imported only for files with the block."""
+    """Build the task of a block that few files have; return None without the block, and then import no code for it."""
     if getattr(shape, block) is None:
         return None
     module = import_module("tmm_cli.problem.blocks.optional_blocks")
@@ -220,12 +265,12 @@ def _build_optional_task(block: str, shape: schema.File, linkage: Linkage, value
 
 
 def _build_wheel_tasks(shape: schema.File, tree: Tree, linkage: Linkage, values: ValueReader) -> tuple[WheelTask, ...]:
-    """Build the tasks of intermittent motion, which is computed in doubles only."""
+    """Build the tasks of intermittent motion. For double-doubles there are none, as it is computed in doubles only."""
     if not shape.intermittent or isinstance(values.units, ExtendedUnits):
         return ()
 
     def other(settings: Mapping[str, object]) -> Linkage:
-        """Return the linkage with other values of parameters; the results of a synthesis task stay."""
+        """Build the linkage with other parameter values; the results of a synthesis task are kept."""
         known = {name: value for name, value in values.parameters.items() if name not in shape.parameters}
         parameters = build_parameters({**shape.parameters, **settings}, values.units, known)
         alone = shape.model_copy(update={"intermittent": {}})
@@ -252,7 +297,11 @@ def _build_outputs(shape: schema.File, links: Mapping[str, Link], values: ValueR
 
 
 def build_any_problem(tree: Tree) -> Problem | TaskProblem:
-    """Build the problem of a file that has been read, with or without a synthesis task. Raises ProblemError."""
+    """Build the problem of a file with or without a synthesis task.
+
+    Raises:
+        ProblemError: the file is wrong.
+    """
     if "synthesis" not in tree.data:
         return build_problem(tree)
     read: TaskProblem = import_module(TASK_READER).read(tree)  # few files have a task
@@ -260,7 +309,11 @@ def build_any_problem(tree: Tree) -> Problem | TaskProblem:
 
 
 def early_parameters(tree: Tree) -> dict[str, PhysicalValue]:
-    """Return the parameters of a file with a synthesis task that do not depend on its results. Raises ProblemError."""
+    """Evaluate those parameters of a file with a synthesis task that do not depend on the results of the task.
+
+    Raises:
+        ProblemError: an expression is wrong.
+    """
     early: dict[str, PhysicalValue] = import_module(TASK_READER).TaskFile(tree).independent
     return early
 
@@ -270,7 +323,11 @@ WITHOUT_PARAMETERS = ValueReader({}, UnitSystem())
 
 
 def build_chain(tree: Tree) -> ChainProblem:
-    """Build a spatial chain from a file that has been read. Raises ProblemError, located in the file."""
+    """Build the problem of a file that describes a spatial chain.
+
+    Raises:
+        ProblemError: the file is wrong; the error contains line and column.
+    """
     shape = validate_shape(schema.SpatialFile, tree)
     name = tree.name
     spatial = shape.structure.spatial

@@ -1,4 +1,4 @@
-"""Messages for the errors of mechanics, with the key of the file that each concerns; one function for each class."""
+"""Messages for errors of mechanics, with the key of the file that each error concerns. One function per error class."""
 
 from __future__ import annotations
 
@@ -46,12 +46,12 @@ from tmm_cli.problem.units import UnitSystem
 
 @singledispatch
 def problem_error(error: LinkageError, problem: Problem) -> ProblemError:
-    """Convert an error of mechanics to a ProblemError with the path of the key that it concerns, not yet located."""
+    """Convert an error of mechanics to a ProblemError with the path of the key, not yet with line and column."""
     return ProblemError(str(error))
 
 
 def format_coordinate(value: complex | float, units: UnitSystem) -> str:
-    """Format a point (m) or an angle (rad) in the units of the file."""
+    """Format a point (complex, m) or an angle (rad) in the units of the file."""
     if isinstance(value, complex):
         return f"[{units.from_si(value.real, LENGTH):.6g}, {units.from_si(value.imag, LENGTH):.6g}]"
     return units.format_value(value, ANGLE)
@@ -153,8 +153,9 @@ def _immobile(error: MobilityError, problem: Problem) -> ProblemError:
 
 
 def _lone_ends(linkage: Linkage, loose: Collection[str]) -> list[tuple[str, str]]:
-    """Return loose links with a point that forms no pair: their origin, or any point if they have fewer than two
-    pairs.
+    """List loose links with a point that forms no pair, as pairs (link, point).
+
+    The point is the origin of the link or, if the link has fewer than two pairs, any of its points.
     """
     runners = {s.runner for s in linkage.slides}
     pairs = [h.links for h in linkage.hinges] + [(s.carrier, s.runner) for s in linkage.slides]
@@ -170,8 +171,11 @@ def _lone_ends(linkage: Linkage, loose: Collection[str]) -> list[tuple[str, str]
 
 
 def mobility_error(structure: Structure, hints: Sequence[str] = ()) -> ProblemError:
-    """Return the error for a wrong mobility: it names links that are loose, with hints, or links with redundant
-    constraints.
+    """Return the error for a wrong mobility; it names the links that are too free or have redundant constraints.
+
+    Args:
+        structure: result of the structural analysis.
+        hints: sentences on how to mend the file.
     """
     n, p2, required = len(structure.links), structure.higher, len(structure.drivers)
     higher = f" - {p2}" if p2 else ""
@@ -481,7 +485,9 @@ def _setting(error: SettingError, problem: Problem) -> ProblemError:
 
 @contextmanager
 def translate_errors(problem: Problem) -> Iterator[None]:
-    """Convert any error of mechanics raised inside to a ProblemError in the terms of the file."""
+    """Context manager that converts errors of mechanics to ProblemErrors in the terms of the file, with line and
+    column.
+    """
     try:
         yield
     except LinkageError as error:
@@ -489,6 +495,6 @@ def translate_errors(problem: Problem) -> Iterator[None]:
 
 
 def located_problem_error(error: LinkageError, problem: Problem) -> ProblemError:
-    """Convert an error of mechanics to a ProblemError located in the file."""
+    """Convert an error of mechanics to a ProblemError with line and column in the file."""
     refusal = problem_error(error, problem)
     return refusal.located(problem.file, problem.source) if problem.file else refusal

@@ -1,5 +1,6 @@
-"""Plain data of a file with the position of each value, and ProblemError, the only exception a problem file can
-cause.
+"""Content of a file as plain data with the position of each value, and the exception ProblemError.
+
+ProblemError is the only exception that a wrong problem file can cause.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ Path = tuple[str | int, ...]
 
 
 class WrittenNumber(float):
-    """A number of a file with its decimals as written: a float keeps only 16 of them."""
+    """A number of a file that keeps its decimals as written, as a float stores only 16 of them."""
 
     written: str
 
@@ -37,7 +38,7 @@ class WrittenNumber(float):
 
 @dataclass(frozen=True)
 class SourcePosition:
-    """A position in a text; line and column count from 1."""
+    """A position in a text. Line and column are counted from 1."""
 
     line: int
     column: int
@@ -45,11 +46,15 @@ class SourcePosition:
 
 @dataclass(frozen=True)
 class Tree:
-    """A file as plain data (dict with str keys, list, str, int, float, bool, None) with the position of each value.
+    """Content of a file as plain data: dict with str keys, list, str, int, float, bool, None.
 
-    marks: start of every value by its path, () is the top. key_marks: start of every key, by the path of its value.
-    commas: flow lists that may be numbers with a decimal comma, by path, with the corrected text.
-    given: values set on the command line instead of the file's, by path, as written there.
+    Attributes:
+        file: name of the file.
+        data: top mapping of the file.
+        marks: position of each value, by its path; the path of the top mapping is ().
+        key_marks: position of each key, by the path of its value.
+        commas: corrected text, by path, of each list that may be a number with a decimal comma.
+        given: options of the command line that replace values of the file, by the path of the value.
     """
 
     file: str
@@ -65,8 +70,9 @@ class Tree:
         return re.sub(r"[^\S ]+", "_", PurePath(self.file).stem.encode(errors="replace").decode())
 
     def mark(self, path: Path, *, key: bool = False) -> SourcePosition | None:
-        """Return the position of a value, or of its key; if it is not in the file, of the key of its nearest
-        ancestor.
+        """Return the position of a value, or with `key` that of its key.
+
+        If the path does not exist in the file, the position of its nearest existing ancestor's key is returned.
         """
         if path in self.marks:
             return self.key_marks.get(path, self.marks[path]) if key else self.marks[path]
@@ -86,11 +92,19 @@ _LOOKALIKES = str.maketrans("АВЕКМНОРСТУХаеорсухкмІіЅѕ�
 
 
 class ProblemError(Exception):
-    """One mistake in the input, with what was found and what is allowed.
+    """A mistake in the input, with what was found and what is allowed.
 
-    message: one line. path: path of keys. found, allowed: texts ready to print (apply `quote` to a raw value first).
-    near: nearest valid name. key: the key itself is wrong, not its value, so `located` marks the key.
-    All texts are shortened and control characters escaped here, so callers need not.
+    The constructor shortens all texts and escapes control characters.
+
+    Attributes:
+        message: description of the mistake, one line.
+        path: keys that lead to the wrong value.
+        found: wrong value as text (apply `quote` to a raw value); None if there is none.
+        allowed: description of the allowed values; None if there is none.
+        near: nearest valid name; None if there is none.
+        file: name of the file; None if not yet known.
+        mark: line and column; None if not yet known.
+        key: True if the key is wrong and not its value; `located` then finds the position of the key.
     """
 
     def __init__(
@@ -116,16 +130,17 @@ class ProblemError(Exception):
         super().__init__(self.message)
 
     def at(self, *path: str | int) -> Self:
-        """Return a copy with `path` put before its path: `at("links", "3")`, `at(*path)`."""
+        """Return a copy of the error whose path is extended at its beginning, e.g. by `at("links", "3")`."""
         new = copy.copy(self)
         new.path = (*path, *self.path)
         return new
 
     def located(self, file: str, tree: Tree | None = None) -> Self:
-        """Return a copy with the file name and, from the tree, the line and column of its path.
+        """Return a copy of the error with the file name and, from the tree, line and column.
 
-        A mark already set is kept. If the path is not in the file (a missing key), the key of its nearest ancestor is
-        marked. For a value set on the command line, the option is named instead of the file.
+        A position that is already set is kept. For a path that does not exist in the file (a missing key), the position
+        of the nearest existing ancestor's key is used. For a value set on the command line, the option is named instead
+        of the file.
         """
         new = copy.copy(self)
         new.file = file
@@ -138,7 +153,7 @@ class ProblemError(Exception):
         return new
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything as plain data for --json; unknown entries are None."""
+        """Return all attributes as plain data for --json; unknown ones are None."""
         return {
             "message": self.message,
             "file": self.file,
@@ -175,7 +190,7 @@ class ProblemError(Exception):
 
 @contextmanager
 def prefix_errors(*path: str | int) -> Iterator[None]:
-    """Put this path before the path of any ProblemError raised inside."""
+    """Context manager that puts `path` before the path of any ProblemError raised inside."""
     try:
         yield
     except ProblemError as error:
@@ -184,7 +199,7 @@ def prefix_errors(*path: str | int) -> Iterator[None]:
 
 @contextmanager
 def locate_errors_in(tree: Tree) -> Iterator[None]:
-    """Add file, line and column to any ProblemError raised inside."""
+    """Context manager that adds file, line and column to any ProblemError raised inside."""
     try:
         yield
     except ProblemError as error:
@@ -192,13 +207,13 @@ def locate_errors_in(tree: Tree) -> Iterator[None]:
 
 
 def format_path(path: Path) -> str:
-    """Format a path as `links.3.points[0]`, safe to print."""
+    """Format a path as `links.3.points[0]`, with control characters escaped."""
     text = "".join(f"[{key}]" if isinstance(key, int) else f".{clean(key, 40)}" for key in path)
     return text.removeprefix(".")
 
 
 def clean(text: str, limit: int = 60) -> str:
-    """Return the text on one line, control and invisible characters escaped, cut to `limit` characters."""
+    """Return a text on one line, cut to `limit` characters, with control and invisible characters escaped."""
     if len(text) > limit:
         end = text[-1] if text[-1] in "'\")" else ""
         text = text[: limit - 1 - len(end)] + "…" + end
@@ -211,12 +226,12 @@ def _escape(char: str) -> str:
 
 
 def escape_controls(text: str) -> str:
-    """Escape characters that control a terminal or hide text; line breaks and tabs stay."""
+    """Escape characters that control a terminal or hide text; line breaks and tabs are kept."""
     return CONTROLS.sub(lambda match: match[0].encode("unicode_escape").decode("ascii"), text)
 
 
 def quote(value: object) -> str:
-    """Format a value of the file for a message: strings in single quotes, other values as YAML writes them."""
+    """Format a value of the file for a message: strings in single quotes, other values as in YAML."""
     if isinstance(value, str):
         return f"'{clean(value)}'"
     if value is None or isinstance(value, bool):
@@ -233,7 +248,7 @@ def quote(value: object) -> str:
 
 
 def nearest_name(name: str, names: Iterable[str]) -> str | None:
-    """Return the name that was probably meant, or None if none is close; case and look-alike letters do not count."""
+    """Return the name that was probably meant, or None. Case and the script of look-alike letters are ignored."""
     candidates = list(names)
     if name in candidates:
         return name
@@ -258,8 +273,16 @@ def unknown_name_error(
     file: str | None = None,
     key: bool = False,
 ) -> ProblemError:
-    """Return the error for an unknown name, with the nearest known one. allowed: text instead of the list of known
-    names.
+    """Return the error for an unknown name, with the most similar valid name.
+
+    Args:
+        name: unknown name.
+        known: valid names.
+        message: message of the error.
+        allowed: description of the valid names; None lists them.
+        path: path of the value in the file.
+        file: name of the file or option.
+        key: True if the name is a key of the file.
     """
     names = list(known)
     return ProblemError(
@@ -274,14 +297,22 @@ def unknown_name_error(
 
 
 def unknown_position_error(number: int, count: int, *path: str | int) -> ProblemError:
-    """Return the error for a position number beyond the last of `count` positions."""
+    """Return the error for a position number that is not less than the number of positions, `count`."""
     allowed = _("0 to {last}").format(last=count - 1)
     return ProblemError(_("there is no position with this number"), path=path, found=str(number), allowed=allowed)
 
 
 def parse_names(text: str, known: Iterable[str], option: str, reason: str) -> list[str]:
-    """Split a comma-separated list of names that an option accepts. Raises ProblemError with this reason for any other
-    name.
+    """Split the comma-separated list of names in an option of the command line.
+
+    Args:
+        text: value of the option.
+        known: valid names, in lower case.
+        option: name of the option.
+        reason: message of the error for an unknown name.
+
+    Raises:
+        ProblemError: a name is unknown, or the list is empty.
     """
     chosen, allowed = [word.strip().lower() for word in text.split(",") if word.strip()], list(known)
     for name in chosen or [text]:
@@ -291,7 +322,7 @@ def parse_names(text: str, known: Iterable[str], option: str, reason: str) -> li
 
 
 def to_latin(text: str) -> str:
-    """Replace Cyrillic letters that look like Latin ones by these."""
+    """Replace Cyrillic letters that look like Latin ones by the Latin ones."""
     return text.translate(_LOOKALIKES)
 
 

@@ -1,6 +1,4 @@
-"""Problems ready for analysis: a planar linkage with its request, a linkage with a synthesis task, or a spatial
-chain.
-"""
+"""Problems ready for analysis: a planar linkage, a linkage with a synthesis task, or a spatial chain."""
 
 from __future__ import annotations
 
@@ -25,7 +23,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Synthesised:
-    """Result of the block `synthesis`. names: standard name of each parameter to its name in the file."""
+    """Result of the block `synthesis`.
+
+    Attributes:
+        task: name of the synthesis task.
+        outcome: solution of the task.
+        names: name in the file of each parameter that the task determines, by its standard name.
+    """
 
     task: str
     outcome: SynthesisOutcome
@@ -34,14 +38,31 @@ class Synthesised:
 
 @dataclass(frozen=True)
 class Problem:
-    """A problem file that has been read.
+    """A problem file that has been read: the linkage, the requested positions and the tasks.
 
-    name: file name without extension; lever_limit: allowed relative difference of the Zhukovsky lever; source: file by
-    which later errors are located; extended: builds the same problem in double-doubles from the decimals of the file;
-    pressure_limits: largest pressure angles on sliding and on rotating links (rad); limits_set: whether the file gave
-    them (exceeding them is then a failed check); bare_speed: whether the first driver's speed has no unit;
-    reference: name of the mechanism in a list; shows: requested properties by their captions, evaluated by `values`;
-    wheels: tasks of intermittent motion; note_style: style of the calculation note.
+    Attributes:
+        name: file name without extension.
+        title: title of the problem.
+        linkage: planar linkage.
+        request: requested positions.
+        units: units of the file.
+        lever_limit: allowed relative difference between the balancing moments of force analysis and Zhukovsky lever.
+        description: description of the problem.
+        file: name of the file.
+        pressure_limits: largest allowed pressure angles of sliding and of rotating links (rad).
+        limits_set: True for each pressure limit given in the file; a run then fails its checks if it is exceeded.
+        bare_speed: True if the speed of the first driver has no unit.
+        title_texts: texts of the title block.
+        note_style: style of the calculation note.
+        dynamics: task for the law of motion, or None.
+        balancing: balancing task, or None.
+        reference: name of the mechanism in a published list.
+        shows: requested properties of the mechanism, by caption.
+        values: reader of values with the parameters and units of the file.
+        source: content of the file, used to find line and column of later errors.
+        synthesis: result of the synthesis task, or None.
+        extended: builds the same problem in double-double numbers from the decimals in the file.
+        wheels: tasks of intermittent motion.
     """
 
     name: str
@@ -69,16 +90,22 @@ class Problem:
 
     @property
     def whole(self) -> Problem:
-        """The problem itself, as it has no synthesis task left to solve (see TaskProblem)."""
+        """The problem itself; a TaskProblem returns here the problem with its task solved."""
         return self
 
 
 @dataclass(frozen=True, eq=False)
 class TaskProblem:
-    """A problem with numbers to be found by a synthesis task. The task is solved once, on first use.
+    """A problem in which a synthesis task determines some numbers. The task is solved on first use, and only once.
 
-    find: solves the task; draft: same links and pairs with placeholder numbers, None if the file refuses these.
-    Both raise ProblemError.
+    Attributes:
+        name: file name without extension.
+        title: title of the problem.
+        units: units of the file.
+        description: description of the problem.
+        find: solves the task and returns the complete problem. Raises ProblemError.
+        draft: returns the same links and pairs with placeholder numbers, None if the file does not allow them. Raises
+            ProblemError.
     """
 
     name: str
@@ -90,7 +117,7 @@ class TaskProblem:
 
     @cached_property
     def whole(self) -> Problem:
-        """The problem with the results of its task."""
+        """The complete problem with the results of its task. Raises ProblemError."""
         return self.find()
 
     @property
@@ -108,10 +135,20 @@ class TaskProblem:
 
 @dataclass(frozen=True)
 class ChainProblem:
-    """A problem file with `structure.spatial` that has been read.
+    """A problem file with `structure.spatial` that has been read: a spatial chain without dimensions.
 
-    output: link held fixed for the manoeuvrability; local: local mobilities Wm; wanted: required mobility Wo.
-    None: not given.
+    Attributes:
+        name: file name without extension.
+        title: title of the problem.
+        chain: links and pairs.
+        output: link that is held fixed to count the manoeuvrability; None if not given.
+        local: number of local mobilities Wm; None if not given.
+        wanted: required mobility Wo; None if not given.
+        units: units of the file.
+        description: description of the problem.
+        reference: name of the mechanism in a published list.
+        shows: requested properties of the chain, by caption.
+        source: content of the file, used to find line and column of later errors.
     """
 
     name: str

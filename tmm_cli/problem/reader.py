@@ -1,8 +1,8 @@
-"""Read YAML problem files to plain data with line and column of every key and value.
+"""Reader of YAML problem files: plain data with line and column of every key and value.
 
-PyYAML only splits the text into events. Composing and the values of unquoted words (scalars) are ours, because YAML 1.1
-spoils engineering input: `12:30` becomes 750, `010` becomes 8, the key `on` becomes True, and repeated keys silently
-override each other. Texts are not trusted: size, depth and number of values are bounded.
+PyYAML only splits the text into events. This module composes them and interprets unquoted words itself, because YAML
+1.1 misreads engineering input: `12:30` becomes 750, `010` becomes 8, the key `on` becomes True, and repeated keys
+silently override each other. Size, nesting depth and number of values are limited, as a file may come from anyone.
 """
 
 from __future__ import annotations
@@ -11,14 +11,13 @@ import codecs
 import os
 import re
 import stat
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterator
 from typing import Any, Final, NoReturn
 
 import yaml
 
 from tmm_cli.language import _
-from tmm_cli.problem.errors import MAX_DEPTH, Path, ProblemError, SourcePosition, Tree, quote, unknown_name_error
+from tmm_cli.problem.errors import MAX_DEPTH, Path, ProblemError, SourcePosition, Tree, quote
 from tmm_cli.problem.scalars import HIDDEN, Scalar, decimal_comma_error, is_split_number, plain_value
 
 # Tokens of a list or mapping in brackets: quoted text, comment, bracket, line end with the indentation after it.
@@ -37,7 +36,9 @@ def tab_error(file: str, mark: SourcePosition) -> ProblemError:
 
 
 def syntax_error(error: yaml.MarkedYAMLError, text: str, file: str) -> ProblemError:
-    """Translate a syntax error of either of PyYAML's parsers into plain words, with its line and column in `text`."""
+    """Convert a syntax error of PyYAML (of its parser in C or in Python) to an error in plain words, with line and
+    column.
+    """
     opened, position = error.context_mark or error.problem_mark, error.problem_mark or error.context_mark
     indent = _("keys and items of one level begin in the same column, indented by spaces")
     quoted = _("a quotation mark is not closed"), _("text between two equal quotation marks"), opened
@@ -105,7 +106,9 @@ def _refusal_at(index: int, text: str, file: str, message: str, allowed: str) ->
 
 
 def _is_closed(text: str, start: int) -> bool:
-    """Return True if the bracket at `start` is closed before a line that is indented no more than its own line."""
+    """Return True if the bracket at index `start` is closed before the next line with no more indentation than its own
+    line.
+    """
     line = text[text.rfind("\n", 0, start) + 1 : start]
     indent, closing = len(line) - len(line.lstrip(" ")), ""
     for item in _IN_BRACKETS.finditer(text, start):
@@ -124,8 +127,9 @@ def _is_closed(text: str, start: int) -> bool:
 
 
 def _start_of_stray_text(text: str, start: int, stop: int) -> int:
-    """Return where an item in brackets goes wrong that the parser gives up at `stop`: at a semicolon, a new line, or
-    `stop`.
+    """Find where text in brackets becomes wrong if the parser stops at index `stop`.
+
+    This is a semicolon before `stop`, the beginning of the line, or `stop` itself.
     """
     item = max(text.rfind(mark, start, stop) for mark in ",[{")
     semicolon, line = text.rfind(";", item, stop), text.rfind("\n", item, stop)
@@ -148,7 +152,11 @@ _COMMA = re.compile(r"(?<![\d.])(\d+),(\d+)(?![\d.])")
 
 
 class Composer:
-    """Composer of the data, marks, key marks and commas of one text (see errors.Tree)."""
+    """Composer of plain data and positions from the YAML events of one text.
+
+    Attributes:
+        marks, key_marks, commas: positions of values and keys, and lists that may be decimal commas; see errors.Tree.
+    """
 
     def __init__(self, text: str, file: str) -> None:
         self.text, self.file = text, file
@@ -159,7 +167,7 @@ class Composer:
         self.commas: dict[Path, str] = {}
 
     def compose(self) -> dict[str, Any]:
-        """Return the top mapping. Raises ProblemError, with file, line and column, at the first mistake."""
+        """Return the top mapping of the text. Raises ProblemError with line and column at the first mistake."""
         top = None
         for event in self.events:
             if isinstance(event, yaml.NodeEvent):
@@ -256,7 +264,7 @@ class Composer:
             )
 
     def key(self, event: Any, path: Path, mapping: dict[str, Any]) -> str:
-        """Return the name of a key as written."""
+        """Return the name of a key as written. Raises ProblemError if the key occurs twice."""
         if not isinstance(event, yaml.ScalarEvent):
             self.refuse(
                 event, path, _("a list or a set of keys cannot be used as a key"), allowed=_("a word or number")
@@ -297,7 +305,7 @@ class Composer:
             raise self.placed(error, event, path) from None
 
     def cut_by_comma(self, event: Any, path: Path) -> None:
-        """Refuse `{at: atan2(y, x)}` and `[atan2(y, x), 0]`, which YAML splits at the comma."""
+        """Refuse an unquoted expression with a comma, such as `{at: atan2(y, x)}`, which YAML splits at the comma."""
         if event.value.count("(") <= event.value.count(")"):
             return
         if cut := _CALL.match(self.text[event.start_mark.index : event.start_mark.index + MAX_CALL_LENGTH]):
@@ -308,8 +316,9 @@ class Composer:
             )
 
     def key_alone(self, key: Any, value: Any, before: tuple[Path, Any] | None, path: Path) -> None:
-        """Refuse `{length: 1,5}`, which YAML reads as {length: 1, 5: null}, and `{length:5}`, read as {"length:5":
-        null}.
+        """Refuse a key without a value in braces.
+
+        YAML reads `{length: 1,5}` as {length: 1, 5: null}, and `{length:5}` as {"length:5": null}.
         """
         if ":" in self.text[key.end_mark.index : value.start_mark.index]:
             return
@@ -333,30 +342,42 @@ _TAB = re.compile(r"^ *\t[ \t]*[^\s#]", re.MULTILINE)
 
 
 def decimal_comma_hint(tree: Tree, path: Path) -> str | None:
-    """Return a hint for an error if the list at `path`, such as `[1,5]`, may be a number; else None."""
+    """Return a hint on decimal commas if the list at this path, such as `[1,5]`, may be a number; otherwise None."""
     written = tree.commas.get(path)
     return written and f"decimal comma? write {written}"
 
 
 def read_file(path: str | os.PathLike[str]) -> Tree:
-    """Read a problem file. Raises ProblemError if it is not a readable plain YAML mapping of limited size."""
+    """Read a problem file.
+
+    Raises:
+        ProblemError: the file cannot be read, is too large, or is not a plain YAML mapping.
+    """
     file = os.fspath(path)
     return read_text(read_file_text(file), file)
 
 
 def read_file_text(file: str) -> str:
-    """Return the text of a file of limited size. Raises ProblemError."""
+    """Read the text of a file.
+
+    Raises:
+        ProblemError: the file cannot be read, is too large, or is not encoded in UTF-8.
+    """
     return decode_text(read_bytes(file), file)
 
 
 def find_language(data: bytes) -> str | None:
-    """Return the language in a line such as `lang: ru`, or None; works even if the file cannot be parsed."""
+    """Return the language in a line such as `lang: ru`, or None; the file need not be valid."""
     named = _LANG.search(data.removeprefix(codecs.BOM_UTF8))
     return None if named is None else named[1].decode()
 
 
 def read_bytes(file: str) -> bytes:
-    """Return the content of a file of limited size. Raises ProblemError."""
+    """Read the bytes of a file.
+
+    Raises:
+        ProblemError: the file cannot be read or is too large.
+    """
     try:
         status = os.stat(file)
         if stat.S_ISDIR(status.st_mode):
@@ -382,7 +403,11 @@ def _too_large_error(file: str, found: str) -> ProblemError:
 
 
 def decode_text(data: bytes, file: str) -> str:
-    """Decode the content of a file. Raises ProblemError if it is not UTF-8."""
+    """Decode the bytes of a file.
+
+    Raises:
+        ProblemError: the text is not encoded in UTF-8.
+    """
     body = data.removeprefix(codecs.BOM_UTF8)
     try:
         return body.decode()
@@ -401,7 +426,16 @@ def decode_text(data: bytes, file: str) -> str:
 
 
 def read_text(text: str, file: str, composed_by: type[Composer] = Composer) -> Tree:
-    """Read the text of a problem file; `file` is its name in messages. Raises ProblemError like `read_file`."""
+    """Read the text of a problem file.
+
+    Args:
+        text: content of the file.
+        file: name of the file, for messages.
+        composed_by: class that composes the data.
+
+    Raises:
+        ProblemError: the text is too large, or is not a plain YAML mapping.
+    """
     text = text.removeprefix("\ufeff")
     if len(text) > MAX_BYTES:
         raise _too_large_error(file, f"{len(text)} characters")
@@ -423,59 +457,3 @@ def read_text(text: str, file: str, composed_by: type[Composer] = Composer) -> T
 def _mark_at(text: str, index: int) -> SourcePosition:
     lines = re.split(r"\r\n|\r|\n", text[:index])
     return SourcePosition(len(lines), len(lines[-1]) + 1)
-
-
-# Parameters set on the command line: `--set OA=120`.
-
-
-def apply_settings(tree: Tree, settings: Sequence[str]) -> Tree:
-    """Return the file with other values of its parameters, from texts such as `OA=120` (option --set). Raises
-    ProblemError.
-    """
-    raw = tree.data.get("parameters")
-    parameters = dict(raw) if isinstance(raw, dict) else {}
-    settings_by_path: dict[Path, str] = {}
-    for setting in settings:
-        words = f"--set {setting}"
-        name, sign, text = (word.strip() for word in setting.partition("="))
-        path = ("parameters", name)
-        if not sign or not name:
-            raise ProblemError(_("expected a name and a value"), allowed="--set OA=120", file=words)
-        if name not in parameters:
-            none = None if parameters else _("none, since the file has no block `parameters`")
-            raise unknown_name_error(name, parameters, _("no parameter has this name"), none, path=path, file=words)
-        if path in settings_by_path:
-            raise ProblemError(
-                _("this parameter is set twice"), path=path, found=f"{settings_by_path[path]}, {words}", file=words
-            )
-        settings_by_path[path] = words
-        try:
-            parameters[name] = plain_value(text)
-        except ProblemError as error:
-            raise error.at(*path).located(words) from None
-    return (
-        replace(tree, data={**tree.data, "parameters": parameters}, given=settings_by_path)
-        if settings_by_path
-        else tree
-    )
-
-
-def unused_parameters(tree: Tree, names: Iterable[str]) -> list[str]:
-    """Return those of these parameters that no value of the file uses, directly or through other parameters."""
-    parameters = tree.data.get("parameters", {})
-    met: set[str] = set()
-    left = [value for key, value in tree.data.items() if key not in ("parameters", "title", "description")]
-    while left:
-        new = {word for value in left for word in _find_names(value)} - met
-        met |= new
-        left = [parameters[word] for word in new if word in parameters]
-    return [name for name in names if name not in met]
-
-
-def _find_names(value: Any) -> Iterator[str]:
-    """Yield all words of the texts in a value that may be names."""
-    if isinstance(value, str):
-        yield from re.findall(r"[^\W\d]\w*", value)
-    elif isinstance(value, dict | list):
-        for child in value.values() if isinstance(value, dict) else value:
-            yield from _find_names(child)

@@ -1,4 +1,4 @@
-"""Values of unquoted words by the YAML 1.2 core schema, with detection of decimal commas."""
+"""Values of unquoted words according to the YAML 1.2 core schema; decimal commas are detected."""
 
 from __future__ import annotations
 
@@ -28,7 +28,11 @@ _PART = re.compile(r"[0-9]+(\s*[^\W\d]\S*|\s*[°%])?")
 
 
 def plain_value(text: str) -> Scalar:
-    """Return the value of an unquoted word. Raises ProblemError, without a position, for a bad number."""
+    """Return the value of an unquoted word: null, a bool, a number or a text.
+
+    Raises:
+        ProblemError: the word is an invalid number. The error contains no position.
+    """
     if _NULL.fullmatch(text):
         return None
     if text in _BOOL:
@@ -50,7 +54,11 @@ def plain_value(text: str) -> Scalar:
 
 
 def finite_float(text: str) -> float:
-    """Convert decimal digits to a number. Raises ProblemError on overflow or underflow of float64."""
+    """Convert decimal digits to a float.
+
+    Raises:
+        ProblemError: the number is too large or too small for float64.
+    """
     number = float(text)
     if math.isinf(number) or (number == 0 and re.search("[1-9]", re.split("[eE]", text)[0])):
         raise ProblemError(
@@ -62,12 +70,12 @@ def finite_float(text: str) -> float:
 
 
 def is_split_number(whole: str, fraction: str) -> bool:
-    """Return True if the texts on both sides of a comma may be one number, like `1,5` or `1,5 mm`."""
+    """Return True if the texts around a comma may be a number with a decimal comma, like `1,5` or `1,5 mm`."""
     return bool(_WHOLE.fullmatch(whole) and _PART.fullmatch(fraction))
 
 
 def decimal_comma_error(whole: str, part: str) -> ProblemError:
-    """Return the error for a number `whole,part` with a decimal comma."""
+    """Return the error for a number with a decimal comma."""
     return ProblemError(
         _("decimal comma: write {whole}.{part}").format(whole=whole, part=part),
         found=quote(f"{whole},{part}"),

@@ -1,7 +1,7 @@
 """Keys of a problem file as pydantic models, with the descriptions that `tmm schema` prints.
 
-Only the structure is checked here. Numbers with units and names of points and guides are checked in build, which knows
-the parameters and units.
+The models check only the structure of a file. Numbers with units and the names of points and guides are checked by
+`build`, which knows the parameters and units.
 """
 
 from __future__ import annotations
@@ -13,7 +13,8 @@ from pydantic import BaseModel, BeforeValidator, Field, WithJsonSchema
 from pydantic.json_schema import GenerateJsonSchema
 from pydantic_core import PydanticCustomError
 
-from tmm_cli.problem.blocks.loads import LoadKeys, MassKeys
+from tmm_cli.problem.blocks.loads import LoadKeys
+from tmm_cli.problem.blocks.masses import MassKeys
 from tmm_cli.problem.blocks.meshes import CamKeys, GearKeys, RackKeys
 from tmm_cli.problem.blocks.optional_keys import BalancingKeys, DynamicsKeys, Wheels
 from tmm_cli.problem.blocks.springs import FrictionKeys, SpringKeys
@@ -35,7 +36,7 @@ MAX_TEXT_LENGTH = 200
 
 
 def _checked_short_text(raw: Any) -> str:
-    """Return a line of text; the number of a group may be written as a number."""
+    """Return a text of one line; a number is converted to text, as the name of a student group may be a number."""
     if isinstance(raw, bool) or not isinstance(raw, int | str):
         raise PydanticCustomError("words", "expected a text")
     if len(str(raw)) > MAX_TEXT_LENGTH:
@@ -47,7 +48,7 @@ ShortText = Annotated[str, BeforeValidator(_checked_short_text), WithJsonSchema(
 
 
 class SheetTexts(Strict):
-    """Texts of the title block. A text that is too long for its cell is cut."""
+    """Texts of the title block. A text that is too long for its cell is cut off."""
 
     student: ShortText = Field(default="", description="name of the student, in the title block")
     group: ShortText = Field(default="", description="group of the student")
@@ -63,7 +64,7 @@ class SheetTexts(Strict):
 
 
 class NoteStyle(Strict):
-    """Style of the calculation note; the defaults are the usual ones."""
+    """Style of the calculation note. The defaults are those usual in courses."""
 
     inertia: Literal["U", "Φ"] | None = Field(
         default=None,
@@ -89,7 +90,7 @@ Quantity = Annotated[str, Field(min_length=1, max_length=60)]
 
 
 class ShownKeys(Strict):
-    """A property of the mechanism as one number, named as in the tables."""
+    """A property of the mechanism that is a single number, named as in the tables."""
 
     of: Quantity = Field(
         description=(
@@ -155,7 +156,7 @@ Freedoms = Annotated[int, Field(ge=0, le=MAX_MOBILITY)]
 
 
 class SpatialPairKeys(Strict):
-    """A pair of two links."""
+    """A pair that joins two links of a spatial chain."""
 
     between: list[Name] = Field(min_length=2, max_length=2, description="the two links; the frame is 0")
     kind: Kind | None = Field(default=None, description="kind of the pair, which determines its degrees of freedom")
@@ -165,7 +166,7 @@ class SpatialPairKeys(Strict):
 
 
 class Spatial(Strict):
-    """A spatial chain, given by its pairs alone."""
+    """A spatial chain, described by its pairs alone."""
 
     links: Annotated[int, Field(ge=1, le=MAX_LINKS)] | Annotated[list[Name], Field(max_length=MAX_LINKS)] | None = (
         Field(
@@ -182,13 +183,13 @@ class Spatial(Strict):
 
 
 class SpatialStructure(Strict):
-    """Structural analysis without dimensions."""
+    """Structural analysis of a chain without dimensions."""
 
     spatial: Spatial
 
 
 class SpatialFile(FileHead):
-    """A spatial chain without dimensions: only its structure is analysed."""
+    """A file with a spatial chain without dimensions; only its structure is analysed."""
 
     reference: str = Field(default="", max_length=100, description="number or name of the mechanism in a book or list")
     shows: Shows = Field(
@@ -244,7 +245,9 @@ SlideOrGuide = Annotated[SlideKeys, BeforeValidator(_expand_guide_name, json_sch
 
 
 class LinkKeys(Strict):
-    """A moving link. Its axes: origin in its first point, x axis towards the second; or as given by coordinates."""
+    """A moving link. Its axes begin at its first point, with the x axis towards the second, or follow from given
+    coordinates.
+    """
 
     name: str | None = Field(default=None, max_length=60, description="name of the link in reports")
     points: list[Name] | dict[Name, Vector] = Field(
@@ -260,12 +263,12 @@ class LinkKeys(Strict):
 
     @property
     def sliding(self) -> list[SlideKeys]:
-        """Prismatic pairs of the link, as a list."""
+        """Prismatic pairs of the link as a list, even if the file gives a single one."""
         return self.slides if isinstance(self.slides, list) else [self.slides] if self.slides else []
 
 
 class Speeds(Strict):
-    """Speed or acceleration of a crank against its angle."""
+    """Speed or acceleration of a crank as a function of its angle."""
 
     against: Literal["crank angle"] = Field(
         description="quantity in the first column. crank angle: from the x axis, counterclockwise"
@@ -293,7 +296,7 @@ def _checked_speed(raw: Any) -> Any:
 
 
 class DriverKeys(Strict):
-    """An input: a crank, or a driven slider (cylinder), on the frame or on a moving link."""
+    """A driver: a crank, or a driven slider (cylinder), on the frame or on a moving link."""
 
     link: Name
     on: Name = Field(
@@ -323,7 +326,7 @@ class DriverKeys(Strict):
 
 
 class OutputKeys(Strict):
-    """Output: a link whose stroke or swing is the purpose of the mechanism, or a point of a moving link (its x and
+    """The output: a link whose stroke or swing is the purpose of the mechanism, or a point of a moving link (its x and
     y).
     """
 
@@ -351,7 +354,7 @@ def _make_list(raw: Any) -> Any:
 
 
 class Positions(Strict):
-    """Positions to compute, numbered from 0 in the sense of motion of the driver."""
+    """Positions to compute, numbered from 0 in the direction of motion of the driver."""
 
     count: int = Field(default=12, ge=1, le=MAX_POSITIONS)
     from_: Value | None = Field(
@@ -369,7 +372,7 @@ class Positions(Strict):
 
 
 class Checks(Strict):
-    """Limits; if one is exceeded, a run reports it and ends with exit code 1."""
+    """Limits. If one is exceeded, a run reports it and ends with exit code 1."""
 
     lever: Value = Field(
         default="5 %", description="largest allowed difference between the Zhukovsky lever and the force plan"
@@ -461,16 +464,18 @@ class File(FileHead):
 
 
 class _SchemaGenerator(GenerateJsonSchema):
-    """JSON Schema in which the definition of LinkKeys is called Link."""
+    """Generator of a JSON Schema in which the definition of LinkKeys is called Link."""
 
     def normalize_name(self, name: str) -> str:
         return super().normalize_name(name.removesuffix("Keys"))
 
 
 def file_schema(tasks: Iterable[type[BaseModel]], blocks: type[BaseModel]) -> dict[str, Any]:
-    """Return the JSON Schema of problem files, for editors.
+    """Generate the JSON Schema of problem files, for editors.
 
-    tasks: models of the tasks allowed under `synthesis`; blocks: model with further blocks of a file as its fields.
+    Args:
+        tasks: models of the tasks allowed under the key `synthesis`.
+        blocks: model whose fields are further blocks of a file.
     """
     definitions: dict[str, Any] = {}
 

@@ -1,4 +1,4 @@
-"""Messages for pydantic's validation errors, in the terms of the file; keys in Russian and Serbian are recognised."""
+"""Messages for pydantic's validation errors in the terms of the file. Keys in Russian or Serbian are recognised."""
 
 from __future__ import annotations
 
@@ -80,8 +80,13 @@ MESSAGES = {  # messages by pydantic's type of error
 
 
 def shape_error(error: ValidationError, tree: Tree, model: type[BaseModel], prefix: Path = ()) -> ProblemError:
-    """Return the first validation error by its position in the file. model: the model of the value at the path
-    `part`.
+    """Convert the validation error that comes first in the file to a ProblemError with line and column.
+
+    Args:
+        error: validation error of pydantic.
+        tree: content of the file.
+        model: model that was validated.
+        prefix: path of the validated value in the file; () for the whole file.
     """
     meant: list[tuple[str, ProblemError]] = []
     others: list[tuple[str, ProblemError]] = []
@@ -108,7 +113,9 @@ def _flatten_errors(error: ValidationError, prefix: Path) -> Iterable[tuple[str,
 
 
 def _find_value(data: Any, loc: Sequence[str | int], kind: str) -> tuple[Path, Any, bool]:
-    """Return the path into the data, the value there, and whether it matches the union branches on the way."""
+    """Return the path into the data, the value at this path, and True if the value matches the union branches on the
+    way.
+    """
     path: list[str | int] = []
     fits = True
     step: Any
@@ -124,7 +131,9 @@ def _find_value(data: Any, loc: Sequence[str | int], kind: str) -> tuple[Path, A
 
 
 def _find_fields(model: type[BaseModel] | None, path: Path) -> tuple[dict[str, FieldInfo], FieldInfo | None]:
-    """Return the keys allowed where the path ends, and the field of its last key; an item counts as its list."""
+    """Return the keys allowed at the end of a path, and the field of its last key; a list item has the field of its
+    list.
+    """
     while path and isinstance(path[-1], int):
         path = path[:-1]
     named = False  # whether the next key is one of the user's own names
@@ -140,7 +149,7 @@ def _find_fields(model: type[BaseModel] | None, path: Path) -> tuple[dict[str, F
 
 
 def _find_model(parts: Iterable[Any]) -> type[BaseModel] | None:
-    """Return the first model in an annotation, or None."""
+    """Return the first pydantic model in an annotation, or None."""
     for annotation in parts:
         model = (
             annotation

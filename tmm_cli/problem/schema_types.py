@@ -1,4 +1,4 @@
-"""Field types of the models of a problem file: names, values with units, positions on a link."""
+"""Types of the fields in the models of a problem file: names, values with units, positions on a link."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ MAX_POSITIONS = 100_000
 
 
 def checked_value(raw: Any) -> Any:
-    """Return a number, or a text that may be one."""
+    """Validate a number, or a text that may be an expression."""
     if isinstance(raw, bool) or not isinstance(raw, int | float | str):
         raise PydanticCustomError("value", "expected a number, a number with a unit, or an expression with parameters")
     return raw
 
 
 def checked_name(raw: Any) -> str:
-    """Return a name as text; numbers may be names."""
+    """Validate a name and return it as text; whole numbers may be names."""
     if isinstance(raw, int) and not isinstance(raw, bool):
         return str(raw)
     if not isinstance(raw, str) or not raw.strip():
@@ -30,7 +30,7 @@ def checked_name(raw: Any) -> str:
 
 
 def checked_vector(raw: Any) -> Any:
-    """Return a list of two coordinates."""
+    """Validate a list of two coordinates."""
     if not isinstance(raw, list) or len(raw) != 2:
         raise PydanticCustomError("vector", "expected two coordinates [x, y]")
     return [checked_value(item) for item in raw]
@@ -48,7 +48,7 @@ Vector = Annotated[
 
 
 class Strict(BaseModel):
-    """Base of all models of a file: unknown keys are refused."""
+    """Base class of all models of a file; it refuses unknown keys."""
 
     # built when it first validates: a model that is part of another needs no validator of its own
     model_config = ConfigDict(
@@ -61,7 +61,7 @@ class Strict(BaseModel):
 
 
 class FileHead(Strict):
-    """Keys that every problem file has."""
+    """Keys that every problem file may have."""
 
     tmm: Literal[1] = Field(description="version of the file format; write tmm: 1")
     lang: Literal["en", "ru", "sr"] = Field(default="en", description="language of drawings, tables and messages")
@@ -72,7 +72,7 @@ class FileHead(Strict):
 class OnLine(Strict):
     """A position on the line through two points of the link.
 
-    `at` is 0 at the first point, 1 at the second, or a distance from the first; `side` is the offset from the line.
+    `at` is 0 at the first point and 1 at the second, or a distance from the first; `side` is the offset from the line.
     """
 
     on: Name = Field(description="two points of the link, written together: CD (or C-D)")

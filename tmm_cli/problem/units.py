@@ -1,6 +1,4 @@
-"""Units as people write them, in Latin and Cyrillic letters, their conversion to SI and radians, and the units of a
-file.
-"""
+"""Units in Latin and Cyrillic letters, their conversion to SI and radians, and the units of a file."""
 
 from __future__ import annotations
 
@@ -35,7 +33,7 @@ from tmm_cli.problem.scalars import finite_float
 
 
 class UnitError(ProblemError):
-    """A unit is unknown or measures another quantity."""
+    """Error for a unit that is unknown or belongs to another quantity."""
 
 
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -44,7 +42,15 @@ _LONG: Final = {"moment": "moment of force", "inertia": "moment of inertia"}
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit in SI and radians: scale * pi**pi. The scale is exact, so 110 mm is 0.11 m to the last bit."""
+    """A unit; its value in SI and radians is scale * math.pi**pi.
+
+    The scale is an exact fraction, so that 110 mm is converted to 0.11 m to the last bit.
+
+    Attributes:
+        dimension: dimension of the unit.
+        scale: rational factor.
+        pi: power of the number pi in the unit.
+    """
 
     dimension: Dimension
     scale: Fraction = Fraction(1)
@@ -58,13 +64,13 @@ class Unit:
         )
 
     def si(self, number: float) -> float:
-        """Convert a number in this unit to SI and radians, in the number's own precision."""
+        """Convert a number in this unit to SI and radians; a double-double keeps its precision."""
         if self.pi:
             number = number * _pi(number) ** self.pi
         return number * self.scale.numerator / self.scale.denominator
 
     def from_si(self, value: Any) -> Any:
-        """Convert a value or an array from SI and radians to this unit."""
+        """Convert a number or an array from SI and radians to this unit."""
         return value / math.pi**self.pi * self.scale.denominator / self.scale.numerator
 
 
@@ -75,7 +81,10 @@ def _pi(number: float) -> float:
 
 @dataclass(frozen=True)
 class PhysicalValue:
-    """A value in SI and radians; with dimension None a bare number, in the file's unit where it is used."""
+    """A number with its dimension, in SI and radians.
+
+    If the dimension is None, it is a bare number as written, whose unit follows from its use.
+    """
 
     value: float
     dimension: Dimension | None = None
@@ -136,31 +145,32 @@ _PER_TIME = re.compile(rf"(?<![^\W\d_]){PER_TIME}")
 
 
 def plain_text(text: str) -> str:
-    """Replace superscripts by ^n, ** by ^, and typographic signs and spaces by those of a keyboard."""
+    """Replace superscripts by ^n, ** by ^, and typographic signs and spaces by plain ones."""
     text = _SUPERSCRIPT.sub(lambda match: "^" + match[0].translate(_FROM_SUPERSCRIPT), text)
     return text.translate(_TYPOGRAPHY).replace("**", "^")
 
 
 def find_unit(name: str) -> Unit | None:
-    """Return the unit of a symbol, or None; Cyrillic letters may stand for their Latin look-alikes and the reverse."""
+    """Return the unit with this symbol, or None. Cyrillic and Latin letters that look alike may replace each other."""
     return SYMBOLS.get(name) or _LOOKALIKES.get(to_latin(name))
 
 
 def to_latin_unit(text: str) -> str:
-    """Replace non-ASCII names in a known unit by their first names: deg for ° and for град."""
+    """Replace the non-ASCII symbols in a known unit by Latin ones, e.g. ° and град by deg."""
     text = _sign_powers(text)
     return _LETTERS.sub(lambda name: name[0] if name[0].isascii() else _FIRST.get(to_latin(name[0]), name[0]), text)
 
 
 def _sign_powers(text: str) -> str:
-    """Write `s^-1` for `s-1` in a unit."""
+    """Replace powers such as `s-1` in a unit by `s^-1`."""
     return _PER_TIME.sub(lambda match: match[0].replace("-", "^-"), text)
 
 
 def parse_unit(text: str) -> Unit:
     """Parse a unit written as products, quotients and powers of symbols: `kg·m²`, `об/мин`, `N*m`, `1/s`.
 
-    Raises UnitError, with the nearest known symbol.
+    Raises:
+        UnitError: the text is not a unit; the error names the most similar symbol.
     """
     source, unit, position, factors = _sign_powers(plain_text(text).strip()), Unit(NUMBER), 0, 0
     names: list[str] = []
@@ -190,13 +200,13 @@ def parse_unit(text: str) -> Unit:
 
 
 def unknown_unit_error(name: str) -> UnitError:
-    """Return the error for an unknown symbol, with the nearest known one."""
+    """Return the error for an unknown unit, with the most similar known symbol."""
     near = nearest_name(name, SYMBOLS)
     return UnitError(_("unknown unit"), found=quote(name), allowed=_("e.g. mm, deg, rpm, kg, N, N*m"), near=near)
 
 
 def dotted_unit_error(text: str) -> UnitError:
-    """Return the error for a unit with dots in it, such as `об.мин`, with the unit that is meant."""
+    """Return the error for a unit with dots, such as `об.мин`, with the unit that was probably meant."""
     bare = text.replace("./", "/").rstrip(".")
     meant = next(
         (spelling for spelling in (bare.replace(".", sign) for sign in ("", "/", "*")) if _is_known_kind(spelling)),
@@ -206,7 +216,7 @@ def dotted_unit_error(text: str) -> UnitError:
 
 
 def _is_known_kind(text: str) -> bool:
-    """Return True if this is a unit of a quantity that a file may contain."""
+    """Return True if the text is a unit of a quantity that a file may contain."""
     try:
         return parse_unit(text).dimension in {kind.dimension for kind in DIMENSIONS.values()}
     except UnitError:
@@ -214,12 +224,16 @@ def _is_known_kind(text: str) -> bool:
 
 
 class UnitSystem:
-    """Units of the bare numbers in one file and of its tables."""
+    """Units of the bare numbers in a file and of the tables of its results."""
 
     def __init__(self, names: Mapping[str, str] | None = None) -> None:
-        """Create the units of a file. names: unit by kind, `{length: mm, angular speed: rpm}`; the others by default.
+        """Create the unit system of a file.
 
-        Raises ProblemError, its path the key, for an unknown kind, an unknown unit, or a unit of another kind.
+        Args:
+            names: unit by kind of quantity, e.g. `{length: mm, angular speed: rpm}`; other kinds have default units.
+
+        Raises:
+            ProblemError: a kind or a unit is unknown, or a unit is of another kind. The path of the error is the key.
         """
         self._names = {kind.dimension: kind.default for kind in DIMENSIONS.values()}
         for key, name in (names or {}).items():
@@ -244,11 +258,13 @@ class UnitSystem:
     functions: Mapping[str, Any] = {**vars(math), "min": min, "max": max, "abs": abs}  # what arithmetic computes with
 
     def number(self, written: str | int | float) -> float:
-        """Convert a written number to its value."""
+        """Convert a number as written in the file to a float."""
         return finite_float(written) if isinstance(written, str) else float(written)
 
     def unit(self, dimension: Dimension) -> Unit:
-        """Return the file's unit; if it has no name of its own, the product of the units of length, mass, time and
+        """Return the file's unit of a dimension.
+
+        If the dimension has no unit of its own, this is a product of powers of the units of length, mass, time and
         angle.
         """
         if dimension in self._units:
@@ -263,31 +279,31 @@ class UnitSystem:
         return self.unit(dimension).si(number)
 
     def from_si(self, value: float, dimension: Dimension) -> float:
-        """Convert a value in SI and radians to a bare number of the file."""
+        """Convert a value in SI and radians to the file's unit."""
         number: float = self.unit(dimension).from_si(value)
         return number
 
     def factor(self, dimension: Dimension) -> float:
-        """Return the file's unit in SI and radians."""
+        """Return the value of the file's unit in SI and radians."""
         return self.si(1.0, dimension)
 
     def symbol(self, dimension: Dimension) -> str:
-        """Return the symbol of the file's unit in Latin letters; empty for a pure number."""
+        """Return the symbol of the file's unit in Latin letters; empty for a dimensionless number."""
         if dimension in self._names:
             return self._names[dimension]
         return product_text({self._names[base]: power for base, power in _base_powers(dimension)})
 
     def spelt(self, dimension: Dimension) -> str:
-        """Return the symbol of the file's unit as the current language spells it: N*m, in Russian Н·м."""
+        """Return the symbol of the file's unit as the current language writes it: N*m, in Russian Н·м."""
         unit = self.symbol(dimension)
         return unit if language() == ENGLISH else typeset_unit(spelt(unit))
 
     def format_value(self, value: float, dimension: Dimension, digits: int = 6) -> str:
-        """Format a value in SI and radians for a message: `30 deg`."""
+        """Format a value in SI and radians for a message, e.g. `30 deg`."""
         return f"{self.from_si(value, dimension):.{digits}g} {self.spelt(dimension)}"
 
     def describe(self, quantity: PhysicalValue) -> str:
-        """Describe a value for a message: `a length (110 mm)`, `a number without a unit (5)`."""
+        """Describe a value for a message, e.g. `a length (110 mm)` or `a number without a unit (5)`."""
         if quantity.dimension is None:
             return _("a number without a unit ({number})").format(number=f"{quantity.value:.6g}")
         number, unit = self.from_si(quantity.value, quantity.dimension), self.symbol(quantity.dimension)
@@ -301,7 +317,7 @@ def _base_powers(dimension: Dimension) -> list[tuple[Dimension, int]]:
 
 @cache
 def typeset_unit(unit: str) -> str:
-    """Typeset a unit as in print: m/s² and N·m for m/s^2 and N*m."""
+    """Typeset a unit for print: m/s² instead of m/s^2, N·m instead of N*m."""
     return re.sub(r"\^(-?\d+)", lambda power: power[1].translate(_RAISED), unit).replace("*", "·")
 
 
@@ -325,7 +341,7 @@ FUNCTIONS = {
 
 
 class ExtendedUnits(UnitSystem):
-    """Units whose numbers have 31 digits, taken from the decimals as written."""
+    """Units for double-double numbers (31 digits), which are read from the decimals as written."""
 
     functions = {**FUNCTIONS, "pi": DoubleDouble.decimal(PI)}  # noqa: RUF012  a table
 
@@ -336,7 +352,7 @@ class ExtendedUnits(UnitSystem):
 
 
 class VariedUnits(UnitSystem):
-    """Units whose arithmetic functions accept arrays of varied numbers (see tmm_cli.batch)."""
+    """Units whose arithmetic also accepts arrays of parameter values, one element per variant (see tmm_cli.batch)."""
 
     functions = {**FUNCTIONS, "pi": float(PI)}  # noqa: RUF012  a table
 

@@ -1,4 +1,4 @@
-"""Evaluation of the values of a problem file with its parameters, units and names."""
+"""Evaluation of the values of a problem file by means of its parameters, units and names."""
 
 from __future__ import annotations
 
@@ -45,14 +45,19 @@ LINK_NAME = re.compile(r"\w[\w'′.-]{0,15}")
 
 
 class ValueReader:
-    """Reader of the values of one file. Every method raises ProblemError with the path that it is given."""
+    """Reader of the values of one file. Every method raises ProblemError, with the given path, for a wrong value.
+
+    Attributes:
+        parameters: values of the parameters, by name.
+        units: units of bare numbers.
+    """
 
     def __init__(self, parameters: Mapping[str, PhysicalValue], units: UnitSystem) -> None:
         self.parameters = parameters
         self.units = units
 
     def number(self, value: Any, want: Dimension, path: Path) -> float:
-        """Return a value in SI, of a size that a mechanism can have."""
+        """Evaluate a value in SI; a value that is too large for a mechanism is refused."""
         with prefix_errors(*path):
             number = self.read_si(value, want, path)
             limit = self.limit(want, path)
@@ -66,11 +71,11 @@ class ValueReader:
             return number
 
     def read_si(self, value: Any, want: Dimension, path: Path) -> float:
-        """Return a value in SI, of any size."""
+        """Evaluate a value in SI, of any magnitude."""
         return evaluate(value, self.parameters, self.units, want)
 
     def limit(self, want: Dimension, path: Path) -> float:
-        """Return the largest absolute value (SI) accepted at this path."""
+        """Return the largest absolute value (SI) of this dimension that is accepted at this path."""
         return MAX_ANGLE if want == ANGLE else LARGEST
 
     def is_bare(self, value: Any) -> bool:
@@ -78,7 +83,7 @@ class ValueReader:
         return evaluate_quantity(value, self.parameters, self.units, pi=None).dimension is None
 
     def positive(self, value: Any, want: Dimension, path: Path, *, zero: bool = False) -> float:
-        """Return a value in SI that must be positive (with `zero`: not negative)."""
+        """Evaluate a value in SI that must be positive; with `zero` it may also be zero."""
         number = self.number(value, want, path)
         if number < 0 or (number == 0 and not zero):
             message = _("{want} cannot be negative") if number < 0 else _("{want} cannot be zero")
@@ -93,9 +98,7 @@ class ValueReader:
         return number
 
     def fraction(self, value: Any, path: Path, *, zero: bool = False) -> float:
-        """Return a fraction, positive (with `zero`: not negative) and at most 1. Raises ProblemError, also for a bare
-        percentage.
-        """
+        """Evaluate a fraction, greater than 0 (with `zero`: or 0) and at most 1. A percentage needs its sign %."""
         number = self.positive(value, NUMBER, path, zero=zero)
         if number > 1:
             percent = f"{value} %" if isinstance(value, int | float) and value <= 100 else _("0 to 1, or 0 to 100 %")
@@ -103,7 +106,7 @@ class ValueReader:
         return number
 
     def too_small(self, value: Any, least: float, want: Dimension, path: Path) -> ProblemError:
-        """Return the error for a value below the least one (SI) that a mechanism can have."""
+        """Return the error for a value below the smallest one (SI) that is accepted for a mechanism."""
         least_text = f"{self.units.from_si(least, want):.6g} {self.units.symbol(want)}".rstrip()
         return ProblemError(
             _("this value is too small for a mechanism"),
@@ -113,14 +116,15 @@ class ValueReader:
         )
 
     def vector(self, value: Any, want: Dimension, path: Path) -> complex:
-        """Return two coordinates in SI."""
+        """Evaluate two coordinates and return x + iy in SI."""
         if not isinstance(value, list | tuple) or len(value) != 2:
             raise ProblemError(_("expected two coordinates [x, y]"), path=path, found=quote(value))
         return make_complex(self.number(value[0], want, (*path, 0)), self.number(value[1], want, (*path, 1)))
 
     def place(self, value: Any, points: Mapping[str, complex], path: Path, link: str) -> complex:
-        """Return a position on a link (m) given by a point, by coordinates, or as a fraction of the distance of two
-        points.
+        """Return a position on a link (m), in the axes of the link.
+
+        The value is the name of a point, two coordinates, or a fraction of the distance between two points.
         """
         if isinstance(value, str):
             return points[
@@ -135,8 +139,15 @@ class ValueReader:
         return self.vector(value, LENGTH, path)
 
     def share_of(self, length: Any, value: Any, points: tuple[str, str], path: Path) -> float:
-        """Return a fraction of the length (m) between two points; it may be written as a distance from the first (110
-        mm).
+        """Return a position between two points as a fraction of their distance.
+
+        The file may also give it as a distance from the first point, e.g. 110 mm.
+
+        Args:
+            length: distance between the two points (m).
+            value: value of the file.
+            points: names of the two points.
+            path: path of the value.
         """
         with prefix_errors(*path):
             dimension = evaluate_quantity(value, self.parameters, self.units, pi=None).dimension
@@ -159,8 +170,9 @@ class ValueReader:
 
     @staticmethod
     def known_name(name: str, names: Iterable[str], path: Path, kind: str, *, key: bool = False) -> str:
-        """Return the name. Raises ProblemError if it is not one of the names; what: kind of thing that it names, for
-        the message.
+        """Check that a name is one of the known names, and return it.
+
+        kind: kind of object for the error message, such as `point of link 3`.
         """
         if name in names:
             return name
@@ -168,12 +180,12 @@ class ValueReader:
 
     @staticmethod
     def refuse_same(links: Sequence[str], path: Path) -> None:
-        """Raise ProblemError if a link occurs twice."""
+        """Refuse a list in which a link occurs twice."""
         if len(set(links)) < len(links):
             raise ProblemError(_("the links must be different"), path=path, found=", ".join(links))
 
     def two_points(self, text: str, points: Mapping[str, complex], path: Path) -> tuple[str, str]:
-        """Split two points of a link written together, CD or C-D."""
+        """Split the names of two points of a link that are written together, as CD or C-D."""
         written = re.split(r"\s*[-–, ]\s*", text.strip())
         splits = [(text[:k], text[k:]) for k in range(1, len(text))]
         if len(written) == 2:
@@ -200,7 +212,13 @@ class ValueReader:
 
 @dataclass(frozen=True)
 class FileSection:
-    """A section of the file as validated keys; a wrong value is refused at its own position."""
+    """A section of the file after validation of its keys. Errors contain the path of the wrong value.
+
+    Attributes:
+        keys: pydantic model with the keys of the section.
+        path: path of the section in the file.
+        values: reader of the values of the file.
+    """
 
     keys: Any
     path: Path
@@ -213,7 +231,7 @@ class FileSection:
         return self.values.positive(getattr(self.keys, key), want, self.at(key), zero=zero)
 
     def at(self, key: str) -> Path:
-        """Return the path of a key as the file spells it."""
+        """Return the path of a key, with the key as spelt in the file."""
         fields = getattr(type(self.keys), "model_fields", {})
         return (*self.path, fields[key].alias or key if key in fields else key)
 
@@ -223,9 +241,9 @@ class FileSection:
     def columns(
         self, key: str, argument: Dimension, want: Dimension, *, jumps: bool = True
     ) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-        """Return both columns of a table (SI); the first must increase. jumps: two successive arguments may be equal.
+        """Evaluate both columns of a table, in SI. Raises ProblemError if the first column does not increase.
 
-        Raises ProblemError.
+        jumps: True if two successive rows may have the same first value, as at a jump.
         """
         rows, path = getattr(self.keys, key), (*self.path, key)
         first = tuple(self.values.number(row[0], argument, (*path, k, 0)) for k, row in enumerate(rows))
@@ -248,7 +266,7 @@ class FileSection:
         return self.values.known_name(getattr(self.keys, key), names, (*self.path, key), kind)
 
     def two_links(self, links: Iterable[str]) -> tuple[str, str]:
-        """Return the two different links named in `between`."""
+        """Return the two links named under `between`. Raises ProblemError if they are unknown or equal."""
         i, j = (
             self.values.known_name(n, links, (*self.path, "between", k), "link")
             for k, n in enumerate(self.keys.between)
@@ -257,7 +275,7 @@ class FileSection:
         return i, j
 
     def one_of(self, *keys: str) -> str:
-        """Return the one of these keys that is given. Raises ProblemError unless exactly one is."""
+        """Return the only one of these keys that is present. Raises ProblemError if none or several are."""
         given_keys = [key for key in keys if getattr(self.keys, key) is not None]
         if len(given_keys) != 1:
             quoted, allowed = ", ".join(given_keys) or None, ", ".join(keys)
@@ -267,19 +285,22 @@ class FileSection:
     def refusal(
         self, key: str, message: str, found: str | None = None, allowed: str | None = None, *, at_key: bool = False
     ) -> ProblemError:
-        """Return the error for the value of a key, or for the section (key ""); at_key: for the key itself."""
+        """Return the error for the value of a key; for an empty key, for the whole section.
+
+        at_key: True if the key itself is wrong and not its value.
+        """
         path = self.at(key) if key else self.path
         return ProblemError(message, path=path, found=found, allowed=allowed, key=at_key or not key)
 
 
 def unknown_name_message(what: str) -> str:
-    """Return the message for an unknown name. what: kind of thing, such as "link" or "point of link 3"."""
+    """Return the message for an unknown name. what: kind of object, such as "link" or "point of link 3"."""
     kind, __, link = what.partition(" of link ")
     return translated(UNKNOWN_NAMES["point of link" if link else kind]).format(link=link)
 
 
 def check_name(name: str, path: Path, kind: str, taken: Container[str] = ()) -> None:
-    """Refuse a name that is taken or unfit for tables, drawings and file names; only letters and digits are allowed."""
+    """Refuse a name that is taken, or that cannot be used in tables, drawings and file names."""
     pattern = LINK_NAME if kind == "link" else POINT_NAME
     if not pattern.fullmatch(name):
         raise ProblemError(
@@ -296,17 +317,17 @@ def check_name(name: str, path: Path, kind: str, taken: Container[str] = ()) -> 
 
 
 def make_complex(x: float, y: float) -> complex:
-    """Return x + iy in the precision of its parts (a double-double is not a float)."""
+    """Return x + iy in the precision of the coordinates, which may be double-double numbers."""
     return complex(x, y) if isinstance(x, float) and isinstance(y, float) else x + 1j * y
 
 
 def vector_angle(vector: complex) -> float:
-    """Return the angle of a vector (rad), in its precision."""
+    """Return the angle of a vector (rad) in its own precision."""
     return cmath.phase(vector) if isinstance(vector, complex) else np.angle(vector)
 
 
 def unit_vector(angle: float) -> complex:
-    """Return e^(i angle), exact along the coordinate axes."""
+    """Return the unit vector e^(i angle), exact along the coordinate axes."""
     if not isinstance(angle, float):
         return make_complex(np.cos(angle), np.sin(angle))
     turned = cmath.exp(1j * angle)

@@ -1,4 +1,4 @@
-"""Limits of the work that a problem may request: any command ends within a minute and a gigabyte on one core."""
+"""Limits of the work of a problem: every command ends within a minute on one core and uses less than a gigabyte."""
 
 from __future__ import annotations
 
@@ -21,15 +21,20 @@ MIN_JUDGED, MAX_JUDGED = 20, 720  # further positions estimated for the results 
 
 
 def work_size(linkage: Linkage) -> int:
-    """Return the number of elements of a linkage: links with their pairs, points, loads and springs, by measured
-    cost.
+    """Return the size of a linkage for the work limit: a weighted sum of its links, points, loads and springs.
+
+    The weights are proportional to measured computing times.
     """
     links, points, loads = _count_elements(linkage)
     return LINK_SIZE * links + POINT_SIZE * points + LOAD_SIZE * loads
 
 
 def refuse_work(linkage: Linkage, request: Request) -> None:
-    """Refuse a request that no stage could complete within the budget. Raises ProblemError, not yet located."""
+    """Refuse a problem that exceeds the work limit in any stage of analysis.
+
+    Raises:
+        ProblemError: the linkage is too large, or too many positions are requested; without line and column.
+    """
     elements, count = work_size(linkage), len(request.places) or request.count
     most = WORK_BUDGET // elements - _search_positions(linkage)
     if most < 1:
@@ -62,19 +67,19 @@ def refuse_options(
     plans: int = 0,
     centres: int = 0,
 ) -> None:
-    """Refuse command options whose additional work exceeds the budget, before the command starts.
+    """Refuse options of a command whose additional work exceeds the limit, before the work starts.
 
     Args:
-        linkage: the linkage.
+        linkage: linkage of the problem.
         count: number of positions.
-        digits: correct digits are estimated.
+        digits: True if error bounds are requested (option --digits).
         detail: number of positions drawn in detail; None if nothing is drawn.
-        large: drawings are on large sheets, which are laid out again until they are full.
-        plans: number of positions drawn only with their motion plans.
+        large: True for large sheets, which are laid out repeatedly until they are filled.
+        plans: number of positions for which only velocity and acceleration plans are drawn.
         centres: number of positions with instantaneous centres.
 
     Raises:
-        ProblemError: the work exceeds the budget; not yet located.
+        ProblemError: the work exceeds the limit; without line and column.
     """
     elements = work_size(linkage)
     left = WORK_BUDGET / elements - _search_positions(linkage) - count
@@ -127,7 +132,7 @@ def refuse_options(
 
 
 def _count_sheets(detail: int, large: bool) -> float:
-    """Return the number of sheets that drawings of detailed positions count for."""
+    """Return the work of drawing the detailed positions, as an equivalent number of sheets."""
     return OTHER_SHEETS + detail * (1 + large * detail / LARGE_LAYOUT_POSITIONS)
 
 
@@ -141,6 +146,6 @@ def _describe_linkage(linkage: Linkage) -> str:
 
 
 def _count_elements(linkage: Linkage) -> tuple[int, int, int]:
-    """Return the numbers of moving links, of points on them, of loads and springs."""
+    """Return the number of moving links, of points on them, and of loads including springs."""
     points = sum(len(linkage.links[name].points) for name in linkage.moving)
     return len(linkage.moving), points, len(linkage.acting)

@@ -1,1 +1,1 @@
-"""Blocks of a problem file: the keys of each block, and how it becomes part of a linkage."""
+"""Blocks of a problem file: their keys, and the parts of a linkage that are built from them."""

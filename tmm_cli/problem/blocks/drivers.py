@@ -1,4 +1,4 @@
-"""Drivers of a problem file, their speeds, the sketch, and the requested positions."""
+"""Drivers of a problem file with their speeds, the sketch, and the requested positions."""
 
 from __future__ import annotations
 
@@ -32,8 +32,9 @@ ROUNDING_OF_REST = 1e-12  # relative to the square of the largest speed: less is
 
 
 def _build_speed_table(section: FileSection, turns: int) -> SpeedTable:
-    """Build the squares of the driver speed against the crank angle, and accelerations if given. turns: crank turns in
-    a cycle.
+    """Build the table of the driver speed squared against the crank angle, with accelerations if the file gives them.
+
+    turns: crank revolutions per cycle.
     """
     keys: schema.DriverKeys = section.keys
     angles, speeds = _columns(section, "speed", ANGULAR_SPEED)
@@ -69,7 +70,7 @@ def _build_speed_table(section: FileSection, turns: int) -> SpeedTable:
 
 
 def _mean_speed(section: FileSection) -> float:
-    """Return the mean of the speeds of all rows, in rad/s."""
+    """Return the arithmetic mean of the speeds in all rows of the table (rad/s)."""
     speeds = _columns(section, "speed", ANGULAR_SPEED)[1]
     whole: float = sum(speeds) / len(speeds)
     return whole
@@ -81,7 +82,7 @@ def _columns(section: FileSection, key: str, want: Dimension) -> tuple[tuple[Any
 
 
 def _is_closed(section: FileSection, key: str, angles: tuple[Any, ...], values: tuple[Any, ...], turns: int) -> bool:
-    """Return True if a table covers the whole cycle; its last value must then equal its first. Raises ProblemError."""
+    """Return True if a table covers the whole cycle; its last value must then equal the first. Raises ProblemError."""
     table, path, units = getattr(section.keys, key).table, (*section.path, key, "table"), section.values.units
     cycle = math.tau * turns
     end = units.format_value(float(angles[0]) + cycle, ANGLE)
@@ -103,7 +104,7 @@ def _is_closed(section: FileSection, key: str, angles: tuple[Any, ...], values: 
 
 
 def _find_least(table: InterpolationTable) -> tuple[int, float]:
-    """Return the row after which the interpolated table has its minimum, and the minimum."""
+    """Find the minimum of an interpolated table; return the index of the row before it, and the minimum."""
     rows = np.array([float(to_float(row)) for row in table.arguments])
     squares = to_float(table(rows[:-1, None] + np.diff(rows)[:, None] * np.linspace(0, 1, 33)))
     row = int(np.argmin(np.min(squares, axis=1)))
@@ -120,7 +121,7 @@ DEFAULT_SKETCH_ANGLE = cmath.pi / 3  # crank angle at which assemblies are compa
 
 
 def build_drivers(shape: schema.File, members: LinksAndPairs, values: ValueReader) -> tuple[Driver, ...]:
-    """Build all drivers, in the order of the file. Raises ProblemError, not yet located."""
+    """Build all drivers of the file, in their order there. Raises ProblemError without line and column."""
     if isinstance(shape.driver, schema.DriverKeys):
         section = FileSection(shape.driver, ("driver",), values)
         driver = _build_driver(section, members, True)
@@ -151,7 +152,7 @@ def build_drivers(shape: schema.File, members: LinksAndPairs, values: ValueReade
 
 
 def _linkage_size(links: dict[str, Link]) -> float:
-    """Return the largest distance between two points of one link (m)."""
+    """Return the largest distance between two points of the same link (m), or 1 if there is none."""
     spans = (abs(p - q) for link in links.values() for p in link.points.values() for q in link.points.values())
     return max(spans, default=0.0) or 1.0
 
@@ -223,7 +224,7 @@ def _build_driver(section: FileSection, members: LinksAndPairs, first: bool) -> 
 
 
 def build_cycle(shape: schema.File, driver: Driver, values: ValueReader) -> int:
-    """Return the number of crank turns after which the loads repeat. Raises ProblemError."""
+    """Return the number of crank revolutions after which the loads repeat. Raises ProblemError."""
     if shape.cycle is None:
         return 1
     if driver.kind != "turn":
@@ -245,7 +246,7 @@ def build_cycle(shape: schema.File, driver: Driver, values: ValueReader) -> int:
 
 
 def build_sketch(shape: schema.File, links: dict[str, Link], driver: Driver, values: ValueReader) -> Sketch:
-    """Build the sketch of the file; if it has none, a sketch with a default driver coordinate. Raises ProblemError."""
+    """Build the sketch of the file. Without one, only a default driver coordinate is set. Raises ProblemError."""
     keys = dict(shape.sketch)
     dimension = ANGLE if driver.kind == "turn" else LENGTH
     if not keys:
@@ -280,7 +281,7 @@ def build_sketch(shape: schema.File, links: dict[str, Link], driver: Driver, val
 
 
 def build_request(shape: schema.File, driver: Driver, values: ValueReader) -> Request:
-    """Build the request for positions from the block `positions`. Raises ProblemError."""
+    """Read the requested positions from the block `positions`. Raises ProblemError."""
     keys = shape.positions
     section = FileSection(keys, ("positions",), values)
     dimension = ANGLE if driver.kind == "turn" else LENGTH

@@ -1,6 +1,4 @@
-"""Links of a problem file with their revolute and prismatic pairs, and checks for links, guides and points left
-unused.
-"""
+"""Links of a problem file with their revolute and prismatic pairs. Unused links, guides and points are refused."""
 
 from __future__ import annotations
 
@@ -22,23 +20,30 @@ MAX_PAIR_LENGTH = 80  # letters of the names of two points
 
 @dataclass(frozen=True)
 class LinksAndPairs:
-    """Links and their lower pairs, to which drivers, higher pairs and loads are attached."""
+    """Links of a mechanism with their revolute and prismatic pairs, before drivers, higher pairs and loads are added.
+
+    Attributes:
+        links: links by name, with the frame.
+        hinges: revolute pairs.
+        slides: prismatic pairs.
+    """
 
     links: dict[str, Link]
     hinges: tuple[Hinge, ...]
     slides: tuple[Slide, ...]
 
     def hinge(self, link: str, base: str) -> str | None:
-        """Return the point at which two links are hinged, or None."""
+        """Return the name of the point at which two links are hinged to each other, or None."""
         return common_hinge(self.hinges, link, base)
 
     def slide(self, link: str, base: str) -> Slide | None:
-        """Return the prismatic pair of two links, or None."""
+        """Return the prismatic pair between two links, or None."""
         return next((s for s in self.slides if {s.carrier, s.runner} == {link, base}), None)
 
     def unjoined(self, link: str, base: str, path: Path, kinds: str = "RP") -> ProblemError:
-        """Return the error for a link that has no pair of these kinds with its base; it lists the links that have
-        one.
+        """Return the error for a link without a suitable pair with its base link; it lists the links that have one.
+
+        kinds: allowed kinds of pairs; R for revolute, P for prismatic.
         """
         pairs = [h.links for h in self.hinges if "R" in kinds]
         pairs += [(s.carrier, s.runner) for s in self.slides if "P" in kinds]
@@ -56,7 +61,9 @@ class LinksAndPairs:
 
 
 def build_links(shape: schema.File, values: ValueReader) -> LinksAndPairs:
-    """Build links in the order of the file, hinges at shared points, and prismatic pairs. Raises ProblemError."""
+    """Build the links in their order in the file, revolute pairs at shared points, and prismatic pairs. Raises
+    ProblemError.
+    """
     reader = _LinkReader(shape, values)
     slides = reader.slides()
     owners: dict[str, list[str]] = {}
@@ -68,7 +75,7 @@ def build_links(shape: schema.File, values: ValueReader) -> LinksAndPairs:
 
 
 def _attach_links(hinges: tuple[Hinge, ...], shape: schema.File, values: ValueReader) -> tuple[Hinge, ...]:
-    """Return the hinges; for compound ones with the link to which the file attaches the others."""
+    """Add to each compound hinge the link to which, according to the file, the other links are attached."""
     links_at = {hinge.point: hinge.links for hinge in hinges}
     for point, hinge in shape.hinges.items():
         section = FileSection(hinge, ("hinges", point), values)
@@ -91,8 +98,9 @@ def _attach_links(hinges: tuple[Hinge, ...], shape: schema.File, values: ValueRe
 
 
 def refuse_attachments(linkage: Linkage, shape: schema.File, values: ValueReader) -> None:
-    """Refuse an attachment at a compound hinge that merges groups or leaves a driver without its pair. Raises
-    ProblemError.
+    """Refuse an attachment at a compound hinge that changes the Assur groups or leaves a driver without its pair.
+
+    Raises ProblemError.
     """
     for hinge in linkage.hinges:
         if hinge.attached_to and not _keeps_groups(linkage, hinge, hinge.attached_to):
@@ -108,7 +116,9 @@ def refuse_attachments(linkage: Linkage, shape: schema.File, values: ValueReader
 
 
 def _keeps_groups(linkage: Linkage, hinge: Hinge, link: str) -> bool:
-    """Return True if the groups stay the same when the links of a hinge are attached to this one."""
+    """Return True if the groups do not change, and drivers keep their pairs, when the links of a hinge are attached to
+    `link`.
+    """
     usual, attached = (
         replace(linkage, hinges=tuple(replace(hinge, attached_to=to) if h == hinge else h for h in linkage.hinges))
         for to in ("", link)
@@ -119,7 +129,7 @@ def _keeps_groups(linkage: Linkage, hinge: Hinge, link: str) -> bool:
 
 
 class _LinkReader:
-    """Reads the links first and then the slides, which refer to them."""
+    """Reader of the links of a file and, after them, of the prismatic pairs, which refer to the links."""
 
     def __init__(self, shape: schema.File, values: ValueReader) -> None:
         self.shape, self.values = shape, values
@@ -156,7 +166,9 @@ class _LinkReader:
         return points
 
     def listed(self, names: list[str], section: FileSection) -> dict[str, complex]:
-        """Return the points of a list: at most two, the second at the distance `length` from the first."""
+        """Return the coordinates of the points in a list of one or two names; the second lies on the x axis at distance
+        `length`.
+        """
         if len(set(names)) < len(names):
             raise section.refusal("points", _("the same point is listed twice"), str(names))
         if len(names) > 2:
@@ -219,8 +231,10 @@ class _LinkReader:
         return Slide(name, carrier, runner, through, angle, points[point], turned, point, ends if bounded else None)
 
     def guide(self, section: FileSection, carrier: str) -> tuple[complex, float, tuple[str, str] | None]:
-        """Return a point and the direction of a guide in the axes of its carrier, and the two points named in `along`,
-        if any.
+        """Return the line of a guide in the axes of its carrier.
+
+        Returns:
+            A point of the line (m), its direction (rad), and the two points in the key `along` (None without this key).
         """
         keys: schema.Guide | schema.SlideKeys = section.keys
         points = self.links[carrier].points
@@ -243,7 +257,9 @@ class _LinkReader:
 
 
 def _refuse_lookalikes(shape: schema.File) -> None:
-    """Refuse names of points that look alike but differ in letters: a Cyrillic letter in one of them is a slip."""
+    """Refuse two point names that look alike but differ in letters, such as Latin A and Cyrillic А: one is a typing
+    error.
+    """
     named: dict[str, Path] = {name: ("points", name) for name in shape.points}
     for link, keys in shape.links.items():
         path: Path = ("links", link, "points")
@@ -264,7 +280,7 @@ def _refuse_lookalikes(shape: schema.File) -> None:
 
 
 def refuse_unused(shape: schema.File, data: dict[str, Any], members: LinksAndPairs) -> None:
-    """Refuse links joined to nothing, guides that nothing uses, and points named only once: they are slips."""
+    """Refuse links without pairs, unused guides, and points that are named only once: these are probably mistakes."""
     links = members.links
     joined = {name for h in members.hinges for name in h.links} | {
         n for s in members.slides for n in (s.carrier, s.runner)
@@ -313,7 +329,7 @@ def refuse_unused(shape: schema.File, data: dict[str, Any], members: LinksAndPai
 def _points_used_elsewhere(
     shape: schema.File, data: dict[str, Any], links: dict[str, Link], everything: list[str]
 ) -> set[str]:
-    """Return the points named outside the links' own lists of points, alone or as two together (CD, C-D)."""
+    """Return the points that the file names outside the links' lists of points, alone or in twos (CD, C-D)."""
     all_points, used = set(everything), set[str]()
     for word in _find_texts({**data, "parameters": {}, "title": "", "description": ""}):
         used.add(word)
@@ -327,7 +343,7 @@ def _points_used_elsewhere(
 
 
 def _find_texts(section: Any) -> Iterator[str]:
-    """Yield every text of a file that may name a point, except the links' own lists of points."""
+    """Yield every text of a file that may name a point, without the links' own lists of points."""
     if isinstance(section, dict):
         yield from section
         section = [value for key, value in section.items() if key != "points"]

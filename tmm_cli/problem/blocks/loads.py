@@ -1,10 +1,10 @@
-"""Masses of links and loads on them in a problem file: their keys and their building."""
+"""Loads in a problem file: their keys, and the loads that are built from them."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, cast
 
@@ -13,49 +13,25 @@ from pydantic import BeforeValidator, Field
 from pydantic_core import PydanticKnownError
 
 from tmm_cli.language import _
-from tmm_cli.mechanics.linkage import Link, Linkage, Load as LoadRecord, LoadTable
-from tmm_cli.mechanics.numerics import SAME_DRIVER_POSITION, SAME_RATIO, pi, squared_length
+from tmm_cli.mechanics.linkage import Linkage, Load as LoadRecord, LoadTable
+from tmm_cli.mechanics.numerics import SAME_DRIVER_POSITION, SAME_RATIO, pi
 from tmm_cli.mechanics.quantities import (
-    ACCELERATION,
     ANGLE,
     AREA,
     FORCE,
-    INERTIA,
     LENGTH,
-    MASS,
     MOMENT,
     NUMBER,
     PRESSURE,
     Dimension,
 )
 from tmm_cli.mechanics.structure import analyse_structure, output_link
-from tmm_cli.problem.errors import Path, ProblemError, quote
+from tmm_cli.problem.errors import ProblemError, quote
 from tmm_cli.problem.schema_types import Name, Place, Strict, Value, Vector, checked_value, checked_vector
-from tmm_cli.problem.values import FileSection, ValueReader, check_name, make_complex, unit_vector
+from tmm_cli.problem.values import FileSection, ValueReader, check_name, unit_vector
 
 if TYPE_CHECKING:
     from tmm_cli.problem import schema
-
-
-class PointMassKeys(Strict):
-    """A point mass on a link."""
-
-    mass: Value
-    at: Place = Field(description="position: name of a point, [x, y] in the axes of the link, or {on: CD, at: 0.5}")
-
-
-class MassKeys(Strict):
-    """Mass properties of a link."""
-
-    mass: Value | None = None
-    weight: Value | None = Field(default=None, description="weight, instead of mass: m = G / g")
-    inertia: Value = Field(default=0, description="moment of inertia about the centre of mass")
-    centre: Place | None = Field(
-        default=None, description="position: name of a point, [x, y] in the axes of the link, or {on: CD, at: 0.5}"
-    )
-    points: list[PointMassKeys] = Field(
-        default_factory=list, max_length=50, description="point masses on the link, in addition to `mass` or alone"
-    )
 
 
 STROKE_OF = r"(share of )?stroke of (\S.*)"
@@ -65,7 +41,7 @@ WHEN = ("always", "working stroke")
 
 
 def _checked_word(raw: Any, words: tuple[str, ...], pattern: str) -> str:
-    """Return the text if it is one of these words or matches the pattern; raise pydantic's literal_error otherwise."""
+    """Return a text that is an allowed word or matches the pattern; raise pydantic's literal_error for any other."""
     if isinstance(raw, str) and (raw in words or re.fullmatch(pattern, raw)):
         return raw
     *first, last = (f"'{word}'" for word in words)
@@ -87,7 +63,7 @@ Against = Annotated[
 
 
 class TabulatedKeys(Strict):
-    """A force, pressure or moment, given by a table or by its size (and angle)."""
+    """A force, pressure or moment given by a table or by its magnitude (a force or pressure also by its angle)."""
 
     size: Value | None = None
     resists: Value | None = Field(
@@ -175,97 +151,11 @@ class LoadKeys(Strict):
     )
 
 
-# Building of masses and loads.
-
-
-STANDARD_GRAVITY = 9.81
-
-
-def add_masses(linkage: Linkage, shape: schema.File, values: ValueReader) -> Linkage:
-    """Return the linkage with masses, moments of inertia, centres of mass and gravity. Raises ProblemError."""
-    gravity = _build_gravity(shape.gravity, values)
-    links = dict(linkage.links)
-    for name, keys in shape.masses.items():
-        section = FileSection(keys, ("masses", name), values)
-        values.known_name(name, linkage.moving, section.path, "link", key=True)
-        links[name] = _add_point_masses(_add_mass(links[name], section, gravity), section)
-        _refuse_ambiguous_centre(links, name, section)
-    return replace(linkage, links=links, gravity=gravity)
-
-
-def _add_mass(link: Link, section: FileSection, gravity: complex) -> Link:
-    """Return the link with its mass, moment of inertia and centre; without a mass it may have only point masses."""
-    keys: MassKeys = section.keys
-    if keys.points and keys.mass is None and keys.weight is None:
-        return replace(
-            link, inertia=section.positive("inertia", INERTIA, zero=True), centre=next(iter(link.points.values()))
-        )
-    if section.one_of("mass", "weight") == "mass":
-        mass = section.positive("mass", MASS, zero=True)
-    else:
-        mass = section.positive("weight", FORCE, zero=True) / (abs(gravity) or STANDARD_GRAVITY)
-    inertia = section.positive("inertia", INERTIA, zero=True)
-    if keys.centre is None and len(link.points) > 1 and mass > 0:
-        a, b = list(link.points)[:2]
-        allowed = _("centre: {a}, centre: [x, y], or centre: {{on: {a}{b}, at: 0.5}}").format(a=a, b=b)
-        raise section.refusal("centre", _("the centre of mass of this link is not given"), allowed=allowed)
-    centre = (
-        next(iter(link.points.values())) if keys.centre is None else section.place("centre", link.points, link.name)
-    )
-    return replace(link, mass=mass, inertia=inertia, centre=centre)
-
-
-def _add_point_masses(link: Link, section: FileSection) -> Link:
-    """Return the link with its point masses included in its mass, centre and moment of inertia (parallel-axis
-    theorem).
-    """
-    bodies = [(link.mass, link.centre)] if link.mass > 0 else []
-    for k, keys in enumerate(section.keys.points):
-        mass_section = FileSection(keys, (*section.path, "points", k), section.values)
-        bodies.append((mass_section.positive("mass", MASS), mass_section.place("at", link.points, link.name)))
-    if not section.keys.points:
-        return link
-    if len(bodies) == 1:  # exactly there, and with nothing about its centre, in every precision
-        return replace(link, mass=bodies[0][0], centre=bodies[0][1])
-    mass = sum(m for m, __ in bodies)
-    centre = sum(m * at for m, at in bodies) / mass
-    return replace(
-        link, mass=mass, centre=centre, inertia=link.inertia + sum(m * squared_length(at - centre) for m, at in bodies)
-    )
-
-
-def _refuse_ambiguous_centre(links: Mapping[str, Link], name: str, section: FileSection) -> None:
-    """Refuse a point named S3 that is not the centre of mass of link 3: tables, plans and formulas call the centre
-    S3.
-    """
-    point, massed = f"S{name}", links[name]
-    owners = [link for link in links if point in links[link].points]
-    if (
-        massed.mass
-        and owners
-        and (owners != [name] or abs(massed.points[point] - massed.centre) > SAME_DRIVER_POSITION)
-    ):
-        raise section.refusal(
-            "centre",
-            _(
-                "the centre of mass of this link is called {point} in tables and drawings, but another point has "
-                "this name"
-            ).format(point=point),
-            allowed=_("centre: {point}, or another name of the point").format(point=point),
-        )
-
-
-def _build_gravity(keys: Any, values: ValueReader) -> complex:
-    path: Path = ("gravity",)
-    if keys is None:
-        return complex(0.0, -STANDARD_GRAVITY)
-    if isinstance(keys, list):
-        return values.vector(keys, ACCELERATION, path)
-    return make_complex(0.0, -values.positive(keys, ACCELERATION, path, zero=True))
+# Building of loads.
 
 
 def build_loads(linkage: Linkage, shape: schema.File, values: ValueReader) -> tuple[LoadRecord, ...]:
-    """Build the loads, in the order of the file. Raises ProblemError."""
+    """Build the loads, in their order in the file. Raises ProblemError."""
     return tuple(
         _build_load(name, FileSection(keys, ("loads", name), values), linkage) for name, keys in shape.loads.items()
     )
@@ -322,9 +212,9 @@ def _build_load(name: str, section: FileSection, linkage: Linkage) -> LoadRecord
 
 
 def _stroke_link(section: FileSection, key: str, linkage: Linkage, loaded: str) -> str:
-    """Return the link on whose stroke a load depends by this key; empty if it is the main output. Raises ProblemError.
+    """Return the link whose stroke determines a load; empty if it is the main output link. Raises ProblemError.
 
-    It is the link that the file names; else the loaded link if it slides on the frame, else the main output.
+    Without a name under the key, this is the loaded link if it slides on the frame, else the main output link.
     """
     named = re.fullmatch(rf"{STROKE_OF}|{WORKING_STROKE_OF}", getattr(section.keys, key))
     link = loaded if linkage.slides_on_frame(loaded) else ""
@@ -338,7 +228,13 @@ def _stroke_link(section: FileSection, key: str, linkage: Linkage, loaded: str) 
 
 
 class _LoadComponent(NamedTuple):
-    """A force (complex) or moment in SI. With a table, `size` is the direction (of a moment: 1)."""
+    """Force or moment of a load, in SI.
+
+    Attributes:
+        size: force (complex, N) or moment (N m); with a table, the unit vector of the force, or 1 for a moment.
+        table: table of the magnitude, or None.
+        resists: True if the load always opposes the motion.
+    """
 
     size: Any
     table: LoadTable | None = None
@@ -360,7 +256,7 @@ def _build_component(key: str, want: Dimension, linkage: Linkage, load: FileSect
 
 
 def _build_pressure(load: FileSection, linkage: Linkage) -> _LoadComponent:
-    """Return the force of a pressure on an area or on a piston of given bore."""
+    """Build the force of a pressure on an area or a piston."""
     if load.keys.force is not None:
         raise load.refusal(
             "pressure",
@@ -393,7 +289,10 @@ def _build_pressure(load: FileSection, linkage: Linkage) -> _LoadComponent:
 def _build_sized(
     section: FileSection, want: Dimension, linkage: Linkage, loaded: str, *, angled: bool
 ) -> _LoadComponent:
-    """Build a component given by one size or by a table; `angled` for forces and pressures, which need an angle."""
+    """Build a force, pressure or moment given by its magnitude or by a table.
+
+    angled: True for forces and pressures, which need a direction.
+    """
     keys: TabulatedKeys = section.keys
     if angled == (keys.angle is None):
         message = _("a force given by `size` or `table` needs `angle`; a moment has no `angle`")
@@ -414,7 +313,7 @@ def _build_sized(
 
 
 def _crank_window(section: FileSection, linkage: Linkage) -> tuple[float, float]:
-    """Return the two crank angles (rad) between which the load acts."""
+    """Return the two crank angles (rad) between which a load acts."""
     if linkage.driver.kind == "slide":
         raise section.refusal("when", _("`when` with two angles needs a crank, but this driver is a slider"))
     cycle = 2 * np.pi * linkage.turns
@@ -474,15 +373,18 @@ def _build_table(section: FileSection, want: Dimension, linkage: Linkage, loaded
 
 
 def stroke_dimension(linkage: Linkage, stroke_link: str) -> Dimension:
-    """Return the dimension of the stroke of a link, or of the main output if it is empty: an angle if the link
-    swings.
+    """Return the dimension of the stroke of a link: an angle if the link swings, otherwise a length.
+
+    Args:
+        linkage: linkage of the problem.
+        stroke_link: name of the link; empty for the main output link.
     """
     link = stroke_link or output_link(linkage, analyse_structure(linkage).groups)
     return ANGLE if link is None or linkage.output_swings(link) else LENGTH
 
 
 def _refuse_beyond_stroke(section: FileSection, shares: Sequence[Any]) -> None:
-    """Refuse a row of a table whose argument is not a fraction of the stroke. Raises ProblemError."""
+    """Refuse a row of a table whose argument is less than 0 or more than 1. Raises ProblemError."""
     for row, share in enumerate(shares):
         if not -SAME_RATIO <= share <= 1 + SAME_RATIO:
             raise ProblemError(
@@ -494,6 +396,6 @@ def _refuse_beyond_stroke(section: FileSection, shares: Sequence[Any]) -> None:
 
 
 def _is_whole_turns(angle: float) -> bool:
-    """Return True if an angle (rad) is a whole number of turns."""
+    """Return True if an angle (rad) is a whole number of revolutions."""
     turns = float(angle) / (2 * np.pi)
     return abs(turns - round(turns)) * 2 * np.pi < SAME_DRIVER_POSITION

@@ -1,4 +1,4 @@
-"""Gears, racks and cams of a problem file: their keys and their building."""
+"""Gears, racks and cams of a problem file: their keys, and the higher pairs that are built from them."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class RackKeys(Strict):
 
 
 class CamPieceKeys(Strict):
-    """A part of a cam's law of motion."""
+    """A segment of a cam's law of motion."""
 
     over: Value = Field(description="angle of rotation of the cam during this part")
     rise: Value = Field(default=0, description="rise of the follower; negative: return, zero: dwell")
@@ -78,7 +78,7 @@ class CamPieceKeys(Strict):
 
 
 class CamKeys(Strict):
-    """A cam and its follower on a common carrier, given by the law of motion of the follower."""
+    """A cam and its follower on a common carrier, defined by the law of motion of the follower."""
 
     cam: Name = Field(description="link that is the cam, hinged to the carrier; it may be the frame (a fixed cam)")
     follower: Name = Field(
@@ -112,8 +112,9 @@ MAX_GEAR_RATIO = 100_000
 
 
 def build_meshes(shape: schema.File, members: LinksAndPairs, sense: int, values: ValueReader) -> tuple[Mesh, ...]:
-    """Build all higher pairs: gears, racks, cams. sense: sense of rotation of the driver, +1 or -1. Raises
-    ProblemError.
+    """Build all higher pairs of the file: gears, racks and cams. Raises ProblemError.
+
+    sense: sense of rotation of the driver, +1 for counterclockwise, -1 for clockwise.
     """
     taken = {h.point for h in members.hinges} | {s.name for s in members.slides}
     meshes: list[Mesh] = []
@@ -129,7 +130,9 @@ def build_meshes(shape: schema.File, members: LinksAndPairs, sense: int, values:
 
 
 def _refuse_shared_rollers(meshes: Sequence[Mesh]) -> None:
-    """Refuse a number shared by two rollers: structural analysis counts each roller as a link."""
+    """Refuse two cam followers whose rollers have the same link number, as structural analysis counts each roller as a
+    link.
+    """
     rollers = [mesh.roller for mesh in meshes]
     for index, mesh in enumerate(meshes):
         if mesh.roller and mesh.roller in rollers[:index]:
@@ -142,7 +145,9 @@ def _refuse_shared_rollers(meshes: Sequence[Mesh]) -> None:
 
 
 def _refuse_locked_trains(gears: list[Mesh]) -> None:
-    """Refuse gears in a closed train on one carrier whose ratios lock it, or which are out of phase."""
+    """Refuse a closed train of gears on one carrier that cannot rotate because ratios or tooth phases contradict each
+    other.
+    """
     # train of each carrier and gear; the angle of each gear is a slope times that of one of them, plus a phase
     trains: dict[tuple[str, str], dict[str, tuple[float, float]]] = {}
     for gear in gears:
@@ -170,14 +175,14 @@ def _refuse_locked_trains(gears: list[Mesh]) -> None:
 
 
 def _check_different_links(names: Sequence[str], section: FileSection, path: Path, members: LinksAndPairs) -> None:
-    """Refuse names that are not links, and the same link twice."""
+    """Check that the names are those of links and that no link is named twice. Raises ProblemError."""
     for name in names:
         section.values.known_name(name, members.links, path, "link")
     section.values.refuse_same(names, path)
 
 
 def _axis_on_carrier(link: str, carrier: str, members: LinksAndPairs, path: Path) -> complex:
-    """Return the point at which a link is hinged to the carrier, in the axes of the carrier (m)."""
+    """Return the point (m, in the axes of the carrier) at which a link is hinged to it. Raises ProblemError."""
     point = members.hinge(link, carrier)
     if point is None:
         raise members.unjoined(link, carrier, path, "R")
@@ -208,7 +213,10 @@ def _build_gear(name: str, section: FileSection, members: LinksAndPairs) -> Mesh
 
 
 def _radius_ratio(section: FileSection, keys: GearKeys, distance: float) -> float:
-    """Return the first radius divided by the second, negative for an external mesh; all given values must agree."""
+    """Return the first pitch radius divided by the second; negative for an external mesh.
+
+    Raises ProblemError if the given teeth, radii and ratio contradict each other or the distance of the axes.
+    """
     values, path = section.values, section.path
     teeth, radii = None, None
     ratios: dict[str, float] = {}
@@ -254,7 +262,7 @@ def _radius_ratio(section: FileSection, keys: GearKeys, distance: float) -> floa
 
 
 def _count_teeth(values: ValueReader, value: object, path: Path) -> float:
-    """Return a number of teeth, rounded from the result of arithmetic. Raises ProblemError if it is not whole."""
+    """Evaluate a number of teeth. Raises ProblemError if it is not a whole number, apart from rounding."""
     teeth = values.positive(value, NUMBER, path)
     whole: float = np.floor(teeth + 0.5)
     if whole < 1 or abs(float(teeth) - float(whole)) > WHOLE_TEETH:

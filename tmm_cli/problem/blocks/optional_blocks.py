@@ -1,4 +1,7 @@
-"""Build the tasks of blocks that few files have (dynamics, balancing, intermittent); imported for those files alone."""
+"""Building of the tasks for the blocks dynamics, balancing and intermittent, which few files have.
+
+The module is imported only for files with such a block.
+"""
 
 from __future__ import annotations
 
@@ -50,8 +53,9 @@ MAX_RUN_TURNS = 20  # from the x axis: as far as a run is integrated
 
 
 def build_dynamics(shape: schema.File, linkage: Linkage, values: ValueReader) -> SteadyTask | RunTask | None:
-    """Build the task of the law of motion: steady running, a single run, or None without the block. Raises
-    ProblemError.
+    """Build the task for the law of motion: steady running or a single run. Raises ProblemError.
+
+    Returns None if the file has no block `dynamics`.
     """
     keys, driver = shape.dynamics, linkage.driver
     if keys is None:
@@ -146,12 +150,12 @@ def _build_profile(section: FileSection, place: Dimension, effort: Dimension) ->
 
 
 def _format_speed(speed: float) -> str:
-    """Format a speed in rad/s and in rpm, as a bare speed is read in rad/s but often meant in rpm."""
+    """Format a speed in rad/s and in rpm: a speed without a unit is read in rad/s, but often rpm is meant."""
     return f"{speed:.6g} rad/s = {speed * 30 / math.pi:.6g} rpm"
 
 
 def _build_motor(section: FileSection) -> MotorCharacteristic:
-    """Build the motor characteristic, reduced to the driver."""
+    """Build the motor characteristic, with speeds and torques referred to the driver."""
     keys: optional_keys.MotorKeys = section.keys
     ratio = section.positive("ratio", NUMBER)
     required = MOTOR_KEYS[keys.kind]
@@ -184,8 +188,9 @@ def _build_motor(section: FileSection) -> MotorCharacteristic:
 
 
 def build_balancing(shape: schema.File, linkage: Linkage, values: ValueReader) -> BalancingTask | None:
-    """Build the balancing task, or None without the block. Balancing is computed in doubles only. Raises
-    ProblemError.
+    """Build the balancing task. Raises ProblemError.
+
+    Returns None if the file has no block `balancing`, or for double-doubles, as balancing is computed in doubles only.
     """
     keys = shape.balancing
     if keys is None or isinstance(values.units, ExtendedUnits):
@@ -269,7 +274,10 @@ LinkageWith = Callable[[Mapping[str, object]], Linkage]  # the linkage with othe
 def build_wheels(
     shape: schema.File, linkage: Linkage, values: ValueReader, other: LinkageWith
 ) -> tuple[WheelTask, ...]:
-    """Build the tasks of all wheels with intermittent motion. Raises ProblemError."""
+    """Build the tasks of all wheels that move intermittently. Raises ProblemError.
+
+    other: returns the linkage with other values of the parameters.
+    """
     return tuple(_build_wheel(name, keys, shape, linkage, values, other) for name, keys in shape.intermittent.items())
 
 

@@ -1,4 +1,4 @@
-"""Keys of the blocks that few files have: dynamics, balancing, intermittent."""
+"""Keys of the blocks dynamics, balancing and intermittent, which few files have."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def _checked_drive(raw: Any) -> Any:
 
 
 class MotorKeys(Strict):
-    """A motor with its characteristic; speeds and torques refer to its own shaft."""
+    """A motor and its torque-speed characteristic; speeds and torques are those of the motor shaft."""
 
     kind: Literal["linear", "asynchronous"] = Field(
         description=(
@@ -32,7 +32,7 @@ class MotorKeys(Strict):
 
 
 class FlywheelKeys(Strict):
-    """A flywheel, its shaft and its form; with `inertia` it is given, without it its size is computed."""
+    """A flywheel, its shaft and its shape. Without `inertia` its size is computed."""
 
     inertia: Value | None = Field(
         default=None,
@@ -46,7 +46,7 @@ class FlywheelKeys(Strict):
 
 
 class ProfileKeys(Strict):
-    """Driving moment or force as a table; linear between its rows."""
+    """Driving moment or force as a table with linear interpolation."""
 
     against: Literal["time", "way"] = Field(
         description=(
@@ -62,7 +62,7 @@ class ProfileKeys(Strict):
 
 
 class RunKeys(Strict):
-    """A single run of the driver, integrated over time."""
+    """A single run of the driver, computed by integration over time."""
 
     from_: Value | None = Field(
         default=None, alias="from", description="driver coordinate at the start; default: that of position 0"
@@ -101,7 +101,7 @@ class DynamicsKeys(Strict):
 
 
 class CounterweightKeys(Strict):
-    """A counterweight on a link; its size and angle are computed."""
+    """A counterweight on a link; its mass (or radius) and its angle are computed."""
 
     about: Place | None = Field(
         default=None,
@@ -116,7 +116,7 @@ class CounterweightKeys(Strict):
 
 
 class RotorMassKeys(Strict):
-    """A mass that rotates with the shaft."""
+    """An unbalanced mass that rotates with the shaft."""
 
     mass: Value
     radius: Value
@@ -125,7 +125,7 @@ class RotorMassKeys(Strict):
 
 
 class RotorPlaneKeys(Strict):
-    """A plane in which a balancing mass is computed."""
+    """A correction plane, in which a balancing mass is computed."""
 
     at: Value = Field(description="coordinate of the plane along the shaft")
     radius: Value | None = Field(
@@ -141,7 +141,7 @@ def _expand_plane(raw: Any) -> Any:
 
 
 class RotorKeys(Strict):
-    """A shaft with masses, balanced by masses in one plane (statically) or in two planes (dynamically)."""
+    """A shaft with unbalanced masses, balanced in one plane (statically) or in two planes (dynamically)."""
 
     masses: list[RotorMassKeys] = Field(min_length=1, max_length=100)
     planes: list[
@@ -150,7 +150,7 @@ class RotorKeys(Strict):
 
 
 class BalancingKeys(Strict):
-    """Shaking force and moment on the frame at constant driver speed, and counterweights that balance them."""
+    """Shaking force and shaking moment on the frame at constant driver speed, and counterweights that balance them."""
 
     counterweights: dict[Name, CounterweightKeys] = Field(
         default_factory=dict, max_length=20, description="counterweights by the names of the links that carry them"
@@ -174,7 +174,7 @@ Settings = Annotated[list[Values], Field(min_length=1, max_length=12)]
 
 
 class WheelKeys(Strict):
-    """A ratchet wheel, a shaft on a one-way clutch, or a slotted flange, on the axis of the link that moves it."""
+    """A ratchet wheel, a shaft on a one-way clutch, or a slotted flange, coaxial with the link that moves it."""
 
     moves_with: Name = Field(description="link that carries the wheel along; it must be hinged to the frame")
     when: Literal["forward", "backward", "working stroke", "idle stroke"] = Field(

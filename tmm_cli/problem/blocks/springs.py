@@ -1,4 +1,4 @@
-"""Springs and friction of a problem file: their keys and their building."""
+"""Springs and friction in a problem file: their keys, and how they are added to a linkage."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
 
 class SpringKeys(Strict):
-    """A spring between two links, or a cylinder with a constant force; `torsion` instead of `rate` for a torsion
-    spring.
+    """A spring between two links, or a cylinder with a constant force. A torsion spring has `torsion` instead of
+    `rate`.
     """
 
     between: list[Name] = Field(min_length=2, max_length=2, description="two links; the frame may be one")
@@ -69,7 +69,7 @@ class FrictionKeys(Strict):
 
 
 def add_springs(linkage: Linkage, shape: schema.File, values: ValueReader) -> Linkage:
-    """Return the linkage with its springs and friction. Raises ProblemError."""
+    """Add springs and friction to a linkage. Raises ProblemError."""
     springs, friction = _build_springs(linkage, shape, values), _build_friction(linkage, shape, values)
     return replace(linkage, springs=springs, friction=friction)
 
@@ -122,7 +122,7 @@ def _build_spring(name: str, keys: SpringKeys, linkage: Linkage, section: FileSe
 
 
 def _build_friction(linkage: Linkage, shape: schema.File, values: ValueReader) -> tuple[FrictionRecord, ...]:
-    """Return the friction of each pair; empty without the block."""
+    """Build the friction of each pair; empty if the file has no block `friction`."""
     keys = shape.friction
     if keys is None:
         return ()

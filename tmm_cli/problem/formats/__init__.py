@@ -1,4 +1,4 @@
-"""File formats of other programs, one module each; all are read into an ImportedMechanism."""
+"""File formats of other programs, one module per format. Every reader returns an ImportedMechanism."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from tmm_cli.problem.formats.imported_mechanism import ImportedMechanism
 
 
 class FileFormat(Protocol):
-    """Interface of the module of a format."""
+    """Interface of a module that reads a file format: `recognised` tells whether a text has the format, `read` reads
+    it.
+    """
 
     def recognised(self, text: str) -> bool: ...
     def read(self, text: str, file: str) -> ImportedMechanism: ...
@@ -25,7 +27,15 @@ FORMATS: Final[dict[str, FileFormat]] = {
 
 
 def read_mechanism(text: str, file: str) -> ImportedMechanism:
-    """Read the mechanism of a file, whichever supported format it has. Raises ProblemError."""
+    """Read a mechanism from a file of another program, in any of the supported formats.
+
+    Args:
+        text: content of the file.
+        file: name of the file, for messages.
+
+    Raises:
+        ProblemError: the format is not supported, or the content is wrong.
+    """
     for file_format in FORMATS.values():
         if file_format.recognised(text):
             return file_format.read(text, file)

@@ -1,4 +1,4 @@
-"""A mechanism imported from another program, the reading of its file, and its text as a problem file."""
+"""A mechanism imported from another program, helpers to read its file, and its conversion to a problem file."""
 
 from __future__ import annotations
 
@@ -23,8 +23,15 @@ LengthUnit = Literal["mm", "cm", "m", "in"]
 
 @dataclass(frozen=True)
 class ImportedBody:
-    """A moving link. points: names; a point of several bodies, or of the frame, is a hinge. centre: position of the
-    centre of mass.
+    """A moving link of an imported mechanism.
+
+    Attributes:
+        name: name of the link in the imported file.
+        points: names of its points; a point that belongs to several links, or also to the frame, is a hinge.
+        label: description of the link.
+        mass: mass (kg).
+        inertia: moment of inertia about the centre of mass (kg m^2).
+        centre: position of the centre of mass (unit of length of the file); None if there is none.
     """
 
     name: str
@@ -37,7 +44,15 @@ class ImportedBody:
 
 @dataclass(frozen=True)
 class ImportedSlide:
-    """A point of the runner on a straight guide of the carrier through `through`, at an angle (rad)."""
+    """A prismatic pair: a point of the runner moves along a straight guide of the carrier.
+
+    Attributes:
+        runner: link that slides.
+        point: point of the runner on the guide.
+        carrier: link with the guide.
+        through: position of a point on the guide (unit of length of the file).
+        angle: angle of the guide (rad).
+    """
 
     runner: str
     point: str
@@ -48,10 +63,15 @@ class ImportedSlide:
 
 @dataclass(frozen=True)
 class ImportedDrive:
-    """Drive of a body: rotation on the frame (counterclockwise), or displacement along a guide of another body.
+    """Drive of a link: rotation relative to the frame, or displacement along a guide of another link.
 
-    speed: in `unit`, where `length/s` is the file's unit of length per second; acceleration: rad/s^2; on: body with
-    the guide; at: displacement from the point `through` of the guide (unit of length), None for a rotation.
+    Attributes:
+        body: driven link.
+        speed: speed in `unit`; positive counterclockwise or along the guide.
+        unit: unit of the speed; `length/s` is the unit of length of the file per second.
+        acceleration: angular acceleration (rad/s^2).
+        on: link with the guide, or the frame.
+        at: displacement from the point `through` of the guide (unit of length of the file); None for a rotation.
     """
 
     body: str
@@ -64,7 +84,16 @@ class ImportedDrive:
 
 @dataclass(frozen=True)
 class ImportedLoad:
-    """A force (N) at a point of a body, or a moment (N*m) on it. turns: the force rotates with the body."""
+    """A force at a point of a link, or a moment on a link.
+
+    Attributes:
+        name: name of the load in the imported file.
+        body: loaded link.
+        at: point of application (unit of length of the file).
+        force: force (N).
+        moment: moment (N m).
+        turns: True if the force rotates with the link.
+    """
 
     name: str
     body: str
@@ -76,11 +105,23 @@ class ImportedLoad:
 
 @dataclass(frozen=True)
 class ImportedMechanism:
-    """A mechanism in the configuration in which another program saved it.
+    """A mechanism in the position in which another program saved it.
 
-    places: positions of all points, in the unit of length; frame: names of the points of the frame; gravity: m/s^2,
-    None for the default; one_place: the file describes only this configuration; notes: what had to be interpreted;
-    left: what was not imported. Both are whole sentences.
+    Attributes:
+        program: name of the program.
+        title: title of the mechanism.
+        length: unit of length of the file.
+        places: positions of all points (unit of length of the file), by name.
+        frame: names of the points on the frame.
+        bodies: moving links.
+        drive: drive of the input link.
+        slides: prismatic pairs.
+        pushes: loads.
+        gravity: acceleration of gravity (m/s^2); None for the default.
+        output: name of the output link; empty if there is none.
+        one_place: True if the file describes only this position of the mechanism.
+        notes: sentences on how unclear data were interpreted.
+        left: sentences on what was not imported.
     """
 
     program: str
@@ -107,8 +148,9 @@ MAX_ITEMS = 500  # items of a list, keys of a mapping
 
 @dataclass(frozen=True)
 class FileNode:
-    """A value of a file that has been read. Its methods raise ProblemError, located in the file, if the value is of
-    another kind.
+    """A value of a file with its path, which reads itself as a number, name, list and so on.
+
+    The methods raise ProblemError, with line and column, if the value has another type.
     """
 
     tree: Tree
@@ -116,13 +158,13 @@ class FileNode:
     path: Path = ()
 
     def refused(self, message: str, allowed: str | None = None, near: str | None = None) -> ProblemError:
-        """Return the error, located in the file."""
+        """Return an error for this value, with line and column."""
         quoted = None if isinstance(self.data, dict | list) else quote(self.data)
         error = ProblemError(message, path=self.path, found=quoted, allowed=allowed, near=near)
         return error.located(self.tree.file, self.tree)
 
     def get(self, key: str) -> FileNode | None:
-        """Return the value of a key, or None."""
+        """Return the value of a key, or None if the key is missing."""
         child = self.mapping().get(key)
         return None if child is None else FileNode(self.tree, child, (*self.path, key))
 
@@ -134,7 +176,7 @@ class FileNode:
         return child
 
     def mapping(self) -> dict[str, Any]:
-        """Return the value as a dict."""
+        """Return the value as a dict of plain data."""
         if not isinstance(self.data, dict):
             raise self.refused(_("expected keys with values"))
         self._bounded(len(self.data))
@@ -145,7 +187,7 @@ class FileNode:
             raise self.refused(_("too many items or characters: at most {max_length}").format(max_length=MAX_ITEMS))
 
     def pairs(self) -> Iterator[tuple[str, FileNode]]:
-        """Yield keys and values."""
+        """Yield the keys of a mapping with their values."""
         for key, value in self.mapping().items():
             yield key, FileNode(self.tree, value, (*self.path, key))
 
@@ -157,20 +199,20 @@ class FileNode:
         return [FileNode(self.tree, value, (*self.path, k)) for k, value in enumerate(self.data)]
 
     def text(self) -> str:
-        """Return the value as a name."""
+        """Return the value as a name; a whole number counts as a name."""
         if isinstance(self.data, bool) or not isinstance(self.data, str | int) or len(str(self.data)) > 100:
             raise self.refused(_("expected a name"))
         return str(self.data)
 
     def one_of(self, names: Iterable[str]) -> str:
-        """Return the value, which must be one of the names."""
+        """Return the value, which must be one of these names."""
         allowed, name = list(names), self.text()
         if name not in allowed:
             raise self.refused(_("this value is not allowed here"), ", ".join(allowed), nearest_name(name, allowed))
         return name
 
     def number(self) -> float:
-        """Return the value as a number of a size that a mechanism can have."""
+        """Return the value as a number. Numbers that are too large for a mechanism are refused."""
         if isinstance(self.data, bool) or not isinstance(self.data, int | float):
             raise self.refused(_("expected a number"))
         if not -LARGEST <= self.data <= LARGEST:
@@ -178,7 +220,9 @@ class FileNode:
         return float(self.data)
 
     def vector(self) -> complex:
-        """Return two coordinates; a third one is ignored, as the mechanism is planar."""
+        """Return a list of coordinates as a complex number x + iy; a third coordinate is ignored, as the mechanism is
+        planar.
+        """
         items = self.items()
         if len(items) not in (2, 3):
             raise self.refused(_("expected two coordinates [x, y]"))
@@ -194,13 +238,26 @@ ROUNDING = 1e-15  # of the size: a coordinate that is less comes from rounding
 
 
 def problem_file_text(foreign: ImportedMechanism, source: str) -> str:
-    """Return the text of a problem file with this mechanism. source: name of the file that was read."""
+    """Convert an imported mechanism to the text of a problem file.
+
+    Args:
+        foreign: imported mechanism.
+        source: name of the imported file, for a comment.
+    """
     return "\n".join(_ProblemFileWriter.of(foreign).lines(source)) + "\n"
 
 
 @dataclass(frozen=True)
 class _ProblemFileWriter:
-    """names: of points, links: of bodies, as the problem file calls them; axes: origin and angle of each body."""
+    """Writer of the problem file of an imported mechanism.
+
+    Attributes:
+        foreign: imported mechanism.
+        names: name of each point in the problem file, by its imported name.
+        links: name of each link in the problem file, by its imported name.
+        axes: origin (unit of length of the file) and angle (rad) of the axes of each link, by its imported name.
+        size: largest distance of a point from the origin (unit of length of the file).
+    """
 
     foreign: ImportedMechanism
     names: dict[str, str]
@@ -355,8 +412,9 @@ class _ProblemFileWriter:
 
 
 def _axes(foreign: ImportedMechanism, body: ImportedBody) -> tuple[complex, float]:
-    """Return the axes of a body: origin in its first point, x axis towards the next point that does not coincide with
-    it.
+    """Return origin and angle (rad) of the axes of a link.
+
+    The origin is its first point; the x axis points to the next point that does not coincide with the origin.
     """
     positions = [foreign.places[point] for point in body.points]
     origin = positions[0] if positions else body.centre or 0j
@@ -365,7 +423,7 @@ def _axes(foreign: ImportedMechanism, body: ImportedBody) -> tuple[complex, floa
 
 
 def _has_extent(foreign: ImportedMechanism, name: str) -> bool:
-    """Return True if a body has two points that do not coincide."""
+    """Return True if a link has two points that do not coincide."""
     body = next(body for body in foreign.bodies if body.name == name)
     positions = [foreign.places[point] for point in body.points]
     return any(abs(z - positions[0]) > SAME * _mechanism_size(foreign) for z in positions)
@@ -376,8 +434,9 @@ def _mechanism_size(foreign: ImportedMechanism) -> float:
 
 
 def _choose_plain_names(names: Iterable[str], others: Iterable[str], *, digits: bool = False) -> dict[str, str]:
-    """Return a plain name for each: its own if it is plain, else the first free one of `others`. digits: numbers are
-    plain too.
+    """Choose for each imported name a name that YAML reads as a text: the same, or the first free one of `others`.
+
+    digits: whole numbers are also allowed.
     """
     original = list(dict.fromkeys(names))
     free = (other for other in others if other not in original)
@@ -385,7 +444,7 @@ def _choose_plain_names(names: Iterable[str], others: Iterable[str], *, digits: 
 
 
 def _is_plain_name(name: str, digits: bool) -> bool:
-    """Return True if YAML reads it as a name, not as null, true or nan."""
+    """Return True if YAML reads the text as a name, and not as null, true or nan."""
     if not PLAIN_NAME.fullmatch(name):
         return False
     try:
@@ -396,7 +455,7 @@ def _is_plain_name(name: str, digits: bool) -> bool:
 
 
 def _letter_names() -> Iterator[str]:
-    """Yield A, B, ..., Z, A1, B1, ...."""
+    """Yield the names A, B, ..., Z, A1, B1, ...."""
     for k in count():
         yield from (letter + (str(k) if k else "") for letter in ascii_uppercase)
 

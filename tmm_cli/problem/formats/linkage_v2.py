@@ -1,6 +1,6 @@
 """linkage/v2: the YAML format of the coursework client nickadminroot/tmm-cli (its skills/tmm-yaml/REFERENCE.md).
 
-Points are constructed step by step: rays, intersections of circles and lines, offsets.
+The file constructs points step by step: rays, intersections of circles and lines, offsets.
 """
 
 from __future__ import annotations
@@ -26,7 +26,11 @@ from tmm_cli.problem.reader import read_text
 
 
 class PointConstruction:
-    """Positions of the points of the file, in its one configuration. Raises ProblemError."""
+    """Construction of the points of a file in the one position that the file describes.
+
+    Raises:
+        ProblemError: a construction step is impossible or wrong.
+    """
 
     def __init__(self, top: FileNode) -> None:
         self.parameters = dict(top["parameters"].pairs()) if top.get("parameters") else {}
@@ -40,11 +44,11 @@ class PointConstruction:
             self.known[name] = self.place(original.one_of(self.known))
 
     def place(self, name: str) -> complex:
-        """Return the position of a known point."""
+        """Return the position of a constructed point."""
         return self.known[name]
 
     def number(self, node: FileNode) -> float:
-        """Return a number, or the value of the named parameter."""
+        """Return a number of the file; a name stands for the parameter of that name."""
         for __ in range(10):  # a parameter may stand for another
             if not isinstance(node.data, str):
                 return node.number()
@@ -52,7 +56,7 @@ class PointConstruction:
         raise node.refused(_("the parameters refer to each other in a circle"))
 
     def of(self, step: FileNode, key: str) -> complex:
-        """Return the position of the point that a key names."""
+        """Return the position of the point named under a key of a construction step."""
         return self.place(step[key].one_of(self.known))
 
 
@@ -75,7 +79,10 @@ def _circle_circle(points: PointConstruction, step: FileNode) -> complex:
 
 
 def _circle_line(across: complex) -> Callable[[PointConstruction, FileNode], complex]:
-    """Return the construction step that intersects a circle with a line x = ... or y = ...."""
+    """Create the construction step that intersects a circle with a line x = ... or y = ....
+
+    across: unit vector perpendicular to the line, 1 for x = ... and i for y = ....
+    """
 
     def found(points: PointConstruction, step: FileNode) -> complex:
         centre, radius = points.of(step, "center"), points.number(step["radius"])
@@ -88,7 +95,7 @@ def _circle_line(across: complex) -> Callable[[PointConstruction, FileNode], com
 
 
 def _circle_ray(points: PointConstruction, step: FileNode) -> complex:
-    """Intersect a circle with a ray, given by its angle or by a second point and a rotation angle."""
+    """Intersect a circle with a ray, given by its angle or by a second point and an angle by which it is rotated."""
     centre, radius, start = points.of(step, "center"), points.number(step["radius"]), points.of(step, "from")
     if step.get("through"):
         turn = cmath.rect(1, math.radians(points.number(step["rotate_deg"]))) if step.get("rotate_deg") else 1
@@ -121,7 +128,9 @@ SIDES: Final[dict[str, Callable[[complex], float]]] = {
 
 
 def _choose_branch(step: FileNode, ends: tuple[complex, complex], along: complex) -> complex:
-    """Return the one of two intersections that the step names; ccw: left of the line of centres."""
+    """Return the intersection that the key `branch` of the step names; ccw is the one to the left of the line of
+    centres.
+    """
     branch = step["branch"].one_of((*SIDES, "ccw", "cw"))
     if branch in SIDES:
         return max(ends, key=SIDES[branch])
@@ -197,12 +206,12 @@ HINGE, GUIDE = "revolute", "prismatic"
 
 
 def recognised(text: str) -> bool:
-    """Return True if the text is in this format."""
+    """Return True if the text is a file in the format linkage/v2."""
     return re.search(r"^[ \t]*schema:[ \t]*[\"']?linkage/v2", text, re.MULTILINE) is not None
 
 
 def read(text: str, file: str) -> ImportedMechanism:
-    """Read the mechanism of a file. Raises ProblemError."""
+    """Read the mechanism from a linkage/v2 file. Raises ProblemError."""
     top = FileNode(tree := read_text(text, file), tree.data)
     return _LinkageV2Reader(top, PointConstruction(top)).foreign()
 
@@ -213,7 +222,7 @@ class _LinkageV2Reader:
     points: PointConstruction
 
     def foreign(self) -> ImportedMechanism:
-        """Return the mechanism. Raises ProblemError."""
+        """Build the imported mechanism from the file. Raises ProblemError."""
         hinges, slides = self._hinges(), self._slides()
         names = _name_points(hinges, [(slide.runner, slide.point) for slide in slides])
         bodies = tuple(
@@ -268,7 +277,7 @@ class _LinkageV2Reader:
         return FRAME if name == "ground" else node.one_of(self.top["bodies"].mapping())
 
     def _hinges(self) -> list[list[tuple[str, str]]]:
-        """Return for each revolute pair its bodies with their points."""
+        """Return for each revolute pair a list of its links, each with the name of its point."""
         hinges = []
         for joint in self.top["joints"].items():
             if joint["type"].one_of((HINGE, GUIDE)) == HINGE:
@@ -292,7 +301,9 @@ class _LinkageV2Reader:
         return slides
 
     def _frame(self, body: str) -> tuple[complex, float]:
-        """Return origin and direction of the axes of a body; those of a slider are parallel to the frame's."""
+        """Return the origin and the direction (unit vector) of the axes of a link; the axes of a slider are parallel to
+        the frame.
+        """
         if body == FRAME:
             return 0j, 0.0
         frame = self.top["bodies"][body]["frame"]
@@ -303,7 +314,7 @@ class _LinkageV2Reader:
         return origin, math.radians(self._value(frame, "angle_deg"))
 
     def _through(self, node: FileNode, origin: complex, turn: float) -> complex:
-        """Return a point of a guide, given by name or by coordinates in the axes of its body."""
+        """Return the position of a point on a guide, given by its name or by coordinates in the axes of the link."""
         if isinstance(node.data, str):
             return self.points.place(node.one_of(self.points.known))
         return origin + node.vector() * cmath.rect(1, turn)
@@ -321,7 +332,7 @@ class _LinkageV2Reader:
         return self.points.place(com.one_of(self.points.known))
 
     def _with_points(self, body: ImportedBody) -> ImportedBody:
-        """Return the body with the masses attached to its points."""
+        """Add the masses attached at points of a link to its mass properties."""
         mass, inertia, centre = body.mass, body.inertia, body.centre or 0j
         for attached in self.top["attached_masses"].items() if self.top.get("attached_masses") else ():
             if self._body(attached["body"]) == body.name:
@@ -377,7 +388,7 @@ class _LinkageV2Reader:
 
 
 def _name_points(hinges: list[list[tuple[str, str]]], runners: list[tuple[str, str]]) -> dict[tuple[str, str], str]:
-    """Return a name for each point of each body: the same for the points of a hinge, different otherwise."""
+    """Choose a name for each point of each link; only the points of a hinge have the same name."""
     joined: list[set[tuple[str, str]]] = []
     for ends in [*hinges, *([runner] for runner in runners)]:
         group = set(ends).union(*(other for other in joined if other & set(ends)))

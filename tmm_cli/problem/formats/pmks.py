@@ -1,4 +1,4 @@
-"""Mechanisms of PMKS+ (app.pmksplus.com): records of its saved links, and what they describe.
+"""Mechanisms of PMKS+ (app.pmksplus.com): records of a saved file, and their conversion to a mechanism.
 
 Meaning of the records: mechanism-builder.ts, legacy-production-connections.ts, transcoder-data.ts and
 docs/force-analysis-units.md of PMKS-Web/Planar-Mechanism-Kinematic-Simulator.
@@ -34,11 +34,20 @@ UNIT_NAMES: Final[dict[LengthUnit, str]] = {"cm": "g, kg*cm^2, N", "m": "kg, kg*
 
 @dataclass(frozen=True)
 class PmksJoint:
-    """A joint. The attributes below `input` describe a sliding joint, except `speed`.
+    """Record of a joint in a PMKS+ file.
 
-    angle: of a guide on the frame, rad; carrier, slot: link with the slot and two of its joints on the slot;
-    welded: the links of the joint do not rotate relative to the guide (revolute joint: they are one link);
-    mass: of the sliding block; speed: of the drive, rpm or units of length per second, 0: that of the file.
+    Attributes:
+        id: name of the joint.
+        place: position (unit of length of the file).
+        slides: True for a sliding joint.
+        ground: True if the joint is on the frame.
+        input: True if the joint is driven.
+        angle: angle of a guide on the frame (rad).
+        welded: True if the links do not rotate relative to the guide; at a revolute joint, if they form one link.
+        carrier: link with the slot; empty if there is none.
+        slot: the two joints of the carrier between which the slot lies.
+        mass: mass of the sliding block (unit of mass of the file).
+        speed: speed of the drive (rpm, or units of length per second); 0 for the speed of the file.
     """
 
     id: str
@@ -56,7 +65,16 @@ class PmksJoint:
 
 @dataclass(frozen=True)
 class PmksLink:
-    """A link. piston: a sliding block of an older file, with its sliding joint and pin; parts: links welded into it."""
+    """Record of a link in a PMKS+ file.
+
+    Attributes:
+        id: name of the link in the file.
+        joints: names of its joints.
+        piston: True for a sliding block of an older version, which has a sliding joint and a pin.
+        mass, inertia, centre: mass properties in the units of the file.
+        name: name shown by PMKS+.
+        parts: names of the links welded to this one.
+    """
 
     id: str
     joints: tuple[str, ...]
@@ -70,7 +88,16 @@ class PmksLink:
 
 @dataclass(frozen=True)
 class PmksForce:
-    """A force between two points; outward: it points from start to end, else the other way. size: N, or lbf."""
+    """Record of a force in a PMKS+ file, drawn as an arrow between two points.
+
+    Attributes:
+        id: name of the force.
+        link: loaded link.
+        start, end: ends of the arrow (unit of length of the file); the force acts at `start`.
+        turns: True if the force rotates with the link.
+        outward: True if the force points from `start` to `end`; False for the opposite direction.
+        size: magnitude (N or lbf).
+    """
 
     id: str
     link: str
@@ -83,8 +110,17 @@ class PmksForce:
 
 @dataclass(frozen=True)
 class PmksFile:
-    """Content of a PMKS+ file. rpm: positive counterclockwise; linear: speed of driven sliders, units of length per
-    second.
+    """Content of a PMKS+ file.
+
+    Attributes:
+        joints, links, forces: records of the file.
+        rpm: speed of driven cranks (rpm, positive counterclockwise).
+        gravity: True if gravity is switched on.
+        length: unit of length.
+        linear: speed of driven sliders (units of length per second).
+        notes: sentences on how unclear data were interpreted.
+        left: sentences on what is not imported.
+        title: title of the mechanism.
     """
 
     joints: tuple[PmksJoint, ...]
@@ -100,7 +136,7 @@ class PmksFile:
 
 
 def import_pmks(saved: PmksFile, file: str) -> ImportedMechanism:
-    """Convert the content of a PMKS+ file to a mechanism. Raises ProblemError."""
+    """Convert the content of a PMKS+ file to an imported mechanism. Raises ProblemError."""
     _refuse_wrong_names(saved, file)
     return _PmksMechanism.of(_fold_blocks(saved, file), file).foreign()
 
@@ -137,9 +173,7 @@ def _refuse_wrong_names(saved: PmksFile, file: str) -> None:
 
 
 def _fold_blocks(saved: PmksFile, file: str) -> PmksFile:
-    """Return the file with each sliding block of an older version, its sliding joint and its pin replaced by one
-    joint.
-    """
+    """Replace each sliding block of an older version, with its sliding joint and its pin, by one joint."""
     joints = {joint.id: joint for joint in saved.joints}
     links, renamed = [link for link in saved.links if not link.piston], dict[str, str]()
     for block in (link for link in saved.links if link.piston):
@@ -176,7 +210,16 @@ def _fold_blocks(saved: PmksFile, file: str) -> PmksFile:
 
 @dataclass(frozen=True)
 class _PmksMechanism:
-    """Bodies of a file. frame: links pinned to the frame at two points; owner: for each link, its whole link."""
+    """Converter of a PMKS+ file.
+
+    Attributes:
+        saved: content of the file.
+        file: name of the file, for messages.
+        joints: joints by name.
+        owner: for each link record, the link that it is welded to (or itself).
+        frame: links that are pinned to the frame at two points.
+        left: sentences on what is not imported.
+    """
 
     saved: PmksFile
     file: str
@@ -205,7 +248,7 @@ class _PmksMechanism:
                     joints[name] = joints[name] if joints[name].slides else replace(joints[name], ground=True)
 
     def foreign(self) -> ImportedMechanism:
-        """Return the mechanism. Raises ProblemError."""
+        """Build the imported mechanism. Raises ProblemError."""
         slides = list(self._slides())
         blocks = [
             ImportedBody(name, (joint.id,), mass=joint.mass * KILOGRAMS[self.saved.length])
@@ -250,7 +293,7 @@ class _PmksMechanism:
         )
 
     def _riders(self, joint: PmksJoint) -> list[str]:
-        """Return the moving links on a joint; for a sliding joint without the link that has the slot."""
+        """Return the moving links of a joint; of a sliding joint without the link that has the slot."""
         carrier = self._carrier(joint) if joint.slides else ""
         return [
             link.id
@@ -287,7 +330,7 @@ class _PmksMechanism:
                 yield ImportedSlide(self._block(joint) or riders[0], joint.id, carrier, through, angle)
 
     def _slot(self, joint: PmksJoint) -> tuple[complex, float]:
-        """Return a point of the slot and its angle (rad)."""
+        """Return the position of a point on the slot and the angle of the slot (rad)."""
         carrier = next(link for link in self.saved.links if link.id == self.owner[joint.carrier])
         if joint.ground:
             raise self._refused(joint, _("this slot is recorded both on the frame and on a link"), quote(joint.carrier))

@@ -1,12 +1,12 @@
-"""PMKS+: a saved link, or the text of a .pmks file, which is the query of that link.
+"""Reader of PMKS+ web links and .pmks files; a .pmks file contains the query part of such a link.
 
 Source: PMKS-Web/Planar-Mechanism-Kinematic-Simulator, src/app/services/transcoding, string-transcoder.ts (records),
 checksum.ts (check character, digest of autumn 2026), stored-settings.ts, precise-values.ts, gear-codec.ts,
 structural-codec.ts, body-document-envelope.ts (pmks2:).
 
 Settings, joints, links, forces, the selected object and a list of tagged entries are separated by full stops, fields
-of a record by commas. Numbers are integers to the base 64 in thousandths; negative ones begin with a zero. Fields of
-the records, where each of the later ones may be missing:
+of a record by commas. Numbers are integers in base 64, in thousandths of the unit; a negative number begins with a
+zero. Fields of the records (fields at the end of a record may be missing):
 
 joint: flags and id, name, x, y, angle (rad), carrier and two joints of a slot, drive speed, mass of the block,
        whether a welded link stands on the slider, name of the machine
@@ -44,13 +44,13 @@ IGNORED_TAGS = "JLFCHK"  # tags of locks, anchors of centres of mass, held lengt
 
 
 def recognised(text: str) -> bool:
-    """Return True if the text is in this format."""
+    """Return True if the text is a PMKS+ web link or a .pmks file."""
     text = text.strip()
     return len(text) < MAX_TEXT_LENGTH and (LINK_TEXT.fullmatch(text) or NEW_DOCUMENT.fullmatch(text)) is not None
 
 
 def read(text: str, file: str) -> ImportedMechanism:
-    """Read the mechanism of a file. Raises ProblemError."""
+    """Read the mechanism from a PMKS+ web link or .pmks file. Raises ProblemError."""
     if NEW_DOCUMENT.fullmatch(text.strip()):
         raise ProblemError(
             _("documents of the new PMKS+ editor are not supported"),
@@ -64,7 +64,7 @@ def read(text: str, file: str) -> ImportedMechanism:
 
 
 def _strip_checks(content: str, file: str) -> str:
-    """Return the text without its check character and checksum. Raises ProblemError if they do not match."""
+    """Remove the check character and the checksum from the text. Raises ProblemError if they do not match it."""
     body, mark, digest = content.rpartition("*")
     if mark and digest != _digest(body):
         raise ProblemError(
@@ -98,7 +98,15 @@ def _digest(body: str) -> str:
 
 @dataclass(frozen=True)
 class _LinkRecords:
-    """Records of a web link, field by field. exact: numbers finer than thousandths, by kind, id and index."""
+    """Records of a web link, split into fields.
+
+    Attributes:
+        settings: fields of the settings.
+        joints, links, forces: records, each a list of fields.
+        exact: numbers stored more precisely than in thousandths, by kind and id of the record and index of the number.
+        left: sentences on what is not imported.
+        file: name of the file, for messages.
+    """
 
     settings: tuple[str, ...]
     joints: list[list[str]]
@@ -110,7 +118,7 @@ class _LinkRecords:
 
     @classmethod
     def of(cls, content: str, file: str) -> _LinkRecords:
-        """Split the text into records. Raises ProblemError."""
+        """Split the text of a web link into records. Raises ProblemError."""
         *settings, rest = content.split(".", 4)
         joints, rest = _split_records(rest)
         links, rest = _split_records(rest)
@@ -120,7 +128,7 @@ class _LinkRecords:
         return cls(tuple(settings), records[0], records[1], records[2], exact, left, file)
 
     def saved(self) -> PmksFile:
-        """Return the content of the file. Raises ProblemError."""
+        """Decode the records. Raises ProblemError."""
         flags, decimals, whole, words = self.settings
         on = self._integer(flags, ("settings",), signed=False)
         if not words or words[0] not in DIGITS[: len(LENGTHS)]:
@@ -192,7 +200,12 @@ class _LinkRecords:
         )
 
     def _link(self, fields: list[str]) -> tuple[PmksLink, str]:
-        """Return the link and the character for its kind: root or welded, and what PMKS+ computes automatically."""
+        """Decode the record of a link.
+
+        Returns:
+            The link, and the character that tells whether it is welded to another link and which of its mass properties
+            PMKS+ computes itself.
+        """
         kind, form, name = fields[0][:1], fields[0][1:2], fields[0][2:]
         path = ("links", name)
         if not name or len(fields) < 9 or form not in ("R", "P"):
@@ -209,7 +222,9 @@ class _LinkRecords:
         return PmksLink(name, joints, form == "P", mass, inertia, complex(x, y), fields[1], parts), kind
 
     def _whole(self, link: PmksLink) -> PmksLink:
-        """Return the link with the parts of its parts, and the joints of all."""
+        """Return the link with all links that are welded to it, directly or indirectly, and with the joints of all of
+        them.
+        """
         records = {fields[0][2:]: self._link(fields)[0] for fields in self.links}
         parts, joints = list(link.parts), list(link.joints)
         for name in parts:  # grows while it is read
@@ -235,7 +250,7 @@ class _LinkRecords:
     def _number(
         self, path: tuple[str, ...], kind: str, name: str, index: int, text: str, needed: bool = False
     ) -> float:
-        """Return a field in thousandths as a number; an empty field is zero unless it is needed."""
+        """Decode a number stored in thousandths; an empty field is zero, or an error if the number is needed."""
         if (kind, name, index) in self.exact:
             return self.exact[kind, name, index]
         return self._integer(text, path) / 1000 if text or needed else 0.0
@@ -254,8 +269,9 @@ class _LinkRecords:
 
 
 def _split_records(rest: str) -> tuple[list[str], str]:
-    """Return the records of joints, links or forces, and the rest; a full stop ends each record and one more ends them
-    all.
+    """Split off the records of joints, links or forces, and return them with the remaining text.
+
+    Each record ends with a full stop; one more full stop ends the group of records.
     """
     records = []
     while rest and rest[0] != ".":
@@ -265,7 +281,11 @@ def _split_records(rest: str) -> tuple[list[str], str]:
 
 
 def _read_entries(tail: str, file: str) -> tuple[dict[tuple[str, str, int], float], tuple[str, ...]]:
-    """Return exact numbers and texts about what is not imported, from the tagged entries. Raises ProblemError."""
+    """Read the tagged entries at the end of a web link. Raises ProblemError.
+
+    Returns:
+        Exact numbers by kind and id of the record and index of the number; sentences on what is not imported.
+    """
     exact: dict[tuple[str, str, int], float] = {}
     left: list[str] = []
     for entry in filter(None, tail.split(",")):

@@ -22,12 +22,12 @@ LINK_TYPES = ("ground", "driver", "arc_driver", "link")
 
 
 def recognised(text: str) -> bool:
-    """Return True if the text is in this format."""
+    """Return True if the text is a JSON file of pylinkage."""
     return text.lstrip().startswith("{") and '"joints"' in text and '"links"' in text
 
 
 def read(text: str, file: str) -> ImportedMechanism:
-    """Read the mechanism of a file. Raises ProblemError."""
+    """Read the mechanism from a JSON file of pylinkage. Raises ProblemError."""
     top = FileNode(tree := read_text(text, file), tree.data)
     joints: dict[str, FileNode] = {}
     for joint in top["joints"].items():

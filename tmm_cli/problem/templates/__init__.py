@@ -1,6 +1,6 @@
-"""Templates of problem files for `tmm new`: every *.yaml beside this file is one; its title describes it.
+"""Templates of problem files for `tmm new`. Every *.yaml file in this folder is a template; its title describes it.
 
-They are written in English. Titles, names of links and comments are translated in translations/words.yaml;
+Templates are written in English. Titles, link names and comments are translated by means of translations/words.yaml;
 everything else is the same in every language.
 """
 
@@ -25,7 +25,7 @@ Translate = Callable[[str], str]
 
 
 def list_templates(language: str = ENGLISH) -> dict[str, str]:
-    """Return the titles of the templates by name."""
+    """Return the titles of all templates in a language, by name of the template."""
     translate, titles_by_name = _translator(language), {}
     for entry in sorted(files(__name__).iterdir(), key=lambda e: e.name):
         if entry.name.endswith(".yaml"):
@@ -35,8 +35,12 @@ def list_templates(language: str = ENGLISH) -> dict[str, str]:
 
 
 def template_text(name: str, language: str = ENGLISH, file: str | None = None) -> str:
-    """Return a template with its comments in a language. file: name of the new file, for the command in its first
-    comment.
+    """Return the text of a template with its comments in a language.
+
+    Args:
+        name: name of the template.
+        language: language code.
+        file: name of the new file, for the command in the first comment.
     """
     text = files(__name__).joinpath(f"{name}.yaml").read_text(encoding="utf-8")
     first, rest = text.split("\n", 1)
@@ -50,7 +54,7 @@ def template_text(name: str, language: str = ENGLISH, file: str | None = None) -
 
 
 def load_translations() -> list[dict[str, str]]:
-    """Return the texts of the templates, each in every language."""
+    """Load the texts of the templates; each entry contains one text in every language, by language code."""
     text = files(__name__).joinpath("translations/words.yaml").read_text(encoding="utf-8")
     entries: list[dict[str, str]] = yaml.safe_load(text)
     return entries
@@ -64,8 +68,9 @@ def _translator(language: str) -> Translate:
 
 
 def _translate_lines(lines: list[str], translate: Translate) -> list[str]:
-    """Translate lines of a template: comments of several lines are paragraphs, wrapped anew; others follow their
-    values.
+    """Translate the lines of a template.
+
+    A comment of several lines is translated as a paragraph and wrapped again; other comments stand behind values.
     """
     translated_lines: list[str] = []
     paragraph: list[str] = []
