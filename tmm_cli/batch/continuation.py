@@ -29,7 +29,7 @@ from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.numerics import CONVERGED, SAME_STATE, Real
 
 TABLE_PIECES = 1440  # per revolution of the driver, or in its whole range
-TABLE_NEWTON_STEPS = 4  # Newton steps from the nodes of the trace to those of the table
+TABLE_NEWTON_STEPS = 4  # Newton steps at each node of the table
 
 Placeholders = Sequence[Any]
 
@@ -220,7 +220,7 @@ def _unknowns_from_trace(kernel: UnrolledNewton, trace: BranchTrace, q: Real) ->
 # Initial guesses for many variants at once: each is continued from the first linkage, then along its driver range.
 #
 # At the sketched position the numbers change from those of the first linkage to those of each variant. From there all
-# variants are continued along their driver ranges, up and down at once: predicted from rates and their differences, and
+# variants are continued along their driver ranges, up and down at once: predicted from derivatives, and
 # corrected by replaying a trace. A step with too large a correction, or across a dead position, is halved; a variant
 # whose quarter steps fail too ends there.
 
@@ -284,10 +284,10 @@ class ContinuedPaths:
         flat = (k + n).astype(np.intp) + many * np.arange(variants)[:, None]
         x, v = (nodes.reshape(unknowns, -1) for nodes in (self.x, self.v))
         a, b = x.take(flat, axis=1), x.take(flat + 1, axis=1)
-        # the step of the piece: the piece from -1 to 0 is one of the way down
+        # step of the interval; the one from -1 to 0 is part of the downward path
         left, right = (step * v.take(f, axis=1) for f in (flat, flat + 1))
         guesses = a + t * (left + t * (3 * (b - a) - 2 * left - right + t * (2 * (a - b) + left + right)))
-        guesses = np.where(np.abs(t) <= NODE_TOLERANCE, a, guesses)  # a node, whatever lies after it
+        guesses = np.where(np.abs(t) <= NODE_TOLERANCE, a, guesses)  # at a node; the next may be missing
         if self.gain is not None:
             guesses = np.where(whole == 0, guesses, guesses + whole * self.gain)
         return list(guesses)
@@ -406,7 +406,7 @@ class Continuation:
             around = np.where(self.turning[:, None, None], 2 * np.pi * np.round(gain / (2 * np.pi)), 0.0)
             with np.errstate(invalid="ignore"):
                 other = np.any(np.abs(gain - around) > SAME_STATE * self.scale[:, None, None], axis=(0, 2))
-            x[:, other] = np.nan  # a cycle later it is assembled otherwise
+            x[:, other] = np.nan  # after one cycle the assembly is different
         return ContinuedPaths(self.at, x, v, (-ends[0][:, None] / n, ends[1][:, None] / n), gain)
 
     def _continue_in_steps(self, numbers: Real, sketched: Real, steps: Real, n: int) -> Real:
@@ -418,14 +418,14 @@ class Continuation:
             Unknowns and derivatives, (2, unknowns, variants, 2 n + 1).
         """
         variants = len(numbers)
-        sides = [side for side in (0, 1) if np.any(steps[side])]  # which ways lead anywhere
+        sides = [side for side in (0, 1) if np.any(steps[side])]  # directions in which there are steps
         both = np.tile(numbers, (len(sides), 1))
         h = np.concatenate([steps[side] for side in sides])
         now = np.tile(sketched, (1, 1, len(sides)))
         paths = np.full((*now.shape, n + 1), np.nan)
         paths[..., 0] = now
         bend = np.zeros_like(now[0])
-        gone, step_share = np.zeros(len(h)), np.ones(len(h))  # in steps
+        gone, step_share = np.zeros(len(h)), np.ones(len(h))  # number of steps
         active = np.isfinite(now[0, 0])
         while np.any(active):
             step = h * step_share

@@ -137,11 +137,7 @@ def continue_groups(
     return tuple(continued)
 
 
-# Variants of a linkage as one linkage whose numbers are arrays, (variants, 1), with positions and strokes of each.
-#
-# All stages then run over (variants, positions) at once. A variant that cannot be treated together with the others
-# (groups that cannot be traced, several drivers, drivers with a stroke, outputs of more than two strokes) is a family
-# of its own and is solved as a separate file.
+# Families of variants.
 
 
 SCAN = 72  # positions per revolution; ends of strokes closer together than this are not separated
@@ -232,7 +228,7 @@ def build_family(make: Make, columns: Real) -> VariantFamily | None:
             for kernel in kernels
         ):
             return None
-        if cycle_turns(plain, kernels) != 1:  # strokes are looked for in one turn
+        if cycle_turns(plain, kernels) != 1:  # strokes are searched for in one revolution
             return None
         kernels = continue_groups(
             lambda data: placeholder_linkage(make, first, data, plain.sketch), columns, plain, kernels
@@ -302,7 +298,7 @@ def _output_strokes(
     curve = OutputCurve(linkage, solvers_towards(kernels, [link]), link)
     forward = np.broadcast_to(moving_slope(whole, link), q.shape) >= 0
     turns_back = forward[:, :-1] != forward[:, 1:]
-    if not np.any(turns_back):  # it turns on and on
+    if not np.any(turns_back):  # the output rotates without reversing
         return Strokes(link, curve.kind, (), ""), sound
     sound = sound & (np.sum(turns_back, axis=1) == 2)
     if not np.any(sound):

@@ -51,7 +51,7 @@ CHECKS = ("placed", "moving", "margin")
 CONVERGED, ANGLES_AGREE = (
     "sure",
     "wound",
-)  # Newton steps of the trace converged; accumulated angles of gears agree with its tables
+)  # Newton steps converged; accumulated angles of gears agree with the tables
 CHECK_OUTPUTS = (*CHECKS, CONVERGED, ANGLES_AGREE)
 
 
@@ -65,7 +65,7 @@ def read_all(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
     """
     outputs: dict[str, Any] = {}
     for quantity, name, value in leading_values(motion, reactions, first=True):
-        if quantity.dimension != ANGLE:  # of a link its points tell it
+        if quantity.dimension != ANGLE:  # the points of a link determine its angle
             outputs[f"{quantity.symbol}.{name}" if quantity.symbol else f"{name}.{quantity.name}"] = value
     return outputs
 
@@ -98,9 +98,7 @@ class Batch:
     checks: TraceProgram | None = None
     columns: tuple[Real, ...] = ()
     starts: Callable[[Real], list[Real]] | None = None
-    others: dict[int, tuple[GroupSolver, ...]] = field(
-        default_factory=dict
-    )  # groups of linkages that were looked at alone
+    others: dict[int, tuple[GroupSolver, ...]] = field(default_factory=dict)
 
     def __call__(self, q: Real) -> TraceOutputs | Mapping[str, Real]:
         """Solve the linkages at driver coordinates q (rad or m).
@@ -193,14 +191,14 @@ def prepare_batch(
         raise ValueError(f"load {by_stroke[0]}: a table by the strokes needs the strokes of one linkage")
     structure = analyse_mobile_structure(first)
     kernels = assemble(first, structure)
-    # several drivers pass through the sketched coordinates together: a trace holds those of the first linkage
+    # with several drivers a trace contains the sketched coordinates of the first linkage
     apart = bool(first.others) and any(linkage.sketch.at != first.sketch.at for linkage in linkages)
     alone = Batch(linkages, structure, kernels, read, forces, strokes, None)
     lines = None if apart or first.friction else traceable_groups(first, kernels)
     if lines is None:
         return alone
     columns, together = split_real_columns(varying_numbers(linkages))
-    if len(linkages) > 1 and not columns:  # all the same
+    if len(linkages) > 1 and not columns:  # all linkages are equal
         columns = [np.zeros((len(linkages), 1))]
     many = len(columns)
     steps = VARIANT_NEWTON_STEPS if many else None
@@ -217,7 +215,7 @@ def prepare_batch(
     axes = (*[1] * many, 3 if own_places else 2, *[3 if many else 2] * count_initial_guesses(lines))
     try:
         whole = trace_function(stages, *axes, data=dict(enumerate(columns)))
-    except DependsOnData:  # laws of cams
+    except DependsOnData:  # e.g. cam laws
         return alone
     starts: Callable[[Real], list[Real]] | None = None
     if count_initial_guesses(lines):

@@ -155,7 +155,7 @@ DRAWN_KINEMATICS_TOLERANCE, DRAWN_FORCES_TOLERANCE, COMPUTED_TOLERANCE = (
     0.03,
     0.05,
     0.005,
-)  # shares of the largest value: drawn, drawn, computed
+)  # fractions of the largest value
 
 
 @dataclass(frozen=True)

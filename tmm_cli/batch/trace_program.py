@@ -77,13 +77,10 @@ class TraceOutputs(Mapping[str, Array]):
         return combined
 
 
-# Trace as a program: straight-line NumPy calls on registers that are allocated before the data come.
-#
-# Memory is allocated once, each call writes its result in place, and long data are processed in chunks that fit into
-# the processor's cache. Data with fewer positions than variants have variants on the last axis, where NumPy is faster.
+# Programs: NumPy calls on registers that are allocated in advance.
 
 
-CHUNK = 9000  # numbers in a register: fewer cost more calls, more cost cache misses
+CHUNK = 9000  # numbers in a register: with fewer there are more calls, with more there are cache misses
 
 
 @dataclass(frozen=True)
@@ -161,14 +158,14 @@ class _CompiledProgram:
         outputs = [v for parts in program.outputs.values() for v in parts if isinstance(v, Term)]
         self.small = {t.number for t in outputs if t.op == "input" or t.axes != self.everywhere}
         slots = {t.number: t for t in outputs if t.number not in self.small}
-        ordered = sorted(slots.values(), key=lambda t: t.truth)  # truths last
+        ordered = sorted(slots.values(), key=lambda t: t.truth)  # booleans last
         self.slots = {t.number: k for k, t in enumerate(ordered)}
         self.truths = sum(t.truth for t in ordered)
         writer = _ProgramWriter(full, self.slots)
         self.operations, self.kinds, self.outer = len(writer.lines), writer.kinds, writer.outer
         names: dict[str, Any] = {f"f_{name}": function for name, function in UFUNCS.items()}
         names |= {"copy": np.copyto, "where": np.where, "read": _interpolate, "call": _call} | writer.constants
-        exec(compile(writer.source, "<trace>", "exec"), names)  # made of names of NumPy functions and registers alone
+        exec(compile(writer.source, "<trace>", "exec"), names)  # contains only names of NumPy functions and registers
         self.function = names["program"]
         self.space: dict[tuple[int, int], list[Array]] = {}
 
@@ -197,7 +194,7 @@ class _CompiledProgram:
             if rows <= high and columns <= wide:
                 planes = [*np.empty((floats, *shape)), *np.empty((truths, *shape), dtype=bool)]
                 self.function(*operands, *planes, *self.registers(shape))
-            else:  # a plane each: the system hands out one large block with all its pages to be cleared, each time
+            else:  # one array for each output: a single large block would be cleared by the system every time
                 planes = [np.empty(shape, dtype=bool if k >= floats else float) for k in range(floats + truths)]
                 for top in range(0, rows, high):
                     for left in range(0, columns, wide):
@@ -307,7 +304,7 @@ class _ProgramWriter:
                 self.kinds.append(term.truth)
             to = self._owned[term.number] = self._where[term.number] = free.pop()
         if op == "where":
-            if axes_of(args[0]) == 1:  # neighbours differ, which masked copying is slow at
+            if axes_of(args[0]) == 1:  # neighbouring elements differ, for which masked copying is slow
                 self.lines.append(f"copy({to}, where({', '.join(read)}))")
             else:
                 self.lines += [f"copy({to}, {read[2]})", f"copy({to}, {read[1]}, where={read[0]})"]

@@ -95,7 +95,7 @@ class Term:
     truth: bool
 
     def __repr__(self) -> str:
-        return f"<{self.op} {self.number}>"  # operands of operands without end would follow
+        return f"<{self.op} {self.number}>"  # the default would print all operands recursively
 
 
 @dataclass(repr=False)

@@ -204,7 +204,7 @@ FUNCTIONS: dict[Any, Callable[..., Any]] = {
     np.angle: lambda placeholder, value: np.arctan2(value.imag, value.real),
     np.interp: TracedArray.interp,
     np.round: lambda placeholder, value: np.rint(value),
-    np.any: lambda placeholder, value: isinstance(value.re, Term) or bool(value.re),  # of some variant it may be true
+    np.any: lambda placeholder, value: isinstance(value.re, Term) or bool(value.re),  # it may be true for some variant
 }
 
 
@@ -233,10 +233,7 @@ def trace_function(
     return TraceProgram(tuple(trace.terms), axes, outputs)
 
 
-# Numbers that vary between linkages, for code that builds a linkage: they branch like numbers and are recorded.
-#
-# Objects built from such numbers contain terms of a trace; checks and choices of the building code are those of one
-# linkage, the value.
+# Numbers that vary between linkages, for code that builds a linkage.
 
 
 class TracedNumber(NDArrayOperatorsMixin):
@@ -284,7 +281,7 @@ class TracedNumber(NDArrayOperatorsMixin):
         return TracedNumber(np.imag(self.value), np.imag(self.placeholder), self.otherwise)
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **_: Any) -> Any:
-        if method != "__call__" or ufunc is np.floor:  # what is whole for one linkage may not be so for another
+        if method != "__call__" or ufunc is np.floor:  # an integer for one linkage may not be one for another
             raise DependsOnData(f"{ufunc.__name__}, {method}, cannot be traced")
         value = ufunc(*(_value(x) for x in inputs))
         otherwise = next((x.otherwise for x in inputs if isinstance(x, TracedNumber) and x.otherwise is not None), None)

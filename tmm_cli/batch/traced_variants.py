@@ -74,8 +74,8 @@ class TracedVariants:
         self.lines = _traceable_groups(self.linkage, self.kernels)
         self.turns = cycle_turns(self.linkage, self.kernels) or 1
         varied = make([TracedNumber(x, x) for x in first])
-        self.start = varied.start if forces else None  # only forces depend on where its law begins
-        # several drivers pass through the sketched coordinates together: a trace holds those of the first linkage
+        self.start = varied.start if forces else None  # only forces depend on the beginning of the law of motion
+        # with several drivers a trace contains the sketched coordinates of the first linkage
         apart = bool(self.linkage.others) and isinstance(varied.linkage.sketch.at, TracedNumber)
         if apart or isinstance(self.start, TracedNumber):
             raise NotTraceableError
@@ -181,7 +181,7 @@ def _traceable_groups(linkage: Linkage, kernels: tuple[GroupSolver, ...]) -> tup
         raise NotTraceableError
     for kernel in lines:
         trace = kernel.followed
-        if trace is not None and trace.dead.size:  # on the other side of it the determinant has another sign
+        if trace is not None and trace.dead.size:  # beyond a dead position the determinant has the other sign
             raise NotTraceableError
     return lines
 
@@ -191,10 +191,7 @@ def _extra_numbers(variant: Variant) -> tuple[Any, ...]:
     return (*(variant.ends or ()), *variant.asked, *variant.wanted)
 
 
-# Variants of a linkage one after another, each as a separate file: for linkages that cannot be traced.
-#
-# Groups solved by iteration are continued from the nearest known variant, or else solved anew: this takes a hundred or
-# a thousand times as long as a trace.
+# Variants one after another, for linkages that cannot be traced.
 
 
 MOST_KEPT = 30  # variants kept as initial guesses

@@ -84,7 +84,7 @@ def split_real_columns(varying: Mapping[str, Real]) -> tuple[list[Real], Callabl
         pieces: list[int | complex] = []
         for piece in (values.real, values.imag) if np.iscomplexobj(values) else (values,):
             if np.all(piece == piece[0]):
-                pieces.append(complex(piece[0, 0]))  # a number for all
+                pieces.append(complex(piece[0, 0]))  # equal for all linkages
             else:
                 pieces.append(len(columns))
                 columns.append(np.ascontiguousarray(piece, dtype=float))

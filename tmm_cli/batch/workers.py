@@ -23,7 +23,7 @@ from tmm_cli.language import CourseNotation, _, course, speaking
 from tmm_cli.problem import ProblemError, quote
 
 RETRIES = 3  # of a failed job of a cluster
-ANSWER_TIMEOUT = 10  # s for an answer of the scheduler, and for a worker to appear
+ANSWER_TIMEOUT = 10  # s: limit for an answer of the scheduler, and for a worker to appear
 POLL = 0.02  # s
 SCHEDULER = re.compile(
     r"(?:tcp://)?(?:\[[\da-fA-F:.%]+\]|[\w.-]+):\d{1,5}"
@@ -33,7 +33,7 @@ Job = Callable[[], Any]  # may be pickled
 Stopped = Callable[[], bool]
 JobRunner = Callable[
     [Sequence[Job], Stopped], Iterator[tuple[int, Any]]
-]  # numbers of jobs and what they gave, as it comes
+]  # numbers of jobs and their results, in order of completion
 
 
 def run_here(jobs: Sequence[Job], stopped: Stopped) -> Iterator[tuple[int, Any]]:
@@ -81,13 +81,13 @@ def on_cluster(address: str) -> JobRunner:
 
 def _cluster(address: str, jobs: Sequence[Job], stopped: Stopped) -> Iterator[tuple[int, Any]]:
     try:
-        distributed: Any = import_module("distributed")  # typed in part alone
+        distributed: Any = import_module("distributed")  # only partly typed
     except ImportError:
         raise ProblemError(
             _("running on a cluster requires the package `distributed`"), allowed="pip install 'tmm-cli[cluster]'"
         ) from None
     for library in ("distributed", "asyncio"):
-        logging.getLogger(library).setLevel(logging.CRITICAL)  # what fails is reported here
+        logging.getLogger(library).setLevel(logging.CRITICAL)  # failures are reported by this function
     if not SCHEDULER.fullmatch(address):  # distributed would wait, and complain at the end of the program
         raise ProblemError(
             _("this is not the address of a Dask scheduler"), found=quote(address), allowed="tcp://host:8786"

@@ -98,26 +98,21 @@ def as_double_doubles(record: Record) -> Record:
     return map_record(wide, record)
 
 
-# Derivatives of searched numbers by each length, without another search: from the function near the place found.
-#
-# An extreme (f' = 0) moves by -(df'/dp) / f'', and its value changes as f does there. At an end of the driver range the
-# driver reverses while the group that stops it moves on, so the end moves as the driver does with that group held.
+# Derivatives of searched numbers with respect to each length.
 
 
-Function = Callable[[LinkStates], Real]  # (..., places)
+Function = Callable[[LinkStates], Real]  # (..., positions)
 
 EXTREME_STEP = 1e-4  # rad, or fraction of a slider range: distance of samples from an extreme
 LENGTH_STEP = 1e-6  # of a length, at an extreme
 END_DISTANCES = 1e-4 * np.array(
     [1, 4, 16]
-)  # of the way: so far from an end groups are looked at; they go as roots of it
+)  # of the range: distances from an end at which groups are examined; they vary as the square root
 DRIVER_STEP_AT_END = 1e-3  # driver step, as a fraction of the distance to the end
 LENGTH_STEP_AT_END = 1e-6  # length step, likewise
 AT_END = 2e-9  # of the range: a largest pressure angle closer to an end lies at the end
-FLAT_EXTREME = 64 * ROUNDOFF  # of the value: an extreme with less curvature has no determined place
-LEAST_SYMMETRY = (
-    0.9  # of the one side's bend the other has at least; else it is the edge of a dwell, which no length shifts
-)
+FLAT_EXTREME = 64 * ROUNDOFF  # of the value: the position of an extreme with less curvature is not determined
+LEAST_SYMMETRY = 0.9  # least ratio of the curvatures on both sides; below it the extreme is the edge of a dwell
 
 
 def search_sensitivities(results: Results, data: tuple[LengthCoordinate, ...]) -> Mapping[str, Real]:

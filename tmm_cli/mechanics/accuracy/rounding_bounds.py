@@ -62,7 +62,7 @@ DOUBLE_DOUBLE_ROUNDING = 2.0**-102  # rounding of double-doubles
 LEAST_STEP = 2.0**-90  # of a length: smaller steps are rounding even in double-doubles
 POSITIONS_PER_CHUNK = 1500  # positions computed together
 
-Cells = Mapping[Hashable, Real]  # one value a position
+Cells = Mapping[Hashable, Real]  # one value for each position
 
 
 @dataclass
@@ -283,7 +283,7 @@ def results_with_linkage(
     """
     assert results.motion is not None
     kernels = tuple(kernel.rebind(linkage) for kernel in results.motion.kernels)
-    # a law of motion that was found for the machine is taken as it is
+    # the computed law of motion of a machine is not recomputed
     moved = compute_motion(linkage, kernels, q, results.running or driver_motion(linkage, first))
     numbers = results.numbers if chosen is None else tuple(results.numbers[k] for k in chosen)
     strokes = results.strokes
@@ -323,23 +323,15 @@ def _strokes_with_linkage(strokes: Strokes, linkage: Linkage, kernels: tuple[Gro
     return replace(strokes, strokes=tuple(begun), others=others)
 
 
-# Bounds by rounding from what the stages found on their way: how far each group is from its dead positions.
-#
-# A group whose margin is m gives places to u/m and velocities, accelerations and forces to u/m^2 (u: unit roundoff),
-# and hands its errors on to the groups after it. So at a position all numbers are known to
-#
-#     bound = LOSS u (1 + |q|) product(1/m)^2
-#
-# of the largest value of their kind that the mechanism has. It costs nothing, needs no wider float, and is wide: it
-# says 10 to 13 digits where 15 are true. Near dead positions, where it says fewer than are printed, positions are
-# judged by accuracy.digits.
+# Bounds of rounding errors from the margins of the groups, without extended precision. Near dead positions, where these
+# bounds promise fewer digits than are printed, `judge_values` is used.
 
 
 LOSS_FACTOR = (
-    128.0  # measured: of 50 sample problems and 500 random linkages the largest error is a third of such a bound
+    128.0  # measured: in 50 sample problems and 500 random linkages the largest error is a third of this bound
 )
 LOSS_MARGIN = (
-    10.0  # times the margin at which a group is said to be near a dead position: from there on nothing is lost
+    10.0  # times the margin below which a group counts as near a dead position: with a larger margin no digits are lost
 )
 DRIVER_ERROR_FACTOR = 4.0  # factor for an uncertain driver coordinate
 SIX_FIGURES = 0.5e-6  # of the largest value: with a larger bound six figures are not certain
@@ -418,7 +410,7 @@ def largest_values(results: Results) -> Mapping[Dimension, float]:
             _largest_magnitude(link.mass for link in links),
             _largest_magnitude(link.inertia for link in links),
         )
-        # a link that does not move has the errors of its forces all the same
+        # forces on a link at rest have errors too
         forces = max(
             largest[ACCELERATION] * mass, _largest_magnitude(reaction.force for reaction in results.reactions.all)
         )

@@ -39,9 +39,7 @@ from tmm_cli.mechanics.numerics import EPS, NO_PRESSURE, ROUNDOFF, DoubleDouble,
 
 DOUBLINGS = 46  # of a bound, from the last bit to far beyond any use
 RANGE_SAMPLES = 65  # positions over the driver range at which the largest value of a function is taken
-SLOPE_ERROR = (
-    1e-9  # of the step with which a top is looked at: what the slope's five places leave of its fifth derivative
-)
+SLOPE_ERROR = 1e-9  # of the sampling step at an extreme: truncation error of the derivative from five points
 NOISE = 64  # rounding errors of the largest value: beyond it the sign is certain
 MOST_NOISE = 1e-10  # of the largest value: with more noise near a dead position nothing would be certain
 FOLLOWED_END_ERROR = 1e-12  # of the range: error of limit positions of groups solved by continuation
@@ -60,7 +58,7 @@ class PreciseLinkage:
         self.kernels = tuple(kernel.rebind(self.linkage) for kernel in results.kernels)
         self.kind: Any = DoubleDouble if growth is None else np.asarray
         self.noise = NOISE * (EPS if growth is None else ROUNDOFF * growth)
-        self.known: dict[str, tuple[Real, Real]] = {}  # of strokes, by the output
+        self.known: dict[str, tuple[Real, Real]] = {}  # bounds of strokes, by output link
 
     def at(self, q: Real, links: Iterable[str], order: int = 0) -> LinkStates:
         """Return the states of some links, and of the links on which they depend, at driver coordinates q."""
@@ -179,7 +177,7 @@ class PreciseLinkage:
         step = 1e-3 * (span if self.results.linkage.driver.kind == "slide" else 1.0)
         driver_range = self.results.mechanism.driver_range
         limit = next((limit for limit in driver_range.limits if limit.place == place), None)
-        if largest == np.pi / 2 and limit is None:  # where the group is dead inside the way
+        if largest == np.pi / 2 and limit is None:  # a dead position inside the range
             return 2 * ROUNDOFF, self.dead(place, group, span)
         if largest == np.pi / 2 and limit is not None:
             return 2 * ROUNDOFF, self.end(place, -1 if place == driver_range.start else 1, limit.group, span)
@@ -190,11 +188,11 @@ class PreciseLinkage:
         for end, inside in ((driver_range.start, a1), (driver_range.end, b1)):
             if not driver_range.full and abs(place - end) <= edge and float(peak - inside) > error:
                 return error, edge + 4 * ROUNDOFF * abs(place)
-        bend = abs(float(2 * peak - b1 - a1)) / step**2  # of an extreme of either kind
+        bend = abs(float(2 * peak - b1 - a1)) / step**2  # a maximum or a minimum
         if not bend * step**2 > error:  # the curvature is within rounding
             return error, np.inf
         slope = float(8 * (a1 - b1) - (a2 - b2)) / (12 * step)
-        off = abs(slope / bend)  # where the slope of a smooth top is nothing
+        off = abs(slope / bend)  # distance to the zero of the derivative
         flat = 4 * float(np.sqrt(error / bend)) + 1e-7 * step
         place_bound = 4 * off + SLOPE_ERROR * step + 4 * ROUNDOFF * abs(place) if off < 1e-3 * step else flat
         return error, place_bound if place_bound < span else np.inf
@@ -213,10 +211,6 @@ def _first_sure_step(sure: Real, steps: Real) -> Real:
 
 
 # Bounds of searched numbers: ends of strokes, limits, dead positions, largest pressure angles.
-#
-# A root is known as well as the sign of its function: the bound is the distance, in double-doubles, to the nearest
-# points on both sides where the sign is certain. A number that depends on several searched ones is computed with each
-# of them shifted by its bound in turn.
 
 
 Cells = Mapping[Hashable, Real]
@@ -260,7 +254,7 @@ def judge_searched(
     bound = 2 * ROUNDOFF * np.abs(row)
     with np.errstate(all="ignore"):
         rates = {} if np.isnan(mu) or results.driver_range is None else search_sensitivities(results, data)
-        responses = np.zeros((len(row), len(data)))  # derivative of each number by each length
+        responses = np.zeros((len(row), len(data)))  # derivative of each number with respect to each length
         for searched in searched_numbers(results, wide):
             rate = rates.get(searched.path, 0.0)
             by = searched.sense * (
@@ -273,7 +267,7 @@ def judge_searched(
         sizes = np.array([abs(length.value) for length in data])
         share, paper = LENGTH_CHANGE * np.abs(responses) @ sizes, PAPER_CHANGE * mu * np.abs(responses).sum(axis=1)
     ends_of = np.cumsum([np.size(value) for value in values.values()])[:-1]
-    # of nothing an array is still one part
+    # np.split of an empty array still yields one part
     accuracy = [dict(zip(values, np.split(cells, ends_of), strict=False)) for cells in (bound, share, paper)]
     return Digits(accuracy[0], accuracy[1], accuracy[2], mu)
 
@@ -333,7 +327,7 @@ def searched_numbers(results: Results, wide: PreciseLinkage) -> Iterator[Searche
             )
             yield found(f"pressure[{k}].other", other, -1)
             yield found(f"pressure[{k}].other_place", place_bound)
-    if results.losses is not None:  # a sum over half as many places has a larger error than theirs
+    if results.losses is not None:  # the difference from a sum over half as many positions bounds the error
         rough = cycle_losses(results, CYCLE_SAMPLES // 2, ranges=False)
 
         def towards(by: float) -> Results:

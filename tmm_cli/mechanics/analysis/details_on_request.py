@@ -60,7 +60,7 @@ def _solved_positions(results: Results) -> Real:
     return motion.moving & ~results.locked
 
 
-# Instantaneous centres of a mechanism in the positions in detail.
+# Instantaneous centres at the detailed positions.
 
 
 def with_centres(results: Results) -> Results:
@@ -74,7 +74,7 @@ def with_centres(results: Results) -> Results:
     return replace(results, centres={k: find_centres(motion, results.structure, k) for k in chosen})
 
 
-# Every real assembly of the groups at some positions, beside the one that the sketch chooses.
+# All real assemblies of the groups, not only the one that the sketch shows.
 
 
 def with_assemblies(inputs: Inputs, positions: Sequence[int] | None, problem: Any = None) -> Results:

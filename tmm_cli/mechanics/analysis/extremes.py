@@ -111,7 +111,7 @@ def find_extremes(
     rows[turning] = _unwrap_rows(rows[turning])
     spread = np.array([np.ptp(row[np.isfinite(row)]) if np.isfinite(row).any() else 0.0 for row in rows])
     kept = (spread > 0) & ~(turning & (spread > FULL_TURN))
-    # what is least is the largest of what has the other sign: each row comes twice
+    # minima are maxima of the negated rows, so each row occurs twice
     signs, turning = np.repeat([-1.0, 1.0], len(rows))[:, None], np.concatenate([turning, turning])[:, None]
     each = np.arange(2 * len(rows))
     signed = signs * np.concatenate([rows, rows])

@@ -66,15 +66,11 @@ class WheelTask:
     settings: tuple[WheelSetting, ...] = (WheelSetting(),)
 
 
-# Stage: parts of a cycle in which a link drives a wheel, and those in which the wheel rests.
-#
-# A ratchet, a one-way clutch, or a pin in the slots of a disc connects the wheel to the link while the link moves in
-# one direction; what holds the wheel in between is not modelled. Each part is a motion of the link in one direction
-# between exactly found ends.
+# Parts of a cycle in which the link drives the wheel, and parts in which the wheel rests.
 
 
-MOTION_SAMPLES = 181  # positions of a part in which the wheel is driven
-MOST_CYCLES = 1000  # largest number of cycles searched for whole turns of the wheel
+MOTION_SAMPLES = 181  # positions computed in each part in which the wheel is driven
+MOST_CYCLES = 1000  # largest number of cycles searched for a whole number of revolutions of the wheel
 
 
 @dataclass(frozen=True)
@@ -317,7 +313,7 @@ def _largest_value(magnitude: Callable[[Real], Real], coordinates: Real) -> floa
 # Intermittent motion: each wheel over the cycles of all its settings.
 
 
-LawOf = Callable[[Linkage], LawOfMotion]  # how the driver of a linkage moves
+LawOf = Callable[[Linkage], LawOfMotion]  # law of motion of the driver of a linkage
 
 
 def compute_intermittent(mechanism: Mechanism, start: float, law_of: LawOf) -> tuple[IntermittentMotion, ...]:

@@ -227,7 +227,7 @@ class Mechanism:
         return turned
 
 
-# The same linkage with another driver: its Assur groups are others then.
+# The same linkage with another driver, and so with other Assur groups.
 
 
 def with_driver(linkage: Linkage, link: str) -> Linkage:

@@ -95,7 +95,7 @@ class NamedQuantity:
 QuantityMaker = Callable[["Linkage", "Structure"], "dict[str, NamedQuantity]"]  # all quantities of a kind, by name
 
 
-# What belongs to the mechanism as a whole: mobility, class, stroke or swing, coefficient of the mean speed.
+# Quantities of the whole mechanism: mobility, class, stroke or swing angle, time ratio.
 
 
 def mechanism_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
@@ -149,7 +149,7 @@ def _read_time_ratio(solution: SolvedState) -> Any:
     strokes = solution.strokes
     if strokes is None or len(strokes.strokes) < 2:
         return np.array([np.nan])
-    working, idle = (sum(s.length for s in strokes.strokes[first::2]) for first in (0, 1))  # they take turns
+    working, idle = (sum(s.length for s in strokes.strokes[first::2]) for first in (0, 1))  # they alternate
     return np.asarray(working / idle) + np.zeros(1)
 
 
@@ -158,7 +158,7 @@ def _read_stroke_count(solution: SolvedState) -> Any:
     return np.array([float("nan") if strokes is None else float(len(strokes.strokes))])
 
 
-# Places, velocities and accelerations of points, links and sliding pairs.
+# Positions, velocities and accelerations of points, links and sliding pairs.
 
 
 def motion_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
@@ -322,7 +322,7 @@ def _read_slide(name: str, field: str, solution: SolvedState) -> Any:
     return np.asarray(getattr(solution.motion.slide(solution.motion.linkage.slide(name)), field))
 
 
-# Inertia forces and couples, reactions, what balances the driver.
+# Inertia forces and couples, reactions, balancing moments and forces.
 
 
 NEARLY_ZERO = 0.05  # of the largest reaction: below it the point of application cannot be drawn
@@ -429,7 +429,7 @@ def _read_balance(link: str, field: str, solution: SolvedState) -> Any:
     return next(getattr(balance, field) for balance in solution.reactions.balances if balance.driver.link == link)
 
 
-# What a wheel of the block intermittent makes of the mechanism's motion.
+# Quantities of wheels with intermittent motion.
 
 
 WheelReader = Callable[["IntermittentMotion"], float]
@@ -468,7 +468,7 @@ def _step_angle(setting: int, wheel: IntermittentMotion) -> float:
     return abs(wheel.of_setting(setting))
 
 
-# All quantities by name: what students may be asked, what a file shows. A further kind: a file, a word in KINDS.
+# All quantities by name. To add a kind, write a function that returns it and list it in QUANTITY_MAKERS.
 
 
 QUANTITY_MAKERS: tuple[QuantityMaker, ...] = (mechanism_quantities, motion_quantities, force_quantities)

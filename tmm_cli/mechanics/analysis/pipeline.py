@@ -94,7 +94,7 @@ def refine_near_dead(motion: Motion, linkage: Linkage, q: Real, law: LawOfMotion
     return replace(splice_positions(motion, closer, where), finer=closer, where=where)
 
 
-# Data that loads, positions and tables of a file need: missing data is refused, not silently ignored.
+# Checks that the strokes, rotations and speeds on which loads, positions and tables depend exist.
 
 
 def refuse_missing_data(mechanism: Mechanism) -> None:
@@ -160,12 +160,10 @@ def _refuse_short_speed_table(mechanism: Mechanism) -> None:
         )
 
 
-# Which stage needs which: structure -> assembly -> range and strokes -> motion -> forces -> lever.
-#
-# Only what is asked for is computed: the structure alone moves nothing, kinematics carries no loads.
+# Stages in their order: structure, assembly, range and strokes, motion, forces, lever.
 
 
-CYCLE_SAMPLES = 720  # positions over which losses are summed
+CYCLE_SAMPLES = 720  # positions at which friction losses are computed
 
 Stage = Literal["structure", "kinematics", "forces"]
 
@@ -399,7 +397,7 @@ def with_forces(results: Results, *, cycle: bool = True) -> Results:
     assert motion is not None
     strokes = results.strokes if results.linkage.by_strokes else None
     loads = collect_loads(motion, strokes)
-    bare = motion if motion.bare is None else motion.bare  # reactions have no limits in change points
+    bare = motion if motion.bare is None else motion.bare  # reactions have no limit values at change points
     reactions = solve_reactions(bare, results.structure, loads if motion.bare is None else collect_loads(bare, strokes))
     reactions = replace(reactions, applied=loads)
     if motion.finer is not None and motion.where is not None:

@@ -14,7 +14,7 @@ from tmm_cli.mechanics.kinematics import Motion, PointMotion
 from tmm_cli.mechanics.linkage import FRAME, Linkage
 from tmm_cli.mechanics.quantities import BALANCING, LINK, POINT, REACTION, Quantity
 
-PointOnLink = tuple[str, complex]  # a link and a place in its axes, m
+PointOnLink = tuple[str, complex]  # a link and a point in its axes, m
 
 
 def named_points(linkage: Linkage) -> dict[str, PointOnLink]:

@@ -116,7 +116,7 @@ class BalancingTask:
 
 NO_EFFECT = 1e-9  # of the largest singular value: counterweights with nearly the same effect are dependent
 ROUNDS = 200  # largest number of iterations for masses that load moving pivots
-NO_ANGLE = 1e-12  # of a counterweight: a smaller component across the x axis of its link is rounding
+NO_ANGLE = 1e-12  # relative to a counterweight: a smaller component perpendicular to the x axis of its link is rounding
 SETTLED = 1e-15  # of the largest counterweight: convergence
 
 
@@ -230,7 +230,7 @@ def balance_cycle(motion: Motion, task: BalancingTask, about: complex = 0j) -> B
     # force of a counterweight: -c times the second derivative of the link's direction
     columns = np.stack([-_direction_acceleration(motion, place.link) for place in counterweights], axis=1)
     fastest = float(np.max(np.square(motion.rate))) if motion.linkage.driver.kind == "turn" else 0.0
-    columns[:, np.nanmax(np.abs(columns), axis=0) <= AT_REST * fastest] = 0.0  # a link that translates balances nothing
+    columns[:, np.nanmax(np.abs(columns), axis=0) <= AT_REST * fastest] = 0.0  # no effect on a translating link
     pivots = np.stack([-motion.point(place.link, place.about).a for place in counterweights], axis=1)
     per_mass = np.array([1 / place.radius if place.radius else 0.0 for place in counterweights])
     products, live = (

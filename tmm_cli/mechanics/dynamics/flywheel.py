@@ -29,7 +29,7 @@ import numpy as np
 from tmm_cli.mechanics.dynamics.reduced_model import PanelCurve, ReducedMachine
 from tmm_cli.mechanics.numerics import Real, find_minima, find_roots
 
-REFINEMENT_WIDTH = 1e-4  # rad (or m): accuracy of the least of many values as a tangent point
+REFINEMENT_WIDTH = 1e-4  # rad (or m): accuracy of a tangent point found from function values
 
 
 @dataclass(frozen=True)

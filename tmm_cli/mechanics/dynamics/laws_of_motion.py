@@ -207,8 +207,8 @@ class MotorCycle:
         if abs(driving.total + self.machine.work_of_cycle) > WORK_IMBALANCE * energy.length * self.motor.most:
             raise self._lost_digits_error(
                 values, 1 - slope
-            )  # so heavy a flywheel that a cycle's change of its energy is rounding
-        # on the rising branch of the characteristic it is a good beginning for the next flywheel
+            )  # the flywheel is so heavy that the change of its energy in a cycle is rounding
+        # on the rising branch of the characteristic this slip is a good initial guess for the next flywheel
         self.slip = slip if np.all(self.motor.at_slip(values)[1] > 0) else 0.0
         return SteadyLaw(self.machine, flywheel, energy, driving, pace.integrate())
 
@@ -255,7 +255,7 @@ class MotorCycle:
         self.panels = done
         return begin, slope, np.stack([panel.slips for panel in done if panel.slips is not None], axis=1)
 
-    @np.errstate(all="ignore")  # at rest the rate is not finite, and there is no solution
+    @np.errstate(all="ignore")  # at rest the derivative is not finite, and there is no solution
     def _solve_panel(self, panel: _Panel, flywheel: float, begin: float) -> Real | None:
         """Solve the slip on one panel by collocation and Newton's method.
 
@@ -296,10 +296,10 @@ def _is_rough(values: Real, begin: float, largest_slip: float) -> bool:
     return tail > TAIL * largest_slip
 
 
-# The law of motion of a crank by a table of its speeds: between rows the square of the speed is interpolated.
+# Law of motion of a crank from a table of its speed: between rows the square of the speed is interpolated.
 #
-# The acceleration is half the slope of the square by the angle, so it is finite at rest too; linear squares are a
-# constant acceleration from row to row.
+# The acceleration is half the derivative of the square with respect to the angle, so it is finite at rest too; a square
+# that is linear between two rows means a constant acceleration between them.
 
 
 LEAST_SQUARE = 1e-9  # of the largest squared speed: below it the travel time is not determined
@@ -330,7 +330,7 @@ class SpeedTableLaw:
         accelerations = self.table.accelerations
         if accelerations is not None:
             return self.sense * self._within(accelerations(self._angle(q)), q)
-        # in a row where it jumps, that after it
+        # at a row where the acceleration jumps, the value after the jump
         after = q if self.sense > 0 else q - 4 * SEAM * (1 + np.abs(q))
         return self._within(self.table.squares.slope(self._angle(after)) / 2, q)
 

@@ -107,7 +107,7 @@ class KlossMotor(MotorCharacteristic):
         return self.breakdown
 
     def at_slip(self, slip: Real) -> tuple[Real, Real]:
-        # 2 Mk s sk / (s^2 + sk^2): the same without a zero under the line at the synchronous speed
+        # 2 Mk s sk / (s^2 + sk^2): Kloss's formula without division by zero at the synchronous speed
         under = slip**2 + self.slip**2
         moment = 2 * self.breakdown * slip * self.slip / under
         return moment, 2 * self.breakdown * self.slip * (self.slip**2 - slip**2) / under**2

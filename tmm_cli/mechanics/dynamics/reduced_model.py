@@ -146,7 +146,7 @@ def _rough_panels(values: Real) -> Real:
 # I. I. Artobolevsky, Theory of Mechanisms and Machines (1988), ch. 15 and 16: T = J w^2 / 2, J w' + J' w^2 / 2 = M.
 
 
-Sample = Callable[[Real], tuple[Real, Real, Real]]  # at ways x: inertia, its slope by x, moment of the loads
+Sample = Callable[[Real], tuple[Real, Real, Real]]  # at travels x: inertia, its derivative, moment of the loads
 
 
 @dataclass(frozen=True)

@@ -85,7 +85,7 @@ class RunHistory:
                 missed = partial(_distance_past, step, travel[covered])
                 times = find_roots(missed, low + 0 * travel[covered], high + 0 * travel[covered])
                 time[covered], speed[covered] = times, step(times)[1]
-        begins = travel == self.way[0]  # where a search from rest would find what rounding leaves
+        begins = travel == self.way[0]  # at the beginning, where rounding would spoil a root search from rest
         return np.where(begins, self.time[0], time), np.where(begins, self.speed[0], speed)
 
     def closely(self, count: int) -> list[tuple[Real, Real]]:
@@ -162,7 +162,7 @@ def _integrate_piece(
         LongRunError: no evaluations are left.
     """
 
-    last = float(np.nextafter(times[1], times[0]))  # at the end of a piece what drives may have jumped already
+    last = float(np.nextafter(times[1], times[0]))  # at the end of a piece the driving moment may have jumped already
 
     def rates(t: float, y: Real) -> list[float]:
         if not next(left):
@@ -235,7 +235,7 @@ def _rates(machine: ReducedMachine, task: RunTask, piece: tuple[float, float], t
     x = np.array([min(max(float(state[0]), piece[0]), np.nextafter(piece[1], piece[0]))])
     load, driving = float(machine.moment(x)[0]), _driving_moment(task, t, x, speed)
     inertia = task.flywheel + float(machine.inertia(x)[0])
-    squared = speed * speed  # not **: far beyond its end a trial step may be so quick that this is infinite
+    squared = speed * speed  # not **, which raises an error on overflow in a trial step beyond the end
     net_moment = driving + load - task.brake - float(machine.slope(x)[0]) * squared / 2
     return [speed, net_moment / inertia, driving * speed, load * speed, -task.brake * speed]
 

@@ -229,7 +229,7 @@ def _steady_with_motor(machine: ReducedMachine, task: SteadyTask, motor: MotorCh
         raise NoInertiaError(round(float(nodes[np.argmin(inertia)]), 9))
 
     def delta_of(flywheel: float) -> float:
-        if not flywheel + lightest > ROUNDOFF * heaviest:  # all masses rest somewhere on the driver's way
+        if not flywheel + lightest > ROUNDOFF * heaviest:  # at some position all masses are at rest
             return STANDSTILL_FLUCTUATION
         try:
             return speed_fluctuation(cycle.law(flywheel))

@@ -68,7 +68,7 @@ class RimFlywheel:
 FlywheelForm = DiskFlywheel | RimFlywheel
 
 
-# Tasks for the law of motion: numbers alone, as given in a problem file.
+# Tasks for the law of motion, as given in a problem file.
 
 
 @dataclass(frozen=True)

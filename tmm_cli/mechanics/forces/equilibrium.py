@@ -247,7 +247,7 @@ def _group_body(position: LoadedPosition, forces: GroupForces) -> FreeBody:
         *_equations_of_external_pairs(position, group, leads, axes),
         *_equations_of_higher_pairs(position, group, axes),
     ]
-    if not equations and len(group.links) > 2:  # all reactions are found at once
+    if not equations and len(group.links) > 2:  # all reactions are solved simultaneously
         equations = [
             _moment_equation(position, axes, (link,), *_moment_centre(position, group, link)) for link in group.links
         ]
@@ -266,7 +266,7 @@ def _equations_of_external_pairs(
             yield _moment_equation(position, axes, lead.links, lead.about, position.hinge(lead.about), sought)
     open_hinges = [lead for lead in leads if lead.rest is None and lead.pair.slide is None and lead.about is None]
     special = find_assur_point(position, group, leads)
-    if len(leads) == len(group.outer) == 2 and len(open_hinges) == 1:  # all of one reaction, and a part of the other
+    if len(leads) == len(group.outer) == 2 and len(open_hinges) == 1:  # one whole reaction and a component
         other = next(lead for lead in leads if lead not in open_hinges)
         about = open_hinges[0].pair.point
         yield _moment_equation(
@@ -279,7 +279,7 @@ def _equations_of_external_pairs(
         )
     elif special is not None:
         lead, centre = special
-        # of a guide's reaction the moment about its link's hinge is known by now, but not where it acts
+        # the moment of a guide reaction about the hinge of its link is already known, but not its line of action
         carried = {other.pair.name: other.rest[0] for other in leads if other.pair.slide is not None and other.rest}
         sought = _unknown_component(group, lead.pair, lead.open_part)
         name = distinct_letter(

@@ -237,7 +237,7 @@ class LoadedPosition:
         )
         couple = 0.0
         if reaction.couple is not None:
-            if pair.slide is None:  # of a cam; a couple may stand anywhere on its link
+            if pair.slide is None:  # cam pair; a couple may be drawn anywhere on its link
                 at = self.place(link, 0j)
             back = -reaction.couple if reaction.back is None else reaction.back
             couple = float((reaction.couple if forward else back)[k])
@@ -248,7 +248,7 @@ class LoadedPosition:
             yield ForceOrCouple(reaction_symbol(by, link, letter="M"), "reaction", link, at, 0j, couple, pair.name)
         else:
             tangential = component_across(force, axis)
-            if reaction.tangential is not None:  # found from moments alone; of the whole force less digits are left
+            if reaction.tangential is not None:  # from moments alone, which loses fewer digits
                 tangential = complex(reaction.tangential[k])
             yield ForceOrCouple(reaction_symbol(by, link, "n"), "normal", link, at, force - tangential, pair=pair.name)
             yield ForceOrCouple(reaction_symbol(by, link, "τ"), "tangential", link, at, tangential, pair=pair.name)
@@ -374,7 +374,7 @@ def _external_pair(position: LoadedPosition, group: Group, pair: Pair) -> Extern
     driven = {link for driver in group.drivers for link in (driver.base, driver.link)}
     slides = [p for p in group.inner if own in (p.i, p.j)]
     if len(slides) == 1 and slides[0].slide is not None and own not in driven:
-        axis = position.guide(slides[0])  # nothing else holds the link along its guide
+        axis = position.guide(slides[0])  # only this hinge holds the link along its guide
         others = [p.point for p in outer if p != pair and p.kind == "R"]
         if not inner and len(others) == len(outer) - 1 == 1:
             return ExternalPair(pair, links, axis, others[0])

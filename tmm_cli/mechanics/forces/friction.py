@@ -135,7 +135,7 @@ def find_locked_ranges(
         return ()
     if np.all(locked):
         return (LockedRange(float(q[0]), float(q[-1]), str(pairs[0])),)
-    if cyclic:  # from a coordinate at which it moves, so that no range is cut in two
+    if cyclic:  # begin where the mechanism moves, so that no range is cut in two
         first, cycle = int(np.argmin(locked[:-1])), q[-1] - q[0]
         q = np.concatenate([q[first:-1], q[: first + 1] + cycle])
         locked, pairs = (np.concatenate([x[first:-1], x[: first + 1]]) for x in (locked, pairs))
@@ -172,7 +172,7 @@ def solve_friction(
     units = [tuple(_friction_loads(f, motion, free, ones)) for f in frictions]
     response = array(
         [_pair_forces(solve_reactions(motion, structure, unit), names) for unit in units]
-    )  # friction, pair, position
+    )  # (frictions, pairs, positions)
     start = _pair_forces(free, names)
     reactions, locked = free, np.zeros(np.shape(motion.q), dtype=bool)
     rubbed: tuple[AppliedLoad, ...] = ()
@@ -228,14 +228,14 @@ def _solve_magnitudes(start: Vector, response: Vector) -> tuple[Real, Real]:
             for _ in range(NEWTON_STEPS):
                 force = start + np.sum(partial_response * sizes[:, None], axis=0)
                 along = force / np.where(np.abs(force) > 0, np.abs(force), 1.0)
-                slope = (np.conj(along)[None] * partial_response).real  # of |force j| by f_k
+                slope = (np.conj(along)[None] * partial_response).real  # derivative of |force j| with respect to f_k
                 matrix = np.eye(number)[None] - np.moveaxis(slope, (0, 1, 2), (2, 1, 0))
                 step = solve(matrix, (np.abs(force) - sizes).T).T
                 sizes = sizes + step
                 last = np.max(np.abs(step), axis=0) / (np.max(np.abs(sizes), axis=0) + 1e-300)
                 if not bool(np.any(last > FRICTION_ROUNDED)):
                     break
-            # a size below zero, or none that agrees: more friction than the driver can overcome
+            # a negative magnitude or no solution: more friction than the driver can overcome
             locked |= ~(last < FRICTION_LOCKS) | np.any(sizes < -FRICTION_LOCKS * np.max(np.abs(sizes), axis=0), axis=0)
     return np.where(locked, np.abs(start), sizes), locked
 
@@ -269,7 +269,7 @@ def _friction_loads(friction: Friction, motion: Motion, reactions: Reactions, fo
     for link, sense in ((pair.on, -1.0), (pair.by, 1.0)):
         if link == FRAME:
             continue
-        name = f"T{friction.pair}{link}"  # as v_A3 is the velocity at A of link 3
+        name = f"T{friction.pair}{link}"  # named like v_A3, the velocity of point A of link 3
         if pair.pair.slide is None:
             moment = sense * friction.coefficient * friction.radius * force * sign
             yield AppliedLoad(
@@ -279,7 +279,7 @@ def _friction_loads(friction: Friction, motion: Motion, reactions: Reactions, fo
             slide = pair.pair.slide
             u = motion.poses[slide.carrier].z * unit(slide.direction)
             push = sense * friction.coefficient * force * sign * u
-            # at the running point; seen from the carrier that wanders, so its moment is given apart
+            # the force acts at the sliding point, which moves along the carrier, so its moment is given apart
             arm = pair.at - motion.poses[link].x
             moment = arm.real * push.imag - arm.imag * push.real
             yield AppliedLoad(name, "friction", link, 0j, push, moment, f"M{name}")

@@ -79,7 +79,7 @@ def _coordinates_in_strokes(mechanism: Mechanism, table: LoadTable, arguments: I
         middle = stroke.low + stroke.run / 2
         for row in arguments:
             target = first.low + (first.run if table.shares else np.sign(first.run)) * row
-            # at the ends themselves the output rests: rounding would put the row a little beside them
+            # rows at the ends of a stroke are left out: the output rests there, and rounding would shift them
             if abs(target - middle) < abs(stroke.run) * (0.5 - SAME_DRIVER_POSITION):
                 end = stroke.start + linkage.driver.sense * stroke.length
                 yield float(
@@ -111,7 +111,7 @@ def _find_reversals(mechanism: Mechanism, load: Load) -> Iterable[float]:
         return compute_motion(linkage, mechanism.kernels, q, law, order)
 
     q = np.linspace(whole.start, whole.end, SCAN * whole.turns + 1)
-    half = (q[1] - q[0]) / 2  # a place of the scan may be the end itself: a little beyond it there is no doubt
+    half = (q[1] - q[0]) / 2  # a sample may be the reversal itself, so the bracket extends a little beyond it
     along, turning = motion_direction(load, moved(q, 2))
     if load.force:
         back = np.flatnonzero(dot(along[1:], along[:-1]) < 0)

@@ -48,7 +48,7 @@ class AppliedLoad:
         return bool(np.any(np.abs(self.moment) > 0))
 
 
-# What springs, and cylinders that only push, do to the two links that they join.
+# Springs.
 
 
 def spring_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLoad]:
@@ -85,7 +85,7 @@ def _torsion_moment(spring: Spring, motion: Motion) -> Real:
     return spring.preload + spring.rate * twist_angle(spring, motion) + spring.damping * speed
 
 
-# The loads of the task: what they are tabulated against, where they act, and what resists a motion.
+# Loads of the problem file: their tables, the range in which they act, and loads that resist a motion.
 
 
 BEFORE_END = 1e-3  # of the stroke: a table that ends earlier by less than this counts as complete (rounding)
@@ -261,7 +261,7 @@ def _angle_in_cycle(angle: Real, cycle: Real | float) -> Real:
     return np.mod(angle + seam, cycle) - seam
 
 
-# All that acts on the links besides reactions: weights, inertia, the loads of the task.
+# All loads on the links: weights, inertia, springs, loads of the problem file.
 
 
 BALANCING = ("Mb", "M_b", "Fb", "F_b")  # symbols of the balancing moment and force
@@ -302,4 +302,4 @@ LOAD_SOURCES = (
     weights_and_inertia,
     problem_loads,
     spring_loads,
-)  # what acts on links, each from a motion and its strokes
+)  # each returns loads for a motion and its strokes

@@ -261,7 +261,7 @@ def _reaction(motion: Motion, pair: Pair, link: str, solution: PairReaction) -> 
     at = motion.poses[slide.runner].at(slide.at)
     u = motion.poses[slide.carrier].z * unit(slide.direction)
     signed = dot(1j * u, solution.force)
-    # on the carrier both force and couple change sign, and the arm stays
+    # on the carrier both force and couple change sign, so the arm is the same
     arm = _guide_reaction_arm(motion, solution.couple, signed)
     return Reaction(pair, link, other, at, solution.force, solution.couple, signed=signed, arm=arm)
 
@@ -339,7 +339,7 @@ def _frame_driver(motion: Motion, structure: Structure, driver: Driver, total: W
     u, at = _cylinder_axis(motion, driver)
     magnitude = -dot(total.force, u)
     guide = -1j * u * dot(total.force, 1j * u)
-    # the balancing force acts in the line of the running point, so moments about it leave the guide's couple
+    # the balancing force passes through the sliding point, so the moments about it give the couple of the guide
     couple = -total.about(at - pose.x)
     signed = dot(1j * u, guide)
     return (
@@ -402,6 +402,6 @@ def _transmitted(motion: Motion, reactions: Reactions, group: str, lead: DrivenL
     else:
         radius = reaction.at - motion.poses[link].at(motion.linkage.local(link, outer.point))
         couple = 0.0 if reaction.couple is None else reaction.couple * (1 if reaction.on == link else -1)
-        with np.errstate(all="ignore"):  # a pair on the pivot drives by its couple alone, at no radius
+        with np.errstate(all="ignore"):  # a pair at the pivot has no radius and drives by its couple alone
             work = (dot(force, 1j * radius) + couple) / np.abs(radius)
     return TransmittedForce(group, link, pair.name, np.abs(force), np.abs(work))

@@ -38,7 +38,7 @@ class LeverItem:
     size: Real
     arm: Real
     moment: Real
-    end: Vector | None = None  # of its point's velocity on the plan, per unit of the driver's motion
+    end: Vector | None = None
     force: Vector | None = None
 
     @property
@@ -113,14 +113,14 @@ def compute_lever(motion: Motion, loads: tuple[AppliedLoad, ...], plan: Real) ->
     for item in items:
         total = total + item.moment
     balancing = -total
-    # where nothing has an arm (both ends of a stroke) there is only rounding to compare: not against itself
+    # where no load has an arm (ends of a stroke) only rounding is left, which is compared with the loads
     reach = (
         max((float(np.max(d.size)) for d in motion.kernels), default=1.0)
         if motion.linkage.driver.kind == "turn"
         else 1.0
     )
     acting = sum(np.abs(i.size) * (reach if i.end is not None else 1.0) for i in items)
-    comparable = motion.moving & np.isfinite(plan)  # not where it locks itself by friction
+    comparable = motion.moving & np.isfinite(plan)  # not where the mechanism is self-locking
     plan_size = np.where(comparable, np.abs(plan), 0.0)
     largest = float(np.max(np.where(comparable, np.maximum(plan_size, NO_MOMENT * acting), 0.0), initial=0.0))
     difference = np.abs(plan - balancing) / largest if largest > 0 else np.abs(plan - balancing)

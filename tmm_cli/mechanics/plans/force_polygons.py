@@ -99,7 +99,7 @@ def _dyad_plan(group: GroupForces, reactions: Reactions, k: int) -> ForcePlan:
     corner = plan.vectors[len(closing_a) + len(parts_a) - 1].end if closing_a or parts_a else 0j
     inner = group.inner[0]
     force = complex(inner.onto(b)[k])
-    # b's forces lead from this corner back to the start, so the inner reaction on b leads from there to the corner
+    # the forces on b lead from this corner back to the start, so the internal reaction on b leads from the start to it
     symbol = reaction_symbol(inner.pair.other(b), b)
     joined = NamedVector(symbol.name, corner - force, corner, "inner", symbol)
     ends = ((first, plan.vectors[:2]), (last, plan.vectors[-2:]))

@@ -190,7 +190,7 @@ def _balancing_forces(
     driven, base = (
         _point_transfer_function(motion, link, complex(balance.at[k]), k) for link in (driver.link, driver.base)
     )
-    if driven == base:  # of several drivers one may be at rest: what holds it acts in the pole
+    if driven == base:  # one of several drivers may be at rest: its force acts at the pole
         return
     force = (driven - base) * (total / abs(driven - base) ** 2)
     yield ForceOrCouple(symbol, "reaction", driver.link, ROTATED * driven, force, pair=DRIVE)

@@ -342,7 +342,7 @@ def angular_values(motion: Motion, k: int, quantity: Literal["omega", "epsilon"]
     links = {link: motion.link(link) for link in motion.linkage.moving}
     rates = {link: getattr(rotation, quantity) for link, rotation in links.items()}
     largest = max((float(np.nanmax(np.abs(rate))) for rate in rates.values()), default=0.0)
-    if quantity == "epsilon":  # where all turn evenly, rounding is small against omega squared only
+    if quantity == "epsilon":  # in uniform rotation rounding errors are small only compared with omega squared
         largest = max([largest, *(float(np.nanmax(np.abs(rotation.omega))) ** 2 for rotation in links.values())])
     for link, rate in rates.items():
         if np.nanmax(np.abs(rate)) > NO_VECTOR * largest:

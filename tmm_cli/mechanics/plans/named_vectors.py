@@ -16,7 +16,7 @@ ROUND_SCALES = (
     4.0,
     5.0,
     10.0,
-)  # scale factors, times a power of ten; of GOST 2.302 those of every decade
+)  # scale factors, times a power of ten: those that GOST 2.302 allows in every decade
 LANDSCAPE, PORTRAIT = (297.0, 210.0), (210.0, 297.0)  # A4, mm
 MARGIN, STRIP = 12.0, 16.0  # mm: edge of the drawing, height of the title strip
 PAD = 22.0  # mm around the figure, for labels

@@ -250,7 +250,7 @@ class _EquationBuilder:
                     self._sliding_point(slide.runner if slide.carrier == FRAME else slide.carrier, slide), slide, solved
                 )
                 continue
-            if slide.carrier not in group.links:  # its guide is known as a whole
+            if slide.carrier not in group.links:  # the motion of its guide is already known
                 points = motion_points(self.linkage, slide.carrier)
                 yield self._relate_points(
                     coincident_point(slide), min(map(self._plan_point, points), key=self._solution_order), slide.carrier
