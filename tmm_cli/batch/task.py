@@ -368,7 +368,7 @@ def read_task(tree: Tree) -> Task:
 
 
 def _quantity_kind(name: str) -> tuple[str, bool]:
-    """Return what quantities of one kind have in common, whatever point, link or pair they belong to."""
+    """Return the part of a quantity's name that does not depend on the point, link or pair to which it belongs."""
     kind, _of, thing = name.partition(" of ")
     return ("R" if kind.startswith("R_") else kind), " on " in thing
 
@@ -380,7 +380,7 @@ NUMBER_WITH_UNIT = re.compile(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
 
 @dataclass(frozen=True)
 class FreeParameter:
-    """Parameter with its possible values as text; dimension: None for plain numbers."""
+    """Parameter with its possible values as text. `dimension` is None for a plain number."""
 
     name: str
     texts: tuple[str, ...]

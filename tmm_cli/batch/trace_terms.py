@@ -159,7 +159,7 @@ class Trace:
         return self.known[term.number]
 
     def settle_condition(self, truth: Any) -> Any:
-        """Return a condition as a bool if it has the same truth for all known data, else unchanged."""
+        """Return a bool if a condition has the same value for all known data, else the condition itself."""
         known_value = self.value(truth) if isinstance(truth, Term) else None
         return truth if known_value is None or np.any(known_value != known_value.flat[0]) else bool(known_value.flat[0])
 

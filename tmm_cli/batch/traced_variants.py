@@ -108,7 +108,7 @@ class TracedVariants:
         return whole.only(*(name for name in whole.outputs if name not in CHECK_OUTPUTS), ANGLES_AGREE)
 
     def _ends(self, *columns: TracedArray) -> Mapping[str, Any]:
-        """Compute, for each variant, the ends of the driver range, the queried driver coordinates and the numbers
+        """Compute, for each variant, the ends of the driver range, the driver coordinates `asked` and the values
         required there.
         """
         varied = self.make([TracedNumber(x, c) for x, c in zip(self.first, columns, strict=True)])
@@ -224,7 +224,7 @@ class SequentialVariants:
         return DriverRanges.of(self.variant, len(columns), self.turns)
 
     def without(self, fragment: str) -> SequentialVariants:
-        """Return self, since results that are not used cost little here."""
+        """Return self: leaving out results saves little time if variants are solved one after another."""
         return self
 
     def sketch(self, numbers: Real) -> Sketch:

@@ -18,7 +18,7 @@ NOT_COMPARED = ("sketch",)  # describes the assembly of a linkage, not the linka
 
 
 class IncompatibleLinkagesError(ValueError):
-    """Two linkages differ in more than their numbers; path: where they differ."""
+    """Raised if linkages differ in more than their numbers. `path` says where they differ."""
 
     def __init__(self, path: str) -> None:
         super().__init__(f"the linkages differ in {path}, which is no number")
@@ -108,8 +108,9 @@ WANTED = "wanted"  # output name of required numbers at requested positions
 
 
 class NotTraceableError(ValueError):
-    """The operations cannot be traced: friction, loads that depend on strokes, redundant constraints, or dead
-    positions on the path.
+    """Raised if operations cannot be traced.
+
+    Reasons are friction, loads that depend on strokes, redundant constraints, and dead positions on the path.
     """
 
 
@@ -121,8 +122,8 @@ class Variant:
         linkage: the linkage.
         request: requested positions.
         ends: range of the driver, rad or m; None if it rotates fully and the motion repeats.
-        asked: driver coordinates for which a synthesis task requires something.
-        wanted: for each of them, a required number that differs between variants.
+        asked: driver coordinates at which a synthesis requires certain values, rad or m.
+        wanted: the required values, which may differ between variants.
     """
 
     linkage: Linkage
@@ -193,7 +194,7 @@ class DriverRanges:
     Attributes:
         low, span: beginning and length of each range, (variants, 1).
         closed: True if the driver rotates fully and the motion repeats.
-        asked, wanted: driver coordinates for which a task requires something, and the required numbers,
+        asked, wanted: driver coordinates at which a synthesis requires certain values, and these values,
             (variants, n).
     """
 
@@ -233,7 +234,7 @@ class DriverRanges:
         return np.concatenate([self.low + samples.shares * self.span, requested, fixed], axis=1)
 
     def wanted_at(self, samples: DriverSamples) -> Real:
-        """Return the required numbers in those columns of `at` that belong to `asked`; all other columns are
+        """Return the required values in those columns of `at` that belong to `asked`; all other columns are
         meaningless.
         """
         return replace(self, low=self.low * np.nan, asked=self.wanted).at(samples)

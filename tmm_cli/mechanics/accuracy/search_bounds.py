@@ -152,8 +152,8 @@ class PreciseLinkage:
         return (sure if np.isfinite(sure) else FOLLOWED_END_ERROR * span) + self.noise * span
 
     def dead(self, place: float, group: str, span: float) -> float:
-        """Return the bound of a dead position inside the driver range, where the gap of the group has its extreme
-        value.
+        """Return the bound of a dead position inside the driver range, at which the residual of the group is
+        stationary.
         """
         kernel = next(kernel for kernel in self.kernels if kernel.group.title == group)
         if not isinstance(kernel, ClosedFormSolver):
@@ -206,7 +206,7 @@ def choose_precision(results: Results) -> PreciseLinkage:
 
 
 def _first_sure_step(sure: Real, steps: Real) -> Real:
-    """Return the first distance at which the sign at each driver coordinate is certain, or inf."""
+    """Return, for each driver coordinate, the first distance at which the sign is certain; inf if there is none."""
     return np.where(sure.any(axis=1), steps[np.arange(len(steps)), sure.argmax(axis=1)], np.inf)
 
 

@@ -90,8 +90,8 @@ def _pressure_checks(results: Results) -> Iterable[Check]:
 
 
 def _load_checks(results: Results, motion: Motion) -> Iterable[Check]:
-    """Yield a check for each load on a link from the frame that acts all the time, constant or tabulated against
-    the stroke.
+    """Yield a check for each permanent load between the frame and a link that is constant or tabulated against the
+    stroke.
     """
     strokes, loads = results.strokes, results.linkage.loads
     if strokes is None or not strokes.strokes:
@@ -141,7 +141,7 @@ def _dead_position_checks(results: Results, motion: LinkStates) -> Iterable[Chec
 
 
 def _last_margin(results: Results, upto: tuple[GroupSolver, ...], q: Real) -> Real:
-    """Return the margin of the last of these groups at driver coordinates q."""
+    """Return the margin of the last group in `upto` to its dead positions, at driver coordinates q."""
     states = link_states(results.linkage, upto, q, 0)
     return np.where(states.placed, states.placements[-1].margin, np.inf)
 

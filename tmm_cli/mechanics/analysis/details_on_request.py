@@ -64,8 +64,9 @@ def _solved_positions(results: Results) -> Real:
 
 
 def with_centres(results: Results) -> Results:
-    """Add the instantaneous centres at the detailed positions, or at all positions if the user requested single
-    ones.
+    """Add the instantaneous centres.
+
+    They are computed at the detailed positions or, if only some positions were requested, at all of these.
     """
     motion = results.motion
     assert motion is not None

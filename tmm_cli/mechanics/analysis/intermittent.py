@@ -125,7 +125,7 @@ class WheelMotion:
 
 @dataclass(frozen=True)
 class IntermittentMotion:
-    """Motion of a wheel over one cycle of the driver for each setting; `parts` are consecutive."""
+    """Motion of a wheel over one cycle of the driver for each setting, as consecutive parts."""
 
     task: WheelTask
     parts: tuple[WheelMotion, ...]
@@ -150,7 +150,7 @@ class IntermittentMotion:
 
     @property
     def standing(self) -> float:
-        """Fraction of that distance during which the wheel rests."""
+        """Fraction of the driver travel during which the wheel rests."""
         return sum(motion.ride.way for motion in self.parts if not motion.ride.driven) / self.way
 
     def time(self, *, driven: bool) -> float:
@@ -290,8 +290,8 @@ def wheel_motions(
 
 
 def _join_rests(rides: Sequence[OneWayMotion]) -> list[OneWayMotion]:
-    """Join consecutive parts between which the wheel neither starts nor stops being driven and the driver does not
-    reverse.
+    """Join consecutive one-way motions if the driver keeps its direction and the wheel is driven, or rests, in all
+    of them.
     """
     joined: list[OneWayMotion] = []
     for (driven, sense), group in groupby(rides, attrgetter("driven", "sense")):

@@ -207,7 +207,7 @@ class Mechanism:
 
     @property
     def turned(self) -> bool:
-        """True if the motion had to be solved for the kinds of links."""
+        """True if the motion had to be solved to distinguish cranks from rockers."""
         return bool(self.roles) and "_rotates_fully" in vars(self)
 
     @cached_property

@@ -101,9 +101,9 @@ QuantityMaker = Callable[["Linkage", "Structure"], "dict[str, NamedQuantity]"]  
 def mechanism_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
     """Return the quantities that describe the whole mechanism.
 
-    W, class, n (links), p1 and p2 (lower and higher pairs), passive (redundant constraints), strokes (their
-    number); H, psi, k. H is the stroke of the output, for a rocker the arc psi l of its first point; psi is the
-    swing angle, k the time ratio.
+    They are W, class, n (links), p1 and p2 (lower and higher pairs), passive (redundant constraints), strokes
+    (their number), H, psi and k. H is the stroke of the output link, for a rocker the arc psi l of its first
+    point; psi is the swing angle, k the time ratio.
     """
     exact = {
         "W": structure.mobility + structure.redundant,
@@ -164,8 +164,8 @@ def _read_stroke_count(solution: SolvedState) -> Any:
 def motion_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
     """Return the quantities of motion.
 
-    x, y, v, a of points and centres of mass; phi, omega, epsilon of links; s of links on the frame; v, a and
-    Coriolis in prismatic pairs.
+    They are x, y, v, a of points and centres of mass; phi, omega, epsilon of links; s of links on the frame; v,
+    a and the Coriolis acceleration in prismatic pairs.
     """
     quantities: dict[str, NamedQuantity] = {}
 
@@ -331,8 +331,8 @@ NEARLY_ZERO = 0.05  # of the largest reaction: below it the point of application
 def force_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQuantity]:
     """Return the quantities of forces.
 
-    U and M, inertia force and couple of a link; R_34, force of link 3 on link 4; arm of a guide reaction; R_A,
-    force of the pin of a compound hinge; M_b or F_b, balancing moment or force.
+    They are U and M, inertia force and couple of a link; R_34, force of link 3 on link 4; the arm of a guide
+    reaction; R_A, force of the pin of a compound hinge; M_b or F_b, balancing moment or force.
     """
     quantities: dict[str, NamedQuantity] = {}
 
@@ -391,7 +391,7 @@ def force_quantities(linkage: Linkage, structure: Structure) -> dict[str, NamedQ
 
 
 def _common_links(linkage: Linkage, structure: Structure) -> dict[str, str]:
-    """For each compound hinge, return the link with which all its pairs are counted, by name of the point."""
+    """Return, for the point of each compound hinge, the link that belongs to all of its pairs."""
     common = {}
     for hinge in linkage.hinges:
         ends = [{pair.i, pair.j} for pair in structure.pairs if pair.kind == "R" and pair.point == hinge.point]
@@ -446,8 +446,8 @@ WHEEL_READERS: tuple[tuple[str, Dimension, WheelReader], ...] = (
 def wheel_quantities(tasks: Iterable[WheelTask]) -> dict[str, NamedQuantity]:
     """Return the quantities of wheels with intermittent motion.
 
-    Rotation per cycle and with each setting, fraction of rest, cycles to a whole number of revolutions, largest
-    angular velocity and acceleration, shock.
+    They are the rotation per cycle and with each setting, the fraction of rest, the number of cycles to a whole
+    number of revolutions, the largest angular velocity and acceleration, and the shock.
     """
     readers = []
     for number, task in enumerate(tasks):

@@ -137,8 +137,12 @@ class ShakingLoads:
 
 @dataclass(frozen=True)
 class CounterweightSolution:
-    """Counterweight that was found: mass times radius (`size`, kg m), at an angle from the x axis of the link
-    (rad).
+    """Counterweight that was found for a given position on a link.
+
+    Attributes:
+        place: its position.
+        size: mass times radius, kg m.
+        angle: angle from the x axis of the link, rad.
     """
 
     place: CounterweightPlace
@@ -267,7 +271,7 @@ def _least_squares(columns: Vector, force: Vector, task: BalancingTask) -> tuple
 
 
 def _direction(c: complex) -> float:
-    """Return the angle of a counterweight (rad), pi rather than -pi for the negative x axis."""
+    """Return the angle of a counterweight, rad. For the negative x axis it is pi, not -pi."""
     return float(np.angle(c if abs(c.imag) > NO_ANGLE * abs(c) else complex(c.real)))
 
 

@@ -222,7 +222,7 @@ class MotorCycle:
         return StandstillError(float(x[np.argmax(slips)]))
 
     def _lost_digits_error(self, values: Real, share: float) -> LinkageError:
-        """Return the error for a machine that runs away, or for a slip of which rounding leaves too few digits."""
+        """Return the error for a slip with too few digits left by rounding, or that for a machine that runs away."""
         return self._unsteady_error(values) if np.mean(values) < RUNAWAY else LostDigitsError(share)
 
     @property
@@ -287,7 +287,7 @@ class MotorCycle:
 
 
 def _is_rough(values: Real, begin: float, largest_slip: float) -> bool:
-    """Return True if a polynomial does not resolve the slip on a panel, to a tolerance relative to the largest
+    """Return True if a polynomial on this panel does not represent the slip accurately, relative to the largest
     slip.
     """
     tail = max(
@@ -368,7 +368,7 @@ class SpeedTableLaw:
 
     @cached_property
     def _times(self) -> PanelCurve:
-        """Time (s) as a function of the travel from that end."""
+        """Time (s) as a function of the travel from the end of the table that the crank reaches first."""
         squares = self.table.squares
         edges = [self.sense * (float(to_float(row)) - self._first) for row in squares.arguments]
 

@@ -1,7 +1,7 @@
 """The machine reduced to its driver: functions of the driver travel, represented by polynomials on panels.
 
 Panels end where a function may jump or have a kink (ends of strokes, rows of a table), and are halved until
-the polynomials have full precision. So an integral over a cycle is exact to rounding with a few hundred
+the polynomials have full precision. So an integral over a cycle is exact within rounding with a few hundred
 positions. L. N. Trefethen, Approximation Theory and Approximation Practice (2013), ch. 3 and 19.
 """
 
@@ -62,7 +62,7 @@ class PanelCurve:
         return PanelCurve(self.edges, chebyshev.chebder(self.coefficients) / (np.diff(self.edges) / 2))
 
     def integrate(self) -> PanelCurve:
-        """Return the integral of the function from 0 as a function of its upper limit."""
+        """Return the integral of the function from 0 to x, as a function of x."""
         half = np.diff(self.edges) / 2
         integrals = chebyshev.chebint(self.coefficients, lbnd=-1) * half
         gone = np.concatenate([[0.0], np.cumsum(chebyshev.chebval(1.0, integrals))])

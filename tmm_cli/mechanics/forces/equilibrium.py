@@ -381,7 +381,7 @@ def _moment_equation(
 
 
 def moment_terms(acting: Iterable[ForceOrCouple], centre: complex, extent: float) -> tuple[MomentTerm, ...]:
-    """Compute the moments of forces and couples about a centre; moments that are zero to rounding are left out.
+    """Compute the moments of forces and couples about a centre; moments that are zero within rounding are left out.
 
     Args:
         acting: forces and couples.

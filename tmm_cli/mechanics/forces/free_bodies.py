@@ -261,7 +261,7 @@ def component_across(force: complex, axis: complex) -> complex:
 
 
 def drop_negligible(acting: Iterable[ForceOrCouple], extent: float) -> tuple[ForceOrCouple, ...]:
-    """Drop forces and couples that are zero to rounding, compared with the largest.
+    """Drop forces and couples that are zero within rounding, compared with the largest.
 
     extent: size of the linkage (m), for comparing couples with forces.
     """
@@ -342,7 +342,7 @@ class ExternalPair:
 
     @property
     def open_part(self) -> VectorKind:
-        """Kind of the component that lies on the line `rest`."""
+        """Kind of the reaction component that the equations so far leave unknown; it acts along the line `rest`."""
         if self.pair.slide is not None:
             return "reaction"
         return "tangential" if self.about is None else "normal"

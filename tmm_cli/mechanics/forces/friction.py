@@ -112,7 +112,7 @@ def compute_losses(rubbed: FrictionSolution, motion: Motion) -> FrictionLosses:
 def _integrate(work: Real, motion: Motion) -> float:
     """Integrate over the driver coordinate by the trapezoidal rule; positions without a value count as zero.
 
-    For a smooth function over a whole cycle the rule is exact to rounding.
+    For a smooth function over a whole cycle the rule is exact within rounding.
     """
     values = np.where(motion.moving & np.isfinite(work), work, 0.0)
     return float(np.sum((values[1:] + values[:-1]) / 2 * np.diff(motion.q)))

@@ -46,7 +46,7 @@ def find_table_jumps(mechanism: Mechanism) -> Iterable[float]:
 
 
 def _load_cycles(mechanism: Mechanism) -> range:
-    """Return a range with one number for each repetition of the loads within a cycle of the motion."""
+    """Return range(n), where n is the number of times that the loads repeat in one cycle of the motion."""
     return range(max(1, mechanism.driver_range.turns // mechanism.linkage.turns))
 
 

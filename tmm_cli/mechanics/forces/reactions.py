@@ -146,7 +146,7 @@ class Reactions:
 
     @cached_property
     def directed(self) -> tuple[Reaction, ...]:
-        """All reactions with the angles of their forces; where a force is zero to rounding, angle and arm are nan."""
+        """All reactions with the angles of their forces; where a force is zero within rounding, angle and arm are nan."""
         sizes = [np.abs(r.force) for r in self.all]
         least, directed = NO_FORCE * reduce(np.maximum, sizes), []
         for r, magnitude in zip(self.all, sizes, strict=True):
@@ -384,7 +384,8 @@ class TransmittedForce:
 
 
 def find_transmitted_forces(motion: Motion, reactions: Reactions) -> tuple[TransmittedForce, ...]:
-    """Compute P and Q for every link that is driven through a single pair.
+    """Compute the driving reaction P and its component Q along the velocity, for every link driven through a
+    single pair.
 
     The direction of the velocity follows from the pivot or the guide of the link, so it is defined at rest too.
     """

@@ -62,10 +62,11 @@ class ZhukovskyLever:
     difference: Real
 
     def with_rows_of(self, other: ZhukovskyLever, motion: Motion) -> ZhukovskyLever:
-        """Return this lever with the same forces and couples, in the same order, as another lever.
+        """Return this lever with the rows of another lever, in the same order.
 
-        For other input numbers a load may be zero at all positions, and so be missing here, or be absent from
-        `other`. A missing force is added as zero without an arm, a missing couple as zero with its speed ratio.
+        The other lever was computed from other input numbers, so it may lack loads of this lever, or contain loads
+        that are zero at all positions here. Such a load is added as a zero force without an arm, or as a zero
+        couple with the speed ratio of its link.
         """
         items_by_key, zero = dict(zip(_numbered_keys(self.items), self.items, strict=True)), 0 * self.balancing
 
@@ -78,7 +79,9 @@ class ZhukovskyLever:
 
 
 def _numbered_keys(items: tuple[LeverItem, ...]) -> list[tuple[tuple[str, str, bool], int]]:
-    """Return the keys of items, numbering equal keys, since a load may have the name of an inertia couple."""
+    """Return the key of each item with its number among equal keys. A load may have the same name as an inertia
+    couple.
+    """
     seen: Counter[tuple[str, str, bool]] = Counter()
     keys = []
     for item in items:

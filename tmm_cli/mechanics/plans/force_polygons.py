@@ -36,8 +36,8 @@ class ForcePlan:
         links: the links that are cut free together.
         plan: the vectors of the polygon.
         driving: True for a driving link on the frame.
-        full: whole reactions whose two components are vectors of the polygon; each closes its two components to
-            a triangle.
+        full: whole vectors of the reactions that are resolved in the polygon, from the start of the first
+            component to the end of the second.
     """
 
     links: tuple[str, ...]

@@ -50,7 +50,7 @@ def plan_ends(linkage: Linkage, pole: str, value: Callable[[str], complex]) -> d
 
 
 def relative_vectors(motion: Motion, ends: Mapping[str, complex]) -> list[NamedVector]:
-    """Return the relative vectors ab, ac, ... of each link, from the point of the link that is solved first."""
+    """Return the relative vectors ab, ac, ... of each link, which begin at the point whose motion is known first."""
     linkage = motion.linkage
     fixed, letter_of = linkage.links[FRAME].points, plan_letters(linkage)
     rank = solution_rank(linkage, groups_of(motion))

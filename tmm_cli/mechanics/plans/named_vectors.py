@@ -64,7 +64,7 @@ class Plan:
         return extent(points)[0] if points else 0.0
 
     def drawn(self) -> tuple[NamedVector, ...]:
-        """Return the vectors that are not zero to rounding."""
+        """Return the vectors that are not zero within rounding."""
         least = NO_VECTOR * self.size
         return tuple(v for v in self.vectors if abs(v.value) > least)
 

@@ -37,7 +37,7 @@ class PlanPoint:
 
 @dataclass(frozen=True)
 class SameLinkEquation:
-    """Equation for a point, from another point (`base`) of the same link.
+    """Vector equation that gives the motion of a point from that of another point (`base`) of the same link.
 
     known: True if the angular velocity of the link is known. idle: True if the link does not rotate, so that
     both points have the same velocity.
@@ -52,7 +52,8 @@ class SameLinkEquation:
 
 @dataclass(frozen=True)
 class MovingGuideEquation:
-    """Equation for a sliding block, from the coincident point (`base`) of its moving guide.
+    """Vector equation that gives the motion of a sliding block from that of the coincident point (`base`) of its
+    moving guide.
 
     known: True if the sliding motion is known.
     """
@@ -65,7 +66,10 @@ class MovingGuideEquation:
 
 @dataclass(frozen=True)
 class FixedGuideEquation:
-    """Equation for a point that moves along a guide of the frame; known: True if this motion is known."""
+    """Vector equation of a point that moves along a guide of the frame.
+
+    known: True if the motion along the guide is known.
+    """
 
     point: PlanPoint
     slide: Slide
@@ -120,7 +124,7 @@ def solution_steps(linkage: Linkage, groups: Sequence[Group]) -> list[SolutionSt
 
 
 def motion_points(linkage: Linkage, link: str) -> list[str]:
-    """Return the points of a link that serve in vector equations.
+    """Return the points of a link for which vector equations are written.
 
     They are the points at which it is paired with other links, or all points if there are fewer than two.
     """
@@ -132,10 +136,10 @@ def motion_points(linkage: Linkage, link: str) -> list[str]:
 
 
 def solution_rank(linkage: Linkage, groups: Iterable[Group]) -> dict[str, int]:
-    """Return when the motion of each named point becomes known.
+    """Return the number of the step in which the motion of each named point becomes known.
 
-    -1 for points of the frame, 0 for points of driving links, else the number of the first group that contains
-    the point.
+    It is -1 for points of the frame, 0 for points of driving links, else the number of the first group with
+    this point.
     """
     rank = {FRAME: -1} | {driver.link: 0 for driver in linkage.cranks}
     rank |= {link: number for number, group in enumerate(groups, 1) for link in group.links}
@@ -144,13 +148,15 @@ def solution_rank(linkage: Linkage, groups: Iterable[Group]) -> dict[str, int]:
 
 
 class _EquationBuilder:
-    """Build the vector equations step by step, keeping account of which motions are already known.
+    """Build the vector equations step by step, keeping account of the motions that are already known.
+
+    Links that rotate together are represented by the first of them.
 
     Attributes:
         linkage: the linkage.
-        rank: see `solution_rank`.
-        turns: for each link, the first of the links that rotate with it.
-        known: first links whose rotation is known.
+        rank: result of `solution_rank`.
+        turns: representative of each link.
+        known: representatives of the links whose rotation is known.
         slid: names of the prismatic pairs whose motion is known.
     """
 
@@ -268,8 +274,8 @@ class _EquationBuilder:
         )
 
     def _links_rotating_together(self, group: Group, before: Collection[str]) -> tuple[tuple[str, ...], ...]:
-        """Return sets of links that rotate together; each contains at most one link from before this group, in first
-        place.
+        """Return the sets of links of a group that rotate together. A set begins with a link that was known before, if
+        any.
         """
         rotating = []
         for first in dict.fromkeys(self.turns[link] for link in group.links):
@@ -280,7 +286,7 @@ class _EquationBuilder:
         return tuple(rotating)
 
     def _usable_ratios(self, group: Group) -> tuple[HigherPairRatio, ...]:
-        """Return the higher pairs of a group that give one unknown each, in the order in which they can be used."""
+        """Return the higher pairs of a group whose ratio has a single unknown, in the order in which they can be used."""
         meshes = [pair.mesh for pair in (*group.outer, *group.inner) if pair.mesh is not None]
         ratios: list[HigherPairRatio] = []
         for _ in meshes:
