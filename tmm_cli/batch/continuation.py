@@ -85,8 +85,8 @@ def newton_converged(states: LinkStates) -> Any:
 
 
 def accumulated_angles_agree(states: LinkStates) -> Any:
-    """Return True at positions where the accumulated angles of gears agree with those tabulated for groups in
-    closed form.
+    """Return True at positions where the accumulated angles of gears agree with the tables of the closed-form
+    groups.
     """
     agree: Any = np.ones(np.shape(states.q), dtype=bool)
     for kernel, at in zip(states.kernels, states.placements, strict=True):
@@ -139,7 +139,7 @@ class InitialGuessTable:
     def of(cls, q: Real, x: Real, v: Real, *, closed: bool) -> InitialGuessTable:
         """Build the table from unknowns x and derivatives v, (unknowns, nodes), at evenly spaced driver coordinates.
 
-        The unknowns are nan where they are not known.
+        Unknowns that could not be found are nan.
         """
         h = float(q[1] - q[0])
         a, b, left, right = x[:, :-1], x[:, 1:], h * v[:, :-1], h * v[:, 1:]
@@ -148,17 +148,19 @@ class InitialGuessTable:
 
     def __call__(self, q: Real) -> Real:
         """Return the unknowns at driver coordinates, (unknowns, ...); nan outside the table."""
-        many = self.pieces.shape[-1]
+        intervals = self.pieces.shape[-1]
         share = (q - self.low) / self.step
         number = np.floor(share)
         if self.gain is None:
-            number = np.clip(number, 0.0, many - 1.0)
-            beyond: Any = np.where((share < 0) | (share > many), np.nan, 0.0)
+            number = np.clip(number, 0.0, intervals - 1.0)
+            beyond: Any = np.where((share < 0) | (share > intervals), np.nan, 0.0)
         else:
-            whole = np.floor(number / many)
+            whole = np.floor(number / intervals)
             beyond = whole * self.gain.reshape(-1, *[1] * np.ndim(q))
         share = share - number
-        a, b, c, d = self.pieces.take((number if self.gain is None else number - whole * many).astype(np.intp), axis=2)
+        a, b, c, d = self.pieces.take(
+            (number if self.gain is None else number - whole * intervals).astype(np.intp), axis=2
+        )
         for coefficient in (c, b, a):
             d *= share
             d += coefficient
@@ -184,8 +186,8 @@ class InitialGuesses:
                 q, *(x for k, t in zip(iterated, traces, strict=True) for x in _unknowns_from_trace(k, t, q))
             )
             numbers = range(first, first + len(kernel.free))
-            lost = np.where(closed["sure"], 0.0, np.nan)
-            x, v = (np.stack([closed[f"{letter}{k}"] + lost for k in numbers]) for letter in "xv")
+            unsolved = np.where(closed["sure"], 0.0, np.nan)
+            x, v = (np.stack([closed[f"{letter}{k}"] + unsolved for k in numbers]) for letter in "xv")
             self.tables.append(InitialGuessTable.of(q, x, v, closed=trace.closed))
             first += len(kernel.free)
 
@@ -270,8 +272,8 @@ class ContinuedPaths:
 
     def __call__(self, q: Real) -> list[Real]:
         """Return initial guesses at driver coordinates (variants, positions), one array for each unknown."""
-        unknowns, variants, many = self.x.shape
-        n, (down, up) = many // 2, self.steps
+        unknowns, variants, nodes_per_variant = self.x.shape
+        n, (down, up) = nodes_per_variant // 2, self.steps
         q = np.broadcast_to(q, (variants, q.shape[-1])) - self.at
         whole: Any = 0.0
         if self.gain is not None:
@@ -281,7 +283,7 @@ class ContinuedPaths:
         share = q / np.where(step > 0, step, 1.0)
         k = np.clip(np.floor(share + NODE_TOLERANCE), -n, n - 1)
         t = share - k
-        flat = (k + n).astype(np.intp) + many * np.arange(variants)[:, None]
+        flat = (k + n).astype(np.intp) + nodes_per_variant * np.arange(variants)[:, None]
         x, v = (nodes.reshape(unknowns, -1) for nodes in (self.x, self.v))
         a, b = x.take(flat, axis=1), x.take(flat + 1, axis=1)
         # step of the interval; the one from -1 to 0 is part of the downward path
@@ -306,7 +308,7 @@ class Continuation:
     def __init__(
         self, varied: LinkageMaker, first: Sequence[float], linkage: Linkage, kernels: Sequence[GroupSolver]
     ) -> None:
-        self.first, self.at, many = np.array(first, dtype=float), linkage.sketch.at, len(first)
+        self.first, self.at, count = np.array(first, dtype=float), linkage.sketch.at, len(first)
         self.own = [kernel for kernel in kernels if isinstance(kernel, UnrolledNewton) and not kernel.linear]
         unknown = [(kernel, column) for kernel in self.own for column in kernel.free]
         self.x = np.array([_unknown_at_sketch(kernel, column) for kernel, column in unknown])
@@ -314,11 +316,11 @@ class Continuation:
         self.turning = np.array([column % 3 == 2 for _, column in unknown])
 
         def stages(*data: TracedArray) -> Mapping[str, Any]:
-            other = varied(data[:many])
+            other = varied(data[:count])
             rebound = with_initial_guesses(
-                [_with_loose_tolerance(kernel.rebind(other)) for kernel in kernels], data[many + 1 :], CORRECTOR_STEPS
+                [_with_loose_tolerance(kernel.rebind(other)) for kernel in kernels], data[count + 1 :], CORRECTOR_STEPS
             )
-            states = link_states(other, rebound, data[many], 1, blank=False)  # type: ignore[arg-type]
+            states = link_states(other, rebound, data[count], 1, blank=False)  # type: ignore[arg-type]
             dets = {
                 f"det{k}": at.det
                 for k, at in enumerate(
@@ -329,7 +331,7 @@ class Continuation:
             }
             return {**free_unknowns(states), **dets}
 
-        self.program = trace_function(stages, *[1] * (many + 1 + count_initial_guesses(kernels)))
+        self.program = trace_function(stages, *[1] * (count + 1 + count_initial_guesses(kernels)))
         _, self.signs = self._correct(self.first[None, :], np.array([self.at]), self.x[:, None], None)
 
     def _correct(self, numbers: Real, q: Real, x: Real, signs: Real | None) -> tuple[Real, Real]:
@@ -367,22 +369,22 @@ class Continuation:
         """
         variants = len(numbers)
         current = np.repeat(np.stack([self.x, np.full_like(self.x, np.nan)])[:, :, None], variants, axis=2)
-        gone, stride = np.zeros(variants), np.full(variants, FIRST_SHARE)
+        progress, stride = np.zeros(variants), np.full(variants, FIRST_SHARE)
         slope = np.zeros_like(current[0])
         for _ in range(MOST_ROUNDS):
-            share = np.minimum(gone + stride, 1.0)
-            start = current[0] + slope * (share - gone)
+            share = np.minimum(progress + stride, 1.0)
+            start = current[0] + slope * (share - progress)
             between = self.first + share[:, None] * (numbers - self.first)
             corrected, _ = self._correct(between, np.full(variants, self.at), start, self.signs)
-            good = self._is_small_correction(corrected[0], start) & (gone < 1)
-            moved = np.where(good, share - gone, 1.0)
+            good = self._is_small_correction(corrected[0], start) & (progress < 1)
+            moved = np.where(good, share - progress, 1.0)
             slope = np.where(good, (corrected[0] - current[0]) / moved, slope)
             current = np.where(good, corrected, current)
-            stride = np.where(good, np.where(gone > 0, 2 * stride, 1.0), stride / 2)
-            gone = np.where(good, share, gone)
-            if np.all(gone == 1):
+            stride = np.where(good, np.where(progress > 0, 2 * stride, 1.0), stride / 2)
+            progress = np.where(good, share, progress)
+            if np.all(progress == 1):
                 break
-        return np.where(gone == 1, current, np.nan)
+        return np.where(progress == 1, current, np.nan)
 
     def __call__(self, numbers: Real, low: Real, high: Real, count: int, *, closed: bool) -> ContinuedPaths:
         """Continue variants over their driver ranges.
@@ -419,29 +421,31 @@ class Continuation:
         """
         variants = len(numbers)
         sides = [side for side in (0, 1) if np.any(steps[side])]  # directions in which there are steps
-        both = np.tile(numbers, (len(sides), 1))
+        numbers_by_side = np.tile(numbers, (len(sides), 1))
         h = np.concatenate([steps[side] for side in sides])
-        now = np.tile(sketched, (1, 1, len(sides)))
-        paths = np.full((*now.shape, n + 1), np.nan)
-        paths[..., 0] = now
-        bend = np.zeros_like(now[0])
-        gone, step_share = np.zeros(len(h)), np.ones(len(h))  # number of steps
-        active = np.isfinite(now[0, 0])
+        current = np.tile(sketched, (1, 1, len(sides)))
+        paths = np.full((*current.shape, n + 1), np.nan)
+        paths[..., 0] = current
+        bend = np.zeros_like(current[0])
+        progress, step_share = np.zeros(len(h)), np.ones(len(h))  # number of steps
+        active = np.isfinite(current[0, 0])
         while np.any(active):
             step = h * step_share
-            start = now[0] + step * (now[1] + step / 2 * bend)
-            corrected, _ = self._correct(both, self.at + h * gone + step, start, self.signs)
+            start = current[0] + step * (current[1] + step / 2 * bend)
+            corrected, _ = self._correct(numbers_by_side, self.at + h * progress + step, start, self.signs)
             good = self._is_small_correction(corrected[0], start) & active
             with np.errstate(invalid="ignore", divide="ignore"):
-                bend = np.where(good & (step != 0), (corrected[1] - now[1]) / step, bend)
-            now = np.where(good, corrected, now)
-            gone = gone + step_share * good
-            whole = np.flatnonzero(good & (gone == np.floor(gone)))
-            paths[:, :, whole, gone[whole].astype(np.intp)] = now[:, :, whole]
+                bend = np.where(good & (step != 0), (corrected[1] - current[1]) / step, bend)
+            current = np.where(good, corrected, current)
+            progress = progress + step_share * good
+            whole = np.flatnonzero(good & (progress == np.floor(progress)))
+            paths[:, :, whole, progress[whole].astype(np.intp)] = current[:, :, whole]
             step_share = np.where(
-                good, np.where(gone == np.floor(gone), np.minimum(1.0, 2 * step_share), step_share), step_share / 2
+                good,
+                np.where(progress == np.floor(progress), np.minimum(1.0, 2 * step_share), step_share),
+                step_share / 2,
             )
-            active = active & (gone < n) & (step_share >= SHORTEST_STEP)
+            active = active & (progress < n) & (step_share >= SHORTEST_STEP)
         nowhere = np.full((*sketched.shape, n), np.nan)
         side = {k: paths[:, :, row * variants : (row + 1) * variants] for row, k in enumerate(sides)}
         down = side[0][..., :0:-1] if 0 in side else nowhere

@@ -103,9 +103,9 @@ class ContinuedGroup(NewtonSolver):
 def continue_groups(
     varied: LinkageMaker, columns: Real, linkage: Linkage, kernels: tuple[GroupSolver, ...]
 ) -> tuple[GroupSolver, ...]:
-    """Continue the groups of the first variant to all variants.
+    """Extend the group solvers of the first variant to all variants by continuation.
 
-    The groups returned must still be rebound to the linkage of all variants.
+    The solvers returned must still be rebound to the linkage of all variants.
 
     Args:
         varied: function that returns the linkage for numbers of the variants.
@@ -324,10 +324,10 @@ def working_and_idle_strokes(linkage: Linkage, curve: StrokeCurve, ends: Real, r
     lengths = np.mod(sense * (ends[:, ::-1] - ends), cycle)
     lows, runs = measure_runs(curve, ends, sense * lengths)
     forward = np.where(runs > 0, lengths, 0).sum(axis=1)
-    back = np.where(runs < 0, lengths, 0).sum(axis=1)
-    slower = np.sign(np.where(np.abs(forward - back) > SAME_DRIVER_POSITION, forward - back, 0))
-    rest = np.sign(np.ravel(resists) + np.zeros(len(ends)))
-    direction = np.where(slower != 0, slower, np.where(rest != 0, rest, 1.0))
+    backward = np.where(runs < 0, lengths, 0).sum(axis=1)
+    slower = np.sign(np.where(np.abs(forward - backward) > SAME_DRIVER_POSITION, forward - backward, 0))
+    load_direction = np.sign(np.ravel(resists) + np.zeros(len(ends)))
+    direction = np.where(slower != 0, slower, np.where(load_direction != 0, load_direction, 1.0))
     required = linkage.working_direction(curve.link)
     if required != "auto":
         direction = np.full(len(ends), 1.0 if required == "forward" else -1.0)

@@ -200,19 +200,19 @@ def prepare_batch(
     columns, together = split_real_columns(varying_numbers(linkages))
     if len(linkages) > 1 and not columns:  # all linkages are equal
         columns = [np.zeros((len(linkages), 1))]
-    many = len(columns)
-    steps = VARIANT_NEWTON_STEPS if many else None
+    count = len(columns)
+    steps = VARIANT_NEWTON_STEPS if count else None
 
     def varied(data: Sequence[Any]) -> Linkage:
         return with_numbers(first, together(*data)) if columns else first
 
     def stages(*data: Any) -> Mapping[str, Any]:
-        linkage = varied(data[:many])
+        linkage = varied(data[:count])
         rebound = tuple(kernel.rebind(linkage) for kernel in lines) if columns else lines
-        rebound = with_initial_guesses(rebound, data[many + 1 :], steps)
-        return solve_stages(linkage, structure, rebound, data[many], read, forces, strokes, blank=False)
+        rebound = with_initial_guesses(rebound, data[count + 1 :], steps)
+        return solve_stages(linkage, structure, rebound, data[count], read, forces, strokes, blank=False)
 
-    axes = (*[1] * many, 3 if own_places else 2, *[3 if many else 2] * count_initial_guesses(lines))
+    axes = (*[1] * count, 3 if own_places else 2, *[3 if count else 2] * count_initial_guesses(lines))
     try:
         whole = trace_function(stages, *axes, data=dict(enumerate(columns)))
     except DependsOnData:  # e.g. cam laws

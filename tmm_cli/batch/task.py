@@ -248,24 +248,24 @@ class Task:
     @cached_property
     def asked(self) -> tuple[Question, ...]:
         """Questions in the order of the file."""
-        rules, last = self.rules, self.positions
+        rules, count = self.rules, self.positions
         values = ValueReader(self._parameters({}), self.units)
         with locate_errors_in(self.tree):
             return tuple(
                 question
                 for n, rule in enumerate(rules.answers)
-                for question in self._questions_of_rule(rule, rules, values, last, ("grading", "answers", n))
+                for question in self._questions_of_rule(rule, rules, values, count, ("grading", "answers", n))
             )
 
     def _questions_of_rule(
-        self, rule: AnswerRule, rules: Grading, values: ValueReader, last: int, path: Path
+        self, rule: AnswerRule, rules: Grading, values: ValueReader, count: int, path: Path
     ) -> list[Question]:
         quantity = self.quantities.get(rule.of)
         if quantity is None:
             one_of_each = {_quantity_kind(name): name for name in reversed(self.quantities)}.values()
-            some = _("e.g. {names}").format(names=", ".join(reversed(one_of_each)))
+            examples = _("e.g. {names}").format(names=", ".join(reversed(one_of_each)))
             raise unknown_name_error(
-                rule.of, self.quantities, _("there is no quantity with this name"), some, path=(*path, "of")
+                rule.of, self.quantities, _("there is no quantity with this name"), examples, path=(*path, "of")
             )
         drawn = rules.drawn if rule.drawn is None else rule.drawn
         drawn = drawn and quantity.against != "exact"
@@ -287,12 +287,12 @@ class Task:
                 allowed=None if quantity.whole else f"at: {rules.count + 3}",
             )
         for k, number in enumerate(rule.at):
-            if not rules.count <= number < last + rules.count:
+            if not rules.count <= number < count + rules.count:
                 raise ProblemError(
                     _("there is no position with this number"),
                     path=(*path, "at", k),
                     found=str(number),
-                    allowed=_("{first} to {last}").format(first=rules.count, last=last - 1 + rules.count),
+                    allowed=_("{first} to {last}").format(first=rules.count, last=count - 1 + rules.count),
                 )
         if quantity.whole:
             return [Question(quantity, None, None, points, tolerance, drawn)]
@@ -305,8 +305,8 @@ class Task:
         if "synthesis" in self.tree.data:
             return {**early_parameters(self.tree), **replaced}
         raw = self._shape.parameters
-        rest = {name: value for name, value in raw.items() if name not in replaced}
-        return {**replaced, **build_parameters(rest, units or self.units, replaced)}
+        remaining = {name: value for name, value in raw.items() if name not in replaced}
+        return {**replaced, **build_parameters(remaining, units or self.units, replaced)}
 
     @cached_property
     def _shape(self) -> Any:
@@ -431,7 +431,7 @@ def _free_parameters(task: Task, blocks: Blocks) -> tuple[FreeParameter, ...]:
             path=("variants",),
             allowed=_("variants: {OA: {from: 80, to: 140, step: 5}}; or --vary OA=80..140:5"),
         )
-    found = []
+    parameters = []
     for name, choice in ranges.items():
         with prefix_errors("variants", name):
             (dimension,) = task.dimensions((name,))
@@ -441,8 +441,8 @@ def _free_parameters(task: Task, blocks: Blocks) -> tuple[FreeParameter, ...]:
             common = next((v.dimension for v in read if v.dimension), dimension)
             if not (isinstance(choice, Chosen) and choice.among):
                 texts = _step_texts(task, values, [task.number(value, common) for value in read], common, texts[0])
-            found.append(FreeParameter(name, tuple(dict.fromkeys(texts)), common))
-    return tuple(found)
+            parameters.append(FreeParameter(name, tuple(dict.fromkeys(texts)), common))
+    return tuple(parameters)
 
 
 def _with_common_unit(texts: Sequence[str]) -> list[str]:

@@ -128,8 +128,8 @@ class TraceProgram:
         several = any(axes & 1 for axes in self.inputs)
         turned = positions < variants  # the longer axis last
         shape = (positions, variants) if turned else (variants, positions)
-        laid = [_arrange_axes(d, axes, turned) for d, axes in zip(columns, self.inputs, strict=True)]
-        return TraceOutputs(self.outputs, self._code.run(laid, shape), turned, several, shape)
+        arranged = [_arrange_axes(d, axes, turned) for d, axes in zip(columns, self.inputs, strict=True)]
+        return TraceOutputs(self.outputs, self._code.run(arranged, shape), turned, several, shape)
 
 
 def _arrange_axes(value: Array, axes: int, turned: bool) -> Array:
@@ -197,9 +197,9 @@ class _CompiledProgram:
             else:  # one array for each output: a single large block would be cleared by the system every time
                 planes = [np.empty(shape, dtype=bool if k >= floats else float) for k in range(floats + truths)]
                 for top in range(0, rows, high):
-                    for left in range(0, columns, wide):
-                        chunk = (slice(top, top + high), slice(left, left + wide))
-                        chunk_shape = (min(high, rows - top), min(wide, columns - left))
+                    for first_column in range(0, columns, wide):
+                        chunk = (slice(top, top + high), slice(first_column, first_column + wide))
+                        chunk_shape = (min(high, rows - top), min(wide, columns - first_column))
                         parts = [_chunk_of(d, chunk) for d in operands]
                         self.function(*parts, *[plane[chunk] for plane in planes], *self.registers(chunk_shape))
         return dict(zip(self.slots, planes, strict=True)) | {n: evaluated[n] for n in self.small}
@@ -233,12 +233,12 @@ def _interpolate(x: Array, table: tuple[Any, Any], out: Array) -> None:
 def _needed_terms(program: TraceProgram) -> tuple[Term, ...]:
     """Return the terms on which some output depends, in order."""
     needed: set[int] = set()
-    left = [v for parts in program.outputs.values() for v in parts if isinstance(v, Term)]
-    while left:
-        term = left.pop()
+    pending = [v for parts in program.outputs.values() for v in parts if isinstance(v, Term)]
+    while pending:
+        term = pending.pop()
         if term.number not in needed:
             needed.add(term.number)
-            left += [a for a in term.args if isinstance(a, Term)]
+            pending += [a for a in term.args if isinstance(a, Term)]
     return tuple(t for t in program.terms if t.number in needed)
 
 

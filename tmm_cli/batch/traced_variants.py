@@ -93,18 +93,21 @@ class TracedVariants:
         return placeholder_linkage(self.make, self.first, data, self.linkage.sketch)
 
     def _trace_stages(self, read: OutputReader, forces: bool, by_variant: bool) -> TraceProgram:
-        """Trace the stages; by_variant: each variant has its own driver coordinates."""
+        """Trace the stages of the analysis.
 
-        many = len(self.first)
+        by_variant: True if each variant has its own driver coordinates.
+        """
+
+        count = len(self.first)
 
         def stages(*data: TracedArray) -> Mapping[str, Any]:
-            linkage, q, placeholders = self._placeholder_linkage(data[:many]), data[many], data[many + 1 :]
+            linkage, q, placeholders = self._placeholder_linkage(data[:count]), data[count], data[count + 1 :]
             kernels = tuple(kernel.rebind(linkage) for kernel in self.lines)
             kernels = with_initial_guesses(kernels, placeholders, VARIANT_NEWTON_STEPS)
             structure = self.structure.rebind(linkage)
             return solve_stages(linkage, structure, kernels, q, read, forces, None, blank=False, start=self.start)
 
-        whole = trace_function(stages, *[1] * many, 3 if by_variant else 2, *[3] * count_initial_guesses(self.lines))
+        whole = trace_function(stages, *[1] * count, 3 if by_variant else 2, *[3] * count_initial_guesses(self.lines))
         return whole.only(*(name for name in whole.outputs if name not in CHECK_OUTPUTS), ANGLES_AGREE)
 
     def _ends(self, *columns: TracedArray) -> Mapping[str, Any]:
@@ -243,8 +246,8 @@ class SequentialVariants:
                 rows.append(self._solve_one(tuple(row.tolist()), samples))
             except LinkageError:
                 rows.append({})
-        lost = np.full(self.driver_range(columns[:1]).at(samples).shape[1], np.nan)
-        return {name: np.stack([row.get(name, lost) for row in rows]) for name in self.names}
+        missing = np.full(self.driver_range(columns[:1]).at(samples).shape[1], np.nan)
+        return {name: np.stack([row.get(name, missing) for row in rows]) for name in self.names}
 
     def _cached_variant(self, numbers: tuple[float, ...]) -> tuple[Variant, Mechanism]:
         """Build a variant, or take it from the cache."""

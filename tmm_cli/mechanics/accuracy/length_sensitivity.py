@@ -63,11 +63,11 @@ def change_length(linkage: Linkage, length: LengthCoordinate, by: Any) -> Linkag
 
 def change_lengths(linkage: Linkage, changes: Iterable[tuple[LengthCoordinate, Any]]) -> Linkage:
     """Return the linkage with several lengths increased, each by its own amount (m)."""
-    more: dict[str, Any] = {}
+    increments: dict[str, Any] = {}
     for length, by in changes:
         for path in length.paths:
-            more[path] = more.get(path, 0.0) + length.along * by
-    return map_record(lambda path, value: value + more[path] if path in more else value, linkage)
+            increments[path] = increments.get(path, 0.0) + length.along * by
+    return map_record(lambda path, value: value + increments[path] if path in increments else value, linkage)
 
 
 def _link_vectors(linkage: Linkage) -> Iterator[tuple[str, str, Any]]:
@@ -174,7 +174,9 @@ def stroke_paths(results: Results) -> dict[str, Strokes]:
 
 @dataclass(frozen=True)
 class _LocalRates:
-    """Derivatives with respect to the lengths of functions of the link positions, near given driver coordinates."""
+    """Functions of the link positions near given driver coordinates, and their derivatives with respect to the
+    lengths.
+    """
 
     results: Results
     driver_range: DriverRange
@@ -235,8 +237,8 @@ class _LocalRates:
 
     @cached_property
     def ends(self) -> tuple[Real, Real]:
-        """Derivatives of the driver coordinate near both ends of its range, with the limiting group held, each (3,
-        lengths).
+        """Derivatives of the driver coordinate near both ends of its range, each (3, lengths), with the limiting group
+        held in place.
         """
         return self._end(0, self.driver_range.start), self._end(1, self.driver_range.end)
 
@@ -254,8 +256,11 @@ class _LocalRates:
         return {limit.group for limit in self.driver_range.limits if limit.place == place}
 
     def travel(self, coordinates: Real, function: Function) -> tuple[Real, Real]:
-        """Compute derivatives as `extremes` does, where an extreme may also be at the first or the last requested
-        position.
+        """Compute the derivatives of extremes, some of which may lie at the first or the last requested position.
+
+        Returns:
+            Derivatives of the driver coordinates of the extremes, and of the extreme values, both (extremes,
+            lengths).
         """
         requested, driver_range = self.results.asked, self.driver_range
         moved, rates = self.extremes(coordinates, function)
@@ -299,8 +304,8 @@ def _extrapolate_to_end(rates: Real) -> Real:
 def _link_coordinates(states: LinkStates, links: tuple[str, ...]) -> Real:
     """Stack the coordinates and the direction components of some links, (coordinates, positions)."""
     poses = [states.poses[link] for link in links]
-    vectors = [part for pose in poses for part in (pose.x, pose.z)]
-    return np.stack([part for vector in vectors for part in (vector.real, vector.imag)])
+    vectors = [component for pose in poses for component in (pose.x, pose.z)]
+    return np.stack([component for vector in vectors for component in (vector.real, vector.imag)])
 
 
 def _output_function(link: str) -> Function:

@@ -108,11 +108,11 @@ def judge_values(
     accuracy = np.full((3, len(values), *np.shape(motion.q)), np.nan)
     chunk = max(POSITIONS_PER_CHUNK // (1 + len(list_lengths(results.linkage))), 1)
     near = is_near_dead(motion) if motion.where is None else motion.where
-    for these, close in ((~near & motion.placed, False), (near, True)):
-        indices = np.flatnonzero(these)
+    for positions, is_near in ((~near & motion.placed, False), (near, True)):
+        indices = np.flatnonzero(positions)
         for start in range(0, len(indices), chunk):
             chosen = indices[start : start + chunk]
-            accuracy[:, :, chosen] = judge.at(chosen, close, mu)
+            accuracy[:, :, chosen] = judge.at(chosen, is_near, mu)
     bound, share, paper = (dict(zip(values, rows, strict=True)) for rows in accuracy)
     return Digits(bound, share, paper, mu)
 
@@ -248,9 +248,9 @@ class _ValueJudge:
 
     def gap(self, first: Real, second: Real) -> Real:
         """Return the absolute differences of values, for angles modulo 360 degrees."""
-        away: Real = np.abs(first - second)
+        distance: Real = np.abs(first - second)
         turning = np.array([[is_angle(key)] for key in self.values])
-        return np.where(turning, np.minimum(away, np.abs(2 * np.pi - away)), away)
+        return np.where(turning, np.minimum(distance, np.abs(2 * np.pi - distance)), distance)
 
 
 def _length_step(results: Results) -> float:
@@ -314,13 +314,13 @@ def _strokes_with_linkage(strokes: Strokes, linkage: Linkage, kernels: tuple[Gro
         for s in strokes.strokes
     ]
     swings = linkage.output_swings(strokes.link)
-    begun = []
+    moved_strokes = []
     for k, (stroke, low) in enumerate(zip(strokes.strokes, lows, strict=True)):
-        more = lows[(k + 1) % len(lows)] - low - stroke.run
-        run = stroke.run + (more - 2 * np.pi * np.round(to_float(more) / (2 * np.pi)) if swings else more)
-        begun.append(replace(stroke, low=low, run=run))
+        change = lows[(k + 1) % len(lows)] - low - stroke.run
+        run = stroke.run + (change - 2 * np.pi * np.round(to_float(change) / (2 * np.pi)) if swings else change)
+        moved_strokes.append(replace(stroke, low=low, run=run))
     others = tuple(_strokes_with_linkage(other, linkage, kernels, q) for other in strokes.others)
-    return replace(strokes, strokes=tuple(begun), others=others)
+    return replace(strokes, strokes=tuple(moved_strokes), others=others)
 
 
 # Bounds of rounding errors from the margins of the groups, without extended precision. Near dead positions, where these
@@ -352,13 +352,14 @@ def relative_bound(results: Results, blur: float = 0.0) -> Real:
     unit = np.full(np.shape(motion.q), ROUNDOFF)
     if motion.where is not None:  # computed in extended precision, and rounded
         unit[motion.where] = EPS
-    away = blur if results.linkage.driver.kind == "turn" else blur / _mechanism_size(results)
-    lost = error_growth(results)
+    uncertainty = blur if results.linkage.driver.kind == "turn" else blur / _mechanism_size(results)
+    growth = error_growth(results)
     travel = np.max([np.abs(drive.value) for drive in motion.drives.values()], axis=0)
     if motion.limits is not None:
-        lost = np.where(motion.limits, LIMIT_AGREES / (LOSS_FACTOR * ROUNDOFF), lost)
+        growth = np.where(motion.limits, LIMIT_AGREES / (LOSS_FACTOR * ROUNDOFF), growth)
     bound: Real = (
-        LOSS_FACTOR * (ROUNDOFF + unit * (1 + travel) * slenderness(results) * lost) + DRIVER_ERROR_FACTOR * away * lost
+        LOSS_FACTOR * (ROUNDOFF + unit * (1 + travel) * slenderness(results) * growth)
+        + DRIVER_ERROR_FACTOR * uncertainty * growth
     )
     return bound if results.running is None else np.maximum(bound, KNOWN_LAW)
 
@@ -367,11 +368,11 @@ def error_growth(results: Results) -> Real:
     """Return the factor by which errors grow from group to group, at each position, (positions,)."""
     motion = results.motion
     assert motion is not None
-    lost = np.ones(np.shape(motion.q))
+    growth = np.ones(np.shape(motion.q))
     for kernel, at in zip(motion.kernels, motion.placements, strict=True):
         with np.errstate(all="ignore"):
-            lost = lost * np.maximum(LOSS_MARGIN * kernel.near / at.margin, 1.0) ** 2
-    return lost
+            growth = growth * np.maximum(LOSS_MARGIN * kernel.near / at.margin, 1.0) ** 2
+    return growth
 
 
 def slenderness(results: Results) -> float:

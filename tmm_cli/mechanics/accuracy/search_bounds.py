@@ -116,11 +116,11 @@ class PreciseLinkage:
         carrier = self.linkage.output_carrier(link)
         bounds, states, slope = self.brackets(coordinates, lambda states: output_slope(states, link), [carrier])
         bounds = np.where(inner, bounds, 2 * ROUNDOFF * np.abs(coordinates))
-        off = np.abs(to_float(output_coordinate(states, link)[: len(coordinates)] - runs))
+        deviation = np.abs(to_float(output_coordinate(states, link)[: len(coordinates)] - runs))
         if self.linkage.output_swings(link):
-            off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi)
-        off = np.nan_to_num(off) + np.where(np.isfinite(bounds), bounds, 0.0) * np.nan_to_num(slope)
-        return bounds, 2 * off + 4 * (ROUNDOFF + self.noise) * np.abs(runs)
+            deviation = np.abs(np.remainder(deviation + np.pi, 2 * np.pi) - np.pi)
+        deviation = np.nan_to_num(deviation) + np.where(np.isfinite(bounds), bounds, 0.0) * np.nan_to_num(slope)
+        return bounds, 2 * deviation + 4 * (ROUNDOFF + self.noise) * np.abs(runs)
 
     def strokes(self, strokes: Strokes) -> tuple[Real, Real]:
         """Return bounds of the driver coordinates at the ends of strokes, and of the output coordinates there."""
@@ -192,17 +192,17 @@ class PreciseLinkage:
         if not bend * step**2 > error:  # the curvature is within rounding
             return error, np.inf
         slope = float(8 * (a1 - b1) - (a2 - b2)) / (12 * step)
-        off = abs(slope / bend)  # distance to the zero of the derivative
+        shift = abs(slope / bend)  # distance to the zero of the derivative
         flat = 4 * float(np.sqrt(error / bend)) + 1e-7 * step
-        place_bound = 4 * off + SLOPE_ERROR * step + 4 * ROUNDOFF * abs(place) if off < 1e-3 * step else flat
+        place_bound = 4 * shift + SLOPE_ERROR * step + 4 * ROUNDOFF * abs(place) if shift < 1e-3 * step else flat
         return error, place_bound if place_bound < span else np.inf
 
 
 def choose_precision(results: Results) -> PreciseLinkage:
     """Return the linkage in float64 if rounding errors grow little from group to group, else in double-doubles."""
     grown = error_growth(results)
-    most = slenderness(results) * float(np.max(grown, where=np.isfinite(grown), initial=1.0))
-    return PreciseLinkage(results, most if NOISE * ROUNDOFF * most < MOST_NOISE else None)
+    growth = slenderness(results) * float(np.max(grown, where=np.isfinite(grown), initial=1.0))
+    return PreciseLinkage(results, growth if NOISE * ROUNDOFF * growth < MOST_NOISE else None)
 
 
 def _first_sure_step(sure: Real, steps: Real) -> Real:

@@ -114,11 +114,13 @@ def _load_checks(results: Results, motion: Motion) -> Iterable[Check]:
         slope: Real = dot(load.force, rate.at(arm)) + load.moment * rate.w
         work = (slope[1:] + slope[:-1]) / 2 * np.diff(motion.q)
         work = np.where(np.isfinite(work), work, 0.0)
-        done = {"working": float(np.sum(work[works])), "idle": float(np.sum(work[~works]))}
-        drives = max(done, key=lambda stroke: done[stroke])
-        resists = -min(done.values()) > NO_WORK * float(np.sum(np.abs(work)))
-        both = resists and done[drives] > NO_WORK * float(np.sum(np.abs(work)))
-        yield Check("load", load.name, None, done[drives] if both else 0.0, 0.0, not both, drives if both else "")
+        work_by_stroke = {"working": float(np.sum(work[works])), "idle": float(np.sum(work[~works]))}
+        drives = max(work_by_stroke, key=lambda stroke: work_by_stroke[stroke])
+        resists = -min(work_by_stroke.values()) > NO_WORK * float(np.sum(np.abs(work)))
+        both = resists and work_by_stroke[drives] > NO_WORK * float(np.sum(np.abs(work)))
+        yield Check(
+            "load", load.name, None, work_by_stroke[drives] if both else 0.0, 0.0, not both, drives if both else ""
+        )
 
 
 def _dead_position_checks(results: Results, motion: LinkStates) -> Iterable[Check]:

@@ -116,23 +116,32 @@ def find_extremes(
     each = np.arange(2 * len(rows))
     signed = signs * np.concatenate([rows, rows])
     best = np.argmax(np.where(np.isfinite(signed), signed, -np.inf), axis=1)
-    at, values, step = q[best], signed[each, best], abs(float(q[1] - q[0]))
+    coordinates, values, step = q[best], signed[each, best], abs(float(q[1] - q[0]))
     for _ in range(ROUNDS):
-        near = at[:, None] + step * np.linspace(-1, 1, 2 * PARTS + 1)
+        near = coordinates[:, None] + step * np.linspace(-1, 1, 2 * PARTS + 1)
         near = near if cyclic else np.clip(near, np.min(q), np.max(q))
         fine = _value_rows(sample(near.ravel()), near.ravel()).reshape(len(rows), *near.shape)
         refined = signs * np.concatenate([fine, fine])[each, each]
-        off = refined - values[:, None]
-        refined = np.where(turning, values[:, None] + off - 2 * np.pi * np.round(off / (2 * np.pi)), refined)
+        change = refined - values[:, None]
+        refined = np.where(turning, values[:, None] + change - 2 * np.pi * np.round(change / (2 * np.pi)), refined)
         refined = np.where(np.isfinite(refined), refined, -np.inf)
         best = np.argmax(refined, axis=1)
         better = refined[each, best] > values
-        at, values = np.where(better, near[each, best], at), np.where(better, refined[each, best], values)
+        coordinates, values = (
+            np.where(better, near[each, best], coordinates),
+            np.where(better, refined[each, best], values),
+        )
         step /= PARTS
     half = len(courses)
     return tuple(
         QuantityExtreme(
-            c.kind, c.name, c.dimension, -float(values[n]), float(at[n]), float(values[half + n]), float(at[half + n])
+            c.kind,
+            c.name,
+            c.dimension,
+            -float(values[n]),
+            float(coordinates[n]),
+            float(values[half + n]),
+            float(coordinates[half + n]),
         )
         for n, c in enumerate(courses)
         if kept[n]

@@ -206,10 +206,10 @@ def one_way_motions_of_rotation(task: WheelTask, strokes: Strokes, sense: int, s
         chosen = [s.working == (task.when == "working stroke") for s in strokes.strokes]
     motions = []
     for stroke, driven in zip(strokes.strokes, chosen, strict=True):
-        gone = (
+        distance = (
             float(np.mod(sense * (stroke.start - start) + SAME_DRIVER_POSITION, strokes.cycle)) - SAME_DRIVER_POSITION
         )
-        first = start + sense * gone
+        first = start + sense * distance
         motions.append(OneWayMotion(first, stroke.length, sense, driven))
         if stroke.rest:
             motions.append(OneWayMotion(first + sense * stroke.length, stroke.rest, sense, driven=False))
@@ -273,9 +273,9 @@ def wheel_motions(
 
     motions = []
     for ride in rides:
-        gone = np.linspace(0, ride.way, MOTION_SAMPLES if ride.driven else 2)
-        coordinates, back = ride.start + ride.sense * gone, ride.sense * sense
-        angles = omegas = epsilons = np.zeros(len(gone))
+        distances = np.linspace(0, ride.way, MOTION_SAMPLES if ride.driven else 2)
+        coordinates, back = ride.start + ride.sense * distances, ride.sense * sense
+        angles = omegas = epsilons = np.zeros(len(distances))
         omega = epsilon = 0.0
         if ride.driven:
             rotation = turning(coordinates)
@@ -284,7 +284,7 @@ def wheel_motions(
             epsilon = _largest_value(lambda q: np.abs(turning(q).epsilon), coordinates)
         time = ride.way / rate if rate else float("nan")
         angles = angle + (angles - angles[0])
-        motions.append(WheelMotion(ride, setting, time, travel + gone, angles, omegas, epsilons, omega, epsilon))
+        motions.append(WheelMotion(ride, setting, time, travel + distances, angles, omegas, epsilons, omega, epsilon))
         travel, angle = travel + ride.way, float(angles[-1])
     return motions
 

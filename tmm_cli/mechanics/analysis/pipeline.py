@@ -405,20 +405,20 @@ def with_forces(results: Results, *, cycle: bool = True) -> Results:
         structure = results.structure.rebind(motion.finer.linkage)
         loads = splice_positions(loads, exact, motion.where)
         reactions = splice_positions(reactions, solve_reactions(motion.finer, structure, exact), motion.where)
-    rubbed, lost = None, None
+    friction, losses = None, None
     if results.linkage.friction:
-        rubbed = solve_friction(bare, results.structure, loads, reactions)
-        loads, reactions = rubbed.loads, rubbed.reactions
+        friction = solve_friction(bare, results.structure, loads, reactions)
+        loads, reactions = friction.loads, friction.reactions
         if cycle:
-            lost = cycle_losses(results)
+            losses = cycle_losses(results)
     drivers = reduced_driving_moment(motion, reactions)
     return replace(
         results,
         loads=loads,
         reactions=reactions,
         lever=compute_lever(motion, loads, drivers),
-        friction=rubbed,
-        losses=lost,
+        friction=friction,
+        losses=losses,
         energy=compute_energy(motion, loads, drivers),
     )
 
@@ -429,19 +429,19 @@ def cycle_losses(results: Results, samples: int = CYCLE_SAMPLES, *, ranges: bool
     ranges: also find the ranges in which the mechanism is self-locking.
     """
     whole = motion_at_positions(results, results.closely(samples + 1))
-    rubbed = _solve_friction_at(results, whole)
-    losses = compute_losses(rubbed, whole)
+    friction = _solve_friction_at(results, whole)
+    losses = compute_losses(friction, whole)
     if not losses.locked or not ranges:
         return losses
     q = whole.q
     if results.linkage.driver.sense < 0:
         q = q[::-1]
-        rubbed = replace(rubbed, locked=rubbed.locked[::-1], pair=rubbed.pair[::-1])
+        friction = replace(friction, locked=friction.locked[::-1], pair=friction.pair[::-1])
 
     def locked_at(q: Real) -> Real:
         return _solve_friction_at(results, motion_at_positions(results, q)).locked
 
-    return replace(losses, ranges=find_locked_ranges(q, rubbed, locked_at, cyclic=results.turns > 0))
+    return replace(losses, ranges=find_locked_ranges(q, friction, locked_at, cyclic=results.turns > 0))
 
 
 def _solve_friction_at(results: Results, motion: Motion) -> FrictionSolution:

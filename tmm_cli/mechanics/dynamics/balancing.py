@@ -68,10 +68,10 @@ class UnbalancedShaft:
 
         A mass in one plane removes the resultant force; masses in two planes remove the resultant couple as well.
         """
-        force, (first, *more) = -np.sum(self.sizes), self.planes
-        if not more:
+        force, (first, *further_planes) = -np.sum(self.sizes), self.planes
+        if not further_planes:
             return np.array([force])
-        second = -np.sum(self.sizes * (self.at - first.at)) / (more[0].at - first.at)
+        second = -np.sum(self.sizes * (self.at - first.at)) / (further_planes[0].at - first.at)
         return np.array([force - second, second])
 
     def unbalance(self, added: Vector | None = None) -> tuple[complex, complex]:

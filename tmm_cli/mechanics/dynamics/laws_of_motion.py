@@ -236,9 +236,9 @@ class MotorCycle:
             Slip at the end of the cycle, its derivative with respect to `begin`, and the slip at the nodes, shape
             (nodes, panels).
         """
-        left, done, slope, largest_slip = self.panels[::-1], list[_Panel](), 1.0, abs(begin)
-        while left:
-            panel = left.pop()
+        pending, solved, slope, largest_slip = self.panels[::-1], list[_Panel](), 1.0, abs(begin)
+        while pending:
+            panel = pending.pop()
             solution = self._solve_panel(panel, flywheel, begin)
             largest = largest_slip if solution is None else max(largest_slip, float(np.abs(solution[:, 0]).max()))
             if solution is None or _is_rough(solution[:, 0], begin, largest):
@@ -246,14 +246,14 @@ class MotorCycle:
                     raise StandstillError(panel.low)
                 middle = (panel.low + panel.high) / 2
                 parts = pairwise((panel.low, middle, panel.high))
-                left += [_Panel.of(self.machine, *ends) for ends in parts][::-1]
+                pending += [_Panel.of(self.machine, *ends) for ends in parts][::-1]
                 continue
             panel.slips = solution[:, 0]
             (begin, by_begin), largest_slip = (VALUES_TO_ENDS[1] @ solution).tolist(), largest
             slope *= by_begin
-            done.append(panel)
-        self.panels = done
-        return begin, slope, np.stack([panel.slips for panel in done if panel.slips is not None], axis=1)
+            solved.append(panel)
+        self.panels = solved
+        return begin, slope, np.stack([panel.slips for panel in solved if panel.slips is not None], axis=1)
 
     @np.errstate(all="ignore")  # at rest the derivative is not finite, and there is no solution
     def _solve_panel(self, panel: _Panel, flywheel: float, begin: float) -> Real | None:
@@ -338,12 +338,12 @@ class SpeedTableLaw:
         """Return the time since the start (s) at crank angles q; nan outside the table, or if the crank rests
         somewhere.
         """
-        (laps, inner), (first, begun) = (
+        (laps, inner), (first, start_time) = (
             self._laps_and_time(to_float(q)),
             self._laps_and_time(to_float(self.start) + np.zeros(1)),
         )
         period = float(self._times(np.array([self._length]))[0]) if self.table.squares.closed else float("nan")
-        return inner - begun + np.where(laps == first, 0.0, (laps - first) * period)
+        return inner - start_time + np.where(laps == first, 0.0, (laps - first) * period)
 
     def _angle(self, q: Real) -> Real:
         """Reduce an angle to the cycle that begins with the first row of the table."""

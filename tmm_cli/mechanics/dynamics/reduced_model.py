@@ -65,8 +65,8 @@ class PanelCurve:
         """Return the integral of the function from 0 to x, as a function of x."""
         half = np.diff(self.edges) / 2
         integrals = chebyshev.chebint(self.coefficients, lbnd=-1) * half
-        gone = np.concatenate([[0.0], np.cumsum(chebyshev.chebval(1.0, integrals))])
-        integrals[0] += gone[:-1]
+        before = np.concatenate([[0.0], np.cumsum(chebyshev.chebval(1.0, integrals))])
+        integrals[0] += before[:-1]
         return PanelCurve(self.edges, integrals)
 
     @property
@@ -100,21 +100,21 @@ def fit_curves(function: Callable[[Real], Sequence[Real]], edges: Sequence[float
         function: returns the values of all functions at an array of arguments.
         edges: arguments at which the functions may jump, including both ends of the interval.
     """
-    at = _divide_wide_panels(np.unique(np.asarray(edges, float)))
-    values = _node_values(function, at)
+    panel_edges = _divide_wide_panels(np.unique(np.asarray(edges, float)))
+    values = _node_values(function, panel_edges)
     for _ in range(MOST_HALVINGS):
         rough = _rough_panels(values)
         if not rough.any() or len(rough) > MOST_PANELS:
             break
-        middle = (at[:-1] + at[1:])[rough] / 2
-        finer = np.sort(np.concatenate([at, middle]))
+        middle = (panel_edges[:-1] + panel_edges[1:])[rough] / 2
+        finer = np.sort(np.concatenate([panel_edges, middle]))
         kept = np.repeat(~rough, np.where(rough, 2, 1))
         new = _node_values(function, finer, ~kept)
         full = np.empty((len(values), NODES, len(finer) - 1))
         full[:, :, kept] = values[:, :, ~rough]
         full[:, :, ~kept] = new
-        at, values = finer, full
-    return tuple(PanelCurve(at, VALUES_TO_COEFFICIENTS @ node_values) for node_values in values)
+        panel_edges, values = finer, full
+    return tuple(PanelCurve(panel_edges, VALUES_TO_COEFFICIENTS @ node_values) for node_values in values)
 
 
 def _divide_wide_panels(edges: Real) -> Real:

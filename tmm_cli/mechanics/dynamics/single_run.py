@@ -121,18 +121,18 @@ def integrate_run(machine: ReducedMachine, task: RunTask) -> RunHistory:
     state = np.array([0.0, task.speed, 0.0, 0.0, 0.0])
     if task.speed == 0 and _rates(machine, task, (0.0, machine.length), 0.0, state)[1] <= 0:
         raise StandstillError(0.0)
-    times, states, steps, time, left = [], [], [], 0.0, count(MOST_EVALUATIONS, -1)
+    times, states, steps, time, evaluations = [], [], [], 0.0, count(MOST_EVALUATIONS, -1)
     ending: RunEnding = "time"
     for low, high in _pieces(machine.moment, task.way_edges):
         for end in sorted({t for t in task.edges if time < t < task.longest} | {task.longest}):
-            done = _integrate_piece(machine, task, (low, high), (time, end), state, left)
-            times.append(done.t)
-            states.append(done.y)
-            steps.append(done.sol)
-            time, state = float(done.t[-1]), done.y[:, -1]
-            if done.status == 1:
+            solution = _integrate_piece(machine, task, (low, high), (time, end), state, evaluations)
+            times.append(solution.t)
+            states.append(solution.y)
+            steps.append(solution.sol)
+            time, state = float(solution.t[-1]), solution.y[:, -1]
+            if solution.status == 1:
                 break
-        ending = "time" if done.status == 0 else "standstill" if len(done.t_events[1]) else "way"
+        ending = "time" if solution.status == 0 else "standstill" if len(solution.t_events[1]) else "way"
         if ending != "way":
             break
     record = _run_history(machine, task, np.concatenate(times), np.concatenate(states, axis=1), ending)
@@ -181,26 +181,28 @@ def _integrate_piece(
     energy = max(float(np.max(machine.inertia(machine.inertia.sample_points()))) * scale**2, 1e-9)
     method, error = ("LSODA", TOLERANCE / 10) if _is_stiff(machine, task) else ("DOP853", TOLERANCE)
     exact = {"rtol": error, "atol": [error * machine.length, error * scale, *[error * energy] * 3]}
-    done = solve_ivp(rates, times, state, method, events=(gone, rests), dense_output=True, **exact)
-    return _with_last_step(done, partial(solve_ivp, rates, method=method, dense_output=True, **exact))
+    solution = solve_ivp(rates, times, state, method, events=(gone, rests), dense_output=True, **exact)
+    return _with_last_step(solution, partial(solve_ivp, rates, method=method, dense_output=True, **exact))
 
 
-def _with_last_step(done: Any, integrate: Callable[..., Any]) -> Any:
+def _with_last_step(solution: Any, integrate: Callable[..., Any]) -> Any:
     """Repeat the last step of an integration, now only up to the event that ended it.
 
     The step went beyond the end of the interval, where moments are no longer smooth, so its interpolant is
     inaccurate.
     """
-    if done.status != 1 or not done.t[-1] > done.t[-2]:
-        return done
-    again = integrate((done.t[-2], done.t[-1]), done.y[:, -2])
-    if again.status != 0:
-        return done
-    done.t = np.concatenate([done.t[:-1], again.t[1:]])
-    done.y = np.concatenate([done.y[:, :-1], again.y[:, 1:]], axis=1)
-    before = done.sol.interpolants[:-1]
-    done.sol = OdeSolution([*done.sol.ts[: len(before)], *again.sol.ts], [*before, *again.sol.interpolants])
-    return done
+    if solution.status != 1 or not solution.t[-1] > solution.t[-2]:
+        return solution
+    repeated = integrate((solution.t[-2], solution.t[-1]), solution.y[:, -2])
+    if repeated.status != 0:
+        return solution
+    solution.t = np.concatenate([solution.t[:-1], repeated.t[1:]])
+    solution.y = np.concatenate([solution.y[:, :-1], repeated.y[:, 1:]], axis=1)
+    before = solution.sol.interpolants[:-1]
+    solution.sol = OdeSolution(
+        [*solution.sol.ts[: len(before)], *repeated.sol.ts], [*before, *repeated.sol.interpolants]
+    )
+    return solution
 
 
 def _is_stiff(machine: ReducedMachine, task: RunTask) -> bool:
@@ -292,12 +294,20 @@ class SingleRun:
 
     def travel(self, q: Real) -> Real:
         """Return the distance that the driver has covered when it reaches the coordinate q."""
-        gone: Real = self.sense * (to_float(q) - self.first)
-        again = gone if self.turn is None else np.mod(gone + SAME_DRIVER_POSITION, self.turn) - SAME_DRIVER_POSITION
-        gone = np.where(
-            (gone < -SAME_DRIVER_POSITION) | (gone > self.machine.length + SAME_DRIVER_POSITION), again, gone
+        distance: Real = self.sense * (to_float(q) - self.first)
+        reduced = (
+            distance if self.turn is None else np.mod(distance + SAME_DRIVER_POSITION, self.turn) - SAME_DRIVER_POSITION
         )
-        return np.clip(gone, 0.0, None) if self.turn else np.where(np.abs(gone) < SAME_DRIVER_POSITION, 0.0, gone)
+        distance = np.where(
+            (distance < -SAME_DRIVER_POSITION) | (distance > self.machine.length + SAME_DRIVER_POSITION),
+            reduced,
+            distance,
+        )
+        return (
+            np.clip(distance, 0.0, None)
+            if self.turn
+            else np.where(np.abs(distance) < SAME_DRIVER_POSITION, 0.0, distance)
+        )
 
     def driving(self, travel: Real, speed: Real, accelerated: Real) -> Real:
         """Compute the driving moment (N m) or force (N) that produces a given motion of the driver."""

@@ -370,8 +370,8 @@ class SteadyRunning:
 
     def travel(self, q: Real) -> Real:
         """Return the travel of the driver (rad) from the beginning of the cycle to the coordinate q."""
-        gone = np.mod(self.sense * (to_float(q) - self.start) + SEAM, self.steady.machine.length) - SEAM
-        return np.asarray(np.maximum(gone, 0.0))
+        distance = np.mod(self.sense * (to_float(q) - self.start) + SEAM, self.steady.machine.length) - SEAM
+        return np.asarray(np.maximum(distance, 0.0))
 
     def speed(self, q: Real) -> Real:
         """Return the angular velocity with its sign, rad/s."""

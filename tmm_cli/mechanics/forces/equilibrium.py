@@ -371,11 +371,11 @@ def _moment_equation(
     carried: new points of application (m) of guide reactions, by name of the pair. A couple is added for each
     force that is moved.
     """
-    to = carried or {}
+    new_points = carried or {}
     acting = [
         moved
         for force in position.external_forces(links, axes)
-        for moved in _move_force(force, to.get(force.pair), position.size)
+        for moved in _move_force(force, new_points.get(force.pair), position.size)
     ]
     return MomentEquation(tuple(links), about, centre, moment_terms(acting, centre, position.size), sought)
 
@@ -389,25 +389,25 @@ def moment_terms(acting: Iterable[ForceOrCouple], centre: complex, extent: float
         extent: size of the linkage (m), with which the arms are compared.
     """
     terms = []
-    for one in acting:
-        if one.couple:
-            terms.append(MomentTerm(one, one.moment, 0.0, one.at))
+    for force in acting:
+        if force.couple:
+            terms.append(MomentTerm(force, force.moment, 0.0, force.at))
             continue
-        along = one.force / abs(one.force)
-        foot = one.at - along * float(dot(one.at - centre, along))
+        along = force.force / abs(force.force)
+        foot = force.at - along * float(dot(force.at - centre, along))
         if abs(foot - centre) > NO_COORDINATE * extent:
-            terms.append(MomentTerm(one, one.about(centre), abs(foot - centre), foot))
+            terms.append(MomentTerm(force, force.about(centre), abs(foot - centre), foot))
     least = NO_FORCE * max((abs(term.moment) for term in terms), default=0.0)
     return tuple(term for term in terms if abs(term.moment) > least)
 
 
-def _move_force(acting: ForceOrCouple, place: complex | None, size: float) -> Iterable[ForceOrCouple]:
+def _move_force(acting: ForceOrCouple, place: complex | None, extent: float) -> Iterable[ForceOrCouple]:
     if place is None or acting.couple:
         yield acting
         return
     yield replace(acting, at=place)
     moment = acting.about(place)
-    if abs(moment) > NO_COORDINATE * acting.size * size:
+    if abs(moment) > NO_COORDINATE * acting.size * extent:
         symbol = replace(acting.symbol, letter="M")
         yield replace(acting, symbol=symbol, kind="inner", force=0j, moment=moment, at=place)
 

@@ -173,8 +173,8 @@ class LoadedPosition:
         """Return the unit vector along the guide of a prismatic pair."""
         assert pair.slide is not None
         carrier = pair.slide.carrier
-        turned = 1.0 if carrier == FRAME else complex(self.motion.poses[carrier].z[self.k])
-        return complex(turned * unit(pair.slide.direction))
+        rotation = 1.0 if carrier == FRAME else complex(self.motion.poses[carrier].z[self.k])
+        return complex(rotation * unit(pair.slide.direction))
 
     def external_forces(self, links: Collection[str], axes: Mapping[str, complex]) -> tuple[ForceOrCouple, ...]:
         """Return the external forces and couples on some links; those negligible compared with the largest are left
@@ -359,11 +359,11 @@ def hinge_names(pairs: Iterable[Pair], links: Collection[str]) -> list[str]:
 
 
 def _external_pair(position: LoadedPosition, group: Group, pair: Pair) -> ExternalPair:
-    own = group.own(pair)
-    links = _links_rotating_together(group, own)
+    link_in_group = group.own(pair)
+    links = _links_rotating_together(group, link_in_group)
     inner = hinge_names(group.inner, links)
     if pair.slide is not None:
-        hinges = hinge_names(group.inner, (own,))
+        hinges = hinge_names(group.inner, (link_in_group,))
         rest = (position.hinge(hinges[0]), 1j * position.guide(pair)) if len(hinges) == 1 else None
         return ExternalPair(pair, links, rest=rest)
     at = position.hinge(pair.point)
@@ -372,8 +372,8 @@ def _external_pair(position: LoadedPosition, group: Group, pair: Pair) -> Extern
         axis = position.hinge(inner[0]) - at
         return ExternalPair(pair, links, axis, inner[0], (at, axis)) if axis else ExternalPair(pair, links)
     driven = {link for driver in group.drivers for link in (driver.base, driver.link)}
-    slides = [p for p in group.inner if own in (p.i, p.j)]
-    if len(slides) == 1 and slides[0].slide is not None and own not in driven:
+    slides = [p for p in group.inner if link_in_group in (p.i, p.j)]
+    if len(slides) == 1 and slides[0].slide is not None and link_in_group not in driven:
         axis = position.guide(slides[0])  # only this hinge holds the link along its guide
         others = [p.point for p in outer if p != pair and p.kind == "R"]
         if not inner and len(others) == len(outer) - 1 == 1:

@@ -186,8 +186,8 @@ def solve_friction(
         reactions = solve_reactions(motion, structure, (*loads, *rubbed))
         new = _pair_forces(reactions, names)
         with np.errstate(invalid="ignore"):
-            off = np.abs(np.abs(new) - sizes) / (np.max(np.abs(new), axis=0) + 1e-300)
-        if not bool(np.any(off[:, ~locked & motion.moving] > FRICTION_AGREES)):
+            deviation = np.abs(np.abs(new) - sizes) / (np.max(np.abs(new), axis=0) + 1e-300)
+        if not bool(np.any(deviation[:, ~locked & motion.moving] > FRICTION_AGREES)):
             break
         start = new - np.sum(response * sizes[:, None], axis=0)
     work = {f.pair: _friction_work(f, motion, reactions) for f in frictions}
@@ -240,9 +240,9 @@ def _solve_magnitudes(start: Vector, response: Vector) -> tuple[Real, Real]:
     return np.where(locked, np.abs(start), sizes), locked
 
 
-def _blank_locked(load: AppliedLoad, lost: Real) -> AppliedLoad:
+def _blank_locked(load: AppliedLoad, locked: Real) -> AppliedLoad:
     """Set a load to nan at the positions where the mechanism is self-locking."""
-    return replace(load, force=np.where(lost, np.nan, load.force), moment=np.where(lost, np.nan, load.moment))
+    return replace(load, force=np.where(locked, np.nan, load.force), moment=np.where(locked, np.nan, load.moment))
 
 
 def _relative_motion(pair: Reaction, motion: Motion) -> tuple[Real, Real]:

@@ -75,8 +75,8 @@ def spring_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLoa
 
 def twist_angle(spring: Spring, motion: Motion) -> Real:
     """Return the twist of a torsion spring from its unloaded angle, from -pi to pi (rad)."""
-    turned = motion.poses[spring.j].z * np.conj(motion.poses[spring.i].z) * np.conj(unit(spring.free))
-    angle: Real = np.angle(turned)
+    rotation = motion.poses[spring.j].z * np.conj(motion.poses[spring.i].z) * np.conj(unit(spring.free))
+    angle: Real = np.angle(rotation)
     return angle
 
 
@@ -103,8 +103,8 @@ def problem_loads(motion: Motion, strokes: Strokes | None) -> Iterable[AppliedLo
         along: Vector | float = motion.poses[load.link].z if load.follows else 1.0
         turning: Real | float = 1.0
         if load.resists:
-            velocity, turned = motion_direction(load, motion)
-            along, turning = -velocity, -turned
+            velocity, rotation_sense = motion_direction(load, motion)
+            along, turning = -velocity, -rotation_sense
         force, moment = load.force * factor * along, load.moment * factor * turning
         yield AppliedLoad(load.name, "load", load.link, load.at, force, moment, load.name)
         if load.base != FRAME:
@@ -204,8 +204,8 @@ def in_window(window: tuple[float, float], q: Real, linkage: Linkage) -> Real:
     low, high = window
     first = low if linkage.driver.sense > 0 else high
     cycle = 2 * np.pi * linkage.turns
-    gone = np.mod(linkage.driver.sense * (q - first) + SAME_DRIVER_POSITION, cycle) - SAME_DRIVER_POSITION
-    inside: Real = gone < np.mod(high - low, cycle) - SAME_DRIVER_POSITION
+    travel = np.mod(linkage.driver.sense * (q - first) + SAME_DRIVER_POSITION, cycle) - SAME_DRIVER_POSITION
+    inside: Real = travel < np.mod(high - low, cycle) - SAME_DRIVER_POSITION
     return inside
 
 

@@ -146,7 +146,10 @@ class Reactions:
 
     @cached_property
     def directed(self) -> tuple[Reaction, ...]:
-        """All reactions with the angles of their forces; where a force is zero within rounding, angle and arm are nan."""
+        """All reactions with the angles of their forces.
+
+        Where a force is zero within rounding, its angle and arm are nan.
+        """
         sizes = [np.abs(r.force) for r in self.all]
         least, directed = NO_FORCE * reduce(np.maximum, sizes), []
         for r, magnitude in zip(self.all, sizes, strict=True):
