@@ -286,7 +286,7 @@ class _EquationBuilder:
         return tuple(rotating)
 
     def _usable_ratios(self, group: Group) -> tuple[HigherPairRatio, ...]:
-        """Return the higher pairs of a group whose ratio has a single unknown, in the order in which they can be used."""
+        """Return the higher pairs of a group whose ratio has a single unknown, in a usable order."""
         meshes = [pair.mesh for pair in (*group.outer, *group.inner) if pair.mesh is not None]
         ratios: list[HigherPairRatio] = []
         for _ in meshes:
