@@ -11,6 +11,7 @@ from reference_of_format import schema, slug
 from test_commands import ROOT
 
 from tmm_cli import load, solve
+from tmm_cli.language import word_of_files
 from tmm_cli.mechanics import quantities as register
 from tmm_cli.mechanics.analysis import NamedQuantity, list_quantities, relative_angles, wheel_quantities
 from tmm_cli.mechanics.quantities import ANGULAR_JERK, DIMENSIONS, Dimension
@@ -170,7 +171,7 @@ def goal_rows() -> Iterator[str]:
 def column_rows(listed: tuple[Any, ...]) -> Iterator[str]:
     """Keys and headings of one list."""
     for quantity in listed:
-        heads = ", ".join(f"`{header}`" for header in quantity.headers) or "-"
+        heads = ", ".join(f"`{word_of_files(header)}`" for header in quantity.headers) or "-"
         vector = "; a vector [x, y]" if quantity.vector else ""
         yield f"| `{quantity.name}` | {quantity.text or quantity.name}{vector} | {quantity.unit or '-'} | {heads} |\n"
 

@@ -251,33 +251,52 @@ def coordinate_dimension(kind: str) -> Dimension:
     return LENGTH if kind == "slide" else ANGLE
 
 
-PER_UNIT: Final = "SI, per unit of the driver's motion"
+PER_UNIT: Final = "SI, per unit of the driver coordinate"
 
 POINT: Final = (
-    Quantity("x", "place", "m", LENGTH, (N_("x"), N_("y")), vector=True, leading=True),
+    Quantity("x", "position", "m", LENGTH, (N_("x"), N_("y")), vector=True, leading=True),
     Quantity("v", "velocity", "m/s", SPEED, (N_("vx"), N_("vy"), N_("v")), vector=True, leading=True),
     Quantity("a", "acceleration", "m/s^2", ACCELERATION, (N_("ax"), N_("ay"), N_("a")), vector=True, leading=True),
     Quantity(
         "first",
-        "derivative of its place by the driver's",
+        "derivative of the position with respect to the driver coordinate",
         PER_UNIT,
         NUMBER,
         (N_("dx/dq, SI"), N_("dy/dq, SI")),
         vector=True,
     ),
-    Quantity("second", "second derivative", PER_UNIT, NUMBER, (N_("d2x/dq2, SI"), N_("d2y/dq2, SI")), vector=True),
+    Quantity(
+        "second",
+        "second derivative with respect to the driver coordinate",
+        PER_UNIT,
+        NUMBER,
+        (N_("d2x/dq2, SI"), N_("d2y/dq2, SI")),
+        vector=True,
+    ),
 )
 
 LINK: Final = (
-    Quantity("angle", "of its x axis", "rad", ANGLE, (N_("angle"),), leading=True),
+    Quantity("angle", "angle of the x axis of the link", "rad", ANGLE, (N_("angle"),), leading=True),
     Quantity("omega", "angular speed", "rad/s", ANGULAR_SPEED, (N_("omega"),), leading=True),
     Quantity("epsilon", "angular acceleration", "rad/s^2", ANGULAR_ACCELERATION, (N_("epsilon"),), leading=True),
-    Quantity("first", "d angle / d driver", PER_UNIT, NUMBER, (N_("first transfer function, SI"),)),
-    Quantity("second", "second derivative", PER_UNIT, NUMBER, (N_("second transfer function, SI"),)),
+    Quantity(
+        "first",
+        "derivative of the angle with respect to the driver coordinate",
+        PER_UNIT,
+        NUMBER,
+        (N_("first transfer function, SI"),),
+    ),
+    Quantity(
+        "second",
+        "second derivative with respect to the driver coordinate",
+        PER_UNIT,
+        NUMBER,
+        (N_("second transfer function, SI"),),
+    ),
 )
 
 SLIDE: Final = (
-    Quantity("run", "of the runner along the carrier's guide", "m", LENGTH, (N_("s"),)),
+    Quantity("run", "displacement of the runner along the guide of the carrier", "m", LENGTH, (N_("s"),)),
     Quantity("v", "relative velocity", "m/s", SPEED, (N_("v relative"),)),
     Quantity("a", "relative acceleration", "m/s^2", ACCELERATION, (N_("a relative"),)),
     Quantity(
@@ -288,30 +307,52 @@ SLIDE: Final = (
         (N_("Coriolis x"), N_("Coriolis y"), N_("Coriolis")),
         vector=True,
     ),
-    Quantity("first", "d run / d driver", PER_UNIT, NUMBER, (N_("first transfer function, SI"),)),
-    Quantity("second", "second derivative", PER_UNIT, NUMBER, (N_("second transfer function, SI"),)),
+    Quantity(
+        "first",
+        "derivative of the displacement with respect to the driver coordinate",
+        PER_UNIT,
+        NUMBER,
+        (N_("first transfer function, SI"),),
+    ),
+    Quantity(
+        "second",
+        "second derivative with respect to the driver coordinate",
+        PER_UNIT,
+        NUMBER,
+        (N_("second transfer function, SI"),),
+    ),
 )
 
-REACTION_SIZE: Final = Quantity("size", "of the force", "N", FORCE, (N_("F"),), read=lambda r: np.abs(r.force))
+REACTION_SIZE: Final = Quantity(
+    "size", "magnitude of the force", "N", FORCE, (N_("F"),), read=lambda r: np.abs(r.force)
+)
 REACTION: Final = (
-    Quantity("force", "on link `on`", "N", FORCE, (N_("Fx"), N_("Fy")), vector=True, leading=True, symbol="R"),
+    Quantity("force", "force on link `on`", "N", FORCE, (N_("Fx"), N_("Fy")), vector=True, leading=True, symbol="R"),
     REACTION_SIZE,
-    Quantity("angle", "of the force; null where there is none", "rad", ANGLE, (N_("angle"),)),
-    Quantity("at", "hinge or running point", "m", LENGTH, vector=True),
+    Quantity("angle", "direction of the force; null where the force is zero", "rad", ANGLE, (N_("angle"),)),
+    Quantity("at", "point of action: the hinge or the sliding point", "m", LENGTH, vector=True),
     Quantity(
         "tangential",
-        "part across the link, outer hinges",
+        "external hinges: component perpendicular to the link",
         "N",
         FORCE,
         (N_("R tangential"),),
         vector=True,
         goes_with="normal",
     ),
-    Quantity("normal", "part along it", "N", FORCE, (N_("R normal"),), vector=True, goes_with="tangential"),
-    Quantity("signed", "guides: force along the guide's left normal", "N", FORCE, goes_with="couple"),
+    Quantity(
+        "normal",
+        "external hinges: component along the link",
+        "N",
+        FORCE,
+        (N_("R normal"),),
+        vector=True,
+        goes_with="tangential",
+    ),
+    Quantity("signed", "guides: force, positive towards the left normal of the guide", "N", FORCE, goes_with="couple"),
     Quantity(
         "couple",
-        "guides: couple, reduced to the running point",
+        "guides: couple about the sliding point",
         "N*m",
         MOMENT,
         (N_("couple"),),
@@ -321,10 +362,10 @@ REACTION: Final = (
     ),
     Quantity(
         "arm",
-        "guides: where the force acts, along the guide from the running point",
+        "guides: distance from the sliding point to the point of action of the force, along the guide",
         "m",
         LENGTH,
-        (N_("acts at"),),
+        (N_("point of action"),),
         goes_with="couple",
     ),
 )
@@ -336,18 +377,24 @@ LOAD: Final = (
 
 TRANSMITTED: Final = (
     Quantity("driving", "reaction in the pair in which the link is driven", "N", FORCE, (N_("P"),)),
-    Quantity("useful", "its component along the velocity of its point", "N", FORCE, (N_("Q"),)),
+    Quantity("useful", "component of this reaction along the velocity of its point of action", "N", FORCE, (N_("Q"),)),
 )
 
 BALANCE: Final = (
-    Quantity("moment", "null for a driven slider", "N*m", MOMENT, (N_("M_b"),)),
-    Quantity("force", "on the crank's end across it, or along the slider", "N", FORCE, (N_("F_b"),)),
-    Quantity("vector", "the force", "N", FORCE, vector=True),
-    Quantity("at", "where it acts", "m", LENGTH, vector=True),
+    Quantity("moment", "balancing moment; null for a driven slider", "N*m", MOMENT, (N_("M_b"),)),
+    Quantity(
+        "force",
+        "balancing force, perpendicular to the crank at its end, or along the driven slider",
+        "N",
+        FORCE,
+        (N_("F_b"),),
+    ),
+    Quantity("vector", "balancing force", "N", FORCE, vector=True),
+    Quantity("at", "point of action of the balancing force", "m", LENGTH, vector=True),
 )
 BALANCING: Final = Quantity(
     "balancing",
-    "what works with the driver's place: moment or force",
+    "balancing moment of a rotating driver, or balancing force of a sliding one",
     "N*m or N",
     MOMENT,
     (N_("M_b"),),
@@ -358,42 +405,49 @@ BALANCING: Final = Quantity(
 )
 
 LEVER_FORCE: Final = (
-    Quantity("size", "force", "N", FORCE, (N_("force"),)),
-    Quantity("arm", "about the pole", "m per rad", LENGTH, (N_("arm"),), of_slider=(N_("arm"), NUMBER)),
+    Quantity("size", "magnitude of the force", "N", FORCE, (N_("force"),)),
+    Quantity("arm", "moment arm about the pole", "m per rad", LENGTH, (N_("arm"),), of_slider=(N_("arm"), NUMBER)),
 )
 LEVER_COUPLE: Final = (
-    Quantity("size", "couple", "N*m", MOMENT, (N_("couple"),)),
-    Quantity("arm", "omega / omega_1", "", NUMBER, (N_("omega / omega_1"),)),
+    Quantity("size", "moment of the couple", "N*m", MOMENT, (N_("couple"),)),
+    Quantity("arm", "angular velocity of the link divided by that of the driver", "", NUMBER, (N_("omega / omega_1"),)),
 )
 LEVER_MOMENT: Final = Quantity(
-    "moment", "about the pole", "N*m or N", MOMENT, (N_("moment"),), of_slider=(N_("moment"), FORCE)
+    "moment", "moment about the pole", "N*m or N", MOMENT, (N_("moment"),), of_slider=(N_("moment"), FORCE)
 )
 
 ENERGY: Final = (
     Quantity(
         "inertia",
-        "reduced moment of inertia, or mass",
+        "reduced moment of inertia, or reduced mass for a sliding driver",
         "kg*m^2 or kg",
         INERTIA,
         (N_("J reduced"),),
         of_slider=(N_("m reduced"), MASS),
     ),
     Quantity(
-        "slope", "its derivative by the driver", "SI", NUMBER, (N_("dJ/dphi, SI"),), of_slider=(N_("dm/ds, SI"), NUMBER)
+        "slope",
+        "derivative of the reduced inertia with respect to the driver coordinate",
+        "SI",
+        NUMBER,
+        (N_("dJ/dphi, SI"),),
+        of_slider=(N_("dm/ds, SI"), NUMBER),
     ),
     Quantity(
         "moment",
-        "reduced moment of all loads but inertia, or force",
+        "reduced moment of all forces except inertia forces; reduced force for a sliding driver",
         "N*m or N",
         MOMENT,
         (N_("M reduced"),),
         of_slider=(N_("F reduced"), FORCE),
     ),
     Quantity("kinetic", "kinetic energy", "J", NUMBER, (N_("kinetic energy, J"),)),
-    Quantity("rate", "its rate", "W", NUMBER, (N_("its rate, W"),)),
+    Quantity("rate", "rate of change of the kinetic energy", "W", NUMBER, (N_("rate of kinetic energy, W"),)),
     Quantity("drivers", "power of the drivers", "W", NUMBER, (N_("drivers, W"),)),
     Quantity("weights", "power of weights", "W", NUMBER, (N_("weights, W"),)),
     Quantity("loads", "power of loads", "W", NUMBER, (N_("loads, W"),)),
     Quantity("friction", "power of friction", "W", NUMBER, (N_("friction, W"),)),
-    Quantity("balance", "what is left of all powers, against the largest", "", NUMBER),
+    Quantity(
+        "balance", "sum of all powers less the rate of the kinetic energy, divided by the largest of them", "", NUMBER
+    ),
 )

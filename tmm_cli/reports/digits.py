@@ -151,7 +151,7 @@ HUGE = 1e300  # a bound of what is zero as far as is known
 SLOPES = ("dJ/dphi, SI", "dm/ds, SI")
 RATIOS = {  # columns that are something over a force: the less of it there is the less they are known, of zero nothing
     ("reactions", "angle"): "F",
-    ("reactions", "acts at"): "F",
+    ("reactions", "point of action"): "F",
     ("lever", "arm"): "force",
 }
 
