@@ -50,10 +50,8 @@ def forces_tables(results: Results) -> Iterable[Table]:
         N_("name"): [reaction_name(r.by, r.on) for r in reactions.all],
     }
     note = _(
-        (
-            "R_ik is the force of link i on link k. The point of action is given by its distance from the "
-            "sliding point along the guide."
-        )
+        "R_ik is the force of link i on link k. The point of action is given by its distance from the "
+        "sliding point along the guide."
     )
     note = " ".join([note, *indeterminate_reactions(results.structure)])
     values = [quantity_columns(REACTION, reaction) for reaction in reactions.directed]
