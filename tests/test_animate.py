@@ -80,7 +80,7 @@ def test_a_diagram_is_zero_at_the_ends_of_a_stroke_and_not_nearly_zero():
 def test_a_single_position_of_a_mechanism_that_does_not_turn_is_no_motion():
     text = (PROBLEMS / "excavator.yaml").read_text(encoding="utf-8")
     text = re.sub(r"^positions: .*$", "positions: {at: [s1]}", text, flags=re.M)
-    with pytest.raises(ProblemError, match="the mechanism does not move over the requested positions"):
+    with pytest.raises(ProblemError, match="the mechanism does not move in the requested positions"):
         animation_page(solve(build_problem(read_text(text, "x.yaml"))))
 
 

@@ -111,8 +111,8 @@ def test_large_sheets_of_many_positions_are_refused_before_their_long_layout(tmp
     monkeypatch.setattr("tmm_cli.mechanics.analysis.pipeline.solve", lambda *_, **__: pytest.fail("this was computed"))
     for options, told in {
         ("--positions", "all"): (
-            "error: too many positions for motion plans on a legible sheet found: 48 allowed: at most 24; "
-            "--positions detail draws only those of positions.detail"
+            "error: too many positions: the motion plans on the sheet would be illegible found: 48 allowed: at "
+            "most 24; with --positions detail only the positions in positions.detail are drawn"
         ),
         ("--positions", "all", "--set", "n1=1 rpm"): "too many positions for motion plans",
     }.items():

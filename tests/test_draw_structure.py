@@ -348,5 +348,5 @@ def test_the_link_in_place_of_a_higher_pair_leaves_the_velocities_as_they_are(na
 
 def test_the_scheme_shows_the_links_that_replace_higher_pairs():
     with_gears, without = (dict(draw_scheme(solved(name)))["structure"].texts() for name in ("gear-doubling", "shaper"))
-    assert "Dashed: the links that replace higher pairs" in with_gears
-    assert "Dashed: the links that replace higher pairs" not in without
+    assert "Dashed lines: links that replace higher pairs" in with_gears
+    assert "Dashed lines: links that replace higher pairs" not in without

@@ -80,7 +80,7 @@ def test_one_by_one_they_are_judged_as_together():
     assert (
         together.why.tolist()
         == alone.why.tolist()
-        == ["", "the output moves differently from that of the problem file", ""]
+        == ["", "the output link moves differently than in the problem file", ""]
     )
     assert together.values == pytest.approx(alone.values, rel=1e-9)
 

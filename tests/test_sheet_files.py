@@ -173,4 +173,4 @@ def test_where_nothing_acts_there_is_no_sheet_of_forces():
     said = []
     names = [name for name, __ in large_sheet_files(solved("log-generator"), "A3", ["svg"], said.append, every=False)]
     assert names == ["sheet-1-structure.svg", "sheet-2-kinematics.svg"]
-    assert said == ["note: there are no weights and no loads, so the sheet of forces is omitted"]
+    assert said == ["note: there are no weights and no loads, so the sheet of forces is not drawn"]

@@ -186,7 +186,7 @@ def test_characters_that_the_font_lacks_are_one_note(tmp_path):
     file = tmp_path / "sine.yaml"
     file.write_text(SINE.read_text(encoding="utf-8").replace("title: ", "title: 摇杆 ", 1), encoding="utf-8")
     done = tmm("structure", file, "--drawings", "-o", tmp_path)
-    note = "note: the font of the drawings lacks these characters; boxes replace them: 摇 杆\n"
+    note = "note: the font of the drawings lacks these characters, which are drawn as boxes: 摇 杆\n"
     assert done.returncode == 0
     assert after_the_echo(done.stderr) == f"{note}written: {tmp_path / 'sine'}\n"
 

@@ -218,7 +218,7 @@ def test_an_output_that_turns_back_more_often_is_still_told():
         (
             ["OA"],
             (
-                "--over OA: expected a name, two bounds and optionally the number of values\n"
+                "--over OA: expected the name of a parameter, two bounds and optionally the number of values\n"
                 "  found:   'OA'\n"
                 "  allowed: --over OA=80..120:41"
             ),
@@ -234,7 +234,7 @@ def test_an_output_that_turns_back_more_often_is_still_told():
         (
             ["OA=80..90:1"],
             (
-                "--over OA=80..90:1: the number of values must be a whole number\n"
+                "--over OA=80..90:1: the number of values must be a whole number within the limits\n"
                 "  found:   '1'\n"
                 "  allowed: 2 to 1000000"
             ),

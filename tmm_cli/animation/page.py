@@ -161,7 +161,7 @@ def results_in_frames(results: Results, count: int) -> Results:
     assert moved.motion is not None
     moves = moved.motion.moving
     if np.count_nonzero(moves) < 2 or np.ptp(q) == 0:
-        raise ProblemError(_("the mechanism does not move over the requested positions"), path=("positions",))
+        raise ProblemError(_("the mechanism does not move in the requested positions"), path=("positions",))
     return moved if moves.all() else results_at(results, q[moves])
 
 
@@ -274,12 +274,15 @@ def _build_page(results: Results, count: int) -> str:
         bodies=bodies,
         data=data_text(page_data(results, whole, picture)),
         hint=escape(
-            _("Space: play or stop. Left, right: step. Up, down: speed. Drag in a diagram to move to a position.")
+            _(
+                "Space: start or stop. Left and right arrows: one step. Up and down arrows: speed. Drag in a "
+                "diagram to move to a position."
+            )
         ),
         back=""
         if results.turns
-        else escape(_("The return is the forward motion played backwards, with the same values.")),
-        play=escape(_("play or stop")),
+        else escape(_("The return motion is the forward motion played backwards, with the same values.")),
+        play=escape(_("start or stop")),
         position=escape(_("position")),
         speed=escape(_("speed")),
         ways=escape(_("trajectories")),

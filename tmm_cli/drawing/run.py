@@ -109,12 +109,12 @@ def _default_position_note(results: Results, k: int) -> str:
     shown_balance = f"{numeral(units.from_si(balance, dimension), '.4g')} {units.spelt(dimension)}"
     return (
         _(
-            "note: the file has no positions.detail; position {number}, with the largest balancing moment, is "
-            "drawn in detail: {size}"
+            "note: the file has no positions.detail; position {number} is drawn in detail, as its balancing "
+            "moment is the largest: {size}"
         )
         if turns
         else _(
-            "note: the file has no positions.detail; position {number}, with the largest balancing force, is "
-            "drawn in detail: {size}"
+            "note: the file has no positions.detail; position {number} is drawn in detail, as its balancing "
+            "force is the largest: {size}"
         )
     ).format(number=number, size=shown_balance)

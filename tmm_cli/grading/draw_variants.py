@@ -66,7 +66,7 @@ class VariantRequirements:
         with np.errstate(all="ignore"):
             found = [
                 (np.all(states.moving, axis=1), _("the mechanism cannot be assembled in all positions")),
-                (family.sound & alike, _("the output moves differently from that of the problem file")),
+                (family.sound & alike, _("the output link moves differently than in the problem file")),
                 *_check_margins(states),
                 *_check_slots(states),
                 *self._check_pressures(states),

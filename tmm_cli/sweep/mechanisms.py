@@ -173,11 +173,11 @@ class SweptMechanisms:
         left = [self._solve_by_trace(points, indices, solved, values) for indices in parts]
         unsure, otherwise = (np.concatenate(rows) for rows in zip(*left, strict=True))
         for row in unsure[MOST_DOUBTFUL:]:
-            solved.why[row] = _("the output moves differently from that of the problem file")
+            solved.why[row] = _("the output link moves differently than in the problem file")
         for row in otherwise[MOST_DOUBTFUL:]:
             solved.state[row] = REFUSED
             solved.why[row] = _(
-                "not examined: too many of the mechanisms have another structure of data than the file's own"
+                "not examined: too many of the mechanisms are built differently from the one in the file"
             )
         self._one_by_one(points, otherwise[:MOST_DOUBTFUL], solved)
         for row in unsure[:MOST_DOUBTFUL]:

@@ -57,7 +57,7 @@ def read_axes(task: Task, over: Sequence[str]) -> tuple[SweepAxis, ...]:
         ProblemError: An option is malformed, or its parameter does not exist.
     """
     if not 1 <= len(over) <= 2:
-        raise ProblemError(_("a sweep takes one or two parameters"), found=", ".join(over) or None, allowed=EXAMPLE)
+        raise ProblemError(_("a sweep varies one or two parameters"), found=", ".join(over) or None, allowed=EXAMPLE)
     axes = []
     for text in over:
         try:
@@ -73,7 +73,9 @@ def _read_axis(task: Task, text: str, usual: int) -> SweepAxis:
     match = OVER_OPTION.fullmatch(text)
     if match is None:
         raise ProblemError(
-            _("expected a name, two bounds and optionally the number of values"), found=quote(text), allowed=EXAMPLE
+            _("expected the name of a parameter, two bounds and optionally the number of values"),
+            found=quote(text),
+            allowed=EXAMPLE,
         )
     name, *ends, count = match.groups()
     (expected,) = task.dimensions((name,))
@@ -83,7 +85,7 @@ def _read_axis(task: Task, text: str, usual: int) -> SweepAxis:
     for end in ends:
         number = NUMBER_WITH_UNIT.fullmatch(end)
         if number is None or (number[2] and number[2] != unit):
-            raise ProblemError(_("expected two numbers in the same unit"), found=quote(end), allowed=EXAMPLE)
+            raise ProblemError(_("both bounds must be numbers in the same unit"), found=quote(end), allowed=EXAMPLE)
         bounds.append(task.value(f"{number[1]} {unit}".strip()))
     dimension = bounds[0].dimension
     if expected and dimension and not dimension.fits(expected):
@@ -96,7 +98,7 @@ def _read_axis(task: Task, text: str, usual: int) -> SweepAxis:
     steps = usual if count is None else int(count) if count.isascii() and count.isdigit() and len(count) < 9 else 0
     if not 2 <= steps <= MOST_VALUES:
         raise ProblemError(
-            _("the number of values must be a whole number"),
+            _("the number of values must be a whole number within the limits"),
             found=quote(count),
             allowed=_("{least} to {most}").format(least=2, most=MOST_VALUES),
         )

@@ -22,7 +22,7 @@ STATE_WORDS = (
     N_("limit exceeded"),
     N_("no full rotation"),
     N_("cannot be assembled"),
-    N_("refused"),
+    N_("rejected"),
 )
 
 
@@ -77,7 +77,7 @@ class SweepResults:
 
 
 FORMAT = 1
-TITLE, BORDERS = N_("Sweep"), N_("Boundaries between states")
+TITLE, BORDERS = N_("Parameter sweep"), N_("Boundaries between states")
 
 
 def points_table(sweep: SweepResults, *, words: bool = False) -> Table:
@@ -105,8 +105,8 @@ def borders_table(sweep: SweepResults, *, words: bool = False) -> Table:
         for k, axis in enumerate(sweep.axes)
     ]
     columns += [
-        Column(N_("before"), [names[mark.before] for mark in sweep.marks]),
-        Column(N_("after"), [names[mark.after] for mark in sweep.marks]),
+        Column(N_("state before"), [names[mark.before] for mark in sweep.marks]),
+        Column(N_("state after"), [names[mark.after] for mark in sweep.marks]),
         Column(N_("reason"), [_reason_text(m.why, max(m.before, m.after)) if words else m.why for m in sweep.marks]),
     ]
     return Table("borders", translated(BORDERS), tuple(columns))
@@ -162,7 +162,7 @@ def _reason_text(text: str, state: int) -> str:
     if state == LIMIT and kind == "pressure":
         return _("pressure angle of link {link}").format(link=thing)
     if state == LIMIT and kind == "slot":
-        return _("slot of pair {link}").format(link=thing)
+        return _("travel beyond the slot of pair {link}").format(link=thing)
     return text
 
 

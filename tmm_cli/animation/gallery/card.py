@@ -173,7 +173,7 @@ def _chain_card(file: str, tree: Tree, results: ChainResults) -> Card:
     problem = results.problem
     values = list(_shown_properties(results))
     if all(task.of != "W" for task in problem.shows.values()):
-        values.insert(0, (_("mobility W in space"), float(results.chain.mobility), NUMBER))
+        values.insert(0, (_("spatial mobility W"), float(results.chain.mobility), NUMBER))
     return Card(
         file,
         _file_language(tree),

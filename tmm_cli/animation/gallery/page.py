@@ -38,13 +38,13 @@ def gallery_page(cards: Sequence[Card]) -> str:
         "any": _("any"),
         "clear": _("clear"),
         "stop": _("stop all"),
-        "go": _("move all"),
+        "go": _("start all"),
         "speed": _("speed"),
         "told": _("mechanisms: {shown} of {all}").format(shown="#", all="#"),
         "none": _("No mechanism matches."),
         "hint": _(
-            "Click a picture to stop or start it, a tag to find similar mechanisms; / moves to the search "
-            "field. Values of properties are compared in the units of each card."
+            "Click a picture to stop or start the mechanism, or a tag to find similar mechanisms. Press / to "
+            "go to the search field. Properties are compared in the units shown on each card."
         ),
     }
     return fill_page(
@@ -108,9 +108,9 @@ def _picture_html(card: Card) -> str:
     sides = " ".join(f"{round(side, 1):g}" for side in turning.view)
     svg = f'<svg viewBox="{sides}" aria-hidden="true">{turning.svg}</svg>'
     if not turning.bodies:
-        name = _("{title}: links, and pairs with their degrees of freedom") if "space" in card.purposes else "{title}"
+        name = _("{title}: links and pairs with their degrees of freedom") if "space" in card.purposes else "{title}"
         return f'<div class="picture" role="img" aria-label="{_escape(name.format(title=card.title))}">{svg}</div>'
-    name = _("{title}: start or stop")
+    name = _("{title}: start or stop the motion")
     label = _escape(name.format(title=card.title))
     return f'<button class="picture" type="button" aria-pressed="true" aria-label="{label}">{svg}</button>'
 

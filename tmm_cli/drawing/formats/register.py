@@ -80,5 +80,5 @@ def missing_character_notes(texts: Iterable[str]) -> Iterable[str]:
     """Yield a note that lists the characters that are missing in the font, if the texts contain any."""
     boxes = missing_characters("".join(texts))
     if boxes:
-        text = _("note: the font of the drawings lacks these characters; boxes replace them: {characters}")
+        text = _("note: the font of the drawings lacks these characters, which are drawn as boxes: {characters}")
         yield text.format(characters=" ".join(sorted(boxes)))

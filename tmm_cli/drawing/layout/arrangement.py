@@ -409,11 +409,11 @@ def refuse_plans(count: int) -> None:
     """
     if count > MOST_PLANS:
         raise ProblemError(
-            _("too many positions for motion plans on a legible sheet"),
+            _("too many positions: the motion plans on the sheet would be illegible"),
             found=str(count),
-            allowed=_("at most {most}; --positions detail draws only those of positions.detail").format(
-                most=MOST_PLANS
-            ),
+            allowed=_(
+                "at most {most}; with --positions detail only the positions in positions.detail are drawn"
+            ).format(most=MOST_PLANS),
         )
 
 
@@ -442,7 +442,7 @@ def large_sheet_files(
     choice = choose_positions(results, every=every)
     refuse_plans(len(choice.plans))
     if choice.moves and not choice.loaded:
-        say(_("note: there are no weights and no loads, so the sheet of forces is omitted"))
+        say(_("note: there are no weights and no loads, so the sheet of forces is not drawn"))
     sheets = dict(large_sheets(choice, paper, runner))
     jobs: list[tuple[str, Callable[[], bytes]]] = []
     for name in formats:

@@ -218,7 +218,7 @@ def draw_forces_table(position: Position) -> Iterator[tuple[str, Drawing]]:
     heads = [
         _("force or moment"),
         _("magnitude, {unit}").format(unit=typeset_unit(units.spelt(FORCE))),
-        _("angle from x, °"),
+        _("angle from x axis, °"),
         _("moment, {unit}").format(unit=typeset_unit(units.spelt(MOMENT))),
     ]
     place = driver_caption(results, float(position.motion.q[k]))

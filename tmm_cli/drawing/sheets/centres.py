@@ -116,6 +116,6 @@ def _distant_centre_notes(centres: Sequence[InstantCentre], near: Mapping[LinkPa
         symbol = Symbol("P", centre_name(centre.links)[1:]).name
         if centre.place is None and centre.direction is not None:
             angle = numeral(float(np.degrees(np.angle(centre.direction))) % 180, ".1f")
-            yield _("{centre} is at infinity, at {angle}°").format(centre=symbol, angle=angle)
+            yield _("{centre} is at infinity, in direction {angle}°").format(centre=symbol, angle=angle)
         elif centre.place is not None and centre.links not in near:
             yield _("{centre} lies off the sheet: see the table").format(centre=symbol)

@@ -284,7 +284,7 @@ def draw_diagrams(results: Results) -> Iterable[tuple[str, Drawing]]:
     first = of_outputs.pop(stems[0]) if stems else []
     cycle = _("Diagrams over the cycle; dots: computed positions")
     reactions = _("Reactions over the cycle; dots: computed positions")
-    energy = _("Mechanism reduced to the driver, and powers; dots: computed positions")
+    energy = _("Reduced inertia and moment, energy and power; dots: computed positions")
     pressure = _("Pressure angles over the cycle; dots: computed positions; dashed: allowable values")
     balancing = _("Shaking force and shaking moment over the cycle; dots: computed positions")
     for caption, stem, plots in (

@@ -420,7 +420,7 @@ def draw_single_run(results: Results) -> Iterable[tuple[str, Drawing]]:
     time, speed = single.run.at(computed)
     sheet = DrawingSheet(
         results.problem.title,
-        _("Single run against the travel of the driver; dots: computed positions"),
+        _("Single run: diagrams against the travel of the driver; dots: computed positions"),
         paper=PORTRAIT,
     )
     start, most = axis_extent(sheet)

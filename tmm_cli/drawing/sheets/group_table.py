@@ -158,7 +158,7 @@ GROUP_EXAMPLES: tuple[GroupExample, ...] = (
 def draw_group_table() -> Iterator[tuple[str, Drawing]]:
     """Yield the table, as (stem of the file name, drawing)."""
     sheet = DrawingSheet(
-        _("Assur groups of classes II to VI"), _("By class and order; dotted: external pairs"), paper=LANDSCAPE
+        _("Assur groups of classes II to VI"), _("By class and order; dotted lines: external pairs"), paper=LANDSCAPE
     )
     size, corners = divide_into_cells(sheet.canvas.low, sheet.canvas.high, COLUMNS, ROWS, CELL_GAP)
     for example, (low, high) in zip(GROUP_EXAMPLES, corners, strict=False):

@@ -107,7 +107,7 @@ def _hodographs_in_rotating_axes(
             named = title.format(name=symbol.name, pair=pair, link=link)
             yield file_safe_name(f"hodograph-{pair}-link-{link}"), hodograph_sheet(results, named, [curve], "R")
     if results.turns:
-        title = _("Magnitude of the reaction {name} in pair {pair} against the crank angle, polar diagram")
+        title = _("Polar diagram: magnitude of the reaction {name} in pair {pair} against the crank angle")
         polar = np.abs(cycle.force) * np.exp(1j * whole.motion.q)
         curve = Hodograph(
             "", polar, np.abs(reaction.force) * np.exp(1j * results.motion.q), REACTION_COLOUR, leaps=leaps

@@ -271,7 +271,7 @@ def _group_sheets(
     sheet.note(_("forces not to scale"))
     sheet.note(_("positive moments: counterclockwise"))
     if any(e.sought is None for e in equations):
-        sheet.note(_("all reactions of the group are found simultaneously"))
+        sheet.note(_("all reactions of the group are found from simultaneous equations"))
     return (sheet,) if text is None else (sheet, text)
 
 
@@ -350,7 +350,7 @@ def draw_lever(position: Position) -> Iterable[tuple[str, Drawing]]:
     draw_plan_points(sheet, plan.ends, LEVER_POLE)
     sheet.note(scale_words("l", sheet.mu, "m/mm") if crank else scale_words("i", sheet.mu, "1/mm"))
     few = len(drawn_loads) < len(plan.acting)
-    sheet.note(_("forces not to scale; below 0.1 % only in the table") if few else _("forces not to scale"))
+    sheet.note(_("forces not to scale; those below 0.1 % are only in the table") if few else _("forces not to scale"))
     sheet.note(_("positive moments: counterclockwise"))
     if any(a.couple and not a.pair for a in plan.acting):
         sheet.note(_("M′: M times the speed ratio of its link to the driver"))

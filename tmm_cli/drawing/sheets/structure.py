@@ -201,7 +201,7 @@ class Legend:
             drivers = ", ".join(f"I({printed(d.base)},{d.link})" for d in inner)
             self.facts.append(_("Drivers between links of groups: {drivers}").format(drivers=drivers))
         if higher:
-            self.facts.append(_("Dashed: the links that replace higher pairs"))
+            self.facts.append(_("Dashed lines: links that replace higher pairs"))
         compound = [point for point in dict.fromkeys(points) if points.count(point) > 1]
         if compound:
             self.facts.append(_("Compound hinge {points}: one circle for each pair").format(points=", ".join(compound)))
@@ -334,7 +334,7 @@ def part_caption(part: MechanismPart, pairs: Iterable[Pair], roles: Mapping[str,
     """Return the caption of a part, in lines no wider than `width` mm."""
     links = ", ".join(f"{n} {_(ROLES[roles[n]])}" if n in roles else n for n in part.links)
     if part.redundant is not None:
-        q = _("redundant; redundant constraints: q = {q}").format(q=part.redundant.constraints)
+        q = _("redundant link; redundant constraints: q = {q}").format(q=part.redundant.constraints)
         words = [q, _("links: {links}").format(links=links)]
         words.append(_("pairs: {pairs}").format(pairs=_list_pairs(external_pairs(part, pairs))))
     elif part.group is None:

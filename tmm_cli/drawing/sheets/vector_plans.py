@@ -286,7 +286,7 @@ def motion_plan_rows(position: Position, sort: MotionPlanKind, plan: Plan, mu: f
 
     mu: scale, SI units per mm.
     """
-    rows = [TableRow((_("vector"), _("segment"), spelt("mm"), spelt(sort.unit)), head=True)]
+    rows = [TableRow((_("vector"), _("plan segment"), spelt("mm"), spelt(sort.unit)), head=True)]
     for reading in plan_readings(plan):
         first, *others = reading.symbols
         names = (first, *(piece for symbol in others for piece in (" = ", symbol)))

@@ -179,7 +179,7 @@ def _draw_higher_pair(
     if look.measured:
         sheet.label(outline.mesh.name, sheet.on(contact_point(outline)), 9, MESH_COLOUR)
         if isinstance(outline, CamOutline) and not outline.true:
-            text = _("disk of cam {link}: not to scale; only the law of its follower is given")
+            text = _("disk of cam {link} is not to scale: only the law of motion of its follower is given")
             sheet.note(text.format(link=outline.mesh.i))
 
 
