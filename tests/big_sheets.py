@@ -13,7 +13,7 @@ COURSES = ["shaper", "course-1", "course-2", "course-3", "course-4"]
 
 @functools.cache
 def laid_out(name, paper):
-    return dict(large_sheets(choose_positions(solved(name), every=False), paper))
+    return dict(large_sheets(choose_positions(solved(name), all_positions=False), paper))
 
 
 def drawn(name, paper="A1"):

@@ -141,7 +141,7 @@ def test_a_load_that_jumps_is_drawn_as_a_jump():
 
 def test_a_file_without_the_block_has_none_of_it():
     assert not [stem for stem in sheets_of("sine") if stem.startswith(("law", "energy-mass"))]
-    choice = choose_positions(solved("sine"), every=False)
+    choice = choose_positions(solved("sine"), all_positions=False)
     assert not [found for source in CONTENTS if source.sheet == 3 for found in source.drawings(choice)]
     assert "Law of motion" not in html(note(solved("sine"), drawn=False)).decode()
 

@@ -43,8 +43,8 @@ def test_several_processes_write_the_same_files_in_the_same_order():
 def test_large_sheets_are_the_same_whoever_draws_and_writes_them():
     results = moved("sine")
     asked = (results, "A3", ["pdf", "svg"], lambda note: None)
-    assert list(large_sheet_files(*asked, run_on_all_cores, every=False)) == list(
-        large_sheet_files(*asked, every=False)
+    assert list(large_sheet_files(*asked, run_on_all_cores, all_positions=False)) == list(
+        large_sheet_files(*asked, all_positions=False)
     )
 
 

@@ -180,7 +180,7 @@ def test_a_text_is_cut_where_its_cell_ends():
 def test_plans_of_all_positions_go_on_on_further_sheets():
     sine = problem("sine")
     results = solve(replace(sine, request=replace(sine.request, count=6)))
-    pages = dict(large_sheets(choose_positions(results, every=True), "A3"))
+    pages = dict(large_sheets(choose_positions(results, all_positions=True), "A3"))
     assert sum(name.endswith("kinematics") for name in pages) > 1
     stems = [one.stem for sheet in pages.values() for __, one in sheet.pictures]
     assert {f"velocity-{number:02d}" for number in results.numbers} <= set(stems)

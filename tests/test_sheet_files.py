@@ -162,7 +162,7 @@ def test_an_unknown_format_and_a_missing_library_are_said_in_a_line(tmp_path, mo
 
 
 def test_a_pdf_has_a_page_for_every_sheet():
-    written = dict(large_sheet_files(solved("sine"), "A3", ["pdf", "svg"], lambda note: None, every=False))
+    written = dict(large_sheet_files(solved("sine"), "A3", ["pdf", "svg"], lambda note: None, all_positions=False))
     pages = PdfReader(io.BytesIO(written["sheets.pdf"])).pages
     assert len(pages) == len(written) - 1
     assert [float(side) * 25.4 / 72 for side in pages[0].mediabox[2:]] == pytest.approx([420, 297], abs=1e-3)
@@ -171,6 +171,8 @@ def test_a_pdf_has_a_page_for_every_sheet():
 
 def test_where_nothing_acts_there_is_no_sheet_of_forces():
     said = []
-    names = [name for name, __ in large_sheet_files(solved("log-generator"), "A3", ["svg"], said.append, every=False)]
+    names = [
+        name for name, __ in large_sheet_files(solved("log-generator"), "A3", ["svg"], said.append, all_positions=False)
+    ]
     assert names == ["sheet-1-structure.svg", "sheet-2-kinematics.svg"]
     assert said == ["note: there are no weights and no loads, so the sheet of forces is not drawn"]

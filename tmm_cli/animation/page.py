@@ -37,18 +37,18 @@ MOST_LETTERS = 4  # at one point of a plan
 LEAST_DISTANCE = 1e-6  # of a plan: nearer points are one
 
 
-def plan_data(motion: Motion, sort: MotionPlanKind) -> dict[str, Any]:
+def plan_data(motion: Motion, plan_kind: MotionPlanKind) -> dict[str, Any]:
     """Return the velocity or acceleration plan in all frames as JSON data.
 
     Args:
         motion: motion of the mechanism; a position is a frame.
-        sort: kind of plan.
+        plan_kind: velocity plan or acceleration plan.
 
     Returns:
         Title, points (SI, y up) in each frame, vectors as pairs of point numbers, letters of the points, scale in page
         units per SI unit, and view box.
     """
-    plans = [sort.plan(motion, k) for k in range(len(motion.q))]
+    plans = [plan_kind.plan(motion, k) for k in range(len(motion.q))]
     first = plans[0]
     extent = float(np.percentile([plan.size for plan in plans], 95)) or 1.0
     points: list[Vector] = []
@@ -80,8 +80,8 @@ def plan_data(motion: Motion, sort: MotionPlanKind) -> dict[str, Any]:
     all_points = all_points[np.abs(all_points) <= SIZE_LIMIT * extent]
     scale = PLAN_SIDE / (max(np.ptp(all_points.real), np.ptp(all_points.imag)) or 1.0)
     return {
-        "title": (_("Velocity plan, {unit}") if sort.letter == "v" else _("Acceleration plan, {unit}")).format(
-            unit=spelt(sort.unit)
+        "title": (_("Velocity plan, {unit}") if plan_kind.letter == "v" else _("Acceleration plan, {unit}")).format(
+            unit=spelt(plan_kind.unit)
         ),
         "points": [[round_figures(z.real, 4), round_figures(z.imag, 4)] for z in points],
         "vectors": below,
@@ -189,7 +189,7 @@ def page_data(results: Results, whole: Results, picture: MechanismPicture) -> di
         },
         "bodies": [body_data(picture.bodies[name]) for name in names],
         "labels": body_labels(picture, names),
-        "plans": [plan_data(motion, sort) for sort in motion_plan_kinds()],
+        "plans": [plan_data(motion, plan_kind) for plan_kind in motion_plan_kinds()],
         "charts": [chart_data(results, quantity) for quantity in chart_quantities(results, whole)],
         "marks": position_marks(results, motion),
     }

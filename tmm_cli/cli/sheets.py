@@ -53,7 +53,9 @@ def sheets(
             warn(warning)
         runner = partial(run_on_all_cores, quiet=len(files) > 1)
         write_sheets(
-            results, out, large_sheet_files(results, paper, formats_chosen, say, runner, every=positions == "all")
+            results,
+            out,
+            large_sheet_files(results, paper, formats_chosen, say, runner, all_positions=positions == "all"),
         )
         return OK
 

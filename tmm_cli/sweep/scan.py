@@ -68,18 +68,18 @@ class ScanResults:
         return ScanResults(self.does[rows], self.sure[rows], peaks, self.ends[rows])
 
 
-def scan_variants(crank_variants: CrankVariants, columns: Real, wish: ScanRequest) -> ScanResults:
+def scan_variants(crank_variants: CrankVariants, columns: Real, request: ScanRequest) -> ScanResults:
     """Scan variants.
 
     Args:
         crank_variants: the traced problem.
         columns: parameter values of the variants in SI units, (variants, parameters).
-        wish: curves to be examined.
+        request: curves to be examined.
     """
-    scanned = _VariantScan(crank_variants, columns, wish, SCAN).scanned
+    scanned = _VariantScan(crank_variants, columns, request, SCAN).scanned
     again = np.flatnonzero(~scanned.sure)
     for rows in np.array_split(again, -(-len(again) // BLOCK)) if again.size else ():
-        fine = _VariantScan(crank_variants, columns[rows], wish, FINE_SCAN).scanned
+        fine = _VariantScan(crank_variants, columns[rows], request, FINE_SCAN).scanned
         scanned.does[rows], scanned.sure[rows], scanned.ends[rows] = fine.does, fine.sure, fine.ends
         for name, peak in scanned.peaks.items():
             peak[rows] = fine.peaks[name]
@@ -89,8 +89,8 @@ def scan_variants(crank_variants: CrankVariants, columns: Real, wish: ScanReques
 class _VariantScan:
     """Curves of variants at equally spaced driver positions of one revolution."""
 
-    def __init__(self, crank_variants: CrankVariants, columns: Real, wish: ScanRequest, samples: int) -> None:
-        self.crank_variants, self.columns, self.wish = crank_variants, columns, wish
+    def __init__(self, crank_variants: CrankVariants, columns: Real, request: ScanRequest, samples: int) -> None:
+        self.crank_variants, self.columns, self.request = crank_variants, columns, request
         self.places, self.step = samples, 2 * np.pi / samples
         self.found = crank_variants.scan(*split_columns(columns), self.at(np.arange(samples)))
 
@@ -103,7 +103,7 @@ class _VariantScan:
         """Results of the scan, refined between scan positions."""
         does, sure = self._determine_states()
         ends = np.full((len(self.columns), len(self.crank_variants.stroke_links), 2), np.nan)
-        if self.wish.strokes and np.any(does == SCAN_WORKS):
+        if self.request.strokes and np.any(does == SCAN_WORKS):
             for k in range(len(self.crank_variants.stroke_links)):
                 slope = self.found[f"slope{k}"]
                 turns = sign_changes(slope)
@@ -155,8 +155,8 @@ class _VariantScan:
         """
         curve = self.found[name]
         top: Real = np.max(curve, axis=1)
-        limit = self.wish.limits.get(name)
-        level = top if name in self.wish.peaks or limit is None else np.maximum(top, limit)
+        limit = self.request.limits.get(name)
+        level = top if name in self.request.peaks or limit is None else np.maximum(top, limit)
         rows, at = candidate_peaks(curve, level, works[:, None])
         if rows.size:
             close = VariantCurves(self.crank_variants.curve_program(name), self.columns[rows])

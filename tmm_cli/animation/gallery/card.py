@@ -101,12 +101,12 @@ class Fact:
 
     Attributes:
         name: name of the property.
-        told: value with its unit, formatted for the reader.
+        formatted: value with its unit, formatted for the reader.
         number: the same value as a number in that unit, for searches.
     """
 
     name: str
-    told: str
+    formatted: str
     number: float
 
 

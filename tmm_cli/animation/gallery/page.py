@@ -93,7 +93,7 @@ def _card_html(card: Card, file: str) -> str:
     ]
     source = f'<p class="source">{_escape(card.reference)}</p>' if card.reference else ""
     formula = f'<p class="formula">{_escape(card.formula)}</p>' if card.formula else ""
-    facts = "".join(f"<tr><td>{_escape(fact.name)}</td><td>{_escape(fact.told)}</td></tr>" for fact in card.facts)
+    facts = "".join(f"<tr><td>{_escape(fact.name)}</td><td>{_escape(fact.formatted)}</td></tr>" for fact in card.facts)
     about = f"<p{tongue}>{_escape(card.about)}</p>" if card.about else ""
     return (
         f'<li class="card">{_picture_html(card)}<h2{tongue}>{_escape(card.title)}</h2>{source}'

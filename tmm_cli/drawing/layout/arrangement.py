@@ -424,7 +424,7 @@ def large_sheet_files(
     say: Callable[[str], None],
     runner: JobRunner = run_in_process,
     *,
-    every: bool,
+    all_positions: bool,
 ) -> Iterator[tuple[str, bytes]]:
     """Yield the files of the large sheets, as (file name, content). A PDF contains all sheets.
 
@@ -434,12 +434,12 @@ def large_sheet_files(
         formats: Names of file formats.
         say: Called with notes for the user.
         runner: Draws and writes, for example on several cores.
-        every: Draw motion plans of all positions, not only of the detailed ones.
+        all_positions: Draw motion plans of all positions, not only of the detailed ones.
 
     Raises:
         ProblemError: There are too many motion plans, or a drawing does not fit on the paper.
     """
-    choice = choose_positions(results, every=every)
+    choice = choose_positions(results, all_positions=all_positions)
     refuse_plans(len(choice.plans))
     if choice.moves and not choice.loaded:
         say(_("note: there are no weights and no loads, so the sheet of forces is not drawn"))

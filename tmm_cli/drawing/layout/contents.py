@@ -130,14 +130,16 @@ def reading_order(drawings: Iterable[tuple[DrawingSource, str]]) -> list[int]:
     return [number for __, number in sorted(keys)]
 
 
-def choose_positions(results: Results, *, every: bool) -> SheetChoice:
-    """Choose the positions to be drawn: the detailed ones, and with `every` motion plans of all positions."""
+def choose_positions(results: Results, *, all_positions: bool) -> SheetChoice:
+    """Choose the positions to be drawn: the detailed ones, and with `all_positions` motion plans of all positions."""
     motion = results.motion
     if motion is None:
         return SheetChoice(results, (), ())
     detail = tuple(detailed_drawings(results))
     moving = motion.moving & ~results.locked
-    plans = [Position(results, motion, k) for k in range(len(results.numbers)) if moving[k]] if every else detail
+    plans = (
+        [Position(results, motion, k) for k in range(len(results.numbers)) if moving[k]] if all_positions else detail
+    )
     return SheetChoice(results, tuple(plans), detail)
 
 

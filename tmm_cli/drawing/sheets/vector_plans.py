@@ -224,8 +224,8 @@ def motion_plan_kinds() -> tuple[MotionPlanKind, MotionPlanKind]:
 
 def draw_motion_plans(position: Position) -> Iterable[tuple[str, Drawing]]:
     """Yield the velocity plan and the acceleration plan of a position, as (stem of the file name, drawing)."""
-    for sort in motion_plan_kinds():
-        plan = sort.plan(position.motion, position.k)
+    for plan_kind in motion_plan_kinds():
+        plan = plan_kind.plan(position.motion, position.k)
         figure = FigureExtent()
         figure.spots([0j], PLAN_MARGIN)
         for vector in plan.vectors:
@@ -233,9 +233,9 @@ def draw_motion_plans(position: Position) -> Iterable[tuple[str, Drawing]]:
         # the width of the table hardly depends on the scale
         layout = choose_scale(
             figure,
-            NoteBlock(["μ = 0.0000 (m/s²)/mm"], motion_plan_rows(position, sort, plan, plan.size / 100 or 1.0), 2),
+            NoteBlock(["μ = 0.0000 (m/s²)/mm"], motion_plan_rows(position, plan_kind, plan, plan.size / 100 or 1.0), 2),
         )
-        sheet = position.sheet(sort.title, room=layout)
+        sheet = position.sheet(plan_kind.title, room=layout)
         for vector in plan.drawn():
             # a thin ray is enough for a centre of mass, which has its letter
             mass = vector.kind == "absolute" and vector.symbol.below.startswith("S")
@@ -249,12 +249,12 @@ def draw_motion_plans(position: Position) -> Iterable[tuple[str, Drawing]]:
         for vector in plan.drawn():
             if vector.kind != "absolute" and abs(vector.value) / sheet.mu > LEAST_NAMED:
                 sheet.label(vector.symbol, sheet.on(name_position(vector, plan)), 9, VECTOR_COLOURS[vector.kind])
-        draw_plan_points(sheet, {**plan.ends, **corners_on_paper(plan, sheet.mu)}, sort.pole)
+        draw_plan_points(sheet, {**plan.ends, **corners_on_paper(plan, sheet.mu)}, plan_kind.pole)
         if plan.size == 0:
             sheet.note(_("everything is at rest"))
-        sheet.note(scale_words(sort.letter, sheet.mu, f"({sort.unit})/mm"))
-        sheet.table(motion_plan_rows(position, sort, plan, sheet.mu), 2)
-        yield position.stem(sort.stem), sheet.finish()
+        sheet.note(scale_words(plan_kind.letter, sheet.mu, f"({plan_kind.unit})/mm"))
+        sheet.table(motion_plan_rows(position, plan_kind, plan, sheet.mu), 2)
+        yield position.stem(plan_kind.stem), sheet.finish()
 
 
 def corners_on_paper(plan: Plan, mu: float) -> dict[str, complex]:
@@ -281,19 +281,19 @@ def name_position(vector: NamedVector, plan: Plan) -> complex:
     )
 
 
-def motion_plan_rows(position: Position, sort: MotionPlanKind, plan: Plan, mu: float) -> list[TableRow]:
+def motion_plan_rows(position: Position, plan_kind: MotionPlanKind, plan: Plan, mu: float) -> list[TableRow]:
     """Return the table of a plan: letters, length on paper and value of each vector, then angular quantities of links.
 
     mu: scale, SI units per mm.
     """
-    rows = [TableRow((_("vector"), _("plan segment"), spelt("mm"), spelt(sort.unit)), head=True)]
+    rows = [TableRow((_("vector"), _("plan segment"), spelt("mm"), spelt(plan_kind.unit)), head=True)]
     for reading in plan_readings(plan):
         first, *others = reading.symbols
         names = (first, *(piece for symbol in others for piece in (" = ", symbol)))
         length = numeral(reading.size / mu, ".1f") if reading.size else "0"
         rows.append(TableRow((names, with_subscripts(reading.segment), length, format_figures(reading.size))))
-    rows.append(TableRow((_("link"), _("sense"), "", spelt(sort.turning)), head=True))
-    for turn in angular_values(position.motion, position.k, sort.what):
+    rows.append(TableRow((_("link"), _("sense"), "", spelt(plan_kind.turning)), head=True))
+    for turn in angular_values(position.motion, position.k, plan_kind.what):
         sense = _("ccw") if turn.value > 0 else _("cw") if turn.value < 0 else ""
         rows.append(TableRow((turn.symbol, sense, "", format_figures(abs(turn.value)))))
     return rows
