@@ -73,7 +73,7 @@ class BranchFollower:
             q, corrected = targets[0], self.corrector.step(smooth, targets)
             close = corrected is not None and corrected[1] < CORRECTION
             dead = (
-                self.crossings.between([start, *nodes], corrected[0], largest)
+                self.crossings.find_between([start, *nodes], corrected[0], largest)
                 if corrected is not None and close
                 else None
             )
@@ -91,32 +91,32 @@ class BranchFollower:
                 nodes.append(node)
                 smooth.append(node)
                 if self.spins(node):
-                    return [*nodes, *self.beyond(node)], "lost"
+                    return [*nodes, *self.nodes_at_infinity(node)], "lost"
                 continue
             step = (q - node.q) / 2
             smooth = [node]
             failures += 1
             if failures % PATIENCE == 0 or abs(step) < least:
-                limit = self.limit(node, float(np.sign(distance)))
+                limit = self.find_limit(node, float(np.sign(distance)))
                 beside = abs(step) < least
                 if limit is not None and (limit.q - end) * distance <= 0 and (beside or self.leads_to(node, limit)):
                     return [*nodes, limit], "limit"
             if abs(step) < least:
-                lost = [*nodes, *self.beyond(node)]
+                lost = [*nodes, *self.nodes_at_infinity(node)]
                 return lost, "boundary" if abs(end - node.q) < EDGE * self.scale else "lost"
         return nodes, "reached"
 
     def spins(self, node: BranchNode) -> bool:
         """Return True if links rotate so much faster than the driver that they cannot be followed."""
-        return self.corrector.gone(node.state)[1] > SPUN * (1 + abs(node.q - self.at) / self.scale)
+        return self.corrector.distance_from_home(node.state)[1] > SPUN * (1 + abs(node.q - self.at) / self.scale)
 
-    def beyond(self, last: BranchNode) -> list[BranchNode]:
+    def nodes_at_infinity(self, last: BranchNode) -> list[BranchNode]:
         """Return a node at which links that recede or spin reach infinity; empty if they do neither.
 
         Near a driver coordinate q* a link at the distance c/(q* - q) has the speed c/(q* - q)^2, from which q* follows.
         """
         home = self.corrector.home or last.state
-        if self.corrector.gone(last.state)[0] > FAR:
+        if self.corrector.distance_from_home(last.state)[0] > FAR:
             far = (last.state.x - home.x).ravel()
             k = int(np.argmax(np.abs(far)))
             speed = (np.conj(far[k]) * last.first.x.ravel()[k]).real / abs(
@@ -134,7 +134,7 @@ class BranchFollower:
 
         The limit may belong to another branch, beyond a gap that is narrower than a step.
         """
-        near = self.corrector.apart(node.state, limit.state) / 2
+        near = self.corrector.distance(node.state, limit.state) / 2
         share = np.sqrt(LEFT)[:, None]  # near a limit states vary as the square root of the distance
         starts = GroupState(
             *(
@@ -146,11 +146,11 @@ class BranchFollower:
         return all(
             start is not None
             and start.side == node.side
-            and self.corrector.apart(start.state, starts.part(slice(k, k + 1))) <= near
+            and self.corrector.distance(start.state, starts.part(slice(k, k + 1))) <= near
             for k, start in enumerate(checked)
         )
 
-    def limit(self, last: BranchNode, sense: float) -> BranchNode | None:
+    def find_limit(self, last: BranchNode, sense: float) -> BranchNode | None:
         """Find the limit position of the driver ahead of a node, to the last bit; None if there is no limit nearby.
 
         Along the motion of the group itself q has an extreme there. With the direction l of this motion, the equations
@@ -162,7 +162,7 @@ class BranchFollower:
         if kernel.passive:
             return None
         with np.errstate(all="ignore"):
-            direction = _unknowns_of(last.first, kernel.size) * sense * self.scale
+            direction = _to_unknowns(last.first, kernel.size) * sense * self.scale
             length = np.linalg.norm(direction)
             if not np.isfinite(length) or length == 0:
                 return None
@@ -176,7 +176,7 @@ class BranchFollower:
                     everything = {**before.poses, **kernel.poses_of(state)}
                     matrix = self._bordered(everything, before, line)
                     ahead = float(
-                        np.dot(line, _unknowns_of(state, kernel.size) - _unknowns_of(last.state, kernel.size))
+                        np.dot(line, _to_unknowns(state, kernel.size) - _to_unknowns(last.state, kernel.size))
                     )
                     right = np.concatenate([-kernel.residuals(everything, before.drives)[0], [s - ahead]])
                     step = solve(matrix, right)
@@ -282,7 +282,7 @@ class BranchFollower:
         return _make_trace(nodes, (below, above))
 
 
-def _unknowns_of(state: GroupState, size: float) -> Real:
+def _to_unknowns(state: GroupState, size: float) -> Real:
     """Convert a state to the vector of the unknowns (x, y and angle of each link; lengths divided by `size`)."""
     return np.stack([state.x[0].real / size, state.x[0].imag / size, state.unwrapped[0]], axis=-1).ravel()
 

@@ -128,7 +128,7 @@ class Corrector:
             The node and its distance from the guess; None if there is no solution.
         """
         corrected = self.nodes(np.array([q]), start)[0]
-        return None if corrected is None else (corrected, self.apart(corrected.state, start))
+        return None if corrected is None else (corrected, self.distance(corrected.state, start))
 
     def nodes(self, q: Real, start: GroupState) -> list[BranchNode | None]:
         """Solve the group at many driver coordinates at once, each from its own initial guess.
@@ -194,7 +194,7 @@ class Corrector:
         node, q = smooth[-1], targets[0]
         start = predict_state(node, q)
         predicted = self.far.get(q)
-        if predicted is not None and (apart := self.apart(predicted.state, start)) < CORRECTION:
+        if predicted is not None and (apart := self.distance(predicted.state, start)) < CORRECTION:
             return predicted, apart
         if (node.q, q) not in self.near:
             if q in self.far:  # the prediction of the polynomial failed
@@ -210,14 +210,14 @@ class Corrector:
             self.near = dict(zip(((node.q, half) for half in halves), corrected, strict=False))
             self.far = dict(zip(targets[1:], corrected[PATIENCE:], strict=True))
         predicted = self.near[node.q, q]
-        return None if predicted is None else (predicted, self.apart(predicted.state, start))
+        return None if predicted is None else (predicted, self.distance(predicted.state, start))
 
-    def apart(self, state: GroupState, other: GroupState) -> float:
+    def distance(self, state: GroupState, other: GroupState) -> float:
         """Return the greatest difference between two states: lengths divided by the size of the group, angles in rad.
 
         Where the group is far from its first state, differences are divided by this distance.
         """
-        away, wound = self.gone(state)
+        away, wound = self.distance_from_home(state)
         return float(
             max(
                 np.max(np.abs(state.x - other.x)) / (self.kernel.size * max(1.0, away)),
@@ -229,9 +229,9 @@ class Corrector:
         """Return True if two states differ by full turns of links at most."""
         around = (other.unwrapped - state.unwrapped) / (2 * np.pi)
         same = GroupState(other.x, state.unwrapped + (around - np.round(around)) * 2 * np.pi)
-        return self.apart(state, same) < SAME_STATE
+        return self.distance(state, same) < SAME_STATE
 
-    def gone(self, state: GroupState) -> tuple[float, float]:
+    def distance_from_home(self, state: GroupState) -> tuple[float, float]:
         """Return how far the group is from its first state.
 
         As guides become parallel, links recede and gears on them rotate without limit; larger steps are then accepted.
@@ -302,8 +302,8 @@ def correct_trace(
     same_way = np.all(det * np.sign(det[0]) > NEARLY_DEAD * np.max(np.abs(det)))
     valid = (
         bool(np.all(sound) and same_way)
-        and corrector.apart(led, states.part(slice(1, None))) < CORRECTION
+        and corrector.distance(led, states.part(slice(1, None))) < CORRECTION
         and corrector.returned(states.part(slice(1)), states.part(slice(-1, None)))
-        and corrector.apart(GroupState(states.x[sketch_node], states.unwrapped[sketch_node]), state) < SAME_STATE
+        and corrector.distance(GroupState(states.x[sketch_node], states.unwrapped[sketch_node]), state) < SAME_STATE
     )
     return replace(trace, states=states, first=first, second=second) if valid else None

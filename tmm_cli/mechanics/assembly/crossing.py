@@ -91,7 +91,7 @@ class CrossingFinder:
         self.kernel, self.source, self.correct, self.scale = kernel, source, correct, scale
         self.refused: list[tuple[float, float]] = []
 
-    def between(self, nodes: list[BranchNode], beyond: BranchNode, largest: float) -> BranchNode | None:
+    def find_between(self, nodes: list[BranchNode], beyond: BranchNode, largest: float) -> BranchNode | None:
         """Find a dead position that the group passes smoothly between the last of `nodes` and the node `beyond`.
 
         largest: largest determinant met so far.
@@ -102,18 +102,18 @@ class CrossingFinder:
         node = nodes[-1]
         if self.kernel.passive or node.dead:
             return None
-        if beyond.side == node.side and not self._touches(node, beyond, largest):
+        if beyond.side == node.side and not self._touches_zero(node, beyond, largest):
             return None
         middle, span = (node.q + beyond.q) / 2, abs(beyond.q - node.q)
         if any(abs(middle - q) < 2 * old and span > old / CLOSER for q, old in self.refused):
             return None
-        crossing = find_crossing(self.correct, self._finest, nodes, beyond, self.scale)
+        crossing = find_crossing(self.correct, self._refine_nodes, nodes, beyond, self.scale)
         if crossing is None or (crossing.q - node.q) * (beyond.q - node.q) <= 0:
             self.refused.append((middle, span))
             return None
         return crossing
 
-    def _finest(self, nodes: list[BranchNode]) -> list[BranchNode]:
+    def _refine_nodes(self, nodes: list[BranchNode]) -> list[BranchNode]:
         """Solve the nodes again in double-doubles, and round the results to float64."""
         kernel = self.kernel
         before = self.source(to_double_double([n.q for n in nodes]), 0)
@@ -129,7 +129,7 @@ class CrossingFinder:
             for k, n in enumerate(nodes)
         ]
 
-    def _touches(self, node: BranchNode, beyond: BranchNode, largest: float) -> bool:
+    def _touches_zero(self, node: BranchNode, beyond: BranchNode, largest: float) -> bool:
         """Return True if the determinant seems to touch zero between two nodes without changing sign.
 
         It then falls as the square of the distance: its zero is at twice the distance at which the tangent is zero,

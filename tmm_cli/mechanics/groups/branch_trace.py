@@ -30,13 +30,13 @@ class ChangePoints:
 
     def side(self, q: Real) -> Real:
         """Return 1, or -1 where an odd number of change points lies between the sketch and the driver coordinates q."""
-        return 1.0 - 2.0 * ((self._passed(q) - self._passed(np.array(self.at))) % 2)
+        return 1.0 - 2.0 * ((self._count_passed(q) - self._count_passed(np.array(self.at))) % 2)
 
     def within(self, low: float, high: float) -> Real:
         """Return the driver coordinates of the change points between low and high, in increasing order."""
         return repeat_in_cycles(self.places, self.start, self.cycle, low, high)
 
-    def _passed(self, q: Real) -> Real:
+    def _count_passed(self, q: Real) -> Real:
         """Return the number of change points between the beginning of the cycle and the driver coordinates q."""
         within = to_float(q)
         whole = np.zeros(np.shape(q)) if self.cycle is None else np.floor((within - self.start) / self.cycle)
@@ -213,19 +213,21 @@ class AccumulatedAngles:
                 accumulated.append(pose)
                 continue
             angle = np.arctan2(pose.z.imag, pose.z.real)
-            turned = angle + 2 * pi(angle) * np.round((self._about(link, q) - angle) / TAU)
+            turned = angle + 2 * pi(angle) * np.round((self._interpolate_angle(link, q) - angle) / TAU)
             accumulated.append(replace(pose, unwrapped=turned))
         return tuple(accumulated)
 
     def sure(self, links: tuple[str, ...], poses: tuple[Pose, ...], q: Real) -> Real:
         """Return True where the number of full turns is certain: the angles are within 90 degrees of the table."""
         off = [
-            np.abs(pose.turned - self._about(n, q)) for n, pose in zip(links, poses, strict=True) if n in self.angles
+            np.abs(pose.turned - self._interpolate_angle(n, q))
+            for n, pose in zip(links, poses, strict=True)
+            if n in self.angles
         ]
         sure: Real = reduce(np.maximum, off) < np.pi / 2
         return sure
 
-    def _about(self, link: str, q: Real) -> Real:
+    def _interpolate_angle(self, link: str, q: Real) -> Real:
         """Interpolate the accumulated angle of a link in the table."""
         cycle = self.q[-1] - self.q[0]
         whole = np.floor((q - self.q[0]) / cycle) if self.closed else np.zeros(np.shape(q))

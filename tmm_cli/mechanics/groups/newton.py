@@ -137,7 +137,7 @@ class NewtonSolver(GroupSolver):
         """Size of the group (m) with a last axis of length 1."""
         return _stack([self.size])
 
-    def _fill(self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]], like: Real) -> Real:
+    def _assemble_matrix(self, parts: Sequence[Mapping[str, Sequence[JacobianRow]]], like: Real) -> Real:
         """Assemble the Jacobian rows of all pairs into one dimensionless matrix (..., rows, unknowns)."""
         matrix: Real = np.zeros_like(like, shape=(*np.shape(like), self._scale.shape[-1], 3 * len(self.group.links)))
         row = 0
@@ -159,7 +159,7 @@ class NewtonSolver(GroupSolver):
     def matrix(self, poses: Poses) -> Real:
         """Return the dimensionless Jacobian of the constraint equations, shape (..., rows, unknowns)."""
         x = poses[self.group.links[0]].x
-        return self._fill(self._rows(poses), x.real + 0 * self.size)
+        return self._assemble_matrix(self._rows(poses), x.real + 0 * self.size)
 
     def _rows(self, poses: Poses) -> list[Mapping[str, Sequence[JacobianRow]]]:
         return [c.jacobian_rows(poses) for c in self.constraints]
@@ -282,7 +282,7 @@ class NewtonSolver(GroupSolver):
         """Compute the velocities of the links from all poses and the matrix; nan where det is nan."""
         known = self.known(everything, {name: (rate.v, rate.w) for name, rate in rates.items()})
         solution = solve(matrix, self.asked(drives, 1, np.shape(det)) - known)
-        return tuple(Rate(v, w) for v, w in self._by_link(solution, det))
+        return tuple(Rate(v, w) for v, w in self._split_by_link(solution, det))
 
     def accelerations(
         self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
@@ -300,19 +300,19 @@ class NewtonSolver(GroupSolver):
         known = self.known(everything, {name: (accel.a, accel.e) for name, accel in accels.items()})
         bend = _stack(self.velocity_terms(everything, rates)) * self._scale
         solution = solve(matrix, self.asked(drives, 2, np.shape(det)) - known - bend)
-        return tuple(Accel(a, e) for a, e in self._by_link(solution, det))
+        return tuple(Accel(a, e) for a, e in self._split_by_link(solution, det))
 
     def velocity_terms(self, poses: Poses, rates: Rates) -> list[Real]:
         """Return the second derivative of each constraint equation that would remain if all accelerations were zero."""
         return [term for constraint in self.constraints for term in constraint.velocity_terms(poses, rates)]
 
-    def _by_link(self, solution: Real, det: Real) -> Iterator[tuple[Vector, Real]]:
+    def _split_by_link(self, solution: Real, det: Real) -> Iterator[tuple[Vector, Real]]:
         """Split a solution into complex origin and angle of each link, with their dimensions; nan where det is nan."""
         solution = np.where(np.isfinite(det)[..., None], solution * self._columns, np.nan)
         for k in range(0, solution.shape[-1], 3):
             yield solution[..., k] + 1j * solution[..., k + 1], solution[..., k + 2]
 
-    def _by_constraint(self, multipliers: Sequence[Real]) -> list[tuple[PairConstraint, list[Real]]]:
+    def _split_by_constraint(self, multipliers: Sequence[Real]) -> list[tuple[PairConstraint, list[Real]]]:
         """Group the Lagrange multipliers of all equations by pair and driver."""
         each, row = [], 0
         for constraint in self.constraints:
@@ -320,13 +320,13 @@ class NewtonSolver(GroupSolver):
             row += len(constraint.lengths)
         return each
 
-    def _apart(self, everything: Poses, multipliers: Sequence[Real]) -> dict[str, Wrench]:
+    def _separating_forces(self, everything: Poses, multipliers: Sequence[Real]) -> dict[str, Wrench]:
         """Return the radial (separating) forces of teeth on each link.
 
         They follow from the tangential forces and do no work.
         """
         total: dict[str, Wrench] = {}
-        for constraint, constraint_multipliers in self._by_constraint(multipliers):
+        for constraint, constraint_multipliers in self._split_by_constraint(multipliers):
             apart = constraint.apart(everything, constraint_multipliers)
             if apart is None:
                 continue
@@ -345,15 +345,17 @@ class NewtonSolver(GroupSolver):
         everything = self._all_poses(at, poses)
         under = self._transposed(at, everything)
         multipliers = under(applied)
-        more = self._apart(everything, multipliers)
+        more = self._separating_forces(everything, multipliers)
         if more:
             both = zip(self.group.links, applied, strict=True)
             multipliers = under([wrench + more[link] if link in more else wrench for link, wrench in both])
-        return self.given_by(everything, self._by_constraint(multipliers))
+        return self.given_by(everything, self._split_by_constraint(multipliers))
 
     def _transposed(self, at: Placement, everything: Poses) -> Callable[[Sequence[Wrench]], Sequence[Real]]:
         """Return a function that computes the multipliers of all equations from the forces on the links."""
-        pushes = self._fill([c.pushes(everything) for c in self.constraints], at.poses[0].x.real + 0 * self.size)
+        pushes = self._assemble_matrix(
+            [c.pushes(everything) for c in self.constraints], at.poses[0].x.real + 0 * self.size
+        )
         turned = np.swapaxes(pushes, -1, -2)
 
         def under(wrenches: Sequence[Wrench]) -> Sequence[Real]:

@@ -143,7 +143,7 @@ class Telescope(ClosedFormSolver):
         )
         return direction
 
-    def _of_n(self, run: Real) -> tuple[Vector, float]:
+    def _inner_part_axes(self, run: Real) -> tuple[Vector, float]:
         """Return origin (m) and angle (rad) of n in the axes of m; run: driver coordinate (m)."""
         slide = self.chain.slide
         if slide.carrier == self.chain.m:
@@ -151,9 +151,9 @@ class Telescope(ClosedFormSolver):
         guide_point = slide.through + run * unit(slide.direction)
         return slide.at - guide_point * unit(-slide.turned), -slide.turned
 
-    def _locked(self, run: Real) -> AnyDyad:
+    def _fix_driver(self, run: Real) -> AnyDyad:
         """Return the solver of the dyad with the driver fixed at the coordinate `run` (m)."""
-        origin, angle = self._of_n(run)
+        origin, angle = self._inner_part_axes(run)
         of_m, inner = self.chain.m == self.dyad.group.links[0], self.dyad.inner
         other_link = self.chain.m if of_m else self.chain.arm
         turned = unit(angle)
@@ -166,7 +166,7 @@ class Telescope(ClosedFormSolver):
             )
         return replace(self.dyad, inner=moved, sign=self.sign)
 
-    def _two(self, at: Placement) -> Placement:
+    def _dyad_placement(self, at: Placement) -> Placement:
         """Reduce a placement of the telescope to the two links of the dyad."""
         pose_of = dict(zip(self.group.links, at.poses, strict=True))
         return replace(at, poses=tuple(pose_of[link] for link in self.chain.dyad.links))
@@ -174,7 +174,7 @@ class Telescope(ClosedFormSolver):
     def _poses(self, poses: Poses) -> dict[str, Pose]:
         return {**poses, UNDER: poses[self.hung]}
 
-    def _ordered(self, arm: Any, n: Any, m: Any) -> Any:
+    def _in_group_order(self, arm: Any, n: Any, m: Any) -> Any:
         """Arrange values of the three links in the order of the links of the group."""
         value_of = {self.chain.arm: arm, self.chain.n: n, self.chain.m: m}
         return tuple(value_of[link] for link in self.group.links)
@@ -184,15 +184,17 @@ class Telescope(ClosedFormSolver):
 
     def closed(self, poses: Poses, drives: DriverStates) -> Placement:
         run = self._drive(drives).value
-        at = self._locked(run).closed(self._poses(poses), drives)
+        at = self._fix_driver(run).closed(self._poses(poses), drives)
         pose_of = dict(zip(self.chain.dyad.links, at.poses, strict=True))
-        origin, angle = self._of_n(run)
+        origin, angle = self._inner_part_axes(run)
         m = pose_of[self.chain.m]
-        return replace(at, poses=self._ordered(pose_of[self.chain.arm], Pose(m.at(origin), m.z * unit(angle)), m))
+        return replace(
+            at, poses=self._in_group_order(pose_of[self.chain.arm], Pose(m.at(origin), m.z * unit(angle)), m)
+        )
 
     def residual_rate(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> Real:
         drive, known = self._drive(drives), self._poses(poses)
-        dyad = self._locked(drive.value)
+        dyad = self._fix_driver(drive.value)
         # the residual is measured with the two links as in a dead position
         flat = replace(dyad, sign=0).closed(known, drives)
         z = flat.poses[self.chain.dyad.links.index(self.chain.m)].z
@@ -209,19 +211,19 @@ class Telescope(ClosedFormSolver):
 
     def rates(self, at: Placement, poses: Poses, rates: Rates, drives: DriverStates) -> tuple[Rate, ...]:
         drive = self._drive(drives)
-        m, off = self._m(at)
+        m, off = self._outer_part_pose(at)
         slid = drive.first * self._along * m.z
-        dyad_rates = self._locked(drive.value).rates(
-            self._two(at), self._poses(poses), self._rates(rates, slid), drives
+        dyad_rates = self._fix_driver(drive.value).rates(
+            self._dyad_placement(at), self._poses(poses), self._rates(rates, slid), drives
         )
         rate_of = dict(zip(self.chain.dyad.links, dyad_rates, strict=True))
         body = rate_of[self.chain.m]  # velocity of n at the origin of m
-        ordered: tuple[Rate, ...] = self._ordered(
+        ordered: tuple[Rate, ...] = self._in_group_order(
             rate_of[self.chain.arm], Rate(body.at(off), body.w), Rate(body.v - slid, body.w)
         )
         return ordered
 
-    def _m(self, at: Placement) -> tuple[Pose, Vector]:
+    def _outer_part_pose(self, at: Placement) -> tuple[Pose, Vector]:
         """Return the pose of m, and the vector from the origin of m to that of n."""
         pose_of = dict(zip(self.group.links, at.poses, strict=True))
         m = pose_of[self.chain.m]
@@ -231,18 +233,22 @@ class Telescope(ClosedFormSolver):
         self, at: Placement, poses: Poses, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
         drive = self._drive(drives)
-        m, off = self._m(at)
+        m, off = self._outer_part_pose(at)
         of_m, hung = rates[self.chain.m], accels[self.hung]
         u = self._along * m.z
         slid = drive.first * u
         more = drive.second * u + 2j * of_m.w * slid  # Coriolis
         moving = {**self._rates(rates, slid), self.chain.m: Rate(of_m.v + slid, of_m.w)}
-        dyad_accels = self._locked(drive.value).accelerations(
-            self._two(at), self._poses(poses), moving, {**accels, UNDER: Accel(hung.a + more, hung.e)}, drives
+        dyad_accels = self._fix_driver(drive.value).accelerations(
+            self._dyad_placement(at),
+            self._poses(poses),
+            moving,
+            {**accels, UNDER: Accel(hung.a + more, hung.e)},
+            drives,
         )
         accel_of = dict(zip(self.chain.dyad.links, dyad_accels, strict=True))
         body = accel_of[self.chain.m]
-        ordered: tuple[Accel, ...] = self._ordered(
+        ordered: tuple[Accel, ...] = self._in_group_order(
             accel_of[self.chain.arm], Accel(body.at(off, of_m.w), body.e), Accel(body.a - more, body.e)
         )
         return ordered
@@ -259,8 +265,8 @@ class Telescope(ClosedFormSolver):
         u, point = carrier.z * unit(slide.direction), runner.at(slide.at)
         run = dot(u, point - carrier.at(slide.through))
         two = {chain.arm: borne[chain.arm], chain.m: whole}
-        reaction = self._locked(run).reactions(
-            self._two(at), self._poses(poses), tuple(two[link] for link in chain.dyad.links)
+        reaction = self._fix_driver(run).reactions(
+            self._dyad_placement(at), self._poses(poses), tuple(two[link] for link in chain.dyad.links)
         )
         outer = {
             pair.name: PairReaction(pair_reaction.force, pair_reaction.couple)

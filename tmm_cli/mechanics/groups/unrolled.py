@@ -293,7 +293,7 @@ class UnrolledNewton(NewtonSolver):
             scales = down, [1.0 if k % 3 == 2 else self.size for k in range(3 * len(self.group.links))]
         return EliminatedSystem(self.rows(parts), order, scales)
 
-    def _moved(self, free: Mapping[int, Any], poses: Poses, drives: DriverStates) -> dict[int, Any]:
+    def _newton_step(self, free: Mapping[int, Any], poses: Poses, drives: DriverStates) -> dict[int, Any]:
         """Compute one Newton step of the free unknowns."""
         everything = self.posed(free, poses, drives)
         short = [value for c in self.constraints for value in c.residuals(everything, drives)]
@@ -305,7 +305,7 @@ class UnrolledNewton(NewtonSolver):
         free = dict(zip(self.free, starts, strict=True))
         step_size: Any = np.zeros(np.shape(q))
         for _ in range(self.steps if self.free else 0):
-            step = self._moved(free, poses, drives)
+            step = self._newton_step(free, poses, drives)
             free = {k: free[k] + step[k] for k in self.free}
             step_size = reduce(
                 np.maximum, [np.abs(value / self.size if k % 3 < 2 else value) for k, value in step.items()]
@@ -327,13 +327,13 @@ class UnrolledNewton(NewtonSolver):
     def rates_at(
         self, everything: Poses, matrix: Any, det: Real, rates: Rates, drives: DriverStates
     ) -> tuple[Rate, ...]:
-        right = self._right(everything, {name: (rate.v, rate.w) for name, rate in rates.items()}, drives, 1)
+        right = self._right_sides(everything, {name: (rate.v, rate.w) for name, rate in rates.items()}, drives, 1)
         return tuple(Rate(v, w) for v, w in _split_by_link(matrix.solve(right)))
 
     def accelerations_at(
         self, everything: Poses, matrix: Any, det: Real, rates: Rates, accels: Accels, drives: DriverStates
     ) -> tuple[Accel, ...]:
-        right = self._right(everything, {name: (accel.a, accel.e) for name, accel in accels.items()}, drives, 2)
+        right = self._right_sides(everything, {name: (accel.a, accel.e) for name, accel in accels.items()}, drives, 2)
         bend = self.velocity_terms(everything, rates)
         solution = matrix.solve([value - term for value, term in zip(right, bend, strict=True)])
         return tuple(Accel(a, e) for a, e in _split_by_link(solution))
@@ -341,7 +341,7 @@ class UnrolledNewton(NewtonSolver):
     def matrix(self, poses: Poses) -> Any:
         return self.eliminated(self._rows(poses), self.closed_by.order)
 
-    def _right(
+    def _right_sides(
         self, poses: Poses, motion: Mapping[str, tuple[Any, Any]], drives: DriverStates, order: int
     ) -> list[Any]:
         """Return the right-hand sides of the velocity (order 1) or acceleration (order 2) equations, in SI units.

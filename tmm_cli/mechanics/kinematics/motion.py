@@ -157,14 +157,14 @@ class Motion(LinkStates):
         """Return the motion of a point of a link; local: its position in the axes of the link (m)."""
         if local is self.linkage.links[link].centre:  # point of action of weight and inertia force
             return self.centre(link)
-        return self._finest(lambda motion: motion._point(link, local))
+        return self._evaluate_finest(lambda motion: motion._point(link, local))
 
     @cached_property
     def _known(self) -> dict[tuple[str, ...], Any]:
         """Cache of motions by name. Tables, result.json, forces and energy request the same ones."""
         return {}
 
-    def _once(self, kind: str, name: str, compute: Callable[[], Record]) -> Record:
+    def _compute_once(self, kind: str, name: str, compute: Callable[[], Record]) -> Record:
         if (kind, name) not in self._known:
             self._known[kind, name] = compute()
         motion: Record = self._known[kind, name]
@@ -199,7 +199,7 @@ class Motion(LinkStates):
             ratio = first / self.rate
             return first, second, ratio, (second - ratio * self.acceleration) / self.rate**2
 
-    def _finest(self, evaluate: Callable[[Motion], Record]) -> Record:
+    def _evaluate_finest(self, evaluate: Callable[[Motion], Record]) -> Record:
         """Evaluate a function of the motion, in extended precision where this is available."""
         values = evaluate(self)
         return (
@@ -221,11 +221,11 @@ class Motion(LinkStates):
         digits.
         """
         owners = [link for link in self.linkage.carriers(point) if link in self.poses]
-        return self._once(
-            "point", point, lambda: self.named_on(min(owners, key=lambda link: self._sway(link, point)), point)
+        return self._compute_once(
+            "point", point, lambda: self.named_on(min(owners, key=lambda link: self._largest_term(link, point)), point)
         )
 
-    def _sway(self, link: str, point: str) -> float:
+    def _largest_term(self, link: str, point: str) -> float:
         """Return the largest magnitude of the terms that add up to the acceleration of a point of a link."""
         rates, accels = self._solved
         rate, accel, arm = rates[link], accels[link], abs(self.linkage.local(link, point))
@@ -234,14 +234,14 @@ class Motion(LinkStates):
 
     def named_on(self, link: str, point: str) -> PointMotion:
         """Return the motion of a named point, computed as a point of this link."""
-        return self._finest(lambda motion: motion._point(link, motion.linkage.local(link, point)))
+        return self._evaluate_finest(lambda motion: motion._point(link, motion.linkage.local(link, point)))
 
     def centre(self, link: str) -> PointMotion:
         """Return the motion of the centre of mass of a link."""
-        return self._once(
+        return self._compute_once(
             "centre",
             link,
-            lambda: self._finest(lambda motion: motion._point(link, motion.linkage.links[link].centre)),
+            lambda: self._evaluate_finest(lambda motion: motion._point(link, motion.linkage.links[link].centre)),
         )
 
     def link(self, name: str) -> LinkMotion:
@@ -251,12 +251,14 @@ class Motion(LinkStates):
             rates, accels = self._solved
             return LinkMotion(self.angle(name), *self._both_ways(rates[name].w, accels[name].e))
 
-        return self._once("link", name, turning)
+        return self._compute_once("link", name, turning)
 
     def slide(self, slide: Slide) -> SlidingMotion:
         """Return the relative motion in a prismatic pair."""
-        return self._once(
-            "slide", slide.name, lambda: self._finest(lambda motion: motion._slide(motion.linkage.slide(slide.name)))
+        return self._compute_once(
+            "slide",
+            slide.name,
+            lambda: self._evaluate_finest(lambda motion: motion._slide(motion.linkage.slide(slide.name))),
         )
 
     def _slide(self, slide: Slide) -> SlidingMotion:
@@ -279,7 +281,7 @@ class Motion(LinkStates):
         It is nan under a law of motion whose third derivative is not known (a motor, a table of speeds).
         """
         owners = [link for link in self.linkage.carriers(point) if link in self.poses]
-        link = min(owners, key=lambda name: self._sway(name, point))
+        link = min(owners, key=lambda name: self._largest_term(name, point))
         return self._jerk_at(link, lambda motion: motion.linkage.local(link, point))
 
     def jerk_of_centre(self, link: str) -> Vector:
@@ -295,7 +297,7 @@ class Motion(LinkStates):
             jerk: Vector = motion._third_in_time(*parts)
             return jerk
 
-        return self._finest(evaluate)
+        return self._evaluate_finest(evaluate)
 
     def angular_jerk(self, link: str) -> Real:
         """Return the derivative of the angular acceleration of a link (rad/s3)."""
@@ -305,7 +307,7 @@ class Motion(LinkStates):
             jerk: Real = motion._third_in_time(rates[link].w, accels[link].e, motion.third[link].i)
             return jerk
 
-        return self._finest(evaluate)
+        return self._evaluate_finest(evaluate)
 
     def _third_in_time(self, first: Any, second: Any, third: Any) -> Any:
         """Return the third derivative by time; first to third: by the parameter with which the groups were solved."""
@@ -331,11 +333,11 @@ class Motion(LinkStates):
 
     def run(self, slide: Slide) -> Real:
         """Return the displacement in a prismatic pair (m)."""
-        return self._finest(lambda motion: LinkStates.run(motion, motion.linkage.slide(slide.name)))
+        return self._evaluate_finest(lambda motion: LinkStates.run(motion, motion.linkage.slide(slide.name)))
 
     def slope(self, slide: Slide) -> Real:
         """Return the derivative of the displacement in a prismatic pair with respect to the driver coordinate."""
-        return self._finest(lambda motion: LinkStates.slope(motion, motion.linkage.slide(slide.name)))
+        return self._evaluate_finest(lambda motion: LinkStates.slope(motion, motion.linkage.slide(slide.name)))
 
 
 def compute_motion(

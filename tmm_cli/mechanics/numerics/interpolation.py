@@ -47,13 +47,13 @@ class InterpolationTable:
         if self.between == "linear" and self._plain and not self.jumps:
             interpolated = np.interp(argument, self.arguments, self.values)
             return interpolated
-        from_row, pieces = self._from_row(argument)
+        from_row, pieces = self._locate_argument(argument)
         interpolated = pieces[0] + from_row * (pieces[1] + from_row * (pieces[2] + from_row * pieces[3]))
         return interpolated
 
     def slope(self, argument: Real) -> Real:
         """Return the derivative with respect to the argument; at a jump, the derivative after it."""
-        from_row, (_, first, second, third) = self._from_row(self._as_precise(argument))
+        from_row, (_, first, second, third) = self._locate_argument(self._as_precise(argument))
         derivative: Real = first + from_row * (2 * second + 3 * from_row * third)
         return derivative
 
@@ -86,17 +86,17 @@ class InterpolationTable:
     def _plain(self) -> bool:
         return not any(isinstance(x, np.ndarray) and x.ndim for x in (*self.arguments, *self.values))
 
-    def _from_row(self, argument: Real) -> tuple[Real, tuple[Real, ...]]:
+    def _locate_argument(self, argument: Real) -> tuple[Real, tuple[Real, ...]]:
         """Return the distance of each argument from the row before it, and the cubic coefficients that hold there."""
         within = np.minimum(np.maximum(argument, self.arguments[0]), self.arguments[-1])
         # rounding must not move an argument at a row to the piece before it
         at = argument + SEAM * (1 + np.abs(argument))
         ends = self.between == "step" or len(self.arguments) - 1 in self.jumps  # the last value starts at its row
         starts = self.arguments if ends else self.arguments[:-1]
-        row, *pieces = (self._held(at, starts, held) for held in (starts, *zip(*self._pieces, strict=True)))
+        row, *pieces = (self._value_at_row(at, starts, held) for held in (starts, *zip(*self._pieces, strict=True)))
         return within - row, tuple(pieces)
 
-    def _held(self, at: Real, starts: Sequence[Any], values: Sequence[Any]) -> Real:
+    def _value_at_row(self, at: Real, starts: Sequence[Any], values: Sequence[Any]) -> Real:
         """Return the value of the last row at or before each argument; starts: arguments of the rows."""
         latest: Real
         if self._plain:
@@ -116,11 +116,11 @@ class InterpolationTable:
         borders = [0, *self.jumps, len(self.arguments)]
         pieces: list[tuple[Any, ...]] = []
         for first, last in pairwise(borders):
-            pieces += self._smooth_or_linear(self.arguments[first:last], self.values[first:last])
+            pieces += self._make_pieces(self.arguments[first:last], self.values[first:last])
             pieces.append((self.values[last - 1], 0.0, 0.0, 0.0))  # piece of zero length up to the jump
         return pieces if len(self.arguments) - 1 in self.jumps else pieces[:-1]
 
-    def _smooth_or_linear(self, arguments: Sequence[Any], values: Sequence[Any]) -> list[tuple[Any, ...]]:
+    def _make_pieces(self, arguments: Sequence[Any], values: Sequence[Any]) -> list[tuple[Any, ...]]:
         """Return the cubic coefficients of the pieces between rows without a jump; empty for a single row."""
         if len(arguments) < 2:
             return []

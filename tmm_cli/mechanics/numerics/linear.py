@@ -154,11 +154,11 @@ class EliminatedSystem:
         ] = {}  # derivatives of each explicit unknown with respect to the free ones
         for row, column in order.explicit:
             self.following[column] = {
-                k: -value / rows[row][column] for k, value in self._by_free(row, skip=column).items()
+                k: -value / rows[row][column] for k, value in self._express_by_free(row, skip=column).items()
             }
-        self._triangular([self._by_free(row) for row in order.closing])
+        self._make_triangular([self._express_by_free(row) for row in order.closing])
 
-    def _by_free(self, row: int, skip: int = -1) -> dict[int, Any]:
+    def _express_by_free(self, row: int, skip: int = -1) -> dict[int, Any]:
         """Express a row by the free unknowns alone."""
         coefficients: dict[int, Any] = {}
         for column, value in self.rows[row].items():
@@ -169,7 +169,7 @@ class EliminatedSystem:
                 coefficients[column] = coefficients[column] + value if column in coefficients else value
         return coefficients
 
-    def _triangular(self, left: list[dict[int, Any]]) -> None:
+    def _make_triangular(self, left: list[dict[int, Any]]) -> None:
         if self.scales is not None:
             down, across = self.scales
             left = [
@@ -205,14 +205,14 @@ class EliminatedSystem:
         """Solve matrix x = right for x."""
         solution: dict[int, Any] = {}
         for row, column in self.order.explicit:
-            solution[column] = self._rest(row, right[row], solution, column) / self.rows[row][column]
-        free = self.free([self._rest(row, right[row], solution) for row in self.order.closing])
+            solution[column] = self._subtract_solved(row, right[row], solution, column) / self.rows[row][column]
+        free = self.free([self._subtract_solved(row, right[row], solution) for row in self.order.closing])
         for _, column in self.order.explicit:
             solution[column] = sum((by * free[k] for k, by in self.following[column].items()), solution[column])
         solution |= free
         return [solution[k] for k in range(len(solution))]
 
-    def _rest(self, row: int, right: Any, solved: Mapping[int, Any], skip: int = -1) -> Any:
+    def _subtract_solved(self, row: int, right: Any, solved: Mapping[int, Any], skip: int = -1) -> Any:
         for column, value in self.rows[row].items():
             if column in solved and column != skip:
                 right = right - value * solved[column]

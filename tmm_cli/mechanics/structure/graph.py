@@ -82,12 +82,12 @@ class PebbleGame:
         self.out: dict[str, list[str]] = {body: [] for body in self.pebbles}
         self.root = root
 
-    def bring(self, to: str, reserved: Mapping[str, int]) -> bool:
+    def move_pebble(self, to: str, reserved: Mapping[str, int]) -> bool:
         """Move a free pebble to a body along a path of dependence. Returns True if there was one.
 
         reserved: number of pebbles of each body that must not be moved.
         """
-        path = self.path(to, reserved, {to})
+        path = self.find_path(to, reserved, {to})
         if path is None:
             return False
         self.pebbles[path[-1]] -= 1
@@ -97,13 +97,13 @@ class PebbleGame:
             self.out[head].append(tail)
         return True
 
-    def path(self, start: str, reserved: Mapping[str, int], seen: set[str]) -> list[str] | None:
+    def find_path(self, start: str, reserved: Mapping[str, int], seen: set[str]) -> list[str] | None:
         """Find a path of dependence from `start` to a body with a free pebble; None if there is no such path."""
         for target in self.out[start]:
             if target not in seen:
                 seen.add(target)
                 rest = [target] if self.pebbles[target] > reserved.get(target, 0) else None
-                if rest := rest or self.path(target, reserved, seen):
+                if rest := rest or self.find_path(target, reserved, seen):
                     return [start, *rest]
         return None
 
@@ -111,7 +111,7 @@ class PebbleGame:
         """Return True if the conditions added so far make bodies a and b rigid to each other."""
         while self.pebbles[a] + self.pebbles[b] <= FREEDOMS:
             keep = {a: FREEDOMS, b: FREEDOMS}  # their own pebbles stay
-            if not ((self.pebbles[a] < FREEDOMS and self.bring(a, keep)) or self.bring(b, keep)):
+            if not ((self.pebbles[a] < FREEDOMS and self.move_pebble(a, keep)) or self.move_pebble(b, keep)):
                 return True
         return False
 
@@ -126,7 +126,7 @@ class PebbleGame:
 
     def settle(self) -> None:
         """Move three pebbles to the root, which then depends on no other body."""
-        while self.pebbles[self.root] < FREEDOMS and self.bring(self.root, {}):
+        while self.pebbles[self.root] < FREEDOMS and self.move_pebble(self.root, {}):
             pass
 
 
