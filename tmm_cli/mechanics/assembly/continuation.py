@@ -243,12 +243,14 @@ class BranchFollower:
     def follow(self, at: float, state: GroupState, half: float, turns: bool) -> BranchTrace | None:
         """Trace the group from a state at the driver coordinate `at`, in both senses.
 
+        If the driver rotates, the group is traced for several turns until it returns to its first state, which closes
+        the trace.
+
         Args:
             at: driver coordinate of the sketch.
             state: state of the group there.
             half: half the range, or half a cycle, of the driver.
-            turns: True if the driver rotates. The group is then traced for several cycles, unless it returns to its
-                first state before; the trace is then closed.
+            turns: True if the driver rotates.
 
         Returns:
             The trace; None if the equations have no solution at `at`.

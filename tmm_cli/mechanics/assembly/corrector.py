@@ -178,10 +178,11 @@ class Corrector:
     def step(self, smooth: list[BranchNode], targets: list[float]) -> tuple[BranchNode, float] | None:
         """Solve the group at the next driver coordinate of a branch.
 
-        Many coordinates are solved at once, because that costs little more than one: those of halved steps and,
-        predicted by a polynomial through the smooth nodes, some of those further ahead. Their number grows as long as
-        predictions are correct. Results are kept for the next steps. A result predicted by the polynomial is used only
-        if a single step leads to the same state; otherwise `smooth` is cut to its last node.
+        Solving at many driver coordinates costs little more than at one. Two kinds of coordinates are therefore solved
+        in advance, and their results kept for the next steps: those of smaller steps, in case this step fails, and
+        those of later steps, which are predicted by a polynomial through the nodes in `smooth`. The number of the
+        latter grows as long as the predictions are correct. Their results are used only if a single step confirms them;
+        if it does not, only the last node is left in `smooth`.
 
         Args:
             smooth: last nodes on a smooth branch.

@@ -121,7 +121,10 @@ class RRR(Dyad[HingeEnd, HingeEnd, HingeEnd]):
 
 
 def _slacks(d: Real, r: Real, R: Real) -> tuple[Real, Real]:
-    """Return R + r - d and d - (R - r) with little rounding: nearly equal numbers are subtracted first."""
+    """Return R + r - d and d - (R - r): by how much two circles, at the distance d of their centres, intersect.
+
+    Both are computed with little rounding, by subtracting nearly equal numbers first.
+    """
     with_base = 2 * r <= R
     t = d - R
     return np.where(with_base, r - t, (R + r) - d), np.where(with_base, r + t, d - (R - r))

@@ -119,7 +119,10 @@ class LinkStates:
         return self.sliding_rate(slide, self.first)
 
     def sliding_rate(self, slide: Slide, rates: Mapping[str, Rate]) -> Real:
-        """Return the derivative of the displacement in a prismatic pair with respect to the parameter of `rates`."""
+        """Return the first derivative of the displacement in a prismatic pair.
+
+        rates: first derivatives of the poses of the links, with respect to time or any other parameter.
+        """
         carrier, runner = self.poses[slide.carrier], self.poses[slide.runner]
         arm = runner.at(slide.at) - carrier.x
         relative = rates[slide.runner].at(slide.at * runner.z) - rates[slide.carrier].at(arm)
@@ -206,11 +209,11 @@ def drives_at(linkage: Linkage, q: Real) -> dict[str, DriverState]:
 
 
 def drives_in_time(drives: DriverStates, speed: Real, acceleration: Real) -> dict[str, DriverState]:
-    """Return the coordinates of all drivers with their derivatives by time instead of by the first coordinate.
+    """Convert coordinates of drivers to derivatives with respect to time.
 
     Args:
-        drives: as from drives_at.
-        speed, acceleration: those of the first driver, signed (rad/s or m/s).
+        drives: coordinates of all drivers, with derivatives with respect to the coordinate of the first one.
+        speed, acceleration: velocity and acceleration of the first driver, with sign (rad/s or m/s; rad/s2 or m/s2).
     """
     return {
         link: DriverState(d.value, d.first * speed, d.second * speed * speed + d.first * acceleration)

@@ -36,15 +36,15 @@ GIVE_ANGLES = "PGD"  # kinds of constraints whose first row may determine an ang
 
 @dataclass(frozen=True)
 class ExplicitOrder:
-    """Which unknowns of a group are explicit, and the order of elimination.
+    """Explicit unknowns of a group, which follow one by one from single equations, and the order of elimination.
 
-    An unknown is numbered three times the index of its link, plus 0, 1 or 2 for x, y and the angle.
+    The unknowns x, y and angle of the link with index k have the numbers 3k, 3k + 1 and 3k + 2.
 
     Attributes:
         angles: explicit angles in turn, as (index of the constraint that gives the angle, link).
         origins: explicit origins in turn, as (index of the constraint that gives the origin, link).
         order: order of elimination.
-        pushing: order of elimination of the force equations; differs from `order` if a constraint has other
+        pushing: order of elimination of the force equations. It differs from `order` if a constraint has other
             coefficients for forces than for motion.
         shifts: full turns (rad) to be added to the angle that the constraint gives, by name of the link.
     """
@@ -57,7 +57,7 @@ class ExplicitOrder:
 
 
 def find_explicit_order(constraints: Sequence[PairConstraint], links: Sequence[str]) -> ExplicitOrder:
-    """Find an order of the unknowns of a group in which as many as possible are explicit.
+    """Find an order of the unknowns of a group in which as many as possible follow from single equations.
 
     Args:
         constraints: constraint equations of the group.
@@ -217,7 +217,7 @@ class UnrolledNewton(NewtonSolver):
 
     @property
     def free(self) -> tuple[int, ...]:
-        """Numbers of the free unknowns: three times the index of the link, plus 0, 1 or 2 for x, y or the angle."""
+        """Numbers of the free unknowns. The link with index k has 3k, 3k + 1 and 3k + 2 for x, y and the angle."""
         return self.closed_by.order.free
 
     @cached_property

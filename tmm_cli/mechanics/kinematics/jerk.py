@@ -1,7 +1,8 @@
-"""Third derivatives of the motion of links: jerk of points, and its counterpart for rotation.
+"""Third derivatives of the motion of links: jerk of points, and the derivative of the angular acceleration.
 
-The accelerations of each group are evaluated in dual numbers whose slopes are the derivatives already known: rates for
-poses, accelerations for rates. The slopes of the results are the third derivatives, for groups of every class.
+The accelerations of each group are evaluated in dual numbers. The slopes of the input are known: velocities are the
+slopes of poses, accelerations those of velocities. The slopes of the resulting accelerations are the third derivatives.
+This holds for groups of every class.
 """
 
 from __future__ import annotations
@@ -31,13 +32,23 @@ from tmm_cli.mechanics.numerics import Real, Vector, split_dual, with_slope
 
 @dataclass(frozen=True)
 class ThirdDerivative:
-    """Third derivatives of a link: j of its origin (m), i of its angle (rad), per cube of the unit of the parameter."""
+    """Third derivatives of the pose of a link with respect to a parameter (time or the driver coordinate).
+
+    Attributes:
+        j: third derivative of the position of its origin (m per cubed unit of the parameter).
+        i: third derivative of its angle (rad per cubed unit of the parameter).
+    """
 
     j: Vector
     i: Real
 
     def at(self, arm: Vector, rate: Rate, accel: Accel) -> Vector:
-        """Return the third derivative of the point at `arm` (m) from the origin of a link with these first two."""
+        """Return the third derivative of the position of a point of the link.
+
+        Args:
+            arm: vector from the origin of the link to the point (m).
+            rate, accel: first and second derivatives of the pose of the link.
+        """
         w = rate.w
         third: Vector = self.j + (1j * (self.i - w * w * w) - 3 * w * accel.e) * arm
         return third
@@ -46,12 +57,13 @@ class ThirdDerivative:
 def third_derivatives(
     states: LinkStates, rates: Mapping[str, Rate], accels: Mapping[str, Accel], drives: DriverStates
 ) -> dict[str, ThirdDerivative]:
-    """Return the third derivatives of all links by the parameter by which rates and accels are derivatives.
+    """Compute the third derivatives of the poses of all links, by name of the link.
 
     Args:
-        states: poses and groups.
-        rates, accels: first and second derivatives, by link.
-        drives: coordinates of the drivers and their derivatives, in dual numbers.
+        states: poses of the links and placements of the groups.
+        rates, accels: first and second derivatives of the poses with respect to a parameter (time or the driver
+            coordinate), by name of the link.
+        drives: coordinates of the drivers and their derivatives with respect to this parameter, in dual numbers.
     """
     linkage = states.linkage
     poses = {link: _dual_pose(pose, rates[link]) for link, pose in states.poses.items()}
@@ -75,7 +87,7 @@ def _dual_pose(pose: Pose, rate: Rate) -> Pose:
 
 
 def _dual_placement(kernel: GroupSolver, at: Placement, q: Real, poses: Poses, drives: DriverStates) -> Placement:
-    """Return the placement of a group with the derivatives of the poses and of the determinant."""
+    """Return the placement of a group in dual numbers, whose slopes are the derivatives of poses and determinant."""
     while isinstance(kernel, WrappedSolver):
         kernel = kernel.inner
     if isinstance(kernel, ClosedFormSolver):

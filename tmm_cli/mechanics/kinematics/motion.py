@@ -102,7 +102,12 @@ class SlidingMotion:
 
 @dataclass(frozen=True)
 class TimeDerivatives:
-    """Velocities (m/s, rad/s) and accelerations (m/s2, rad/s2) of the links, by name."""
+    """Derivatives of the poses of the links with respect to time.
+
+    Attributes:
+        rates: velocities (m/s, rad/s), by name of the link.
+        accels: accelerations (m/s2, rad/s2), by name of the link.
+    """
 
     rates: Mapping[str, Rate]
     accels: Mapping[str, Accel]
@@ -110,10 +115,15 @@ class TimeDerivatives:
 
 @dataclass(frozen=True)
 class ForwardMotion:
-    """Derivatives of the links by a parameter that grows as the mechanism moves, and their largest values.
+    """Derivatives of the poses of the links with respect to a parameter that increases as the mechanism moves.
 
-    The parameter is time, or the driver coordinate counted in its sense, whichever the motion was solved with: so only
-    directions and signs may be read from them.
+    The parameter is time, or the driver coordinate counted in its sense of motion, depending on how the motion was
+    solved. Only directions and signs should therefore be read from the derivatives.
+
+    Attributes:
+        rates, accels: first and second derivatives, by name of the link.
+        largest: largest derivatives in the mechanism at every position.
+        sense: factor that turns `rates` into the direction of the motion, +1 or -1.
     """
 
     rates: Mapping[str, Rate]
@@ -126,16 +136,17 @@ class ForwardMotion:
 class Motion(LinkStates):
     """States of the links in time; values are nan where the driver never arrives.
 
-    `first` and `second` are derivatives by the coordinate of the first driver, `rate` and `acceleration` are those of
-    this coordinate by time, however the motion was solved. The transfer functions of a motion that was solved in time
-    are computed when they are read.
+    However the motion was solved, `first` and `second` are derivatives with respect to the coordinate of the first
+    driver, and `rate` and `acceleration` are the time derivatives of this coordinate. If the motion was solved with
+    time as the parameter, the former are computed when they are read.
 
     Attributes:
         time: time (s) at which the driver reaches each position.
         rate: velocity of the driver (rad/s or m/s).
         acceleration: acceleration of the driver (rad/s2 or m/s2).
-        law: law of motion of the driver, from which these three follow.
-        in_time: derivatives of the links by time, if the groups were solved with time as the parameter; or None.
+        law: law of motion of the driver, which gives these three.
+        in_time: derivatives of the poses with respect to time, if the groups were solved with time as the parameter; or
+            None.
         finer: motion in extended precision, at the positions of the mask `where`; or None.
         where: mask of positions that are also computed in extended precision, or None.
         limits: mask of change points in which velocities and accelerations are limit values (see fill_in_limits), or
@@ -172,16 +183,19 @@ class Motion(LinkStates):
 
     @cached_property
     def largest(self) -> LargestRates:
-        """Largest rates of the links at every position, per unit of the driver coordinate."""
+        """Largest velocities and accelerations in the mechanism, per unit of the driver coordinate, at every position."""
         return LargestRates.of(self)
 
     @property
     def _solved(self) -> tuple[Mapping[str, Rate], Mapping[str, Accel]]:
-        """Derivatives of the links by the parameter with which the groups were solved."""
+        """First and second derivatives of the poses with respect to the parameter used in solving the groups."""
         return (self.first, self.second) if self.in_time is None else (self.in_time.rates, self.in_time.accels)
 
     def forward(self) -> ForwardMotion:
-        """Return derivatives of the links in the direction of the motion; of a driver at rest, in its sense."""
+        """Return derivatives of the poses with respect to a parameter that increases as the mechanism moves.
+
+        For a driver at rest the direction is its sense of motion.
+        """
         rates, accels = self._solved
         if self.in_time is not None:
             return ForwardMotion(rates, accels, LargestRates.of(self, rates, accels), 1.0)
@@ -189,9 +203,13 @@ class Motion(LinkStates):
         return ForwardMotion(rates, accels, self.largest, sense)
 
     def _both_ways(self, first: Any, second: Any) -> tuple[Any, Any, Any, Any]:
-        """Return velocity, acceleration, and first and second transfer function of a quantity.
+        """Convert the derivatives of a quantity to time derivatives and transfer functions.
 
-        first, second: its derivatives by the parameter with which the groups were solved.
+        Args:
+            first, second: derivatives with respect to the parameter with which the groups were solved.
+
+        Returns:
+            Velocity, acceleration, first and second transfer function.
         """
         if self.in_time is None:
             return first * self.rate, second * self.rate**2 + first * self.acceleration, first, second
@@ -276,9 +294,9 @@ class Motion(LinkStates):
         return SlidingMotion(super().run(slide), v, a, coriolis, u, first, second)
 
     def jerk(self, point: str) -> Vector:
-        """Return the jerk of a named point (m/s3), the derivative of its acceleration.
+        """Return the jerk of a named point (m/s3), the time derivative of its acceleration.
 
-        It is nan under a law of motion whose third derivative is not known (a motor, a table of speeds).
+        It is nan for a law of motion whose third derivative is unknown (a motor, a table of speeds).
         """
         owners = [link for link in self.linkage.carriers(point) if link in self.poses]
         link = min(owners, key=lambda name: self._largest_term(name, point))
@@ -300,7 +318,7 @@ class Motion(LinkStates):
         return self._evaluate_finest(evaluate)
 
     def angular_jerk(self, link: str) -> Real:
-        """Return the derivative of the angular acceleration of a link (rad/s3)."""
+        """Return the time derivative of the angular acceleration of a link (rad/s3)."""
 
         def evaluate(motion: Motion) -> Real:
             rates, accels = motion._solved
@@ -310,7 +328,10 @@ class Motion(LinkStates):
         return self._evaluate_finest(evaluate)
 
     def _third_in_time(self, first: Any, second: Any, third: Any) -> Any:
-        """Return the third derivative by time; first to third: by the parameter with which the groups were solved."""
+        """Convert derivatives of a quantity to its third time derivative; nan if the law of motion does not give it.
+
+        first, second, third: derivatives with respect to the parameter with which the groups were solved.
+        """
         if not isinstance(self.law, DriverMotion):
             return third * np.nan
         if self.in_time is not None:
@@ -320,7 +341,7 @@ class Motion(LinkStates):
 
     @cached_property
     def third(self) -> Mapping[str, ThirdDerivative]:
-        """Third derivatives of the links by the parameter with which the groups were solved.
+        """Third derivatives of the poses, with respect to the parameter with which the groups were solved.
 
         The driver must have a constant acceleration.
         """
@@ -358,8 +379,8 @@ def compute_motion(
         q: coordinates of the first driver, shape (positions,).
         law: law of motion of the driver.
         order, blank: as in link_states.
-        in_time: solve the groups with time as the parameter, which saves operations where only velocities and
-            accelerations are read. The result means the same.
+        in_time: True to solve the groups with time as the parameter. This saves operations if only velocities and
+            accelerations are read; the result has the same meaning.
     """
     q = np.atleast_1d(q)
     rate, acceleration, time = law.speed(q), law.accelerated(q), law.time(q)
@@ -383,7 +404,7 @@ def compute_motion(
 def _transfer_functions(
     states: LinkStates, rate: Real, acceleration: Real
 ) -> tuple[Mapping[str, Rate], Mapping[str, Accel]]:
-    """Return first and second derivatives by the driver coordinate of states that were solved in time."""
+    """Convert derivatives with respect to time to derivatives with respect to the driver coordinate."""
 
     def first(link: str) -> Rate:
         by_time = states.first[link]
@@ -401,7 +422,7 @@ def _transfer_functions(
 
 
 class _OnAccess(Mapping[str, Value]):
-    """Mapping whose values are computed when they are first read."""
+    """A mapping that computes each value when it is first read."""
 
     def __init__(self, names: Mapping[str, Any], compute: Callable[[str], Value]) -> None:
         self._names, self._compute = names, compute
@@ -444,8 +465,12 @@ class LargestRates:
     ) -> LargestRates:
         """Find the largest velocities and accelerations of all links.
 
-        Accelerations are estimated from velocities if they were not computed. `rates` and `accels` are derivatives by
-        another parameter than the driver coordinate.
+        Accelerations are estimated from velocities if they were not computed.
+
+        Args:
+            states: states of the links.
+            rates, accels: derivatives of the poses with respect to another parameter, if the driver coordinate is not
+                to be used.
         """
         linkage = states.linkage
         rates, accels = (states.first, states.second) if rates is None or accels is None else (rates, accels)

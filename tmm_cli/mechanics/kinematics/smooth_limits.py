@@ -1,9 +1,9 @@
 """Limits of velocities and accelerations in dead positions that the mechanism passes smoothly.
 
-In a change point of a parallelogram two branches of its motion cross. The equations for velocities are singular
-there, but along each branch the motion is an analytic function of the driver coordinate, so its value, velocity and
-acceleration in the change point follow by interpolation from positions on either side. L. N. Trefethen,
-Approximation Theory and Approximation Practice (2013), ch. 5. Reactions in general grow without bound.
+In a change point of a parallelogram two branches of its motion cross. The equations for velocities are singular there,
+but along each branch the motion is an analytic function of the driver coordinate. Its position, velocity and
+acceleration in the change point therefore follow by interpolation from positions on either side. L. N. Trefethen,
+Approximation Theory and Approximation Practice (2013), ch. 5. Reactions in general grow without bound there.
 """
 
 from __future__ import annotations

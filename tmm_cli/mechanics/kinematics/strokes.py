@@ -416,7 +416,7 @@ def _working_direction(given_direction: str, forward: float, back: float, resist
 def resisted_direction(linkage: Linkage, link: str | None) -> Any:
     """Return the direction of motion of the output (+1 or -1) that the loads of the working stroke resist.
 
-    It is 0 if these loads do not decide, and has shape (variants, 1) if they vary.
+    The result is 0 if these loads do not decide. It has shape (variants, 1) if loads vary between variants.
     """
     for slide in linkage.slides:
         if {slide.carrier, slide.runner} == {FRAME, link}:

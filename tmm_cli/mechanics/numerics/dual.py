@@ -1,8 +1,8 @@
-"""Dual numbers: arrays with their derivative by one parameter, for exact derivatives without differencing.
+"""Dual numbers: arrays together with their derivative by one parameter, for exact derivatives without differencing.
 
-A dual number is x + x' eps with eps^2 = 0. NumPy functions accept arrays of them, so that the ordinary code of the
-stages gives, beside each result, its derivative. The two parts may be plain arrays, double-doubles or traced arrays.
-A. Griewank, A. Walther, Evaluating Derivatives (SIAM, 2008), ch. 2: forward mode.
+A dual number is x + x' eps with eps^2 = 0. NumPy functions accept arrays of dual numbers, so that the ordinary code of
+the calculation gives the derivative of each result beside the result. Both parts may be ordinary arrays, double-doubles
+or traced arrays. A. Griewank, A. Walther, Evaluating Derivatives (SIAM, 2008), ch. 2: forward mode.
 """
 
 from __future__ import annotations
@@ -15,7 +15,12 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 
 
 class Dual(NDArrayOperatorsMixin):
-    """Array of dual numbers: `value` and its derivative `slope`, real or complex arrays of equal shape."""
+    """Array of dual numbers, real or complex.
+
+    Attributes:
+        value: the values.
+        slope: their derivatives, an array of the same shape.
+    """
 
     __slots__ = ("slope", "value")
     __hash__ = object.__hash__
@@ -77,17 +82,20 @@ Parts = tuple[Any, Any]
 
 
 def with_slope(value: Any, slope: Any) -> Any:
-    """Return a dual number in place of an array."""
+    """Make an array of dual numbers from values and their derivatives."""
     return Dual(value, slope)
 
 
 def split_dual(number: Any) -> Parts:
-    """Return value and slope of a dual number; the slope of a constant is zero."""
+    """Return the values and the derivatives of dual numbers. The derivative of an ordinary number is zero."""
     return (number.value, number.slope) if isinstance(number, Dual) else (number, 0.0)
 
 
 def _part_of(argument: Any, part: int) -> Any:
-    """Return the values (0) or the slopes (1) of the dual numbers in an argument; zeros as slopes of arrays."""
+    """Replace dual numbers in an argument by their values (part 0) or derivatives (part 1).
+
+    The derivative of an ordinary array is zero.
+    """
     if isinstance(argument, Dual):
         return (argument.value, argument.slope)[part]
     if isinstance(argument, list | tuple) and any(isinstance(x, Dual | np.ndarray) for x in argument):

@@ -34,7 +34,7 @@ class Tie:
     Attributes:
         name: name of the kinematic pair.
         a, b: names of the bodies (links, or pins of compound hinges).
-        constraints: number of scalar conditions, 1 to 3.
+        constraints: number of scalar conditions that it imposes on their relative motion.
     """
 
     name: str
