@@ -102,12 +102,7 @@ class SlidingMotion:
 
 @dataclass(frozen=True)
 class TimeDerivatives:
-    """Derivatives of the poses of the links with respect to time.
-
-    Attributes:
-        rates: velocities (m/s, rad/s), by name of the link.
-        accels: accelerations (m/s2, rad/s2), by name of the link.
-    """
+    """Velocities (m/s, rad/s) and accelerations (m/s2, rad/s2) of the links, by name of the link."""
 
     rates: Mapping[str, Rate]
     accels: Mapping[str, Accel]
@@ -117,13 +112,9 @@ class TimeDerivatives:
 class ForwardMotion:
     """Derivatives of the poses of the links with respect to a parameter that increases as the mechanism moves.
 
-    The parameter is time, or the driver coordinate counted in its sense of motion, depending on how the motion was
-    solved. Only directions and signs should therefore be read from the derivatives.
-
-    Attributes:
-        rates, accels: first and second derivatives, by name of the link.
-        largest: largest derivatives in the mechanism at every position.
-        sense: factor that turns `rates` into the direction of the motion, +1 or -1.
+    The parameter is time, or the driver coordinate counted in its sense of motion. Only directions and signs should
+    therefore be read from the derivatives. `largest` are the largest derivatives in the mechanism; `sense` is the
+    factor (+1 or -1) that turns `rates` into the direction of the motion.
     """
 
     rates: Mapping[str, Rate]
@@ -183,7 +174,7 @@ class Motion(LinkStates):
 
     @cached_property
     def largest(self) -> LargestRates:
-        """Largest velocities and accelerations in the mechanism, per unit of the driver coordinate, at every position."""
+        """Largest velocities and accelerations at every position, per unit of the driver coordinate."""
         return LargestRates.of(self)
 
     @property
@@ -203,13 +194,9 @@ class Motion(LinkStates):
         return ForwardMotion(rates, accels, self.largest, sense)
 
     def _both_ways(self, first: Any, second: Any) -> tuple[Any, Any, Any, Any]:
-        """Convert the derivatives of a quantity to time derivatives and transfer functions.
+        """Return velocity, acceleration, first and second transfer function of a quantity.
 
-        Args:
-            first, second: derivatives with respect to the parameter with which the groups were solved.
-
-        Returns:
-            Velocity, acceleration, first and second transfer function.
+        first, second: derivatives with respect to the parameter used in solving the groups.
         """
         if self.in_time is None:
             return first * self.rate, second * self.rate**2 + first * self.acceleration, first, second
@@ -341,10 +328,7 @@ class Motion(LinkStates):
 
     @cached_property
     def third(self) -> Mapping[str, ThirdDerivative]:
-        """Third derivatives of the poses, with respect to the parameter with which the groups were solved.
-
-        The driver must have a constant acceleration.
-        """
+        """Third derivatives of the poses, for a driver with constant acceleration; parameter as in `_solved`."""
         rates, accels = self._solved
         q = with_slope(self.q, 1.0 + 0 * self.q if self.in_time is None else self.rate)
         drives = drives_at(self.linkage, q)
@@ -465,12 +449,8 @@ class LargestRates:
     ) -> LargestRates:
         """Find the largest velocities and accelerations of all links.
 
-        Accelerations are estimated from velocities if they were not computed.
-
-        Args:
-            states: states of the links.
-            rates, accels: derivatives of the poses with respect to another parameter, if the driver coordinate is not
-                to be used.
+        Accelerations are estimated from velocities if they were not computed. `rates` and `accels` replace the
+        derivatives with respect to the driver coordinate by those with respect to another parameter.
         """
         linkage = states.linkage
         rates, accels = (states.first, states.second) if rates is None or accels is None else (rates, accels)
