@@ -280,6 +280,17 @@ def test_check_finds_what_differs_and_update_takes_it_over(tmp_path):
     assert tmm("check", tmp_path).returncode == 1  # nothing to compare with
     assert tmm("check", tmp_path, "--update").returncode == 0
     assert tmm("check", tmp_path).returncode == 0
+    golden = tmp_path / "expected" / "one.json"
+    record = json.loads(golden.read_text(encoding="utf-8"))
+    del record["result"]["kinematics"]["links"]["2"]["epsilon"]
+    golden.write_text(json.dumps(record), encoding="utf-8")
+    done = tmm("check", tmp_path)
+    assert done.returncode == 0
+    assert done.stderr.splitlines() == [
+        "note: one: new quantities, not compared: 1, e.g. kinematics.links.2.epsilon; "
+        "`tmm check --update` records them",
+        "problems: 2, different: 0",
+    ]
     (tmp_path / "two.yaml").write_text(text.replace("DE: 210", "DE: 210.001"), encoding="utf-8")
     report = tmp_path / "report.xml"
     done = tmm("check", tmp_path, "--junit", report)

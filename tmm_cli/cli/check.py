@@ -22,14 +22,16 @@ from tmm_cli.reports import (
     brief_value,
     difference_table,
     find_differences,
+    golden_part,
     golden_record,
     json_bytes,
+    new_quantities,
     print_on_terminal,
     to_json,
     write_atomically,
 )
 
-TOLERANCE = 1e-9
+TOLERANCE = 1e-7  # of golden runs with 8 digits
 
 
 class CheckOutcome(NamedTuple):
@@ -39,12 +41,14 @@ class CheckOutcome(NamedTuple):
         name: name of the problem.
         wrong: error message if the problem could not be checked; empty otherwise.
         different: quantities that differ from their expected values.
+        new: quantities that have no expected value; they are not compared.
         code: exit code for this problem.
     """
 
     name: str
     wrong: str = ""
     different: Sequence[ResultDifference] = ()
+    new: Sequence[str] = ()
     code: int = OK
 
 
@@ -75,7 +79,7 @@ def _check_expected(
     if update:
         if not recorded or expected["result"] != golden_record(computed):
             golden = {
-                "golden_run": f"computed by tmm {__version__} itself, to 12 digits; no reference from elsewhere",
+                "golden_run": f"computed by tmm {__version__} itself, to 8 digits; no reference from elsewhere",
                 "tolerance": expected["tolerance"] if recorded else TOLERANCE,
                 "result": golden_record(computed),
             }
@@ -87,8 +91,10 @@ def _check_expected(
         return CheckOutcome(name)
     if not recorded:
         return CheckOutcome(name, wrong=f"{expected_file}: {expected}", code=CHECK_FAILED)
-    different = find_differences(expected["result"], computed, float(expected["tolerance"]))
-    return CheckOutcome(name, different=different, code=CHECK_FAILED if different else OK)
+    record, compared = expected["result"], golden_part(computed)
+    different = find_differences(record, compared, float(expected["tolerance"]))
+    new = new_quantities(record, compared)
+    return CheckOutcome(name, different=different, new=new, code=CHECK_FAILED if different else OK)
 
 
 def _read_expected(file: Path) -> Any:
@@ -112,6 +118,11 @@ def show_outcomes(outcomes: Sequence[CheckOutcome]) -> None:
     if table.rows:
         print_on_terminal(table, UnitSystem(), console(), more=_("... further rows: {rows}"))
     for outcome in outcomes:
+        if outcome.new:
+            told = _(
+                "note: {name}: new quantities, not compared: {count}, e.g. {example}; `tmm check --update` records them"
+            )
+            say(told.format(name=printable(outcome.name), count=len(outcome.new), example=outcome.new[0]))
         if outcome.wrong:
             say(_("error: {name}: {wrong}").format(name=printable(outcome.name), wrong=outcome.wrong))
 
@@ -123,7 +134,7 @@ def write_junit(path: Path, outcomes: Sequence[CheckOutcome]) -> None:
     suite = ElementTree.Element(
         "testsuite", name="tmm check", tests=str(len(outcomes)), failures=str(failures), errors=str(errors)
     )
-    for name, wrong, different, __ in outcomes:
+    for name, wrong, different, *__ in outcomes:
         case = ElementTree.SubElement(suite, "testcase", classname="problems", name=name)
         if wrong:
             ElementTree.SubElement(case, "error", message=wrong)
@@ -154,8 +165,9 @@ def check(
     """Compute every problem again and compare it with expected/<problem>.json beside it.
 
     Folders are searched with their subfolders. Examples of grading are graded again. Expected values are results of an
-    earlier version. The difference of a quantity in result.json is divided by its largest value in the cycle; the
-    tolerance is stored in the file of expected values. Exit code 1 if something differs.
+    earlier version, to 8 digits. The difference of a quantity in result.json is divided by its largest value in the
+    cycle; the tolerance is stored in the file of expected values. Quantities without an expected value are reported as
+    new. Exit code 1 if something differs.
     """
     tables = [
         table for path in paths if path.is_dir() for depth in GRADED_EXAMPLES for table in sorted(path.glob(depth))

@@ -5,7 +5,9 @@ from .compare import (
     brief_value as brief_value,
     difference_table as difference_table,
     find_differences as find_differences,
+    golden_part as golden_part,
     golden_record as golden_record,
+    new_quantities as new_quantities,
 )
 from .cycle_tables import (
     centre_name as centre_name,

@@ -14,6 +14,16 @@ from tmm_cli.reports.table import Table, text_table
 Path = tuple[str, ...]
 
 IGNORED = {"files", "part", "tmm", "problem", "warnings", "checks", "digits"}  # checks and warnings rest on the others
+NOT_RECORDED = {
+    "first",
+    "second",
+    "tangential",
+    "normal",
+    "signed",
+    "size",
+    "items",
+}  # these follow from what is recorded
+GOLDEN_DIGITS = 8
 DERIVED = {"arm"}  # follows from others (as the angle of a reaction does), and means nothing where those vanish
 EXTREME_LOCATIONS = {"other_at"}  # where an extreme lies: its value grows by the square of the distance from there
 RELATIVE = {"balance", "difference", "margin", "margins"}  # relative already: compared as they are
@@ -46,15 +56,32 @@ class ResultDifference:
     size: float | None
 
 
+def golden_part(result: dict[str, Any]) -> dict[str, Any]:
+    """Return what a golden run records of result.json: results that do not follow from the others."""
+    return {key: _recorded(part) for key, part in result.items() if key not in IGNORED}
+
+
+def _recorded(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _recorded(part) for key, part in value.items() if key not in NOT_RECORDED}
+    return [_recorded(part) for part in value] if isinstance(value, list) else value
+
+
 def golden_record(result: dict[str, Any]) -> dict[str, Any]:
-    """Return the sections of result.json that are compared later, with numbers rounded to 12 digits."""
-    kept = {key: part for key, part in result.items() if key not in IGNORED}
-    whole: dict[str, Any] = json.loads(json.dumps(kept), parse_float=lambda text: float(f"{float(text):.12g}"))
-    return whole
+    """Return the recorded part of result.json, with numbers rounded to 8 digits."""
+    text = json.dumps(golden_part(result))
+    rounded: dict[str, Any] = json.loads(text, parse_float=lambda number: float(f"{float(number):.{GOLDEN_DIGITS}g}"))
+    return rounded
+
+
+def new_quantities(expected: dict[str, Any], found: dict[str, Any]) -> list[str]:
+    """Return the paths of quantities that the expected record does not have: results of a later version."""
+    known = {path for path, __ in _series_by_path(expected)}
+    return [_path_text(path) for path, __ in _series_by_path(found) if path not in known]
 
 
 def find_differences(expected: dict[str, Any], found: dict[str, Any], tolerance: float) -> list[ResultDifference]:
-    """Return the largest difference of every quantity that exceeds the tolerance, in the order of the file.
+    """Return the largest difference of every expected quantity that exceeds the tolerance, in the order of the file.
 
     Args:
         expected: content of result.json that is expected.
@@ -64,7 +91,6 @@ def find_differences(expected: dict[str, Any], found: dict[str, Any], tolerance:
     want, have = dict(_series_by_path(expected)), dict(_series_by_path(found))
     scales = _series_scales(want)
     out = [ResultDifference(_path_text(p), None, "there", "missing", None) for p in want if p not in have]
-    out += [ResultDifference(_path_text(p), None, "nothing", "there", None) for p in have if p not in want]
     for path, values in want.items():
         follows = path[-1] in DERIVED or (path[-1] == "angle" and "reactions" in path)
         if path in have and not follows:
@@ -93,7 +119,7 @@ def _series_scales(series: dict[Path, list[Any]]) -> dict[Path, float]:
         source = largest.get(DIFFERENCE_OF.get(_quantity_name(path), ""), 0.0)
         scales[path] = max(peak, SMALLEST_SHARE * max(largest[_quantity_name(path)], source), SMALLEST_SCALE)
         if path[-1] == "angle":
-            scales[path] = math.pi
+            scales[path] = max(math.pi, peak)
         elif set(path) & RELATIVE:
             scales[path] = max(1.0, peak)  # of a synthesis a margin may be one in newtons
         elif path[-1] == "at" or path[-1] in EXTREME_LOCATIONS:  # a place of the driver, which may be the zero
