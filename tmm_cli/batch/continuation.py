@@ -337,8 +337,8 @@ class Continuation:
     def _correct(self, numbers: Real, q: Real, x: Real, signs: Real | None) -> tuple[Real, Real]:
         """Correct the unknowns x of variants by Newton's method.
 
-        signs: signs of the determinants of the first linkage, (groups, 1). Variants that do not converge, or whose
-        determinants have other signs, become nan.
+        signs: signs of the Jacobian determinants of the groups in the first linkage, (groups, 1). Variants that do
+        not converge, or whose determinants have other signs, become nan.
 
         Returns:
             Unknowns and derivatives, (2, unknowns, variants), and the signs of the determinants, (groups,

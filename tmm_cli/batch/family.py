@@ -211,9 +211,14 @@ def split_families(make: Make, columns: Real) -> Iterator[tuple[Real, VariantFam
 
 
 def build_family(make: Make, columns: Real) -> VariantFamily | None:
-    """Build one family of all variants, feasible or not, in the assembly of the first; None if this is impossible.
+    """Build one family of all variants, feasible or not, in the assembly of the first.
 
-    The errors of `make` are passed on.
+    Args:
+        make: function that builds a variant from its numbers; its errors are passed on.
+        columns: numbers of the variants, (variants, n).
+
+    Returns:
+        The family; None if the variants cannot be treated together.
     """
     first = columns[0].tolist()
     try:

@@ -52,7 +52,7 @@ class TraceOutputs(Mapping[str, Array]):
 
     @property
     def several_shape(self) -> tuple[int, int]:
-        """Numbers of variants and positions."""
+        """Shape of the results if they depend on the variant, (variants, positions)."""
         return self.shape[::-1] if self.turned else self.shape
 
     def replace_values(self, variant: int, where: Array, values: Mapping[str, Array]) -> TraceOutputs:

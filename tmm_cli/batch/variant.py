@@ -194,8 +194,8 @@ class DriverRanges:
     Attributes:
         low, span: beginning and length of each range, (variants, 1).
         closed: True if the driver rotates fully and the motion repeats.
-        asked, wanted: driver coordinates at which a synthesis requires certain values, and these values,
-            (variants, n).
+        asked: driver coordinates at which a synthesis requires certain values, (variants, n).
+        wanted: the required values, (variants, n).
     """
 
     low: Real

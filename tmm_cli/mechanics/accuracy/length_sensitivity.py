@@ -18,7 +18,7 @@ from tmm_cli.mechanics.numerics import NO_COORDINATE, ROUNDOFF, Real, Record, ma
 
 @dataclass(frozen=True)
 class LengthCoordinate:
-    """Nonzero coordinate of one or more points in the axes of a link, which counts as one length.
+    """Length of a link: a nonzero coordinate of one or more of its points.
 
     Directions of guides are treated in the same way, with `along` = 1.0.
 

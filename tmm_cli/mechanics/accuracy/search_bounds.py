@@ -282,7 +282,9 @@ def _value_row(moved: Cells, values: Cells) -> Real:
 
 
 def _value_changes(moved: Real, original: Real) -> Real:
-    """Return the changes of numbers, with sign. A change by 360 degrees, or to or from nan, counts as zero."""
+    """Return the differences between two arrays of results; a difference of 360 degrees, or with nan, counts as
+    zero.
+    """
     change: Real = moved - original
     turn = np.copysign(2 * np.pi, change)
     return np.where(np.abs(change - turn) < 1e-3, change - turn, np.where(np.isnan(change), 0.0, change))

@@ -28,18 +28,21 @@ CheckKind = Literal["slot", "pressure", "load", "near dead", "lever"]
 class Check:
     """Value of a check, compared with its limit.
 
+    The kinds of checks and their values are:
+
+    - slot: distance by which a sliding block goes beyond the end of its slot, m; negative if it stays inside.
+    - pressure: largest pressure angle of a link, rad.
+    - load: work of a permanent load in the stroke in which it drives although it resists in the other stroke,
+    J.
+    - near dead: least margin of a group to its dead positions.
+    - lever: largest difference of the lever from the force plan, relative.
+
     Attributes:
-        kind: what is checked.
-            slot: distance by which a sliding block goes beyond the end of its slot, m; negative if it stays
-                inside; at most 0.
-            pressure: largest pressure angle of a link, rad.
-            load: work of a permanent load in the stroke in which it drives although it resists in the other
-                stroke, J; at most 0.
-            near dead: least margin of a group to a dead position; at least the limit.
-            lever: largest difference of the lever from the force plan, relative.
+        kind: kind of the check.
         of: name of the slot, link, load or group in the file; empty for the lever.
         at: driver coordinate, rad or m; None if there is none.
-        value, limit: the value and its limit.
+        value: the value.
+        limit: the limit: the smallest allowed value for "near dead", the largest for all other kinds.
         holds: True if the check is passed.
         detail: end of the slot; group of the driven link; or "working" or "idle", the stroke in which the load
             drives.

@@ -159,8 +159,9 @@ class IntermittentMotion:
 
     @cached_property
     def cycles(self) -> int | None:
-        """Number of repetitions after which the wheel has made a whole number of revolutions; None if more than
-        MOST_CYCLES.
+        """Number of cycles, each through all settings, after which the wheel has made a whole number of revolutions.
+
+        None if it exceeds MOST_CYCLES.
         """
         turns = np.arange(1, MOST_CYCLES + 1) * self.turn / (2 * np.pi)
         whole = np.abs(turns - np.round(turns)) < WHOLE_TURNS

@@ -213,7 +213,7 @@ class MotorCycle:
         return SteadyLaw(self.machine, flywheel, energy, driving, pace.integrate())
 
     def _unsteady_error(self, values: Real) -> LinkageError:
-        """Return the error for a machine that runs away, or that stops where its slip is largest."""
+        """Return the error to raise if the machine runs away, or if it stops, which it does where the slip is largest."""
         x, slips = panel_nodes(self._edges), values.T.ravel()
         if np.mean(values) < RUNAWAY:
             pushing, quickest = self.machine.work_of_cycle / self.machine.length, int(np.argmin(slips))
@@ -222,7 +222,7 @@ class MotorCycle:
         return StandstillError(float(x[np.argmax(slips)]))
 
     def _lost_digits_error(self, values: Real, share: float) -> LinkageError:
-        """Return the error for a slip with too few digits left by rounding, or that for a machine that runs away."""
+        """Return the error to raise if rounding leaves too few digits of the slip, or if the machine runs away."""
         return self._unsteady_error(values) if np.mean(values) < RUNAWAY else LostDigitsError(share)
 
     @property

@@ -164,7 +164,7 @@ def speed_extremes(law: SteadyLaw) -> tuple[float, float]:
 
 
 def speed_extreme_places(law: SteadyLaw) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return two pairs: driver travel and speed where the speed is least, and where it is largest."""
+    """Return driver travel and speed where the speed is least, and where it is largest."""
     nodes = law.energy.sample_points()
     (slowest, low), (quickest, high) = find_minimum(law.speed, nodes), find_minimum(lambda x: -law.speed(x), nodes)
     length = law.energy.length

@@ -59,7 +59,7 @@ class Plan:
 
     @property
     def size(self) -> float:
-        """Larger side of the bounding box, SI."""
+        """Larger side of the bounding box of the plan, in SI units."""
         points = [*self.ends.values(), *(p for v in self.vectors for p in (v.start, v.end))]
         return extent(points)[0] if points else 0.0
 
