@@ -32,8 +32,7 @@ class Check:
 
     - slot: distance by which a sliding block goes beyond the end of its slot, m; negative if it stays inside.
     - pressure: largest pressure angle of a link, rad.
-    - load: work of a permanent load in the stroke in which it drives although it resists in the other stroke,
-    J.
+    - load: work (J) of a permanent load in the stroke in which it drives, although it resists in the other one.
     - near dead: least margin of a group to its dead positions.
     - lever: largest difference of the lever from the force plan, relative.
 
@@ -42,7 +41,7 @@ class Check:
         of: name of the slot, link, load or group in the file; empty for the lever.
         at: driver coordinate, rad or m; None if there is none.
         value: the value.
-        limit: the limit: the smallest allowed value for "near dead", the largest for all other kinds.
+        limit: the smallest allowed value for "near dead", the largest for all other kinds.
         holds: True if the check is passed.
         detail: end of the slot; group of the driven link; or "working" or "idle", the stroke in which the load
             drives.
