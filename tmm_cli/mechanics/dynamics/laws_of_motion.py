@@ -213,7 +213,7 @@ class MotorCycle:
         return SteadyLaw(self.machine, flywheel, energy, driving, pace.integrate())
 
     def _unsteady_error(self, values: Real) -> LinkageError:
-        """Return the error to raise if the machine runs away, or if it stops, which it does where the slip is largest."""
+        """Return the error to raise if the machine runs away, or if it stops where the slip is largest."""
         x, slips = panel_nodes(self._edges), values.T.ravel()
         if np.mean(values) < RUNAWAY:
             pushing, quickest = self.machine.work_of_cycle / self.machine.length, int(np.argmin(slips))
