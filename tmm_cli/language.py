@@ -213,13 +213,13 @@ def spoken(language: str) -> Iterator[None]:
 
 @contextmanager
 def words_of_files() -> Iterator[None]:
-    """Inside the `with` block, write English with the headings and words on which scripts rely."""
+    """Write messages for programs inside the `with` block: in English, in the unchanged words on which scripts rely."""
     with written_as(replace(_course.get(), language=ENGLISH, for_programs=True)):
         yield
 
 
 def word_of_files(text: str) -> str:
-    """Return a phrase in the words of files for programs. Other text (a name, a title) is returned unchanged."""
+    """Return a phrase in the unchanged words on which scripts rely. Other text is returned as it is."""
     with words_of_files():
         return translated(text)
 

@@ -307,7 +307,8 @@ def _choose_assembly(
 def _sketch_shift(kernel: ClosedFormSolver, linkage: Linkage, poses: dict[str, Pose]) -> complex:
     """Return the mean displacement (m) of the known hinges in the sketch from their computed positions.
 
-    The sketch shows on which side of these hinges the group lies, so assemblies are compared with it relative to them.
+    The sketch shows on which side of these hinges the group lies. Before an assembly is compared with the sketch, the
+    sketch is therefore shifted so that these hinges coincide.
     """
     shifts = []
     for pair, end in kernel.outer_pairs:

@@ -27,14 +27,14 @@ from tmm_cli.mechanics.numerics import LAST_STEP, Real, solve
 
 FIRST_STEP, LARGEST_STEP = 0.02, 0.1  # fractions of the examined range, divided by pi
 LEAST_STEP = 1e-9
-TURNS = 24  # a group that has not returned after so many turns of the driver is not followed further
-SPUN = 3e2  # rad, and as much again per radian of a crank: larger rotations of gears are not followed
-FAR = 1e3  # sizes of a group: a link that is farther away where following fails goes to infinity
+TURNS = 24  # driver turns after which a group that has not returned to its first state is no longer followed
+SPUN = 3e2  # rad, plus the same per radian of the driver: gears that rotate more are no longer followed
+FAR = 1e3  # sizes of a group: if a link is farther away where continuation fails, it recedes to infinity
 HALVINGS = 80
-FARTHEST = 0.3  # along the motion of the group (sizes of the group, rad): limits are searched so far ahead
-LEFT = (0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # fractions of the distance to a limit at which the branch is checked
-AHEAD = 0.1  # of the range of the driver, divided by pi: and no farther than this
-SHIFTS = (0.0, 0.17, -0.23)  # units of the driver coordinate
+FARTHEST = 0.3  # sizes of the group, rad: distance along the motion of the group in which a limit is searched
+LEFT = (0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # fractions of the distance from a limit at which the branch is checked
+AHEAD = 0.1  # fraction of the driver range, divided by pi: largest distance of a limit that is searched
+SHIFTS = (0.0, 0.17, -0.23)  # units of the driver coordinate: starts of a cycle that are tried
 
 TraceEnd = Literal["reached", "limit", "lost", "boundary"]
 
@@ -111,9 +111,13 @@ class BranchFollower:
         return self.corrector.distance_from_home(node.state)[1] > SPUN * (1 + abs(node.q - self.at) / self.scale)
 
     def nodes_at_infinity(self, last: BranchNode) -> list[BranchNode]:
-        """Return a node at which links that recede or spin reach infinity; empty if they do neither.
+        """Return a node at the driver coordinate q* at which links recede to infinity or rotate infinitely far.
 
-        Near a driver coordinate q* a link at the distance c/(q* - q) has the speed c/(q* - q)^2, from which q* follows.
+        A link that recedes is at a distance c/(q* - q) and moves with the velocity c/(q* - q)^2, from which q* follows.
+        The same holds for angles.
+
+        Returns:
+            A list with the node; empty if no link recedes or rotates so far.
         """
         home = self.corrector.home or last.state
         if self.corrector.distance_from_home(last.state)[0] > FAR:

@@ -37,8 +37,8 @@ from tmm_cli.mechanics.numerics import (
 )
 
 RADII = (0.2, 0.1, 0.05, 0.025, 0.012, 0.005)  # distances of the samples, in units of the driver coordinate
-SAMPLES = 28  # Chebyshev nodes; those in the middle are omitted
-MIDDLE = 0.2
+SAMPLES = 28  # Chebyshev nodes, including those in the middle
+MIDDLE = 0.2  # fraction of the radius: samples nearer to the middle are omitted
 DEGREES = (10, 13)  # of two polynomials, whose roots must agree
 PROBES = (
     1e-3,
@@ -47,7 +47,7 @@ PROBES = (
     1e-6,
 )  # units of the driver coordinate; for a determinant that falls as h^2 only the first two
 FOUND = 0.02  # sizes of the group, rad: largest correction of a predicted state
-ROUNDS = 12
+ROUNDS = 12  # iterations for a root
 SMALL = 0.3  # fraction of the largest determinant, below which it may touch zero
 AHEAD = 1e-5  # units of the driver coordinate, step for the slope of the determinant
 CLOSER = 10  # factor: a dead position that was not found is searched again from a distance smaller by it
@@ -132,8 +132,8 @@ class CrossingFinder:
     def _touches_zero(self, node: BranchNode, beyond: BranchNode, largest: float) -> bool:
         """Return True if the determinant seems to touch zero between two nodes without changing sign.
 
-        It then falls as the square of the distance: its zero is at twice the distance at which the tangent is zero,
-        seen from either node.
+        It then falls as the square of the distance from its zero. From each node, the zero is therefore twice as far as
+        the point at which the tangent is zero.
         """
         if max(abs(node.det), abs(beyond.det)) > SMALL * largest:
             return False

@@ -39,7 +39,7 @@ Method = Literal["closed form", "polynomial", "angles", "many starts"]
 STARTS, LEAST_STARTS, SMALL = 400, 60, 8  # initial guesses; fewer for larger groups, as each then takes longer
 ROUNDS = 4  # most rounds of initial guesses, while an odd number shows that an assembly is missing
 STEP, STAYS = 0.02, 0.005  # sizes, rad: step that tests whether a group is movable, and least deviation that remains
-BACK = 40  # iterations that would return it
+BACK = 40  # iterations after the step, which would return a group that is not movable
 
 
 @dataclass(frozen=True)

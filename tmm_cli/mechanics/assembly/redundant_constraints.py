@@ -3,8 +3,8 @@
 A link or pair is redundant if the mobility is the same without it, by the rank of the equations at one position. Links
 that are rigid to one another count as one. Parts are left out in this order: links between moving links, then pairs,
 then links connected to the frame; later ones of the file before earlier ones, loaded links last. Drivers, output links
-and links to which the file attaches others are kept. If no whole link or pair can be left out any more, single
-conditions of pairs are.
+and links to which the file attaches others are kept. When no whole link or pair can be left out any more, single
+conditions of pairs are left out.
 """
 
 from __future__ import annotations
@@ -261,7 +261,7 @@ def _removable_bodies(linkage: Linkage, reduction: Reduction) -> tuple[Sequence[
 
 
 STEP = 0.05  # rad, or sizes of the linkage: step by which it must be movable
-STARTS = 200
+STARTS = 200  # initial guesses if the sketch is incomplete
 
 
 def analyse_mobile_structure(linkage: Linkage) -> Structure:

@@ -90,7 +90,7 @@ def nearest_to_sketch(
     if len(assemblies) == 1:
         return 0
     candidates = [sketchable_values(linkage, poses) for poses in assemblies]
-    tells = [
+    distinguishing = [
         name
         for name in candidates[0]
         if any(
@@ -100,11 +100,11 @@ def nearest_to_sketch(
         )
     ]
     sketched = {p: place - shift for p, place in linkage.sketch.points.items()} | dict(linkage.sketch.angles)
-    deciding = {name: sketched[name] for name in tells if name in sketched}
+    deciding = {name: sketched[name] for name in distinguishing if name in sketched}
     errors = [sketch_distance(deciding, candidate, kernel.size) for candidate in candidates]
     best, second = (int(k) for k in np.argsort(errors, kind="stable")[:2])
     if not deciding or errors[best] > DISTINCT * errors[second]:
-        choices = {name: (candidates[best][name], candidates[second][name]) for name in tells}
+        choices = {name: (candidates[best][name], candidates[second][name]) for name in distinguishing}
         raise AmbiguousSketchError(kernel.group, choices, len(assemblies))
     return best
 

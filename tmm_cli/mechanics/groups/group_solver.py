@@ -204,7 +204,7 @@ class ClosedFormSolver(GroupSolver):
     @classmethod
     @abstractmethod
     def fits(cls, group: Group) -> bool:
-        """Return True if this solver can solve the group."""
+        """Return True if the group is of the type that this class solves."""
 
     @classmethod
     @abstractmethod

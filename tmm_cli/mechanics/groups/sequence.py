@@ -146,7 +146,12 @@ class MissingRates(dict[str, Any]):
 
 
 def solvers_towards(kernels: Iterable[GroupSolver], links: Iterable[str]) -> tuple[GroupSolver, ...]:
-    """Select the solvers that are needed to solve these links, in solving order."""
+    """Select the solvers of these links and of all links on which they depend, in solving order.
+
+    Args:
+        kernels: solvers of all groups, in solving order.
+        links: names of the links.
+    """
     required, kept = set(links), []
     for kernel in reversed(tuple(kernels)):
         group = kernel.group

@@ -210,7 +210,7 @@ class GroupReactions:
 
 @dataclass(frozen=True)
 class DriverState:
-    """Coordinate of a driver and its derivatives with respect to the parameter of the motion.
+    """Coordinate of a driver, and its derivatives with respect to the first driver's coordinate or to time.
 
     Attributes:
         value: coordinate (rad or m).

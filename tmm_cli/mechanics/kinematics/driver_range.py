@@ -26,7 +26,7 @@ from tmm_cli.mechanics.structure import MOST_TURNS, turns_of_cycle
 
 SCAN = 1440  # samples per turn of the first scan, which is refined
 PARTS = 64  # parts into which an interval is divided at once
-ALMOST = 1e-5  # fraction of the range of the trace: so near to infinity a group cannot be solved
+ALMOST = 1e-5  # fraction of the range of the trace: nearer to infinity a group cannot be solved
 
 
 @dataclass(frozen=True)

@@ -328,7 +328,10 @@ class Motion(LinkStates):
 
     @cached_property
     def third(self) -> Mapping[str, ThirdDerivative]:
-        """Third derivatives of the poses, for a driver with constant acceleration; parameter as in `_solved`."""
+        """Third derivatives of the poses, with respect to the parameter used in solving the groups.
+
+        The driver must have a constant acceleration.
+        """
         rates, accels = self._solved
         q = with_slope(self.q, 1.0 + 0 * self.q if self.in_time is None else self.rate)
         drives = drives_at(self.linkage, q)

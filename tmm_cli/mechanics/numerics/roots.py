@@ -14,8 +14,8 @@ from tmm_cli.mechanics.numerics.vectors import Real
 SPARE = 8  # bisections beyond the bits of a mantissa: from a step of a scan to the last bit
 DEGREE = 8  # of the polynomial that locates an extreme
 THIRDS = 18  # trisections of a step of a scan, to an interval of 1e-12 rad
-REFINEMENTS, PARTS = 16, 4  # finer grids about a peak, and the steps of each in one step of the grid before
-FLAT = 1e-12  # fraction of the largest value: a lower rise above the neighbours is rounding
+REFINEMENTS, PARTS = 16, 4  # number of ever finer grids about a peak, and steps of each in one step of the grid before
+FLAT = 1e-12  # fraction of the largest value: a smaller rise above the neighbours is rounding
 
 
 def find_roots(function: Callable[[Real], Real], low: Real, high: Real) -> Real:

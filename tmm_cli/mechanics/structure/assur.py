@@ -315,7 +315,7 @@ def reduce_structure(linkage: Linkage, structure: Structure, reduction: Reductio
 def _play_pebble_games(
     bodies: tuple[str, ...], ties: Sequence[Tie], pins: tuple[str, ...], drivers: Iterable[tuple[str, str]]
 ) -> tuple[PebbleCount, PebbleCount]:
-    """Play the pebble game twice, without and with the drivers."""
+    """Count degrees of freedom by the pebble game, first without and then with the drivers."""
     driving = [Tie("driver", base, link, 1) for base, link in drivers]
     return count_freedoms(bodies, FRAME, ties, pins), count_freedoms(bodies, FRAME, [*ties, *driving], pins)
 
