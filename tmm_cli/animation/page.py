@@ -125,7 +125,9 @@ def chart_data(results: Results, quantities: QuantityPlot) -> dict[str, Any]:
 
 
 def position_marks(results: Results, motion: Motion) -> list[list[Any]]:
-    """Return [frame, number] of each numbered position; the frame is a fraction between two frames."""
+    """Return the numbered positions as [frame, number]. The frame may be a fraction, if the position lies between
+    frames.
+    """
     marks = []
     for number, q in zip(results.numbers, results.asked[list(results.numbers)].tolist(), strict=True):
         k = int(np.argmin(np.abs(motion.q - q)))
@@ -215,7 +217,9 @@ def picture_view(picture: MechanismPicture) -> tuple[float, float, float, float]
 
 
 def body_data(body: MovingBody) -> dict[str, Any]:
-    """Return position, angle and stretch of a body in each frame as JSON data. A constant is written as one number."""
+    """Return position, angle and stretch of a body as JSON data, each for all frames, or as one number if it is
+    constant.
+    """
     return {
         "x": rounded_frames(body.place.real, 2),
         "y": rounded_frames(-body.place.imag, 2),
@@ -225,7 +229,7 @@ def body_data(body: MovingBody) -> dict[str, Any]:
 
 
 def rounded_frames(values: Real, digits: int) -> Any:
-    """Round one value per frame to `digits` decimals; if all values are equal, return one number."""
+    """Round the values in all frames to `digits` decimals. If they are all equal, a single number is returned."""
     rounded = [round(value, digits) + 0.0 for value in np.asarray(values, float).tolist()]
     return rounded[0] if min(rounded) == max(rounded) else rounded
 

@@ -104,7 +104,9 @@ def curve_sheet(title: str, sweep: SweepResults, indices: Sequence[int], units: 
 
 
 def _hatch_interval(panel: Panel, low: float, high: float, *, fails: bool) -> None:
-    """Hatch an interval of the parameter in a panel; `fails` means that no mechanism exists there."""
+    """Hatch an interval of the parameter in a panel: densely where no mechanism exists (`fails`), widely beyond a
+    limit.
+    """
     left, right = (float(panel.x.on(value)) for value in (low, high))
     corners = [
         complex(left, panel.y.start),

@@ -81,9 +81,11 @@ TITLE, BORDERS = N_("Parameter sweep"), N_("Boundaries between states")
 
 
 def points_table(sweep: SweepResults, *, words: bool = False) -> Table:
-    """Return the table of results with one row per point.
+    """Return the table of results, with one row for each point.
 
-    words: True for states in the reader's language; False for the words used in files.
+    Args:
+        sweep: results of the sweep.
+        words: True to write states in the reader's language, False as in files.
     """
     names = [translated(word) for word in STATE_WORDS] if words else list(STATES)
     columns = [Column(axis.words, sweep.points[:, k], NUMBER) for k, axis in enumerate(sweep.axes)]
@@ -95,9 +97,11 @@ def points_table(sweep: SweepResults, *, words: bool = False) -> Table:
 
 
 def borders_table(sweep: SweepResults, *, words: bool = False) -> Table:
-    """Return the table of boundary points between states, one row each.
+    """Return the table of boundary points between states, with one row for each point.
 
-    words: True for states in the reader's language; False for the words used in files.
+    Args:
+        sweep: results of the sweep.
+        words: True to write states in the reader's language, False as in files.
     """
     names = [translated(word) for word in STATE_WORDS] if words else list(STATES)
     columns = [

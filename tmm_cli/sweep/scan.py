@@ -167,7 +167,7 @@ class _VariantScan:
 
 
 def _may_reach_zero(curve: Real, where: Real) -> Real:
-    """Return True for each variant whose negative curve may reach zero between two scan positions.
+    """Return a mask of the variants whose negative curve may reach zero between two scan positions.
 
     where: mask of the positions to be examined, (variants, positions).
     """
@@ -189,7 +189,7 @@ def _find_stroke_ends(slope: Callable[[Real], Real], low: Real, high: Real) -> R
 
 
 def _curve_of_variants(crank_variants: CrankVariants, name: str, columns: Real) -> Callable[[Real], Real]:
-    """Return one curve of the variants as a function of their driver coordinates, (variants, n)."""
+    """Return a function that evaluates one curve of the variants at their driver coordinates, (variants, n)."""
     close = VariantCurves(crank_variants.curve_program(name), columns)
     return lambda q: close(q)[name]
 

@@ -285,9 +285,10 @@ class CrankVariants:
 
 @dataclass(frozen=True)
 class VariantCurves:
-    """Traced curves of certain variants, as a function of the driver coordinate.
+    """Traced curves of a group of variants, as a function of their driver coordinates.
 
-    q has the shape (variants, n), or (m * variants,) for m values per variant; the curves have the shape of q.
+    When called with driver coordinates, it returns the values of each curve by name, in the same shape. The coordinates
+    have the shape (variants, n), or (m * variants,) for m coordinates per variant.
     """
 
     program: TraceProgram
@@ -300,12 +301,20 @@ class VariantCurves:
 
 
 def sign_changes(slope: Real) -> Real:
-    """Return True where the slope changes its sign before the next position; positions form a closed revolution."""
+    """Return a mask of the positions after which the slope changes its sign.
+
+    The positions form a closed revolution: the last one is followed by the first.
+    """
     forward = slope >= 0
     changes: Real = forward != np.roll(forward, -1, axis=1)
     return changes
 
 
 def curve_limit(curve: LimitedCurve, allowed: tuple[float, float]) -> float:
-    """Return the limit of a curve. allowed: limits of the pressure angle for sliding and for rotating links (rad)."""
+    """Return the limit of a curve.
+
+    Args:
+        curve: the curve.
+        allowed: allowed pressure angles of sliding and of rotating links (rad).
+    """
     return END_OF_SLOT if curve.kind == "slot" else allowed[0 if curve.sliding else 1]

@@ -78,7 +78,7 @@ def _read_tables(path: str) -> dict[str, bytes]:
 
 
 def _component_offsets(shape: bytearray) -> Iterator[int]:
-    """Yield the byte offsets of the component numbers in a composite glyph; none for a simple glyph."""
+    """Yield the byte offsets at which a composite glyph stores its component numbers; none for a simple glyph."""
     if len(shape) < 10 or shape[0] < 0x80:  # not composite: the number of contours is not negative
         return
     at, more = 10, True

@@ -322,7 +322,11 @@ def arrange_as_drawn(pictures: Sequence[SheetPicture], field: PackingField) -> l
 def _draw_first(source: DrawingSource, choice: SheetChoice, most: Size, shrunk: float) -> list[SheetPiece]:
     """Make the drawings of a source for the first time, at their usual size.
 
-    shrunk: size of the paper relative to A1.
+    Args:
+        source: The source.
+        choice: Results and the positions to be drawn.
+        most: Width and height of the field, mm.
+        shrunk: Size of the paper relative to A1.
     """
     number = len(getattr(choice, source.over)) if source.over else 1
     usual = source.usual and source.usual * max(

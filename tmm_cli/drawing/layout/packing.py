@@ -38,7 +38,9 @@ class PackingField:
         return self.width * self.height - self.taken[0] * self.taken[1]
 
     def depth(self, start: float, end: float) -> float:
-        """Return the free height below the top edge between two distances from the left edge."""
+        """Return the height (mm) that is free for a box whose left and right edges are at these distances from the
+        left.
+        """
         return self.height - (self.taken[1] if end > self.width - self.taken[0] + 1e-9 else 0.0)
 
     def holds(self, at: Size, size: Size) -> bool:
@@ -85,9 +87,14 @@ def arrange_boxes(sizes: Sequence[Size], field: PackingField) -> list[Size] | No
 
 
 def _packings(sizes: Sequence[Size], field: PackingField, mixed: int, *, led: bool, tidy: bool) -> Iterator[list[Size]]:
-    """Yield packings that fit into the field.
+    """Yield packings that fit into the field, as the upper left corners of the boxes.
 
-    mixed: number of random orders in which the boxes are placed; with `tidy`, they differ little from the given order.
+    Args:
+        sizes: Widths and heights of the boxes.
+        field: Field to pack them into.
+        mixed: Number of random orders to be tried.
+        led: Keep the first box in the upper left corner.
+        tidy: Let the random orders differ only little from the given order.
     """
     if sum(width * height for width, height in sizes) > field.area:
         return
@@ -144,7 +151,8 @@ def _orders(sizes: Sequence[Size], mixed: int, kept: int, *, tidy: bool) -> Iter
 def _place_in_order(sizes: Sequence[Size], order: Sequence[int], field: PackingField) -> list[Size] | None:
     """Place boxes one after another, each as high up and then as far left as possible.
 
-    The skyline is the lower boundary of the boxes placed so far. None if a box does not fit.
+    Returns:
+        Upper left corner of each box, or None if a box does not fit.
     """
     skyline: list[SkylineStep] = [(0.0, field.width, 0.0)]
     corners = [(0.0, 0.0)] * len(sizes)
@@ -166,9 +174,13 @@ def _place_in_order(sizes: Sequence[Size], order: Sequence[int], field: PackingF
 
 
 def _skyline_top(skyline: Sequence[SkylineStep], number: int, end: float, most: float) -> float:
-    """Return the highest possible upper edge of a box that extends from a skyline step to `end`.
+    """Return how far below the top of the field a box must be placed to clear the boxes above it.
 
-    The search stops at `most`, which is returned if the edge cannot be higher.
+    Args:
+        skyline: Lower boundary of the boxes placed so far.
+        number: Step of the skyline at which the box begins.
+        end: Right edge of the box.
+        most: Result at which the search is stopped, because a better place is known.
     """
     begin, top = skyline[number][0] + 1e-9, 0.0
     for left, right, down in islice(skyline, number, None):
@@ -182,7 +194,13 @@ def _skyline_top(skyline: Sequence[SkylineStep], number: int, end: float, most: 
 
 
 def _lower_skyline(skyline: Sequence[SkylineStep], start: float, end: float, down: float) -> list[SkylineStep]:
-    """Return the skyline after a box from `start` to `end` with its lower edge at `down` has been placed."""
+    """Return the skyline after a box has been placed.
+
+    Args:
+        skyline: Lower boundary of the boxes placed before.
+        start, end: Left and right edge of the box.
+        down: Lower edge of the box, measured from the top of the field.
+    """
     steps: list[SkylineStep] = []
     for left, right, depth in skyline:
         if left < start - 1e-9:
@@ -328,9 +346,12 @@ def _rectangle(low: complex, high: complex) -> LineMark:
 
 
 def _ruled_lines(axis: str, positions: Sequence[tuple[float, float, float]], width: float) -> list[LineMark]:
-    """Return lines parallel to the other axis.
+    """Return parallel ruled lines.
 
-    positions: coordinate on `axis`, and start and end of the line, for each line.
+    Args:
+        axis: Axis along which the positions of the lines are given, "x" or "y".
+        positions: Position, start and end of each line, mm.
+        width: Width of the lines, mm.
     """
     ends = [
         (complex(at, a), complex(at, b)) if axis == "x" else (complex(a, at), complex(b, at)) for at, a, b in positions

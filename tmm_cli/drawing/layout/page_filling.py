@@ -48,13 +48,15 @@ MOST_PARTITIONS = 2000  # with more possible ways none is tried
 
 @dataclass(frozen=True)
 class SheetPiece:
-    """A drawing whose size can be changed. Its room is the longest side that it may have, mm.
+    """A drawing whose size can be changed.
+
+    A room is the longest side (mm) that is allotted to a drawing.
 
     Attributes:
         drawn: The drawing in its present size.
-        usual: Usual room.
-        least: Smallest room.
-        most: Largest room.
+        usual: Usual room, mm.
+        least: Smallest room, mm.
+        most: Largest room, mm.
         letters: True for a table, whose size follows from its letters.
     """
 
@@ -132,7 +134,7 @@ def initial_rooms(pieces: Sequence[SheetPiece], field: PackingField, shrunk: flo
 def shrink_rooms(
     pieces: Sequence[SheetPiece], rooms: Sequence[float], share: float, chosen: Container[int]
 ) -> list[float]:
-    """Multiply the rooms of the chosen drawings by `share`, but not below their smallest rooms."""
+    """Reduce the rooms of the chosen drawings by the factor `share`, but not below their smallest rooms."""
     return [
         piece.fitting_length(max(share * room, min(room, piece.least))) if k in chosen else room
         for k, (piece, room) in enumerate(zip(pieces, rooms, strict=True))
@@ -223,7 +225,14 @@ def page_area(sizes: Sequence[Size], page: Page) -> float:
 def _fill_in_order(sizes: Sequence[Size], field: PackingField, most: float, *, back: bool = False) -> list[Page] | None:
     """Fill pages one after another, each up to an area of `most` mm².
 
-    With `back`, a drawing may also be placed on an earlier page. None if a drawing does not fit on an empty page.
+    Args:
+        sizes: Widths and heights of the drawings.
+        field: Field of a page.
+        most: Largest total area of the drawings on a page.
+        back: True if a drawing may also be placed on an earlier page.
+
+    Returns:
+        Numbers of the drawings on each page, or None if a drawing does not fit on an empty page.
     """
     pages: list[Page] = []
     for number in range(len(sizes)):
@@ -342,9 +351,9 @@ def equalize_letters(pieces: Sequence[SheetPiece], rooms: Sequence[float], page:
 
 
 def letter_limit(pieces: Sequence[SheetPiece], rooms: Sequence[float], page: Page, number: int) -> float:
-    """Return the room at which the letters of a table are hardly larger than those of other tables on the page.
+    """Return the largest room (mm) of a table at which its letters hardly exceed those of other tables on the page.
 
-    Inf for other drawings, and for a table that is alone.
+    It is infinite for other drawings, and for a table that is alone.
     """
     if not pieces[number].letters:
         return math.inf

@@ -334,7 +334,7 @@ class Panel:
         return self.x.on(x) + 1j * self.y.on(y)
 
     def line(self, start: complex, end: complex, colour: str, width: float, style: Style = "-", z: float = 1.0) -> None:
-        """Draw a line. Labels avoid lines above the grid (z > 1), and interrupt lines of the grid."""
+        """Draw a line. Labels are kept off lines above the grid (z > 1); other lines are interrupted by labels."""
         self.sheet.line([start, end], colour, width, style, z, faint=z <= 1)
 
     def upright(self, place: float, colour: str, width: float, style: Style = "-", z: float = 1.0) -> None:

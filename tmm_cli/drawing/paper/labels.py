@@ -314,7 +314,7 @@ def candidates_beside(label: Label, width: float, height: float) -> Iterator[Can
 
 
 def gather_coincident(placed: Iterable[tuple[complex, Item]]) -> list[tuple[complex, list[Item]]]:
-    """Group items by their points (mm); points that coincide on paper are one."""
+    """Group items by their points (mm). Items whose points coincide on paper form one group."""
     groups: list[tuple[complex, list[Item]]] = []
     for at, item in placed:
         same = next((items for place, items in groups if abs(place - at) < SAME_PLACE), None)

@@ -162,9 +162,9 @@ SOLID_UNIT, TEXT_UNIT = 1 << 20, 1 << 40  # one count holds points on faint line
 
 
 class PriceRaster:
-    """Summed-area table of lines and texts on a raster of squares.
+    """Approximation of the cost of a text in a box, from counts of what is drawn in small squares.
 
-    Four look-ups give the number of line points and covered squares in any box.
+    The counts are cumulative (a summed-area table), so four look-ups give the total for any box.
     """
 
     def __init__(self, canvas: OccupiedArea) -> None:
@@ -189,7 +189,9 @@ class PriceRaster:
         return np.floor(off.real).astype(int), np.floor(off.imag).astype(int)
 
     def _edges(self, boxes: Boxes) -> NDArray[Any]:
-        """Return for each box the range of raster squares it covers: first and last + 1, in x and in y, (boxes, 4)."""
+        """Return the squares that each box covers, (boxes, 4): first and last + 1 horizontally, first and last + 1
+        vertically.
+        """
         x, y = self.low.real, self.low.imag
         off = (boxes - np.array([x, x, y, y])) / self.cell
         off[:, ::2], off[:, 1::2] = np.floor(off[:, ::2]), np.ceil(off[:, 1::2])

@@ -317,7 +317,9 @@ class DrawingSheet:
         self.labels.clear()
 
     def text_along(self, at: complex, text: str, size: float, along: complex) -> None:
-        """Write a text along a unit vector, with its middle at a point (mm). The text is never upside down."""
+        """Write a text along a unit vector, with its middle at a point (mm). It is rotated so that it is never upside
+        down.
+        """
         turn = float(np.degrees(np.angle(along)))
         turn -= 180 * np.round(turn / 180) if abs(abs(turn) - 90) > 1e-6 else turn - 90
         self.text(at, text, size, ha="center", turn=turn)
@@ -351,7 +353,7 @@ class DrawingSheet:
 
 
 def finite_stretches(points: Sequence[complex]) -> Iterator[tuple[complex, ...]]:
-    """Split a polyline at points that are not finite, and yield its parts."""
+    """Yield the parts of a polyline between points that are not finite."""
     array = np.asarray(points, complex)
     finite = np.isfinite(array)
     for stretch in [array] if finite.all() else np.split(array, np.flatnonzero(~finite)):  # most polylines are finite

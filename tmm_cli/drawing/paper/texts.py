@@ -142,7 +142,7 @@ def plain_text(words: Words) -> str:
 
 
 def placed_pieces(words: Words, size: float) -> Iterator[tuple[complex, str, float]]:
-    """Yield the parts of a text with indices, as (offset from the left end, letters, font size)."""
+    """Yield the letters of a text and its indices, as (offset from the left end, letters, font size)."""
     at = 0.0
     for piece in split_symbols(words):
         if isinstance(piece, str):
@@ -235,8 +235,9 @@ def cut_text(text: str, size: float, room: float, *, bold: bool = False) -> str:
 
 
 def wrap_text(text: str, size: float, room: float, most: int, *, bold: bool = False) -> list[str]:
-    """Break a text into at most `most` lines of about equal length, no wider than `room` mm. The last line is cut if
-    needed.
+    """Break a text into at most `most` lines of about equal length, no wider than `room` mm.
+
+    If the text is too long, its last line is cut.
     """
     lines = narrower = _fill_lines(text, size, room, most, bold)
     while 1 < len(narrower) == len(lines) and " ".join(narrower) == " ".join(lines):

@@ -97,7 +97,9 @@ def draw_energy_mass(results: Results) -> Iterable[tuple[str, Drawing]]:
 
 
 def _dense_travel(running: SteadyRunning) -> tuple[Real, list[int]]:
-    """Return closely spaced travels of the driver (rad), and the indices after which quantities may jump."""
+    """Return closely spaced travels of the driver over the cycle (rad), and the indices after which quantities may
+    jump.
+    """
     lows, highs = visible_stretches(running.steady.law.energy.edges)
     inner = np.linspace(0, 1, max(4, 720 // len(lows)))
     low, high = lows[:, None] + BORDER_OFFSET, highs[:, None] - BORDER_OFFSET
@@ -327,9 +329,9 @@ def energy_mass_sheet(results: Results, running: SteadyRunning, travel: Real) ->
 
 
 def _axis_ends(inertia: Any, massless: float) -> tuple[float, float]:
-    """Return the values at both ends of the inertia axis, which begins at zero unless this is far away.
+    """Return the values at both ends of the inertia axis. It begins at zero unless the curve is far from zero.
 
-    massless: value at its end if no link has inertia.
+    massless: value at the end of the axis if no link has inertia.
     """
     low, high = float(np.min(inertia)), float(np.max(inertia))
     if high <= 0.0:
@@ -341,9 +343,9 @@ def _axis_ends(inertia: Any, massless: float) -> tuple[float, float]:
 
 
 def _massless_width(steady: SteadySolution) -> float:
-    """Return the width of a diagram for massless links: inertia (kg*m²) over which a tangent rises by the work change.
+    """Return the length of the inertia axis (kg*m²) for a mechanism whose links have no inertia.
 
-    It is 1 if the work does not change.
+    Over this length a tangent rises by the change of work in the cycle. The length is 1 if the work does not change.
     """
     fastest, slowest = steady.tangents
     rise = abs(fastest.offset - slowest.offset)

@@ -108,7 +108,7 @@ def _draw_couple(sheet: DrawingSheet, at: complex, sense: float, colour: str, na
 
 
 def arrow_extent(acting: Iterable[ForceOrCouple]) -> list[tuple[complex, complex]]:
-    """Return the points of action of forces (m), each with the offsets (mm) by which its arrow may extend."""
+    """Return the points of action of forces (m), each with an offset (mm) by which its arrow may extend."""
     offsets = []
     for load in acting:
         along = 0j if load.couple else (LOAD_LENGTH + 2) * load.force / abs(load.force)

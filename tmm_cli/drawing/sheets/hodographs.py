@@ -180,7 +180,7 @@ def _draw_axes(sheet: DrawingSheet, points: Sequence[complex]) -> None:
 
 
 def _number_positions(sheet: DrawingSheet, results: Results, curve: Hodograph) -> None:
-    """Mark the computed positions on a hodograph with their numbers."""
+    """Mark the computed positions on a hodograph by dots with their numbers."""
     step = -(-len(results.numbers) // MOST_NUMBERED)
     for number, value in list(zip(results.numbers, curve.positions.tolist(), strict=True))[::step]:
         if np.isfinite(value):

@@ -207,9 +207,13 @@ class Legend:
             self.facts.append(_("Compound hinge {points}: one circle for each pair").format(points=", ".join(compound)))
 
     def columns(self, paper: float) -> tuple[float, list[str]]:
-        """Return the left edge of the right-hand column (mm) and its lines.
+        """Lay out the text in the right-hand column of the legend.
 
-        paper: width of the paper, mm.
+        Args:
+            paper: Width of the paper, mm.
+
+        Returns:
+            Left edge of the column (mm), and its lines.
         """
         width = paper - 2 * MARGIN
         left = min(0.5 * width, 14 + max(text_extent(self.entry(part), 9)[0] for part in self.parts))

@@ -125,9 +125,9 @@ def force_plan_rows(plan: ForcePlan, mu: float) -> list[TableRow]:
 
 
 def lane_offsets(vectors: Sequence[NamedVector], size: float) -> list[complex]:
-    """Return offsets (mm, perpendicular to the vectors) with which no vector of a polygon lies on another.
+    """Return the offset (mm) by which each vector of a polygon is moved sideways, so that no vector lies on another.
 
-    Long vectors stay in place; the others are moved outwards.
+    The longest vectors stay in place; the others are moved outwards.
     """
     middle = extent([p for v in vectors for p in (v.start, v.end)] or [0j])[3]
     taken: dict[int, int] = {}
@@ -258,7 +258,7 @@ def draw_motion_plans(position: Position) -> Iterable[tuple[str, Drawing]]:
 
 
 def corners_on_paper(plan: Plan, mu: float) -> dict[str, complex]:
-    """Return the unlettered corners of a plan; those that coincide with a lettered point on paper are moved there."""
+    """Return the corners of a plan. A corner that coincides with a lettered point on paper is moved to that point."""
     nearest = {
         letter: min(plan.ends.values(), key=lambda end: abs(end - place)) for letter, place in plan.corners.items()
     }

@@ -61,7 +61,7 @@ def draw_higher_pair(
 
 
 def _draw_in_field(sheet: DrawingSheet, points: Vector, colour: str, width: float, style: Style, z: float) -> None:
-    """Draw the part of a curve that is inside the field of the sheet."""
+    """Draw a curve, but only the part inside the field of the sheet."""
     low, high = sheet.canvas.low, sheet.canvas.high
     inside = (points.real > low.real) & (points.real < high.real) & (points.imag > low.imag) & (points.imag < high.imag)
     if bool(np.any(inside)):

@@ -318,7 +318,7 @@ def draw_hatched_line(
 
 
 def _covered_runs(rods: Sequence[Segment], rail: complex, along: complex, out: complex) -> list[tuple[float, float]]:
-    """Return the intervals (mm along a rail) in which bars cross its hatching."""
+    """Return the intervals along a rail (mm) in which bars cross its hatching."""
     intervals = []
     for rod in rods:
         points = _rod_points(rod) - rail

@@ -116,7 +116,7 @@ class MechanismScene:
         return [self.place(link, local) for local in self.linkage.links[link].points.values()]
 
     def extent(self, links: Iterable[str]) -> list[complex]:
-        """Return the points (m) that must be on the paper when these links are drawn."""
+        """Return the points (m) that must be on the sheet when these links are drawn."""
         links = tuple(links)
         points: list[complex] = []
         for link in links:
