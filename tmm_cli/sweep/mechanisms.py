@@ -275,7 +275,11 @@ class SweptMechanisms:
         return reach
 
     def _solve_point(self, point: Real) -> tuple[int, str, Real, Real]:
-        """Solve one point without the trace: state, reason, quantities, reach of the load tables."""
+        """Solve one point without the trace.
+
+        Returns:
+            State, reason, quantities, and reach of the load tables as in `SweepPoints`.
+        """
         nothing = np.full(len(self.shown), np.nan), np.full((len(self.tables), 2), np.nan)
         texts = {axis.name: axis.text(float(value)) for axis, value in zip(self.axes, point, strict=True)}
         forces = any(check.forces for check in self.shown)

@@ -114,9 +114,10 @@ def large_sheets(
 def _fit_smallest_paper(
     number: int, choice: SheetChoice, papers: Sequence[str]
 ) -> tuple[Size, list[SheetPicture], list[Page]]:
-    """Arrange the drawings of a subject on the first of these paper sizes on which they need one page only.
+    """Arrange the drawings of a subject on the first of these paper sizes on which one page is enough.
 
-    If no size is enough, the last one is used. If one page is left rather empty, the next smaller paper is tried too.
+    If one page is enough on none of them, the last size is used. If the page is rather empty, the next smaller paper is
+    tried too.
 
     Returns:
         Paper size, the drawings, and the drawings of each page by their numbers.
@@ -143,7 +144,7 @@ def _arrange_fullest(
 ) -> tuple[list[SheetPicture], list[Page]]:
     """Arrange the drawings of a subject on pages so that no page is left rather empty.
 
-    If a page is, the arrangement is repeated with drawings limited to smaller heights, so that more fit side by side.
+    If one page is rather empty, the arrangement is repeated with lower drawings, so that more of them fit side by side.
     """
     arrangement = _arrange_sheet(number, choice, paper, field, field.height - DRAWING_GAP)
     for high in (field.height - field.taken[1] - DRAWING_GAP, *(share * field.height for share in FLAT_HEIGHTS)):

@@ -114,7 +114,7 @@ def _count_out_of_order(corners: Sequence[Size]) -> int:
 
 
 def _disorder(corners: Sequence[Size], sizes: Sequence[Size], field: PackingField) -> float:
-    """Measure how far an arrangement is from the reading order, right and down; 0 if it is in order."""
+    """Return a measure of how far an arrangement is from the reading order; 0 if it is in order."""
     middles = [
         (x + width / 2) / field.width + (y + height / 2) / field.height
         for (x, y), (width, height) in zip(corners, sizes, strict=True)

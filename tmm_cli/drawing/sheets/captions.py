@@ -217,8 +217,9 @@ def _best_layout(
 def _large_sheet_layout(
     points: Sequence[tuple[complex, complex]], beneath: Callable[[float], DrawingCaption]
 ) -> _CaptionedLayout:
-    """Return the layout for a large sheet, at the scale required there and on the smallest paper for drawing and
-    caption.
+    """Return the layout for a large sheet.
+
+    The scale is the one required there. The paper is as small as drawing and caption permit.
     """
     longest = longest_for(max(LANDSCAPE))
     _, across, up, __ = extent([place for place, __ in points])

@@ -116,7 +116,9 @@ def output_plots(results: Results, motion: Motion, link: str) -> list[QuantityPl
 def balancing_plots(whole: Results, results: Results) -> list[QuantityPlot]:
     """Return the plots of the balancing moments, then of the balancing forces of the drivers.
 
-    whole: results at closely spaced driver coordinates; results: those at the computed positions.
+    Args:
+        whole: Results at closely spaced driver coordinates, for the curves.
+        results: Results at the computed positions, for the dots.
     """
     if whole.reactions is None or results.reactions is None:
         return []
@@ -139,7 +141,9 @@ def balancing_plots(whole: Results, results: Results) -> list[QuantityPlot]:
 def reaction_plots(whole: Results, results: Results) -> list[QuantityPlot]:
     """Return the plots of the magnitudes of all reactions, at most MOST_CURVES in each.
 
-    whole: results at closely spaced driver coordinates; results: those at the computed positions.
+    Args:
+        whole: Results at closely spaced driver coordinates, for the curves.
+        results: Results at the computed positions, for the dots.
     """
     if whole.reactions is None or results.reactions is None:
         return []

@@ -123,7 +123,11 @@ def visible_stretches(edges: Real) -> tuple[Real, Real]:
 def _load_plots(results: Results, running: SteadyRunning, travel: Real, computed: Real) -> list[QuantityPlot]:
     """Return the plots of reduced load moments with their sum, load and driving moment, work and kinetic energy.
 
-    travel, computed: travels of the driver (rad) along the curves, and at the computed positions.
+    Args:
+        results: Results at the computed positions.
+        running: Steady running of the machine.
+        travel: Travels of the driver for the curves, rad.
+        computed: Travels of the driver at the computed positions, rad.
     """
     steady = running.steady
     law, machine = steady.law, steady.machine

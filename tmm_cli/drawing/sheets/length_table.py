@@ -39,7 +39,7 @@ def length_rows(results: Results) -> list[TableRow]:
 
 
 def _link_lengths(results: Results) -> Iterator[TableSize]:
-    """Yield the distances that determine the shape of each link: from each point to the first two points."""
+    """Yield the lengths that determine the shape of each link: distances of its points from the first two of them."""
     linkage = results.linkage
     for link in linkage.moving:
         points = list(linkage.links[link].points.items())

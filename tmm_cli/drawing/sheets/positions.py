@@ -351,7 +351,13 @@ def _reserve_ruler(
 def _ruler_numbers(
     track: NumberedPath, marks: list[PositionMark], on: Callable[[complex], complex]
 ) -> tuple[Ruler, list[RulerNumber]]:
-    """Return the ruler along the path of the output, and its numbers. on: converts a point (m) to paper (mm)."""
+    """Return the ruler along the path of the output, and its numbers.
+
+    Args:
+        track: Path of the output.
+        marks: Positions along the path.
+        on: Function that converts a point (m) to paper (mm).
+    """
     pivot = on(track.pivot) if track.kind == "arc" else None
     plain = fit_ruler([on(mark.place) for mark in marks], track.line, pivot)
     numbers = gather_numbers([RulerNumber(float(plain.run(on(m.place))), m.text, m.working, m.end) for m in marks])

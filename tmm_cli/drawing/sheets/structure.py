@@ -150,8 +150,9 @@ def scheme_sheet(title: str, place: str, scene: MechanismScene) -> DrawingSheet:
 
 
 def _draw_replacements(sheet: DrawingSheet, scene: MechanismScene) -> None:
-    """Draw the links that replace higher pairs as dashed lines, with a hinge at each end or a block on a straight
-    profile.
+    """Draw the links that replace higher pairs as dashed lines.
+
+    Each has a hinge at both ends, or a block at the end on a straight profile.
     """
     with sheet.on_layer("links"):
         for mesh in scene.linkage.meshes:

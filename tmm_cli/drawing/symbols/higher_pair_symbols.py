@@ -163,7 +163,7 @@ def draw_rigid_marks(
 
 
 def _arms_at(form: LinkForm, at: complex) -> list[complex]:
-    """Return vectors (mm) from a point to the ends of the bars of the link on which it lies."""
+    """Return the vectors (mm) from a point to both ends of each bar of the link that passes through the point."""
     arms = []
     for start, end in form.edges:
         along = (end - start) / (abs(end - start) or 1.0)

@@ -190,9 +190,13 @@ def scale_to_fit(points: Sequence[complex], room: complex, most: float) -> float
 
 
 def fit_points(sheet: DrawingSheet, points: Sequence[complex], pad: float, most: float) -> None:
-    """Choose scale and origin of the sheet so that points (m) fill its field.
+    """Choose scale and origin of the sheet so that points fill its field.
 
-    pad: margin on each side, mm; most: largest size of the drawing, mm.
+    Args:
+        sheet: The sheet.
+        points: The points, m.
+        pad: Margin on each side, mm.
+        most: Largest size of the drawing, mm.
     """
     sheet.mu = scale_to_fit(points, sheet.canvas.high - sheet.canvas.low - 2 * pad * (1 + 1j), most)
     centre_points(sheet, points)
