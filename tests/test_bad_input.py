@@ -77,8 +77,8 @@ CASES = {
         (
             "links.4.points[1]: this point is not used anywhere else\n"
             "  found:   'EE'\n"
-            "  allowed: a point of another link or the frame; a point that is only observed is given "
-            "under `also`, with coordinates\n"
+            "  allowed: a point that another link or the frame also has; a point of interest that forms no "
+            "pair belongs under `also`, with coordinates\n"
             "  did you mean 'E'?"
         ),
     ),
@@ -139,10 +139,10 @@ CASES = {
         "",
         "sketch:",
         (
-            "sketch: the sketch does not determine which assembly of group II(4,5) is meant; to see "
-            "all of them, run tmm kinematics x.yaml --assemblies\n"
-            "  allowed: one of these for the driver coordinate 30 deg: E: [358.443, 270] or [-60.7845, "
-            "270]; 4: -3.47591 deg or -176.524 deg"
+            "sketch: the sketch does not determine the assembly of group II(4,5); to see all assemblies, run "
+            "tmm kinematics x.yaml --assemblies\n"
+            "  allowed: add one of these to the sketch for the driver coordinate 30 deg: E: [358.443, 270] or "
+            "[-60.7845, 270]; 4: -3.47591 deg or -176.524 deg"
         ),
     ),
     "lengths that do not reach": (
@@ -151,8 +151,8 @@ CASES = {
         "30 deg",
         (
             "sketch.at: group II(4,5) cannot be assembled when the driver coordinate is 30 deg\n"
-            "  found:   the loop is open by 10.7321 mm\n"
-            "  allowed: lengths with which the links reach each other, or another driver coordinate"
+            "  found:   the loop does not close: the gap is 10.7321 mm\n"
+            "  allowed: lengths that let the links meet, or another driver coordinate"
         ),
     ),
     "driver on the frame": (
@@ -191,7 +191,7 @@ def test_a_hinge_that_the_frame_lacks_is_named():
     text = changed("points: {O: [0, 0], C: [0, -OC]}", "points: {C: [0, -OC]}")
     assert refusal(text) == (
         f"x.yaml:{place(text, '1, speed')}: driver.link: link 1 has no suitable pair with link 0\n"
-        "  found:   '1'\n  allowed: 3, 5, for a hinge on the frame, points: {O: [x, y]}"
+        "  found:   '1'\n  allowed: 3, 5, for a hinge on the frame, write points: {O: [x, y]}"
     )
     text = changed("points: {O: [0, 0], C: [0, -OC]}", "points: {O: [0, 0]}")
     assert refusal(text) == (
@@ -205,7 +205,7 @@ def test_a_hinge_that_the_frame_lacks_is_named():
 def test_mobility_below_one_names_the_over_held_links():
     text = changed("5: {name: ram, points: [E]", "5: {name: ram, points: {E: [0, 0], C: [300, 300]}")
     assert refusal(text) == (
-        f"x.yaml:{place(text, '5: {name: ram')}: links.5: the mobility is not 1: pair x is a redundant constraint\n"
+        f"x.yaml:{place(text, '5: {name: ram')}: links.5: the mobility is not 1: pair x adds redundant constraints\n"
         "  found:   W = 3*5 - 2*8 = -1; links with redundant constraints: 0, 5\n  allowed: W = 1"
     )
 
@@ -225,7 +225,7 @@ def test_a_link_joined_to_nothing():
     text = FIVE_BAR + "masses: {}\n"
     text = text.replace("driver:", "  5: {points: [Q, W], length: 5}\ndriver:")
     assert refusal(text) == (
-        "x.yaml:8:3: links.5: this link is joined to nothing\n"
+        "x.yaml:8:3: links.5: this link is not joined to any other link\n"
         "  found:   Q, W\n"
         "  allowed: a point shared with another link or the frame, or `slides`"
     )

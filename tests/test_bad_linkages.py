@@ -23,7 +23,7 @@ CASES = {
         "between: [1]",
         "[1]",
         (
-            "gears.z.between: too few items; at least 2 expected here\n"
+            "gears.z.between: there are too few items; at least 2 are required here\n"
             "  found:   [1]\n"
             "  allowed: the two gears; one may be the frame (a fixed gear)"
         ),
@@ -68,35 +68,35 @@ CASES = {
         "module: 5 mm",
         "module: 4 mm",
         "z:",
-        ("gears.z: gears 1 and 4 do not mesh: the distance of their axes is 150 mm\n  allowed: a distance of 120 mm"),
+        ("gears.z: gears 1 and 4 do not mesh: their centre distance is 150 mm\n  allowed: a centre distance of 120 mm"),
     ),
     "axes too near for the radii": (
         blocks.GEARED,
         "teeth: [30, 30], module: 5 mm",
         "radii: [75, 80]",
         "z:",
-        ("gears.z: gears 1 and 4 do not mesh: the distance of their axes is 150 mm\n  allowed: a distance of 155 mm"),
+        ("gears.z: gears 1 and 4 do not mesh: their centre distance is 150 mm\n  allowed: a centre distance of 155 mm"),
     ),
     "inner mesh at the distance of an outer one": (
         blocks.GEARED,
         "teeth: [30, 30], module: 5 mm",
         "radii: [75, 70], inner: true",
         "z:",
-        ("gears.z: gears 1 and 4 do not mesh: the distance of their axes is 150 mm\n  allowed: a distance of 5 mm"),
+        ("gears.z: gears 1 and 4 do not mesh: their centre distance is 150 mm\n  allowed: a centre distance of 5 mm"),
     ),
     "teeth and ratio disagree": (
         blocks.GEARED,
         "module: 5 mm",
         "ratio: 2",
         "z:",
-        ("gears.z: contradictory ratios of gears 1 and 4\n  found:   by teeth 1, by ratio 2"),
+        ("gears.z: the data of gears 1 and 4 give contradictory ratios\n  found:   by teeth 1, by ratio 2"),
     ),
     "teeth and radii disagree": (
         blocks.GEARED,
         "teeth: [30, 30], module: 5 mm",
         "teeth: [30, 20], radii: [75, 75]",
         "z:",
-        ("gears.z: contradictory ratios of gears 1 and 4\n  found:   by teeth 1.5, by radii 1"),
+        ("gears.z: the data of gears 1 and 4 give contradictory ratios\n  found:   by teeth 1.5, by radii 1"),
     ),
     "no ratio at all": (
         blocks.GEARED,
@@ -104,7 +104,8 @@ CASES = {
         "offset: 3 deg",
         "z:",
         (
-            "gears.z: expected `teeth`, `radii` or `ratio`; together with `module` it must be `teeth`\n"
+            "gears.z: one of the keys `teeth`, `radii` or `ratio` is required; with `module`, `teeth` is "
+            "required\n"
             "  allowed: teeth: [20, 40]"
         ),
     ),
@@ -114,7 +115,8 @@ CASES = {
         "module: 3 mm",
         "z:",
         (
-            "gears.z: expected `teeth`, `radii` or `ratio`; together with `module` it must be `teeth`\n"
+            "gears.z: one of the keys `teeth`, `radii` or `ratio` is required; with `module`, `teeth` is "
+            "required\n"
             "  allowed: teeth: [20, 40]"
         ),
     ),
@@ -137,7 +139,7 @@ CASES = {
         "teeth: [30, 30], module: 5 mm",
         "ratio: 1e-20",
         "z:",
-        ("gears.z: no pair of gears can have this ratio\n  found:   1e-20"),
+        ("gears.z: a pair of gears cannot have this ratio\n  found:   1e-20"),
     ),
     "no teeth": (
         blocks.GEARED,
@@ -173,8 +175,9 @@ CASES = {
         "teeth: [30]",
         "[30",
         (
-            "gears.z.teeth: too few items; at least 2 expected here\n  found:   [30]\n  allowed: numbers "
-            "of teeth of both gears"
+            "gears.z.teeth: there are too few items; at least 2 are required here\n"
+            "  found:   [30]\n"
+            "  allowed: numbers of teeth of both gears"
         ),
     ),
     "equal wheels inside one another": (
@@ -182,7 +185,7 @@ CASES = {
         "teeth: [30, 30], module: 5 mm",
         "teeth: [30, 30], inner: true",
         "z:",
-        ("gears.z: no pair of gears can have this ratio\n  found:   1"),
+        ("gears.z: a pair of gears cannot have this ratio\n  found:   1"),
     ),
     "pressure angle of a right angle": (
         blocks.GEARED,
@@ -282,7 +285,7 @@ CASES = {
         "over: 50 deg}]",
         "[{ov",
         (
-            "cams.c.law: the parts of the law of motion do not add up to a full turn of the cam\n"
+            "cams.c.law: the segments of the law of motion do not add up to a full turn of the cam\n"
             "  found:   350 deg\n"
             "  allowed: 360 deg"
         ),
@@ -331,9 +334,9 @@ CASES = {
         "law: []",
         "[]",
         (
-            "cams.c.law: nothing is given here\n"
+            "cams.c.law: a value is required here, but nothing is given\n"
             "  found:   a list, number of items: 0\n"
-            "  allowed: law of motion, part by part over a full turn"
+            "  allowed: law of motion: segments that add up to a full turn"
         ),
     ),
     "cam is its own follower": (
@@ -398,7 +401,7 @@ CASES = {
         "at: [K], ",
         "[K",
         (
-            "springs.s.at: too few items; at least 2 expected here\n"
+            "springs.s.at: there are too few items; at least 2 are required here\n"
             "  found:   [K]\n"
             "  allowed: ends of the spring, one on each link; default: the first points of the links"
         ),
@@ -439,7 +442,7 @@ CASES = {
         "[O, K]",
         "[D, D]",
         "[D, D",
-        "springs.s.at: both ends of spring s are in hinge D: it has no length",
+        "springs.s.at: both ends of spring s are at hinge D, so its length is zero",
     ),
     "negative stiffness": (
         blocks.CYLINDER,
@@ -461,8 +464,7 @@ CASES = {
         "{between: [0, 3], torsion: 2 N*m/rad, free: -300 deg}",
         "-300",
         (
-            "springs.s.free: the free angle must be within half a turn; any further winding is given "
-            "as `preload`\n"
+            "springs.s.free: the free angle must not exceed half a turn; enter any further winding as `preload`\n"
             "  found:   -300 deg"
         ),
     ),
@@ -522,7 +524,7 @@ CASES = {
         "link: 4",
         "link: 1",
         "1, speed: 2",
-        ("driver[1].link: this link has a driver already\n  found:   '1'"),
+        ("driver[1].link: this link already has a driver\n  found:   '1'"),
     ),
     "driver that is not joined to the frame": (
         blocks.TWO,
@@ -551,9 +553,9 @@ CASES = {
         "",
         "{link: 4",
         (
-            "driver[1].at: the coordinate of the first driver in the sketch is given in `sketch`, that "
-            "of each further driver here\n"
-            "  allowed: for the first driver sketch: {at: 30 deg}, for the others at: 30 deg"
+            "driver[1].at: in the sketch, the coordinate of the first driver is given in the block `sketch`, "
+            "and those of the other drivers here\n"
+            "  allowed: for the first driver: sketch: {at: 30 deg}; for the others: at: 30 deg"
         ),
     ),
     "first driver with a place": (
@@ -562,9 +564,9 @@ CASES = {
         "1 rad/s, at: 3 deg}",
         "at",
         (
-            "driver[0].at: the coordinate of the first driver in the sketch is given in `sketch`, that "
-            "of each further driver here\n"
-            "  allowed: for the first driver sketch: {at: 30 deg}, for the others at: 30 deg"
+            "driver[0].at: in the sketch, the coordinate of the first driver is given in the block `sketch`, "
+            "and those of the other drivers here\n"
+            "  allowed: for the first driver: sketch: {at: 30 deg}; for the others: at: 30 deg"
         ),
     ),
     "first driver at rest": (
@@ -572,7 +574,11 @@ CASES = {
         "1 rad/s}",
         "0}",
         "0}\n  -",
-        ("driver[0].speed: the first driver numbers the positions, so its speed must not be zero\n  found:   0"),
+        (
+            "driver[0].speed: positions are numbered along the motion of the first driver, so its speed must "
+            "not be zero\n"
+            "  found:   0"
+        ),
     ),
     "speed of a slider for a crank": (
         blocks.TWO,
@@ -591,7 +597,7 @@ CASES = {
         (
             "driver[1].speed: this driver is more than 100 times faster than the first one\n"
             "  found:   1e11 rad/s\n"
-            "  allowed: the fastest driver as the first of the list"
+            "  allowed: write the fastest driver first in the list"
         ),
     ),
     "two drivers: no real assembly": (
@@ -601,8 +607,8 @@ CASES = {
         "90 deg,",
         (
             "sketch.at: group II(2,3) cannot be assembled when the driver coordinate is 90 deg\n"
-            "  found:   the loop is open by 80 mm\n"
-            "  allowed: lengths with which the links reach each other, or another driver coordinate"
+            "  found:   the loop does not close: the gap is 80 mm\n"
+            "  allowed: lengths that let the links meet, or another driver coordinate"
         ),
     ),
     "one driver for two freedoms": (
@@ -670,8 +676,8 @@ CASES = {
         "driver:",
         "c:",
         (
-            "gears.c: gear pair c contradicts the ones before it: the gears lock each other\n"
-            "  allowed: ratios and offsets that agree around the closed train, or one gear pair less"
+            "gears.c: gear pair c contradicts the pairs before it: the gears lock each other\n"
+            "  allowed: ratios and offsets that agree around the closed train, or one gear pair fewer"
         ),
     ),
     "two ratios between two wheels": (
@@ -680,8 +686,8 @@ CASES = {
         "c: {between: [1, 2], ratio: 3}",
         "c:",
         (
-            "gears.c: gear pair c contradicts the ones before it: the gears lock each other\n"
-            "  allowed: ratios and offsets that agree around the closed train, or one gear pair less"
+            "gears.c: gear pair c contradicts the pairs before it: the gears lock each other\n"
+            "  allowed: ratios and offsets that agree around the closed train, or one gear pair fewer"
         ),
     ),
     "cylinder that is not one": (
@@ -698,8 +704,8 @@ CASES = {
         "700",
         (
             "sketch.at: group II(1,2,3) cannot be assembled when the driver coordinate is 700 mm\n"
-            "  found:   the loop is open by 250 mm\n"
-            "  allowed: lengths with which the links reach each other, or another driver coordinate"
+            "  found:   the loop does not close: the gap is 250 mm\n"
+            "  allowed: lengths that let the links meet, or another driver coordinate"
         ),
     ),
     "cylinder whose lever may lie on either side": (
@@ -708,10 +714,10 @@ CASES = {
         "sketch: {at: 280}",
         "sket",
         (
-            "sketch: the sketch does not determine which assembly of group II(1,2,3) is meant; to see "
-            "all of them, run tmm kinematics x.yaml --assemblies\n"
-            "  allowed: one of these for the driver coordinate 280 mm: P: [86.8452, 49.5773] or "
-            "[86.8452, -49.5773]; 1: 29.7207 deg or -29.7207 deg; B: [243.167, 138.816] or [243.167, "
+            "sketch: the sketch does not determine the assembly of group II(1,2,3); to see all assemblies, run "
+            "tmm kinematics x.yaml --assemblies\n"
+            "  allowed: add one of these to the sketch for the driver coordinate 280 mm: P: [86.8452, 49.5773] "
+            "or [86.8452, -49.5773]; 1: 29.7207 deg or -29.7207 deg; B: [243.167, 138.816] or [243.167, "
             "-138.816]; 2: 29.7207 deg or -29.7207 deg"
         ),
     ),
@@ -746,7 +752,7 @@ CASES = {
         (
             "sketch.at: group III(2,3,4,5) cannot be assembled when the driver coordinate is 90 deg\n"
             "  found:   the loop does not close at any position\n"
-            "  allowed: lengths with which the links reach each other, or another driver coordinate"
+            "  allowed: lengths that let the links meet, or another driver coordinate"
         ),
     ),
     "class III group with a flat middle link": (
@@ -757,7 +763,7 @@ CASES = {
         (
             "sketch.at: group III(2,3,4,5) cannot be assembled when the driver coordinate is 90 deg\n"
             "  found:   the loop does not close at any position\n"
-            "  allowed: lengths with which the links reach each other, or another driver coordinate"
+            "  allowed: lengths that let the links meet, or another driver coordinate"
         ),
     ),
     "class III group that the sketch leaves open": (
@@ -766,11 +772,11 @@ CASES = {
         "sketch: {at: 90 deg}",
         "sket",
         (
-            "sketch: the sketch does not determine which assembly of group III(2,3,4,5) is meant; to "
-            "see all of them, run tmm kinematics x.yaml --assemblies\n"
-            "  allowed: one of these for the driver coordinate 90 deg: B: [119.322, 52.7353] or "
-            "[104.675, 98.679]; 2: 6.09211 deg or 29.2743 deg; C: [199.275, 49.9971] or [139.56, "
-            "26.6859]; D: [161.352, 111.331] or [176.112, 88.8464]"
+            "sketch: the sketch does not determine the assembly of group III(2,3,4,5); to see all assemblies, "
+            "run tmm kinematics x.yaml --assemblies\n"
+            "  allowed: add one of these to the sketch for the driver coordinate 90 deg: B: [119.322, 52.7353] "
+            "or [104.675, 98.679]; 2: 6.09211 deg or 29.2743 deg; C: [199.275, 49.9971] or [139.56, 26.6859]; "
+            "D: [161.352, 111.331] or [176.112, 88.8464]"
         ),
     ),
 }

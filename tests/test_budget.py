@@ -24,19 +24,23 @@ def points(number):
     [
         (
             {LOAD: loads(200), "count: 12": "count: 20000"},
-            "positions.count: too many positions for so many links, points and loads found: positions: 20000; "
-            "links: 5, points: 8, loads: 200 allowed: at most 6089",
+            (
+                "positions.count: there are too many positions for so many links, points and loads found: "
+                "positions: 20000; links: 5, points: 8, loads: 200 allowed: at most 6089"
+            ),
         ),
         (
             {"count: 12": "count: 100000"},
-            "positions.count: too many positions for so many links, points and loads found: positions: 100000; "
-            "links: 5, points: 8, loads: 1 allowed: at most 74240",
+            (
+                "positions.count: there are too many positions for so many links, points and loads found: "
+                "positions: 100000; links: 5, points: 8, loads: 1 allowed: at most 74240"
+            ),
         ),
         (
             {"points: [C, D], length: CD": points(5000)},
             (
-                "links: this mechanism is too large found: links: 5, points: 5008, loads: 1 allowed: at most "
-                "3942 in total, where a link counts as 6, a point as 1, a load as 2"
+                "links: this mechanism is too large found: links: 5, points: 5008, loads: 1 allowed: at most 3942 "
+                "in total, counting a link as 6, a point as 1 and a load as 2"
             ),
         ),
     ],
@@ -61,28 +65,28 @@ def test_what_options_add_is_refused_before_anything_is_computed(tmp_path, monke
     monkeypatch.setattr("tmm_cli.mechanics.analysis.pipeline.solve", lambda *_, **__: pytest.fail("this was computed"))
     for command, told in {
         ("run",): (
-            "positions.detail: too many drawings for so many links, points and positions found: detailed positions: "
-            "1; links: 5, points: 508, loads: 1 allowed: without drawings"
+            "positions.detail: there are too many drawings for so many links, points and positions found: "
+            "detailed positions: 1; links: 5, points: 508, loads: 1 allowed: without drawings"
         ),
         ("structure", "--drawings"): "allowed: without drawings",
         ("note",): (
-            "positions.detail: too many drawings for so many links, points and positions found: detailed positions: "
-            "1; links: 5, points: 508, loads: 1 allowed: without drawings"
+            "positions.detail: there are too many drawings for so many links, points and positions found: "
+            "detailed positions: 1; links: 5, points: 508, loads: 1 allowed: without drawings"
         ),
-        ("sheets",): "positions.detail: too many drawings",
-        ("sheets", "--positions", "all"): "positions.detail: too many drawings",
+        ("sheets",): "positions.detail: there are too many drawings",
+        ("sheets", "--positions", "all"): "positions.detail: there are too many drawings",
         (
             "kinematics",
             "--centres",
             *(word for k in range(6) for word in ("-p", str(k))),
         ): (
-            "--centres: too many instantaneous centres for so many links and positions found: detailed "
-            "positions: 6; links: 5, points: 508, loads: 1 allowed: draw at most 3 detailed positions, or omit "
-            "the instantaneous centres"
+            "--centres: there are too many instantaneous centres for so many links and positions found: "
+            "detailed positions: 6; links: 5, points: 508, loads: 1 allowed: draw at most 3 detailed "
+            "positions, or omit the instantaneous centres"
         ),
         **{
             (name, "--digits"): (
-                "--digits: too many positions, or too large a mechanism, for the estimate of correct "
+                "--digits: there are too many positions, or the mechanism is too large, to estimate the correct "
                 "digits found: positions: 12; links: 5, points: 508, loads: 1 allowed: at most 2 positions, or "
                 "without --digits"
             )

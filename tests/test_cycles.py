@@ -77,7 +77,7 @@ def test_a_load_of_the_working_stroke_is_told_to_act_in_each_of_them():
             (
                 "x.yaml:12:8: cycle: a cycle must be a whole number of turns\n"
                 "  found:   '1.5 turns'\n"
-                "  allowed: 2 turns, or 720 deg; largest number of turns: 60"
+                "  allowed: e.g. 2 turns or 720 deg; largest number of turns: 60"
             ),
         ),
         (
@@ -85,16 +85,16 @@ def test_a_load_of_the_working_stroke_is_told_to_act_in_each_of_them():
             (
                 "x.yaml:12:8: cycle: a cycle must be a whole number of turns\n"
                 "  found:   2\n"
-                "  allowed: 2 turns, or 720 deg; largest number of turns: 60"
+                "  allowed: e.g. 2 turns or 720 deg; largest number of turns: 60"
             ),
         ),
         (
             "cycle: 2 turns\nloads: {m: {on: 1, moment: {against: crank angle, table: [[0, 1], [800, 5]]}}}",
             (
-                "x.yaml:13:68: loads.m.moment.table[1][0]: this row is never used: the motion repeats "
-                "after several turns of the driver, number of turns: 2\n"
+                "x.yaml:13:68: loads.m.moment.table[1][0]: this row is never used: the motion repeats after "
+                "several turns of the driver, number of turns: 2\n"
                 "  found:   800 deg\n"
-                "  allowed: 0 to 720 deg; for a longer cycle of loads write cycle: 3 turns"
+                "  allowed: 0 to 720 deg; if the loads repeat after a longer cycle, write cycle: 3 turns"
             ),
         ),
     ],

@@ -70,7 +70,7 @@ def refused(dynamics):
         (
             "{motor: {kind: linear, stall: 60, free: 1500 rpm, moment: 20}}",
             (
-                "x.yaml:11:61: dynamics.motor.moment: a motor of this kind is specified by other keys\n"
+                "x.yaml:11:61: dynamics.motor.moment: a motor of this kind requires other keys\n"
                 "  found:   'moment'\n"
                 "  allowed: stall, free"
             ),
@@ -86,7 +86,7 @@ def refused(dynamics):
         (
             "{run: {to: 90, drive: {against: time, table: [[0, 5], [1, 6]], area: 5 cm^2}}}",
             (
-                "x.yaml:11:74: dynamics.run.drive.area: a pressure acts on a piston, but this driver is a "
+                "x.yaml:11:74: dynamics.run.drive.area: a pressure can drive only a piston, but this driver is a "
                 "crank\n"
                 "  found:   '5 cm^2'\n"
                 "  allowed: a table of moments without `area`, or a driven slider"

@@ -300,8 +300,8 @@ def test_links_too_heavy_for_their_motor_are_refused_for_the_digits_that_are_los
         solve(with_ram(mass))
     assert str(refused.value).split("\n")[::2] == [
         (
-            "shaper.yaml:35:1: dynamics: the law of motion is lost in rounding errors: the links and "
-            "the flywheel are too heavy for the motor to change their speed"
+            "shaper.yaml:35:1: dynamics: the law of motion cannot be computed because of rounding errors: the "
+            "links and the flywheel are too heavy for the motor to change their speed"
         ),
         "  allowed: masses and moments of inertia that suit the motor; check their units",
     ]

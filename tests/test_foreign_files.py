@@ -280,7 +280,7 @@ def test_a_link_with_two_pins_on_the_frame_is_the_frame():
 def test_friction_and_synthesis_of_pmks_are_listed_as_not_carried_over():
     joints = [FOUR_BAR[0], (*FOUR_BAR[1], "", "", "", "", "0~3", "0~2", "1"), *FOUR_BAR[2:]]
     foreign, __ = imported(link(joints, BARS, tail=".SD~1~2~3"))
-    assert foreign.left == ("Data of the synthesis in PMKS+.", "Friction of joint B.")
+    assert foreign.left == ("The data for synthesis in PMKS+.", "The friction of joint B.")
 
 
 def test_a_file_of_linkage_v2_has_its_points_constructed_and_its_masses_and_loads_carried_over():
@@ -384,12 +384,14 @@ REFUSED = {
         "  did you mean 'link'?"
     ),
     json.dumps(file_of_pylinkage(more=[{"id": "B", "position": [1, 2]}])): (
-        "file:1:252: joints[4].id: this name occurs twice\n  found:   'B'"
+        "file:1:252: joints[4].id: this name occurs twice in the file\n  found:   'B'"
     ),
     json.dumps(file_of_pylinkage(more=[{"id": "X", "position": [1e308, -1.7e308]}])): (
         "file:1:270: joints[4].position[0]: this value is too large for a mechanism\n  found:   1e+308"
     ),
-    json.dumps(file_of_pylinkage(joints=[{}] * 501)): "file:1:32: joints: too many items or characters: at most 500",
+    json.dumps(
+        file_of_pylinkage(joints=[{}] * 501)
+    ): "file:1:32: joints: there are too many items or characters; at most 500 are allowed",
     link([(INPUT | GROUND, "A", 0, 0, 0), (TURNING, "B", 1e40, 4, 0)], []): (
         "file: joints.B: this is not a base-64 number\n  found:   'SijRs6CXv000000000000000'"
     ),
@@ -406,7 +408,7 @@ REFUSED = {
     link(FOUR_BAR, BARS, tail=".G1~eyJnZWFycyI6W119"): (
         "file: gears of PMKS+ are not supported\n  found:   'G1~eyJnZWFycyI6W119'"
     ),
-    link(FOUR_BAR, BARS, tail=".XJB"): ("file: unknown entry\n  found:   'XJB'"),
+    link(FOUR_BAR, BARS, tail=".XJB"): ("file: this entry of the web link is unknown\n  found:   'XJB'"),
     link([(GROUND, *FOUR_BAR[0][1:]), (INPUT, *FOUR_BAR[1][1:]), *FOUR_BAR[2:]], BARS): (
         "file: joints.B: a motor between two moving links cannot be imported\n  found:   AB, BC"
     ),

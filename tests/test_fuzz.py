@@ -70,7 +70,7 @@ def test_a_balancing_force_in_the_pivot_of_the_crank_is_refused(tmp_path):
     file = changed_bank_file(tmp_path, "crank-slider", ("turns: ccw}", "balance: force, end: O}"))
     done = tmm("forces", file)
     assert done.returncode == 2
-    assert ("driver.end: a balancing force at the pivot O has no moment arm\n  found:   'O'\n") in done.stderr
+    assert ("driver.end: a balancing force applied at the pivot O has no moment arm\n  found:   'O'\n") in done.stderr
     assert "  allowed: another point of the link" in done.stderr
 
 

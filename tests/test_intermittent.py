@@ -230,8 +230,7 @@ CASES = {
         "moves_with: 2",
         "2, when",
         (
-            "intermittent.shaft.moves_with: the wheel must move with a link that is hinged to the "
-            "frame\n"
+            "intermittent.shaft.moves_with: the link that moves the wheel must be hinged to the frame\n"
             "  found:   '2'\n"
             "  allowed: 3"
         ),
@@ -253,7 +252,7 @@ CASES = {
         "working stroke, settings",
         (
             "intermittent.shaft.when: this mechanism has no working stroke\n"
-            "  allowed: forward, backward, or an output link that has strokes"
+            "  allowed: forward, backward, or another output link, one that has strokes"
         ),
     ),
     "unknown parameter": (
@@ -284,10 +283,10 @@ CASES = {
         "R: 700}]}",
         "{R: 700",
         (
-            "intermittent.shaft.settings[1]: group II(2,3) cannot be assembled when the driver "
-            "coordinate is -319.527 mm\n"
-            "  found:   the loop is open by 50.6103 mm\n"
-            "  allowed: lengths with which the links reach each other, or another driver coordinate"
+            "intermittent.shaft.settings[1]: group II(2,3) cannot be assembled when the driver coordinate is "
+            "-319.527 mm\n"
+            "  found:   the loop does not close: the gap is 50.6103 mm\n"
+            "  allowed: lengths that let the links meet, or another driver coordinate"
         ),
     ),
     "no cycle": (

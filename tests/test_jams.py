@@ -63,8 +63,8 @@ def test_contradictory_offsets_in_a_ring_are_refused(offsets, wanted):
     else:
         assert refusal(text(*offsets)) == (
             f"x.yaml:{place(text(*offsets), 'c: {')}: gears.c: gear pair c contradicts "
-            "the ones before it: the gears lock each other\n"
-            "  allowed: ratios and offsets that agree around the closed train, or one gear pair less"
+            "the pairs before it: the gears lock each other\n"
+            "  allowed: ratios and offsets that agree around the closed train, or one gear pair fewer"
         )
 
 
@@ -387,9 +387,9 @@ def test_change_points_behind_too_many_groups_and_turns_are_refused_by_name(monk
     assert "the search for the change points of group II(" in refusal(kites(10))
     monkeypatch.setattr("tmm_cli.mechanics.assembly.assembling.LARGEST_SEARCH", 299)
     assert refusal(text) == (
-        f"x.yaml:{place(text, 'links:')}: links: the search for the change points of group II(c2,r2) takes too "
-        "long: it depends on too many groups\n  found:   groups: 3, turns of the driver: 100\n"
-        "  allowed: number of groups times number of turns at most 299"
+        f"x.yaml:{place(text, 'links:')}: links: the search for the change points of group II(c2,r2) would take "
+        "too long, as the group depends on too many others\n  found:   groups: 3, turns of the driver: 100\n"
+        "  allowed: the product of the two numbers must be at most 299"
     )
 
 

@@ -47,10 +47,10 @@ def test_rows_of_a_second_turn_are_refused_with_what_to_do(tmp_path):
     assert ended.returncode == 2
     assert ended.stderr.endswith(
         "\n"
-        "error: x.yaml:12:87: loads.gas.force.table[2][0]: this row is never used: the motion "
-        "repeats after one turn of the driver\n"
+        "error: x.yaml:12:87: loads.gas.force.table[2][0]: this row is never used: the motion repeats "
+        "after one turn of the driver\n"
         "  found:   540 deg\n"
-        "  allowed: 0 to 360 deg; for a longer cycle of loads write cycle: 2 turns\n"
+        "  allowed: 0 to 360 deg; if the loads repeat after a longer cycle, write cycle: 2 turns\n"
     )
 
 
@@ -173,8 +173,8 @@ def test_a_driver_that_slides_has_no_crank_to_tabulate_against(tmp_path):
     ended = tmm("forces", "x.yaml", cwd=tmp_path)
     assert ended.returncode == 2
     assert ended.stderr == (
-        "error: x.yaml:12:58: loads.F.force.against: a table of a load needs a crank as the "
-        "driver, but this driver is a slider\n"
+        "error: x.yaml:12:58: loads.F.force.against: a load can be given by a table only if the driver is "
+        "a crank, but this driver is a slider\n"
         "  found:   crank turn\n"
         "  allowed: size: a single value\n"
     )
@@ -273,7 +273,7 @@ def test_what_is_no_share_of_a_stroke_is_refused(tmp_path, row, shown):
     assert ended.stderr.endswith(
         f"error: x.yaml:12:{column}: loads.gas.force.table[{number}][0]: this is not a fraction of the stroke\n"
         f"  found:   {shown}\n"
-        "  allowed: 0 to 1, or 0 to 100 %; for lengths or angles of the stroke write against: stroke\n"
+        "  allowed: 0 to 1, or 0 to 100 %; to give lengths or angles instead, write against: stroke\n"
     )
     assert ended.returncode == 2
 
@@ -428,13 +428,16 @@ def test_a_diagram_draws_the_jump_at_its_place_with_both_values():
             (
                 "table[3][0]: the values in the first column must increase\n"
                 "  found:   20\n"
-                "  allowed: for a jump two rows: the value before it and the value after it\n"
+                "  allowed: for a jump, two rows: the value before it and the value after it\n"
             ),
         ),
         ("[[0, 0], [20, 0], [10, 5]]", ("table[2][0]: the values in the first column must increase\n  found:   10\n")),
         (
             "[[0, 0], [20, 0], [20, 5]], between: step",
-            ("table[2][0]: the values in the first column must increase\n  found:   20\n  allowed: each value once\n"),
+            (
+                "table[2][0]: the values in the first column must increase\n  found:   20\n  allowed: each "
+                "value only once\n"
+            ),
         ),
     ],
 )
@@ -460,8 +463,8 @@ output: 3
     least, most = (math.degrees(math.acos((250**2 + 300**2 - rod**2) / (2 * 250 * 300))) for rod in (100, 300))
     first, last = f"{least:.6g}", f"{most:.6g}"
     assert ended.stderr.endswith(
-        "error: x.yaml:9:28: loads.M.moment: for a table against the stroke the driver must rotate fully, so that "
-        "the output makes full strokes\n"
+        "error: x.yaml:9:28: loads.M.moment: a load table with `against: stroke` requires a driver that "
+        "rotates fully, so that the output makes full strokes\n"
         f"  found:   the driver moves from {first} deg to {last} deg\n"
         "  allowed: against: crank angle\n"
     )

@@ -246,16 +246,16 @@ def test_what_was_understood_of_loads_is_told():
             (
                 "x.yaml:12:42: loads.f.when[0]: the crank does not reach this angle within a cycle\n"
                 "  found:   540\n"
-                "  allowed: at most 360 deg; for a longer cycle of loads write cycle: 2 turns"
+                "  allowed: at most 360 deg; if the loads repeat after a longer cycle, write cycle: 2 turns"
             ),
         ),
         (
             "loads: {f: {on: 3, force: [1, 0], when: [0, 360]}}",
             (
-                "x.yaml:12:41: loads.f.when: the two angles are equal, or a whole cycle apart: the load "
-                "would act never or always\n"
+                "x.yaml:12:41: loads.f.when: the two angles are equal or differ by a whole cycle, so the load "
+                "would act either never or always\n"
                 "  found:   [0, 360]\n"
-                "  allowed: two different angles less than 360 deg apart, or when: always"
+                "  allowed: two different angles that differ by less than 360 deg, or when: always"
             ),
         ),
         (
@@ -281,8 +281,8 @@ def test_what_was_understood_of_loads_is_told():
         (
             "loads: {f: {on: 3, force: {resists: 5}, moment: 3}}",
             (
-                "x.yaml:12:9: loads.f: the force and the moment of one load must both have `resists`, or "
-                "neither\n"
+                "x.yaml:12:9: loads.f: either both the force and the moment of a load have `resists`, or neither "
+                "does\n"
                 "  found:   both\n"
                 "  allowed: two separate loads"
             ),
@@ -292,7 +292,8 @@ def test_what_was_understood_of_loads_is_told():
             (
                 "x.yaml:13:1: friction: the law of motion is not computed if forces depend on reactions or "
                 "on speeds\n"
-                "  allowed: loads independent of them; for constant friction force: {resists: 200 N}"
+                "  allowed: loads that do not depend on them; for a constant friction force write force: "
+                "{resists: 200 N}"
             ),
         ),
         (
@@ -300,7 +301,8 @@ def test_what_was_understood_of_loads_is_told():
             (
                 "x.yaml:12:50: springs.s.damping: the law of motion is not computed if forces depend on "
                 "reactions or on speeds\n"
-                "  allowed: loads independent of them; for constant friction force: {resists: 200 N}"
+                "  allowed: loads that do not depend on them; for a constant friction force write force: "
+                "{resists: 200 N}"
             ),
         ),
         (

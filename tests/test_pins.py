@@ -205,8 +205,8 @@ def test_friction_in_a_compound_hinge_acts_between_the_links_that_are_attached()
     "point, link, message, found, allowed",
     [
         ("Q", 1, "there is no hinge of that name", "'Q'", None),
-        ("B", 2, "this hinge joins only two links, so there is nothing to attach: they form one pair", "2, 3", None),
-        ("A", 5, "link 5 is not in hinge A", "'5'", "1, 2, 4"),
+        ("B", 2, "this hinge joins only two links, which form one pair, so no attachment is needed", "2, 3", None),
+        ("A", 5, "link 5 does not belong to hinge A", "'5'", "1, 2, 4"),
     ],
 )
 def test_a_wrong_attachment_is_refused(point, link, message, found, allowed):
@@ -220,7 +220,7 @@ def test_an_attachment_that_joins_groups_is_refused():
     """Rod 4 is placed by pin B, which coupler and rocker place: attached to it they would make one group of four."""
     with pytest.raises(ProblemError) as error:
         build_problem(read_text(attached(TEXT, "B", 4), "six-bar.yaml"))
-    assert error.value.message == "with the links attached to 4 the mechanism is not divided into the same groups"
+    assert error.value.message == "if the links are attached to 4, the mechanism splits into other Assur groups"
     assert error.value.allowed == "2, 3"
 
 

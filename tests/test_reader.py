@@ -130,7 +130,7 @@ EMPTY = "f: the file is empty\n  allowed: keys with values, such as 'tmm: 1'"
         ),
         (
             "a: 1\n---\nb: 2",
-            ("f:2:1: the file contains a second document\n  found:   ---\n  allowed: one document in a file"),
+            ("f:2:1: the file contains a second document\n  found:   ---\n  allowed: only one document in a file"),
         ),
         (
             "a:\n  k: 1\n  k: 2",
@@ -228,7 +228,7 @@ EMPTY = "f: the file is empty\n  allowed: keys with values, such as 'tmm: 1'"
             'a: "\\e[31m"',
             ("f:1:4: a: the text contains a control character\n  found:   '\\x1b'\n  allowed: printable characters"),
         ),
-        ("? [1]\n: 2", ("f:1:3: a list or a set of keys cannot be used as a key\n  allowed: a word or number")),
+        ("? [1]\n: 2", ("f:1:3: a list or a mapping cannot be used as a key\n  allowed: a word or number")),
         (
             "a: 1\n  - 2",
             (
@@ -379,12 +379,15 @@ def test_pipes_are_read(tmp_path: Path) -> None:
     [
         (
             "a: 1\nб: я".encode("cp1251"),
-            ("f:2:1: the file is not text in UTF-8 encoding\n  found:   byte 0xE1 at position 6"),
+            ("f:2:1: the file is not a text in UTF-8 encoding\n  found:   byte 0xE1 at position 6"),
         ),
-        (b"\xef\xbb\xbfa: \xff", ("f:1:4: the file is not text in UTF-8 encoding\n  found:   byte 0xFF at position 7")),
+        (
+            b"\xef\xbb\xbfa: \xff",
+            ("f:1:4: the file is not a text in UTF-8 encoding\n  found:   byte 0xFF at position 7"),
+        ),
         (
             "a: 1".encode("utf-16"),
-            ("f:1:1: the file is not text in UTF-8 encoding\n  found:   byte 0xFF at position 1"),
+            ("f:1:1: the file is not a text in UTF-8 encoding\n  found:   byte 0xFF at position 1"),
         ),
     ],
 )

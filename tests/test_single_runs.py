@@ -144,7 +144,7 @@ def test_a_run_of_very_many_turns_is_refused():
     with pytest.raises(ProblemError) as refused:
         build_any_problem(read_text(text, "press.yaml"))
     assert str(refused.value).split("\n", 1)[1] == (
-        "  found:   -90000\n  allowed: an angle of no more than 20 turns from the x axis"
+        "  found:   -90000\n  allowed: an angle from the x axis of at most 20 turns"
     )
 
 

@@ -23,8 +23,8 @@ links:
 driver: {link: 1, speed: 1 rad/s}
 sketch: {at: 60, B: [250, 190]}
 """
-TWINS = "this name looks like another one, but is written with other letters"
-ARITHMETIC = "\n  allowed: numbers, units, parameters, + - * / ^ ( )"
+TWINS = "this name looks like another one but is written with different letters"
+ARITHMETIC = "\n  allowed: numbers, units, parameters and the signs + - * / ^ ( )"
 TOP = (
     "tmm, lang, title, description, reference, shows, units, parameters, synthesis, variants, grading, points, guides, "
     "links, hinges, driver, gears, racks, cams, springs, friction, sketch, change points, masses, loads, gravity, "
@@ -91,7 +91,7 @@ def test_keys_in_another_language(key: str, word: str, place: str, allowed: str)
         (
             "tmm: 1\n",
             "",
-            ("x.yaml:1:1: tmm: the key `tmm` is missing\n  allowed: version of the file format; write tmm: 1"),
+            ("x.yaml:1:1: tmm: the key `tmm` is missing\n  allowed: version of the file format: write tmm: 1"),
         ),
         (
             "1 rad/s",
@@ -111,15 +111,17 @@ def test_keys_in_another_language(key: str, word: str, place: str, allowed: str)
         (
             "at: 60",
             "at: pi/3 rad",
-            "x.yaml:8:14: sketch.at: expected here: an angle"
-            "\n  found:   'pi/3 rad', a number (1.0472)"
-            "\n  allowed: an angle, e.g. 30 deg or 0.5 rad; pi is in radians already",
+            (
+                "x.yaml:8:14: sketch.at: expected here: an angle\n"
+                "  found:   'pi/3 rad', a number (1.0472)\n"
+                "  allowed: an angle, e.g. 30 deg or 0.5 rad; pi is already in radians"
+            ),
         ),
         (
             "length: 100",
             "length: (40 + 60) mm",
             (
-                "x.yaml:4:31: links.1.length: a unit is allowed only after a number; write * 1 mm here\n"
+                "x.yaml:4:31: links.1.length: a unit must follow a number; write * 1 mm here\n"
                 "  found:   '(40 + 60) mm', the error is at 'mm'"
             )
             + ARITHMETIC,

@@ -543,7 +543,8 @@ def test_links_may_be_counted_named_or_left_out_and_local_freedoms_told():
         ),
         (
             "pairs: {A: {between: [0, 1, 2], kind: turning}}",
-            "x.yaml:4:26: structure.spatial.pairs.A.between: too many items or characters: at most 2\n"
+            "x.yaml:4:26: structure.spatial.pairs.A.between: there are too many items or characters; "
+            "at most 2 are allowed\n"
             "  found:   [0, 1, 2]\n"
             "  allowed: the two links; the frame is 0",
         ),
@@ -630,7 +631,7 @@ def test_a_block_with_nothing_in_it_is_a_bad_chain_and_no_planar_linkage(tmp_pat
 
 
 def test_untrusted_chains_are_bounded():
-    with pytest.raises(ProblemError, match="too many items or characters: at most 300"):
+    with pytest.raises(ProblemError, match="there are too many items or characters; at most 300 are allowed"):
         spatial("pairs:\n" + "\n".join(f"  A{k}: {{between: [0, {k % 90 + 1}], kind: turning}}" for k in range(301)))
     with pytest.raises(ProblemError, match="there are too many links"):
         spatial("pairs:\n" + "\n".join(f"  A{k}: {{between: [0, {k + 1}], kind: turning}}" for k in range(101)))
@@ -655,7 +656,7 @@ def test_what_needs_dimensions_says_that_there_are_none():
         done = tmm(command, "problems/swashplate.yaml")
         assert done.returncode == 2
         assert (
-            "structure: this file gives only links and pairs, without dimensions: only the structure can be analysed"
+            "structure: this file contains only links and pairs, without dimensions: only the structure can be analysed"
         ) in done.stderr
 
 

@@ -130,7 +130,7 @@ def test_accelerations_may_jump_but_speeds_may_not():
     assert told == (
         "x.yaml:9:75: driver.speed.table[2][0]: the values in the first column must increase\n"
         "  found:   90\n"
-        "  allowed: each value once"
+        "  allowed: each value only once"
     )
     results = solved(
         "speed: {against: crank angle, table: [[0, 4], [360, 4]]}, "
@@ -153,19 +153,19 @@ def test_what_was_understood_of_it_is_told():
         (
             "speed: {against: crank angle, table: [[0, 4], [180, -8], [360, 4]]}",
             (
-                "x.yaml:9:71: driver.speed.table[1][1]: speeds in a table must not be negative: the driver "
-                "moves in one sense\n"
+                "x.yaml:9:71: driver.speed.table[1][1]: speeds in a table must not be negative, as the driver "
+                "always rotates in one direction\n"
                 "  found:   -8\n"
-                "  allowed: zero or more; for the other sense of rotation turns: cw"
+                "  allowed: zero or more; for clockwise rotation write turns: cw"
             ),
         ),
         (
             "speed: {against: crank angle, table: [[0, 4], [180, 8], [360, 5]]}",
             (
-                "x.yaml:9:81: driver.speed.table[2][1]: the table covers the whole cycle, but its last "
-                "value differs from the first\n"
+                "x.yaml:9:81: driver.speed.table[2][1]: the table covers the whole cycle, but its last value "
+                "differs from the first\n"
                 "  found:   5\n"
-                "  allowed: 4, the value of the first row"
+                "  allowed: 4, as in the first row"
             ),
         ),
         (
@@ -182,24 +182,24 @@ def test_what_was_understood_of_it_is_told():
             (
                 "x.yaml:9:49: driver.speed.table: the table of speeds does not cover all positions\n"
                 "  found:   the table covers 0 deg to 330 deg\n"
-                "  allowed: a last row at 360 deg with the speed of the first row, or positions: {at: "
-                "[...]} within the table"
+                "  allowed: a last row at 360 deg with the speed of the first row, or positions: {at: [...]} "
+                "within the range of the table"
             ),
         ),
         (
             "speed: {against: crank angle, table: [[0, 4], [90, 0.1], [100, 9], [360, 4]]}",
             (
-                "x.yaml:9:58: driver.speed.table[0][0]: the smooth curve through the squares of the speeds "
-                "falls below zero between this row and the next\n"
+                "x.yaml:9:58: driver.speed.table[0][0]: the smooth curve through the squared speeds falls below "
+                "zero between this row and the next\n"
                 "  found:   0\n"
-                "  allowed: between: linear, or more rows between these two"
+                "  allowed: write between: linear, or add rows between these two"
             ),
         ),
         (
             "speed: {against: crank angle, table: [[0, 4], [360, 4]]}, acceleration: 3",
             (
-                "x.yaml:9:77: driver.acceleration: speed and acceleration must be given in the same way: "
-                "two values at position 0, or two tables"
+                "x.yaml:9:77: driver.acceleration: give speed and acceleration in the same way: as two values at "
+                "position 0, or as two tables"
             ),
         ),
         (
@@ -226,8 +226,8 @@ def test_what_cannot_be_is_refused_with_its_place(driver, told):
         (
             "grading: {answers: [{of: H}]}",
             (
-                "x.yaml:9:19: driver.speed: for variants and optimization the motion of the driver must be "
-                "given by one speed and one acceleration, without tables and without `dynamics`\n"
+                "x.yaml:9:19: driver.speed: for variants and optimization, give the motion of the driver by one "
+                "speed and one acceleration, without tables and without `dynamics`\n"
                 "  allowed: speed: 82 rpm"
             ),
         ),

@@ -119,7 +119,7 @@ MESSAGES = {
     "one value": ("n2: {among: [60 rpm]}", "with a single value the parameter does not vary", "found:   '60 rpm'"),
     "no value": (
         "n2: {among: []}",
-        "vary.n2.among: nothing is given here",
+        "vary.n2.among: a value is required here, but nothing is given",
         "list of values, instead of a range with a step",
     ),
     "misspelt": ("n2: {amogn: [60 rpm]}", "unknown key", "did you mean 'among'?"),

@@ -176,9 +176,9 @@ def test_a_file_chooses() -> None:
         (
             {"length": "deg"},
             (
-                "length: this unit measures another quantity\n"
+                "length: this is a unit of another quantity\n"
                 "  found:   'deg', an angle\n"
-                "  allowed: a unit of length, e.g. mm"
+                "  allowed: a unit for this quantity: length, e.g. mm"
             ),
         ),
         (

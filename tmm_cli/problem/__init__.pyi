@@ -7,6 +7,7 @@ from .arithmetic import (
     evaluate_quantity as evaluate_quantity,
 )
 from .blocks.loads import stroke_dimension as stroke_dimension
+from .blocks.sheet_keys import SheetTexts as SheetTexts
 from .build import (
     build_any_problem as build_any_problem,
     build_chain as build_chain,
@@ -22,7 +23,6 @@ from .build import (
 )
 from .error_messages import (
     located_problem_error as located_problem_error,
-    mobility_error as mobility_error,
     translate_errors as translate_errors,
 )
 from .errors import (
@@ -46,6 +46,7 @@ from .errors import (
 from .formats import read_mechanism as read_mechanism
 from .formats.imported_mechanism import problem_file_text as problem_file_text
 from .formats.pmks_link import DIGITS as DIGITS
+from .mobility_errors import mobility_error as mobility_error
 from .parameters import check_parameter as check_parameter, resolve_parameters as resolve_parameters
 from .problems import (
     ChainProblem as ChainProblem,
@@ -67,7 +68,6 @@ from .reader import (
 from .scalars import finite_float as finite_float, plain_value as plain_value
 from .schema import (
     File as File,
-    SheetTexts as SheetTexts,
     ShownKeys as ShownKeys,
     SpatialFile as SpatialFile,
     file_schema as file_schema,

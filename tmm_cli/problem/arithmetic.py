@@ -105,7 +105,7 @@ class Parser:
         quantity = self.sum()
         rest = self.text[self.at :].strip()
         if rest and _UNIT.fullmatch(rest) and all(find_unit(symbol_text) for symbol_text in _SYMBOL.findall(rest)):
-            raise self.fault(_("a unit is allowed only after a number; write * 1 {unit} here").format(unit=rest))
+            raise self.fault(_("a unit must follow a number; write * 1 {unit} here").format(unit=rest))
         if rest:
             raise self.fault(_("this is not a valid arithmetic expression"))
         return quantity
@@ -118,7 +118,7 @@ class Parser:
         quoted = quote(self.text) + (
             _(", the error is at {rest}").format(rest=quote(rest)) if rest and rest != self.text.strip() else ""
         )
-        return ProblemError(message, found=quoted, allowed=_("numbers, units, parameters, + - * / ^ ( )"))
+        return ProblemError(message, found=quoted, allowed=_("numbers, units, parameters and the signs + - * / ^ ( )"))
 
     def sign(self, *signs: str) -> str | None:
         match = _SIGN.match(self.text, self.at)
@@ -172,12 +172,12 @@ class Parser:
         exponent = self.signed()
         self.depth -= 1
         if exponent.dimension not in (None, NUMBER) or not abs(exponent.value) <= MAX_POWER:
-            raise self.fault(_("an exponent must be a small number without a unit"))
+            raise self.fault(_("an exponent must be a number without a unit, at most 20"))
         dimension = base.dimension
         if dimension is not None:
             if exponent.value != int(exponent.value):
                 raise self.fault(
-                    _("a quantity with a unit can only be raised to a whole power; for a square root use sqrt")
+                    _("a quantity with a unit can be raised only to an integer power; for a square root use sqrt")
                 )
             dimension = dimension.power(int(exponent.value))
         return PhysicalValue(self.real("this power", lambda: base.value**exponent.value), dimension)
@@ -193,7 +193,7 @@ class Parser:
             return inside
         if name := _NAME.match(self.text, self.at):
             return self.named(name)
-        raise self.fault(_("expected a number here") if self.text[self.at :].strip() else _("a number is missing"))
+        raise self.fault(_("a number is expected here") if self.text[self.at :].strip() else _("a number is missing"))
 
     def with_unit(self, number: float) -> PhysicalValue:
         """Read the longest unit that follows a number and return the quantity.
@@ -239,7 +239,7 @@ class Parser:
 
     def call(self, name: str) -> PhysicalValue:
         if not self.sign("("):
-            raise self.fault(_("the argument of {name} must be in brackets").format(name=name))
+            raise self.fault(_("the argument of the function {name} must be in brackets").format(name=name))
         arguments = [self.sum()]
         while self.sign(","):
             arguments.append(self.sum())
@@ -247,7 +247,7 @@ class Parser:
             raise self.fault(_("a bracket is not closed"))
         least, most = {"atan2": (2, 2), "min": (1, 20), "max": (1, 20), "hypot": (2, 2)}.get(name, (1, 1))
         if not least <= len(arguments) <= most:
-            raise self.fault(_("wrong number of arguments of {name}").format(name=name))
+            raise self.fault(_("the function {name} has the wrong number of arguments").format(name=name))
         return self.of_many(name, arguments) if name in _MANY_ARGUMENTS else self.of_one(name, arguments[0])
 
     def of_one(self, name: str, argument: PhysicalValue) -> PhysicalValue:
@@ -264,14 +264,18 @@ class Parser:
                 )
             if abs(float(angle)) > MAX_ANGLE:
                 raise self.fault(
-                    _("the angle is too large: rounding leaves no correct digit of {name}").format(name=name)
+                    _("the angle is too large: because of rounding, no digit of {name} would be correct").format(
+                        name=name
+                    )
                 )
             if name == "tan" and abs(math.cos(angle)) < 1e-15:
                 raise self.fault(_("the tangent of a right angle is undefined"))
             return PhysicalValue(compute(angle), None)
         if name in _TO_ANGLE and dimension not in (None, NUMBER):
             raise self.fault(
-                _("the argument of {name} must be a number; found: {dimension}").format(name=name, dimension=dimension)
+                _("the argument of {name} must be a number without a unit; found: {dimension}").format(
+                    name=name, dimension=dimension
+                )
             )
         root = _square_root_dimension(dimension) if dimension else None
         if name == "sqrt" and dimension is not None and root is None:
@@ -411,9 +415,9 @@ def _checked_si(source: object, quantity: PhysicalValue, units: UnitSystem, want
         described = f"{quote(source)}, {units.describe(quantity)}"
         allowed = want.example
         if want == ANGLE and "pi" in str(source):
-            allowed = _("{allowed}; pi is in radians already").format(allowed=allowed)
+            allowed = _("{allowed}; pi is already in radians").format(allowed=allowed)
         if quantity.dimension is not None and quantity.dimension.times(ACCELERATION).fits(want):
-            allowed = _("{allowed}; kilogram-force is written kgf").format(allowed=allowed)
+            allowed = _("{allowed}; the unit kilogram-force is written kgf").format(allowed=allowed)
         raise UnitError(_("expected here: {want}").format(want=want), found=described, allowed=allowed)
     return value
 
@@ -438,13 +442,13 @@ def evaluate_quantity(
     """
     if isinstance(source, bool) or not isinstance(source, int | float | str):
         raise ProblemError(
-            _("expected a number here"),
+            _("a number is expected here"),
             found=quote(source),
             allowed=_("a number, a number with a unit, or an arithmetic expression"),
         )
     if isinstance(source, int | float):
         if not -1e300 < source < 1e300:
-            raise ProblemError(_("the number is not between -1e300 and 1e300"), found=quote(source))
+            raise ProblemError(_("the number must lie between -1e300 and 1e300"), found=quote(source))
         return PhysicalValue(units.number(source.written if isinstance(source, WrittenNumber) else source), None)
     if len(source) > MAX_LENGTH:
         raise ProblemError(

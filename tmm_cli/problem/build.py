@@ -71,7 +71,7 @@ def validate_planar(tree: Tree) -> schema.File:
     """
     if is_chain(tree):
         raise ProblemError(
-            _("this file gives only links and pairs, without dimensions: only the structure can be analysed"),
+            _("this file contains only links and pairs, without dimensions: only the structure can be analysed"),
             path=("structure",),
             allowed=_("tmm structure, tmm run, tmm check"),
             key=True,
@@ -247,8 +247,8 @@ def refuse_variable_speed(by_table: bool, dynamics: bool) -> None:
     if by_table or dynamics:
         raise ProblemError(
             _(
-                "for variants and optimization the motion of the driver must be given by one speed and one "
-                "acceleration, without tables and without `dynamics`"
+                "for variants and optimization, give the motion of the driver by one speed and one acceleration, "
+                "without tables and without `dynamics`"
             ),
             key=True,
             path=("driver", "speed") if by_table else ("dynamics",),

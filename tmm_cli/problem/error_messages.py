@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import singledispatch
 
@@ -36,10 +36,9 @@ from tmm_cli.mechanics.errors import (
     UnknownPositionError,
     WeakMotorError,
 )
-from tmm_cli.mechanics.linkage import Linkage
 from tmm_cli.mechanics.quantities import ANGLE, ANGULAR_SPEED, LENGTH, MOMENT, coordinate_dimension
-from tmm_cli.mechanics.structure import Structure
 from tmm_cli.problem.errors import ProblemError, quote, unknown_name_error, unknown_position_error
+from tmm_cli.problem.mobility_errors import list_loose_ends, mobility_error
 from tmm_cli.problem.problems import Problem
 from tmm_cli.problem.units import UnitSystem
 
@@ -72,14 +71,16 @@ def _driver_at(problem: Problem) -> str:
 def _never_closes(error: AssemblyError, problem: Problem) -> ProblemError:
     short = _("the loop does not close at any position")
     if error.residual is not None:
-        short = _("the loop is open by {size}").format(size=problem.units.format_value(error.residual, LENGTH))
+        short = _("the loop does not close: the gap is {size}").format(
+            size=problem.units.format_value(error.residual, LENGTH)
+        )
     return ProblemError(
         _("group {group} cannot be assembled when the driver coordinate is {place}").format(
             group=error.group.title, place=_driver_at(problem)
         ),
         path=("sketch", "at"),
         found=short,
-        allowed=_("lengths with which the links reach each other, or another driver coordinate"),
+        allowed=_("lengths that let the links meet, or another driver coordinate"),
     )
 
 
@@ -98,14 +99,16 @@ def _ambiguous(error: AmbiguousSketchError, problem: Problem) -> ProblemError:
         f"{name}: {format_coordinate(a, units)} or {format_coordinate(b, units)}" for name, (a, b) in choices
     )
     undecided = _(
-        "the sketch does not determine which assembly of group {group} is meant; to see all of them, run "
-        "tmm kinematics {file} --assemblies"
+        "the sketch does not determine the assembly of group {group}; to see all assemblies, run tmm "
+        "kinematics {file} --assemblies"
     ).format(group=group, file=problem.file or "FILE")
     return ProblemError(
         undecided,
         path=("sketch",),
         key=True,
-        allowed=_("one of these for the driver coordinate {place}: {ways}").format(place=place, ways=ways),
+        allowed=_("add one of these to the sketch for the driver coordinate {place}: {ways}").format(
+            place=place, ways=ways
+        ),
     )
 
 
@@ -135,84 +138,22 @@ def _too_large(error: GroupTooLargeError, problem: Problem) -> ProblemError:
 @problem_error.register
 def _searched_too_long(error: ChangePointSearchError, problem: Problem) -> ProblemError:
     return ProblemError(
-        _("the search for the change points of group {title} takes too long: it depends on too many groups").format(
-            title=error.group.title
-        ),
+        _(
+            "the search for the change points of group {title} would take too long, as the group depends on "
+            "too many others"
+        ).format(title=error.group.title),
         path=("links",),
         key=True,
         found=_("groups: {groups}, turns of the driver: {turns}").format(groups=error.groups, turns=error.turns),
-        allowed=_("number of groups times number of turns at most {most}").format(most=error.most),
+        allowed=_("the product of the two numbers must be at most {most}").format(most=error.most),
     )
 
 
 @problem_error.register
 def _immobile(error: MobilityError, problem: Problem) -> ProblemError:
-    lone = _lone_ends(problem.linkage, error.structure.under_constrained)
+    lone = list_loose_ends(problem.linkage, error.structure.under_constrained)
     hint = _("point {point} belongs only to link {link}; for a hinge on the frame write points: {{{point}: [x, y]}}")
     return mobility_error(error.structure, [hint.format(point=point, link=link) for link, point in lone[:1]])
-
-
-def _lone_ends(linkage: Linkage, loose: Collection[str]) -> list[tuple[str, str]]:
-    """List loose links with a point that forms no pair, as pairs (link, point).
-
-    The point is the origin of the link or, if the link has fewer than two pairs, any of its points.
-    """
-    runners = {s.runner for s in linkage.slides}
-    pairs = [h.links for h in linkage.hinges] + [(s.carrier, s.runner) for s in linkage.slides]
-    hinges = {h.point for h in linkage.hinges}
-    lone = []
-    for name in loose:
-        link = linkage.links[name]
-        few = sum(name in links for links in pairs) < 2
-        free = [p for k, p in enumerate(link.points) if p not in hinges and (few or k == 0)]
-        if free and name not in runners:
-            lone.append((name, free[0]))
-    return lone
-
-
-def mobility_error(structure: Structure, hints: Sequence[str] = ()) -> ProblemError:
-    """Return the error for a wrong mobility; it names the links that are too free or have redundant constraints.
-
-    Args:
-        structure: result of the structural analysis.
-        hints: sentences on how to mend the file.
-    """
-    n, p2, required = len(structure.links), structure.higher, len(structure.drivers)
-    higher = f" - {p2}" if p2 else ""
-    count = f"W = 3*{n} - 2*{len(structure.pairs) - p2}{higher} = {structure.mobility}"
-    loose, redundant = structure.under_constrained, structure.redundant_pairs
-    held = next((bodies for name, bodies in redundant if name == "driver"), None)
-    if not redundant and not loose:
-        held = structure.links
-    if held is not None:
-        number = max((k for k, d in enumerate(structure.drivers) if {d.base, d.link} <= set(held)), default=0)
-        return ProblemError(
-            _("link {link} cannot be a driver: pairs or other drivers already determine its motion").format(
-                link=structure.drivers[number].link
-            ),
-            path=("driver", number, "link") if required > 1 else ("driver", "link"),
-            found=_("{count}; links with redundant constraints: {links}").format(count=count, links=", ".join(held)),
-            allowed=f"W = {required}",
-        )
-    if loose:
-        return ProblemError(
-            _("the mobility is not {wanted}: these links are not sufficiently constrained: {links}").format(
-                wanted=required, links=", ".join(loose)
-            ),
-            path=("links", loose[0]),
-            found=count,
-            allowed="; ".join([_("W = {wanted}, the number of drivers").format(wanted=required), *hints]),
-            key=True,
-        )
-    name, bodies = redundant[0]
-    links = tuple(b for b in bodies if b in structure.links)
-    return ProblemError(
-        _("the mobility is not {wanted}: pair {name} is a redundant constraint").format(wanted=required, name=name),
-        path=("links", links[0]) if links else ("links",),
-        key=True,
-        found=_("{count}; links with redundant constraints: {links}").format(count=count, links=", ".join(bodies)),
-        allowed=f"W = {required}",
-    )
 
 
 # Strokes, cycles and the range of the driver.
@@ -230,11 +171,16 @@ def _no_strokes(error: MissingStrokesError, problem: Problem) -> ProblemError:
         )
     text = _("this mechanism has no working stroke")
     if block == "intermittent":
-        return ProblemError(text, path=error.path, allowed=_("forward, backward, or an output link that has strokes"))
+        return ProblemError(
+            text, path=error.path, allowed=_("forward, backward, or another output link, one that has strokes")
+        )
     if error.limits is not None:
         first, last = (format_coordinate(limit, problem.units) for limit in error.limits)
         return ProblemError(
-            _("for a table against the stroke the driver must rotate fully, so that the output makes full strokes"),
+            _(
+                "a load table with `against: stroke` requires a driver that rotates fully, so that the output "
+                "makes full strokes"
+            ),
             path=error.path,
             found=_("the driver moves from {first} to {last}").format(first=first, last=last),
             allowed=_("against: crank angle"),
@@ -254,10 +200,12 @@ def _speeds_end(error: SpeedTableError, problem: Problem) -> ProblemError:
     )
     ends = _("the table covers {first} to {last}").format(first=first, last=last)
     if error.at is not None:
-        ends = _("{ends}, and a position is requested at {place}").format(
+        ends = _("{ends}, but a position is requested at {place}").format(
             ends=ends, place=format_coordinate(error.at, problem.units)
         )
-    closing = _("a last row at {end} with the speed of the first row, or positions: {{at: [...]}} within the table")
+    closing = _(
+        "a last row at {end} with the speed of the first row, or positions: {{at: [...]}} within the range of the table"
+    )
     return ProblemError(
         _("the table of speeds does not cover all positions"),
         path=("driver", "speed", "table"),
@@ -290,7 +238,7 @@ def _no_cycle(error: NoCycleError, problem: Problem) -> ProblemError:
 def _out_of_range(error: OutOfRangeError, problem: Problem) -> ProblemError:
     first, last = format_coordinate(error.start, problem.units), format_coordinate(error.end, problem.units)
     return ProblemError(
-        _("the run leads beyond the range of the driver"),
+        _("the run extends beyond the range of the driver"),
         path=("dynamics", "run"),
         key=True,
         allowed=_("{first} to {last}").format(first=first, last=last),
@@ -303,7 +251,7 @@ def _beyond_cycle(error: TableBeyondCycleError, problem: Problem) -> ProblemErro
     text = _("this row is never used: the motion repeats after several turns of the driver, number of turns: {turns}")
     if turns == 1:
         text = _("this row is never used: the motion repeats after one turn of the driver")
-    allowed = _("0 to {end} {unit}; for a longer cycle of loads write cycle: {turns} turns").format(
+    allowed = _("0 to {end} {unit}; if the loads repeat after a longer cycle, write cycle: {turns} turns").format(
         end=f"{units.from_si(error.cycle, ANGLE):.6g}",
         unit=units.spelt(ANGLE),
         turns=max(2, math.ceil(error.argument / math.tau)),
@@ -320,8 +268,8 @@ def _beyond_cycle(error: TableBeyondCycleError, problem: Problem) -> ProblemErro
 def _unsettled(error: CounterweightError, problem: Problem) -> ProblemError:
     return ProblemError(
         _(
-            "counterweights of these radii do not balance the mechanism: their own masses add more inertia "
-            "force than they balance"
+            "counterweights with these radii cannot balance the mechanism: the inertia forces of their own "
+            "masses exceed those that they balance"
         ),
         path=("balancing", "counterweights"),
         key=True,
@@ -335,13 +283,13 @@ def _by_speed(error: SpeedDependentForceError, problem: Problem) -> ProblemError
         _("the law of motion is not computed if forces depend on reactions or on speeds"),
         path=error.path,
         key=True,
-        allowed=_("loads independent of them; for constant friction force: {resists: 200 N}"),
+        allowed=_("loads that do not depend on them; for a constant friction force write force: {resists: 200 N}"),
     )
 
 
 @problem_error.register
 def _long_run(error: LongRunError, problem: Problem) -> ProblemError:
-    reason = _("the run takes too long to compute: after {count} evaluations it has reached {time} s")
+    reason = _("the run takes too long to compute: the time reached after {count} evaluations is {time} s")
     return ProblemError(
         reason.format(count=error.count, time=f"{error.time:.4g}"),
         path=("dynamics", "run"),
@@ -382,12 +330,12 @@ def _no_inertia(error: NoInertiaError, problem: Problem) -> ProblemError:
 def _lost_digits(error: LostDigitsError, problem: Problem) -> ProblemError:
     return ProblemError(
         _(
-            "the law of motion is lost in rounding errors: the links and the flywheel are too heavy for the "
-            "motor to change their speed"
+            "the law of motion cannot be computed because of rounding errors: the links and the flywheel are "
+            "too heavy for the motor to change their speed"
         ),
         path=("dynamics",),
         key=True,
-        found=_("fraction of a difference of speed that the motor compensates in one cycle: {share}").format(
+        found=_("fraction of a speed difference that the motor makes up in one cycle: {share}").format(
             share=numeral(error.share, ".1g")
         ),
         allowed=_("masses and moments of inertia that suit the motor; check their units"),
@@ -451,9 +399,9 @@ def _no_flywheel(error: NoFlywheelError, problem: Problem) -> ProblemError:
     text, allowed = _("with this motor no flywheel achieves this coefficient of fluctuation"), _("a larger `delta`")
     if not math.isnan(error.own):
         text = _("the coefficient of fluctuation is smaller than this even without a flywheel")
-        allowed = _("less than {own}, or leave out `delta`").format(own=f"{error.own:.4g}")
+        allowed = _("less than {own}, or omit `delta`").format(own=f"{error.own:.4g}")
         if problem.dynamics is not None and problem.dynamics.flywheel:
-            text = _("the coefficient of fluctuation is smaller than this with the given flywheel")
+            text = _("with the given flywheel the coefficient of fluctuation is already smaller than this")
     return ProblemError(text, path=("dynamics", "delta"), found=f"{error.wanted:.6g}", allowed=allowed)
 
 

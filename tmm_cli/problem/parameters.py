@@ -24,7 +24,7 @@ def check_parameter(name: str, path: Path, *, key: bool = True) -> None:
         )
     if name in FUNCTIONS or name == "pi":
         raise ProblemError(
-            _("this is the name of a function or constant of arithmetic; choose another one"),
+            _("this is the name of a function or constant in expressions; choose another name"),
             path=path,
             found=quote(name),
             key=key,
@@ -61,7 +61,7 @@ def resolve_parameters(
     except CycleError as error:
         cycle: list[str] = error.args[1][::-1]
         raise ProblemError(
-            _("these parameters refer to each other in a circle"), path=(cycle[0],), found=" -> ".join(cycle)
+            _("these parameters depend on each other in a circle"), path=(cycle[0],), found=" -> ".join(cycle)
         ) from None
     for name in order:
         with prefix_errors(name):

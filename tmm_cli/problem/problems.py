@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 from tmm_cli.mechanics.linkage import Linkage, Request
 from tmm_cli.mechanics.structure import SpatialChain
+from tmm_cli.problem.blocks.sheet_keys import NoteStyle, SheetTexts
 from tmm_cli.problem.errors import Tree
-from tmm_cli.problem.schema import NoteStyle, SheetTexts, ShownKeys
+from tmm_cli.problem.schema import ShownKeys
 from tmm_cli.problem.units import UnitSystem
 from tmm_cli.problem.values import ValueReader
 

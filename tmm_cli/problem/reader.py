@@ -173,7 +173,9 @@ class Composer:
             if isinstance(event, yaml.NodeEvent):
                 top = self.node(event, ())
             elif isinstance(event, yaml.DocumentStartEvent) and () in self.marks:
-                self.refuse(event, (), _("the file contains a second document"), "---", _("one document in a file"))
+                self.refuse(
+                    event, (), _("the file contains a second document"), "---", _("only one document in a file")
+                )
         if top is None:
             raise ProblemError(_("the file is empty"), allowed=_("keys with values, such as 'tmm: 1'"), file=self.file)
         if not isinstance(top, dict):
@@ -266,9 +268,7 @@ class Composer:
     def key(self, event: Any, path: Path, mapping: dict[str, Any]) -> str:
         """Return the name of a key as written. Raises ProblemError if the key occurs twice."""
         if not isinstance(event, yaml.ScalarEvent):
-            self.refuse(
-                event, path, _("a list or a set of keys cannot be used as a key"), allowed=_("a word or number")
-            )
+            self.refuse(event, path, _("a list or a mapping cannot be used as a key"), allowed=_("a word or number"))
         name: str = event.value
         path = (*path, name)
         if name in mapping:
@@ -415,7 +415,7 @@ def decode_text(data: bytes, file: str) -> str:
         before = body[: error.start]
         column = len(before[before.rfind(b"\n") + 1 :].decode()) + 1
         raise ProblemError(
-            _("the file is not text in UTF-8 encoding"),
+            _("the file is not a text in UTF-8 encoding"),
             found=_("byte {byte} at position {position}").format(
                 byte=f"0x{body[error.start]:02X}", position=len(data) - len(body) + error.start + 1
             ),

@@ -9,19 +9,18 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, Field, WithJsonSchema
+from pydantic import BaseModel, BeforeValidator, Field
 from pydantic.json_schema import GenerateJsonSchema
-from pydantic_core import PydanticCustomError
 
 from tmm_cli.problem.blocks.loads import LoadKeys
 from tmm_cli.problem.blocks.masses import MassKeys
 from tmm_cli.problem.blocks.meshes import CamKeys, GearKeys, RackKeys
 from tmm_cli.problem.blocks.optional_keys import BalancingKeys, DynamicsKeys, Wheels
+from tmm_cli.problem.blocks.sheet_keys import NoteStyle, SheetTexts
 from tmm_cli.problem.blocks.springs import FrictionKeys, SpringKeys
 from tmm_cli.problem.schema_types import (
     MAX_LINKS,
     MAX_POSITIONS,
-    NAMES,
     FileHead,
     Name,
     Place,
@@ -31,56 +30,6 @@ from tmm_cli.problem.schema_types import (
     checked_name,
     checked_value,
 )
-
-MAX_TEXT_LENGTH = 200
-
-
-def _checked_short_text(raw: Any) -> str:
-    """Return a text of one line; a number is converted to text, as the name of a student group may be a number."""
-    if isinstance(raw, bool) or not isinstance(raw, int | str):
-        raise PydanticCustomError("words", "expected a text")
-    if len(str(raw)) > MAX_TEXT_LENGTH:
-        raise PydanticCustomError("words", f"text is at most {MAX_TEXT_LENGTH} characters long")
-    return str(raw)
-
-
-ShortText = Annotated[str, BeforeValidator(_checked_short_text), WithJsonSchema({"anyOf": NAMES})]
-
-
-class SheetTexts(Strict):
-    """Texts of the title block. A text that is too long for its cell is cut off."""
-
-    student: ShortText = Field(default="", description="name of the student, in the title block")
-    group: ShortText = Field(default="", description="group of the student")
-    teacher: ShortText = Field(default="", description="name of the teacher, in the title block")
-    institution: ShortText = Field(default="", description="university, on the title page of the calculation note")
-    department: ShortText = Field(default="", description="university and department, in the title block")
-    code: ShortText = Field(
-        default="", description="designation of the project; the number of the sheet is added to it"
-    )
-    block: Literal["gost", "plain"] = Field(
-        default="gost", description="form of the title block. gost: GOST 2.104, form 1; plain: a simple one"
-    )
-
-
-class NoteStyle(Strict):
-    """Style of the calculation note. The defaults are those usual in courses."""
-
-    inertia: Literal["U", "Φ"] | None = Field(
-        default=None,
-        description="letter for inertia forces; default: the usual one in the language (Φ in Russian)",
-    )
-    arms: Literal["m", "paper"] = Field(
-        default="m",
-        description="moment arms in equations. m: in metres; paper: in millimetres of the drawing, with the scale mu_l",
-    )
-    sections: Literal["usual", "MATI"] = Field(
-        default="usual",
-        description=(
-            "order of the force analysis. usual; MATI: steps 1 to 4 of the MATI guidelines, before the Zhukovsky lever"
-        ),
-    )
-
 
 # Block `shows`: properties of a mechanism as numbers, with their expected values.
 
@@ -94,7 +43,8 @@ class ShownKeys(Strict):
 
     of: Quantity = Field(
         description=(
-            "name of the quantity: psi, k, W, x of E, v of 5 on 0, phi of 3, M_b, R_34; of a vector its magnitude"
+            "name of the quantity: psi, k, W, x of E, v of 5 on 0, phi of 3, M_b, R_34; for a vector, its "
+            "magnitude is taken"
         )
     )
     at: Number | None = Field(default=None, description="number of the position")
@@ -104,25 +54,25 @@ class ShownKeys(Strict):
     over: Literal["largest", "least", "range"] | None = Field(
         default=None,
         description=(
-            "instead of at: largest or least value, or range, over the range of the driver, its turn or the "
-            "requested positions"
+            "instead of at: largest or least value, or the difference of the two, over the range of the "
+            "driver, over one turn or at the requested positions"
         ),
     )
     within: Value | None = Field(
         default=None,
         description=(
-            "with at: tolerance; the result is the range of the driver around this position in which the "
-            "quantity changes by no more than this"
+            "with at: tolerance; the result is the range of the driver around this position within which the "
+            "quantity changes by at most the tolerance"
         ),
     )
     per: Value | None = Field(
         default=None,
-        description="divide by another quantity (for largest and least: at each position) or by a value",
+        description="divisor: another quantity (for largest and least: at each position) or a value",
     )
     set: dict[Name, Value] = Field(
         default_factory=dict, max_length=50, description="other values of parameters for this property"
     )
-    without: Name | None = Field(default=None, description="structural properties only: name of a hinge to remove")
+    without: Name | None = Field(default=None, description="only for structural properties: name of a hinge to remove")
     expected: Value | None = Field(
         default=None, description="expected value from another source; `tmm run` compares it with the computed one"
     )
@@ -177,9 +127,9 @@ class Spatial(Strict):
     output: Name | None = Field(default=None, description="output link, held fixed to compute the manoeuvrability")
     local: Freedoms | dict[Name, Freedoms] | None = Field(
         default=None,
-        description="local mobilities Wm: their total, or a number for each link; default: found from the pairs",
+        description="local mobilities Wm: their total, or a number for each link; default: determined from the pairs",
     )
-    wanted: Freedoms | None = Field(default=None, description="required mobility Wo, for q = Wo + Wm - W")
+    wanted: Freedoms | None = Field(default=None, description="required mobility Wo, used in q = Wo + Wm - W")
 
 
 class SpatialStructure(Strict):
@@ -206,9 +156,7 @@ class Guide(Strict):
 
     on: Name = Field(default="0", description="link that carries the guide; default: the frame")
     through: Place | None = Field(default=None, description="point of that link on the guide, or [x, y] in its axes")
-    angle: Value | None = Field(
-        default=None, description="direction of the guide, measured from the x axis of that link"
-    )
+    angle: Value | None = Field(default=None, description="direction of the guide: angle from the x axis of that link")
     along: Name | None = Field(
         default=None, description="instead of through and angle: two points on the guide, e.g. CD"
     )
@@ -224,9 +172,7 @@ class SlideKeys(Strict):
     on: Name = Field(description="name of the guide, or of the link on which this link slides")
     along: Name | None = Field(default=None, description="two points of that link, e.g. CD: the guide runs from C to D")
     through: Place | None = Field(default=None, description="point of that link on the guide, or [x, y] in its axes")
-    angle: Value | None = Field(
-        default=None, description="direction of the guide, measured from the x axis of that link"
-    )
+    angle: Value | None = Field(default=None, description="direction of the guide: angle from the x axis of that link")
     offset: Value = Field(default=0, description="distance of the guide to the left of that line")
     point: Name | None = Field(
         default=None, description="point of this link that slides on the guide; default: its first point"
@@ -271,14 +217,17 @@ class Speeds(Strict):
     """Speed or acceleration of a crank as a function of its angle."""
 
     against: Literal["crank angle"] = Field(
-        description="quantity in the first column. crank angle: from the x axis, counterclockwise"
+        description=(
+            "quantity in the first column of the table. crank angle: angle of the crank from the x axis, "
+            "counterclockwise"
+        )
     )
     table: list[Vector] = Field(min_length=2, max_length=10_000, description="rows [angle, value]")
     between: Literal["smooth", "linear"] = Field(
         default="smooth",
         description=(
-            "interpolation between rows. smooth: cubic spline; linear: straight lines; speeds are interpolated "
-            "by their squares"
+            "interpolation between rows. smooth: cubic spline; linear: straight lines. For speeds, their "
+            "squares are interpolated"
         ),
     )
 
@@ -300,10 +249,10 @@ class DriverKeys(Strict):
 
     link: Name
     on: Name = Field(
-        default="0", description="link relative to which it is driven: the frame, or the cylinder of a piston"
+        default="0", description="link relative to which the motion is given: the frame, or the cylinder of a piston"
     )
     at: Value | None = Field(
-        default=None, description="driver coordinate in the sketch, for every driver after the first"
+        default=None, description="driver coordinate in the sketch; only for the second and further drivers"
     )
     speed: Annotated[Value | Speeds, BeforeValidator(_checked_speed)] = Field(
         description="speed of rotation (82 rpm, 8 rad/s) or of sliding (0.2 m/s); for a crank also {against, table}"
@@ -311,16 +260,16 @@ class DriverKeys(Strict):
     acceleration: Annotated[Value | Speeds, BeforeValidator(_checked_speed)] = Field(
         default=0,
         description=(
-            "acceleration in the sense of motion; the speed is then that of position 0; if the speed is a "
-            "table, a table too"
+            "acceleration in the direction of motion; `speed` is then the speed at position 0. If the speed is "
+            "a table, the acceleration must be a table too"
         ),
     )
     stroke: Vector | None = Field(
-        default=None, description="stroke of a driven slider: [from, to], its two end coordinates"
+        default=None, description="stroke of a driven slider: [from, to], the coordinates of its ends"
     )
     turns: Literal["ccw", "cw"] = Field(default="ccw", description="sense of rotation")
     balance: Literal["moment", "force"] = Field(
-        default="moment", description="balance the crank by a moment or by a force"
+        default="moment", description="balancing of the crank: by a moment (moment) or by a force (force)"
     )
     end: Name | None = Field(default=None, description="point of the crank at which the balancing force acts")
 
@@ -332,8 +281,8 @@ class OutputKeys(Strict):
 
     link: Name = Field(
         description=(
-            "output link or point. Its output is the stroke or swing of a link joined to the frame, the angle "
-            "of a coupler, the displacement of a sliding block along the slot"
+            "output link or point. The output quantity is the stroke or swing of a link joined to the frame, "
+            "the angle of a coupler, or the displacement of a sliding block along the slot"
         )
     )
     working: Literal["auto", "forward", "backward"] = Field(
@@ -358,7 +307,9 @@ class Positions(Strict):
 
     count: int = Field(default=12, ge=1, le=MAX_POSITIONS)
     from_: Value | None = Field(
-        default=None, alias="from", description="crank angle of position 0, or `working stroke` for its start"
+        default=None,
+        alias="from",
+        description="crank angle of position 0, or `working stroke` for the start of the working stroke",
     )
     at: Annotated[
         list[Value] | None, BeforeValidator(_make_list, json_schema_input_type=list[Value] | Value | None)
@@ -375,7 +326,11 @@ class Checks(Strict):
     """Limits. If one is exceeded, a run reports it and ends with exit code 1."""
 
     lever: Value = Field(
-        default="5 %", description="largest allowed difference between the Zhukovsky lever and the force plan"
+        default="5 %",
+        description=(
+            "largest allowed relative difference between the balancing moments by the Zhukovsky lever and by "
+            "force analysis"
+        ),
     )
     pressure_sliding: Value | None = Field(
         default=None, description="largest allowed pressure angle on a sliding output link; default: 30 deg"
@@ -409,9 +364,9 @@ class File(FileHead):
     hinges: dict[Name, CompoundHinge] = Field(
         default_factory=dict,
         max_length=100,
-        description="compound hinges whose links are attached in another way than usual",
+        description="compound hinges whose links are attached differently from the default",
     )
-    driver: DriverKeys | list[DriverKeys] = Field(description="input link; a list of several if W > 1")
+    driver: DriverKeys | list[DriverKeys] = Field(description="input link; a list if W > 1")
     gears: dict[Name, GearKeys] = Field(default_factory=dict, max_length=100)
     racks: dict[Name, RackKeys] = Field(default_factory=dict, max_length=100)
     cams: dict[Name, CamKeys] = Field(default_factory=dict, max_length=100)
@@ -420,15 +375,16 @@ class File(FileHead):
     sketch: dict[Name, Any] = Field(
         default_factory=dict,
         description=(
-            "approximate configuration for one driver coordinate: `at`, coordinates [x, y] of points, angles of links"
+            "approximate position of the mechanism for one driver coordinate `at`: coordinates [x, y] of "
+            "points, angles of links"
         ),
     )
     change_points: Literal["smooth", "keep side"] = Field(
         default="smooth",
         alias="change points",
         description=(
-            "how a parallelogram linkage, and similar ones, passes positions at which its assembly could "
-            "change. smooth: smoothly; keep side: always on the side shown in the sketch"
+            "how parallelogram linkages and the like pass positions in which their assembly could change. "
+            "smooth: with smooth motion; keep side: always in the assembly shown in the sketch"
         ),
     )
     masses: dict[Name, MassKeys] = Field(default_factory=dict)
@@ -445,7 +401,7 @@ class File(FileHead):
         description="number of crank turns after which the loads repeat, e.g. 2 turns for a four-stroke engine",
     )
     intermittent: Wheels = Field(
-        default={}, description="wheels that a link carries along only in some strokes (ratchets, one-way clutches)"
+        default={}, description="wheels that a link moves only during some strokes (ratchets, one-way clutches)"
     )
     positions: Positions = Field(default_factory=Positions)
     checks: Checks = Field(default_factory=Checks)
@@ -455,7 +411,7 @@ class File(FileHead):
     )
     sheet: SheetTexts = Field(default_factory=SheetTexts, description="texts of the title block of `tmm sheets`")
     frame: Name = Field(
-        default="0", description="number of the frame in print; with 6, R_65 is printed instead of R_05"
+        default="0", description="number of the frame in printed results; with 6, R_65 is printed instead of R_05"
     )
     note: NoteStyle = Field(default_factory=NoteStyle, description="style of the calculation note and its drawings")
 

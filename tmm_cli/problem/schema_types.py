@@ -63,7 +63,7 @@ class Strict(BaseModel):
 class FileHead(Strict):
     """Keys that every problem file may have."""
 
-    tmm: Literal[1] = Field(description="version of the file format; write tmm: 1")
+    tmm: Literal[1] = Field(description="version of the file format: write tmm: 1")
     lang: Literal["en", "ru", "sr"] = Field(default="en", description="language of drawings, tables and messages")
     title: str = Field(default="", max_length=200)
     description: str = Field(default="", max_length=4000)

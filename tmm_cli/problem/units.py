@@ -246,9 +246,11 @@ class UnitSystem:
             with prefix_errors(key):
                 named_dimension = parse_unit(name).dimension
                 if not named_dimension.fits(kind.dimension):
-                    allowed = _("a unit of {full}, e.g. {default}").format(full=full, default=kind.default)
+                    allowed = _("a unit for this quantity: {full}, e.g. {default}").format(
+                        full=full, default=kind.default
+                    )
                     raise UnitError(
-                        _("this unit measures another quantity"),
+                        _("this is a unit of another quantity"),
                         found=f"{quote(name)}, {named_dimension}",
                         allowed=allowed,
                     )

@@ -255,9 +255,9 @@ class FileSection:
             if first[k] == first[k - 1]:
                 if jumps and (k < 2 or first[k - 2] < first[k]):
                     continue
-                allowed = _("for a jump two rows: the value before it and the value after it")
+                allowed = _("for a jump, two rows: the value before it and the value after it")
                 if not jumps:
-                    allowed = _("each value once")
+                    allowed = _("each value only once")
             message = _("the values in the first column must increase")
             raise ProblemError(message, path=(*path, k, 0), found=str(rows[k][0]), allowed=allowed)
         return first, second

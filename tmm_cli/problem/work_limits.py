@@ -43,14 +43,12 @@ def refuse_work(linkage: Linkage, request: Request) -> None:
             _("this mechanism is too large"),
             path=("links",),
             found=_describe_linkage(linkage),
-            allowed=_("at most {most} in total, where a link counts as 6, a point as 1, a load as 2").format(
-                most=whole
-            ),
+            allowed=_("at most {most} in total, counting a link as 6, a point as 1 and a load as 2").format(most=whole),
             key=True,
         )
     if count > most:
         raise ProblemError(
-            _("too many positions for so many links, points and loads"),
+            _("there are too many positions for so many links, points and loads"),
             path=("positions", "count"),
             found=_("positions: {count}; {linkage}").format(count=count, linkage=_describe_linkage(linkage)),
             allowed=_("at most {most}").format(most=most),
@@ -90,7 +88,7 @@ def refuse_options(
             few = (left + count + each * min(count, MAX_JUDGED)) / (1 + each)
             most = int(few if few < MAX_JUDGED else left + count)
             raise ProblemError(
-                _("too many positions, or too large a mechanism, for the estimate of correct digits"),
+                _("there are too many positions, or the mechanism is too large, to estimate the correct digits"),
                 path=("--digits",),
                 found=_("positions: {count}; {linkage}").format(count=count, linkage=_describe_linkage(linkage)),
                 allowed=_("without --digits")
@@ -101,7 +99,7 @@ def refuse_options(
     if each * centres > left:
         most = int(left // each)
         raise ProblemError(
-            _("too many instantaneous centres for so many links and positions"),
+            _("there are too many instantaneous centres for so many links and positions"),
             path=("--centres",),
             found=_("detailed positions: {count}; {linkage}").format(count=centres, linkage=_describe_linkage(linkage)),
             allowed=_("without instantaneous centres")
@@ -112,7 +110,7 @@ def refuse_options(
         _count_sheets(detail, large) + PLAN_SHEETS * plans
     ) > left >= SHEET_POSITIONS * _count_sheets(detail, large):
         raise ProblemError(
-            _("too many drawings for so many links, points and positions"),
+            _("there are too many drawings for so many links, points and positions"),
             path=("--positions",),
             found=_("positions: {count}; {linkage}").format(count=plans, linkage=_describe_linkage(linkage)),
             allowed=_("plans for at most {most} positions, or --positions detail").format(
@@ -122,7 +120,7 @@ def refuse_options(
     if detail is not None and SHEET_POSITIONS * _count_sheets(detail, large) > left:
         most = max((few for few in range(detail) if SHEET_POSITIONS * _count_sheets(few, large) <= left), default=-1)
         raise ProblemError(
-            _("too many drawings for so many links, points and positions"),
+            _("there are too many drawings for so many links, points and positions"),
             path=("positions", "detail"),
             found=_("detailed positions: {count}; {linkage}").format(count=detail, linkage=_describe_linkage(linkage)),
             allowed=_("without drawings")

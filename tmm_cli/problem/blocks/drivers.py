@@ -42,10 +42,10 @@ def _build_speed_table(section: FileSection, turns: int) -> SpeedTable:
     for k, speed in enumerate(speeds):
         if speed < 0:
             raise ProblemError(
-                _("speeds in a table must not be negative: the driver moves in one sense"),
+                _("speeds in a table must not be negative, as the driver always rotates in one direction"),
                 path=(*path, k, 1),
                 found=quote(keys.speed.table[k][1]),
-                allowed=_("zero or more; for the other sense of rotation turns: cw"),
+                allowed=_("zero or more; for clockwise rotation write turns: cw"),
             )
     if not any(speeds):
         raise ProblemError(_("the speed of the driver is zero in all rows"), path=path, key=True)
@@ -53,8 +53,8 @@ def _build_speed_table(section: FileSection, turns: int) -> SpeedTable:
     squares = InterpolationTable(angles, tuple(speed * speed for speed in speeds), keys.speed.between, closed)
     row, least = _find_least(squares)
     if least < -ROUNDING_OF_REST * float(to_float(max(speeds))) ** 2:
-        below = _("the smooth curve through the squares of the speeds falls below zero between this row and the next")
-        angle, allowed = quote(keys.speed.table[row][0]), _("between: linear, or more rows between these two")
+        below = _("the smooth curve through the squared speeds falls below zero between this row and the next")
+        angle, allowed = quote(keys.speed.table[row][0]), _("write between: linear, or add rows between these two")
         raise ProblemError(below, path=(*path, row, 0), found=angle, allowed=allowed)
     if not isinstance(keys.acceleration, schema.Speeds):
         return SpeedTable(squares)
@@ -98,7 +98,7 @@ def _is_closed(section: FileSection, key: str, angles: tuple[Any, ...], values: 
             _("the table covers the whole cycle, but its last value differs from the first"),
             path=(*path, len(table) - 1, 1),
             found=quote(table[-1][1]),
-            allowed=_("{first}, the value of the first row").format(first=table[0][1]),
+            allowed=_("{first}, as in the first row").format(first=table[0][1]),
         )
     return True
 
@@ -135,7 +135,7 @@ def build_drivers(shape: schema.File, members: LinksAndPairs, values: ValueReade
     for section in sections:
         driver = _build_driver(section, members, section is sections[0])
         if any({driver.link, driver.base} == {d.link, d.base} or driver.link == d.link for d in drivers):
-            raise section.refusal("link", _("this link has a driver already"), quote(driver.link))
+            raise section.refusal("link", _("this link already has a driver"), quote(driver.link))
         drivers.append(driver)
     lead, length = drivers[0], _linkage_size(members.links)
     for section, driver in zip(sections[1:], drivers[1:], strict=True):
@@ -143,10 +143,10 @@ def build_drivers(shape: schema.File, members: LinksAndPairs, values: ValueReade
         if first > 0 and rate > MAX_SPEED_RATIO * first:
             faster = _("this driver is more than 100 times faster than the first one")
             raise section.refusal(
-                "speed", faster, str(section.keys.speed), _("the fastest driver as the first of the list")
+                "speed", faster, str(section.keys.speed), _("write the fastest driver first in the list")
             )
     if len(drivers) > 1 and lead.rate == 0:
-        still = _("the first driver numbers the positions, so its speed must not be zero")
+        still = _("positions are numbered along the motion of the first driver, so its speed must not be zero")
         raise sections[0].refusal("speed", still, str(sections[0].keys.speed))
     return tuple(drivers)
 
@@ -170,10 +170,10 @@ def _build_driver(section: FileSection, members: LinksAndPairs, first: bool) -> 
     by_angle = isinstance(keys.speed, schema.Speeds)
     if by_angle and (not turns or not first or section.path != ("driver",)):
         raise section.refusal(
-            "speed", _("a table of speeds is possible only if there is one driver and it is a crank"), at_key=True
+            "speed", _("a table of speeds is allowed only for a single driver that is a crank"), at_key=True
         )
     if by_angle != isinstance(keys.acceleration, schema.Speeds) and keys.acceleration != 0:
-        apart = _("speed and acceleration must be given in the same way: two values at position 0, or two tables")
+        apart = _("give speed and acceleration in the same way: as two values at position 0, or as two tables")
         raise section.refusal("acceleration", apart, at_key=True)
     speed = _mean_speed(section) if by_angle else section.number("speed", ANGULAR_SPEED if turns else SPEED)
     acceleration = 0.0
@@ -185,17 +185,17 @@ def _build_driver(section: FileSection, members: LinksAndPairs, first: bool) -> 
     if keys.end is not None:
         section.known_name("end", members.links[link].points, f"point of link {link}")
         if keys.end == pivot:
-            has_no_arm = _("a balancing force at the pivot {point} has no moment arm").format(point=pivot)
+            has_no_arm = _("a balancing force applied at the pivot {point} has no moment arm").format(point=pivot)
             raise section.refusal("end", has_no_arm, quote(keys.end), _("another point of the link"))
     if first == (keys.at is not None):
         raise section.refusal(
             "at",
             _(
-                "the coordinate of the first driver in the sketch is given in `sketch`, that of each further "
-                "driver here"
+                "in the sketch, the coordinate of the first driver is given in the block `sketch`, and those of "
+                "the other drivers here"
             ),
             at_key=True,
-            allowed=_("for the first driver sketch: {at: 30 deg}, for the others at: 30 deg"),
+            allowed=_("for the first driver: sketch: {at: 30 deg}; for the others: at: 30 deg"),
         )
     at = 0.0 if keys.at is None else section.number("at", want)
     stroke = None
@@ -205,7 +205,7 @@ def _build_driver(section: FileSection, members: LinksAndPairs, first: bool) -> 
         )
         if not low < high:
             raise section.refusal(
-                "stroke", _("the first end of the stroke must be less than the second"), str(keys.stroke)
+                "stroke", _("the first coordinate of the stroke must be less than the second"), str(keys.stroke)
             )
         stroke = (low, high)
     return Driver(
@@ -229,7 +229,7 @@ def build_cycle(shape: schema.File, driver: Driver, values: ValueReader) -> int:
         return 1
     if driver.kind != "turn":
         raise ProblemError(
-            _("a cycle is given in turns of the crank, and this driver is a slider"),
+            _("a cycle is given in crank turns, but this driver is a slider"),
             path=("cycle",),
             found=quote(shape.cycle),
         )
@@ -240,7 +240,7 @@ def build_cycle(shape: schema.File, driver: Driver, values: ValueReader) -> int:
             _("a cycle must be a whole number of turns"),
             path=("cycle",),
             found=quote(shape.cycle),
-            allowed=_("2 turns, or 720 deg; largest number of turns: {most}").format(most=MOST_TURNS),
+            allowed=_("e.g. 2 turns or 720 deg; largest number of turns: {most}").format(most=MOST_TURNS),
         )
     return whole
 
@@ -272,7 +272,7 @@ def build_sketch(shape: schema.File, links: dict[str, Link], driver: Driver, val
         else:
             values.known_name(name, {**owners, **links}, path, "point or link", key=True)
             raise ProblemError(
-                _("in a sketch a point is given by coordinates and a link by an angle"),
+                _("in a sketch, a point is given by coordinates and a link by an angle"),
                 path=path,
                 found=quote(value),
                 allowed="[x, y]" if name in owners else _("an angle"),

@@ -51,7 +51,7 @@ class LinksAndPairs:
         hinges = {h.point for h in self.hinges}
         free = next((p for p in self.links[link].points if p not in hinges), None)
         if base == FRAME and free is not None and "R" in kinds:
-            joined[_("for a hinge on the frame, points: {{{point}: [x, y]}}").format(point=free)] = None
+            joined[_("for a hinge on the frame, write points: {{{point}: [x, y]}}").format(point=free)] = None
         return ProblemError(
             _("link {link} has no suitable pair with link {base}").format(link=link, base=base),
             path=path,
@@ -83,13 +83,13 @@ def _attach_links(hinges: tuple[Hinge, ...], shape: schema.File, values: ValueRe
         if len(links_at[point]) == 2:
             raise section.refusal(
                 "",
-                _("this hinge joins only two links, so there is nothing to attach: they form one pair"),
+                _("this hinge joins only two links, which form one pair, so no attachment is needed"),
                 ", ".join(links_at[point]),
             )
         if hinge.attached_to not in links_at[point]:
             raise section.refusal(
                 "attached_to",
-                _("link {link} is not in hinge {point}").format(link=hinge.attached_to, point=point),
+                _("link {link} does not belong to hinge {point}").format(link=hinge.attached_to, point=point),
                 found=quote(hinge.attached_to),
                 allowed=", ".join(links_at[point]),
             )
@@ -107,7 +107,7 @@ def refuse_attachments(linkage: Linkage, shape: schema.File, values: ValueReader
             allowed = [link for link in hinge.links if _keeps_groups(linkage, hinge, link)]
             raise FileSection(shape.hinges[hinge.point], ("hinges", hinge.point), values).refusal(
                 "attached_to",
-                _("with the links attached to {link} the mechanism is not divided into the same groups").format(
+                _("if the links are attached to {link}, the mechanism splits into other Assur groups").format(
                     link=hinge.attached_to
                 ),
                 found=quote(hinge.attached_to),
@@ -174,13 +174,15 @@ class _LinkReader:
         if len(names) > 2:
             raise section.refusal(
                 "points",
-                _("a link with three or more points needs their coordinates in the axes of the link"),
+                _("for a link with three or more points, give their coordinates in the axes of the link"),
                 ", ".join(names),
                 f"{{{names[0]}: [0, 0], {names[1]}: [x, 0], {names[2]}: [x, y]}}",
             )
         if len(names) < 2:
             if section.keys.length is not None:
-                raise section.refusal("length", _("`length` is the distance between two points, and this link has one"))
+                raise section.refusal(
+                    "length", _("`length` is the distance between two points, but this link has only one")
+                )
             return dict.fromkeys(names, 0j)
         if section.keys.length is None:
             allowed = _("length: the distance from {first} to {second}").format(first=names[0], second=names[1])
@@ -242,7 +244,9 @@ class _LinkReader:
         if along is None and not placed and carrier != FRAME and len(points) == 2:
             along = "-".join(points)
         if along is not None and placed:
-            raise section.refusal("along", _("`along` already determines `through` and `angle`; remove either"))
+            raise section.refusal(
+                "along", _("`along` already determines `through` and `angle`; remove one or the other")
+            )
         ends = None
         if along is not None:
             first, second = ends = self.values.two_points(along, points, (*section.path, "along"))
@@ -252,7 +256,9 @@ class _LinkReader:
             angle = 0.0 if keys.angle is None else section.number("angle", ANGLE)
         else:
             allowed = _("along: CD, or through: [x, y] and angle")
-            raise section.refusal("through", _("the line of this guide is not given"), allowed=allowed)
+            raise section.refusal(
+                "through", _("the position and direction of this guide are not given"), allowed=allowed
+            )
         return through + 1j * section.number("offset", LENGTH) * unit_vector(angle), angle, ends
 
 
@@ -271,7 +277,7 @@ def _refuse_lookalikes(shape: schema.File) -> None:
         other = alike.setdefault(to_latin(name), name)
         if other != name:
             raise ProblemError(
-                _("this name looks like another one, but is written with other letters"),
+                _("this name looks like another one but is written with different letters"),
                 path=named[name],
                 found=quote(name),
                 near=other,
@@ -288,7 +294,7 @@ def refuse_unused(shape: schema.File, data: dict[str, Any], members: LinksAndPai
     for name in shape.links:
         if name not in joined:
             raise ProblemError(
-                _("this link is joined to nothing"),
+                _("this link is not joined to any other link"),
                 path=("links", name),
                 found=", ".join(links[name].points),
                 allowed=_("a point shared with another link or the frame, or `slides`"),
@@ -318,8 +324,8 @@ def refuse_unused(shape: schema.File, data: dict[str, Any], members: LinksAndPai
                 path=path,
                 found=quote(point),
                 allowed=_(
-                    "a point of another link or the frame; a point that is only observed is given under `also`, with "
-                    "coordinates"
+                    "a point that another link or the frame also has; a point of interest that forms no pair belongs "
+                    "under `also`, with coordinates"
                 ),
                 near=nearest_name(point, [p for p in everything if p != point and p not in links[name].points]),
                 key=name == FRAME,

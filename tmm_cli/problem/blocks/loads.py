@@ -69,7 +69,7 @@ class TabulatedKeys(Strict):
     resists: Value | None = Field(
         default=None, description="instead of size: constant friction, directed against the motion of the point or link"
     )
-    angle: Value | None = Field(default=None, description="direction of the force from the x axis")
+    angle: Value | None = Field(default=None, description="direction of the force: angle from the x axis")
     against: Against | None = Field(
         default=None,
         description=(
@@ -84,7 +84,7 @@ class TabulatedKeys(Strict):
         default=None,
         min_length=2,
         max_length=10_000,
-        description="rows [argument, value]; two rows with the same argument are a jump",
+        description="rows [argument, value]; two rows with the same argument mean a jump",
     )
     between: Literal["linear", "step", "smooth"] = Field(
         default="linear",
@@ -135,12 +135,12 @@ class LoadKeys(Strict):
     )
     pressure: TabulatedKeys | None = Field(
         default=None,
-        description="pressure instead of force: {size, angle} or {angle, against, table}; needs `area` or `bore`",
+        description="pressure, instead of force: {size, angle} or {angle, against, table}; requires `area` or `bore`",
     )
     area: Value | None = Field(default=None, description="area on which the pressure acts")
     bore: Value | None = Field(default=None, description="diameter of the piston, instead of area")
     axes: Literal["drawing", "link"] = Field(
-        default="drawing", description="drawing: the force keeps its direction; link: it rotates with the link"
+        default="drawing", description="drawing: the force keeps its direction; link: the force rotates with the link"
     )
     when: When = Field(
         default="always",
@@ -185,7 +185,7 @@ def _build_load(name: str, section: FileSection, linkage: Linkage) -> LoadRecord
     if both and pushes.resists != turns.resists:
         raise section.refusal(
             "",
-            _("the force and the moment of one load must both have `resists`, or neither"),
+            _("either both the force and the moment of a load have `resists`, or neither does"),
             "both",
             _("two separate loads"),
         )
@@ -274,7 +274,7 @@ def _build_pressure(load: FileSection, linkage: Linkage) -> _LoadComponent:
     if section.keys.resists is not None:
         raise section.refusal(
             "resists",
-            _("a pressure needs a direction; `resists` is for forces and moments"),
+            _("a pressure needs a direction; `resists` can be used only for forces and moments"),
             allowed=_("angle: 180 deg"),
             at_key=True,
         )
@@ -295,12 +295,12 @@ def _build_sized(
     """
     keys: TabulatedKeys = section.keys
     if angled == (keys.angle is None):
-        message = _("a force given by `size` or `table` needs `angle`; a moment has no `angle`")
+        message = _("a force given by `size` or `table` needs the key `angle`; a moment must not have it")
         raise section.refusal("angle", message, allowed=_("angle: 180 deg"))
     if (keys.against is None) != (keys.table is None):
         raise section.refusal(
             "against",
-            _("`against` and `table` go together: `against` names the quantity in the first column"),
+            _("`against` and `table` must be given together: `against` names the quantity in the first column"),
             allowed=_(
                 "against: stroke, share of stroke, crank angle or crank turn, together with table: [[argument, "
                 "value], ...]"
@@ -315,7 +315,9 @@ def _build_sized(
 def _crank_window(section: FileSection, linkage: Linkage) -> tuple[float, float]:
     """Return the two crank angles (rad) between which a load acts."""
     if linkage.driver.kind == "slide":
-        raise section.refusal("when", _("`when` with two angles needs a crank, but this driver is a slider"))
+        raise section.refusal(
+            "when", _("two angles under `when` are possible only for a crank, but this driver is a slider")
+        )
     cycle = 2 * np.pi * linkage.turns
     low, high = (
         section.values.number(value, ANGLE, (*section.path, "when", k)) for k, value in enumerate(section.keys.when)
@@ -327,7 +329,7 @@ def _crank_window(section: FileSection, linkage: Linkage) -> tuple[float, float]
                 _("the crank does not reach this angle within a cycle"),
                 path=(*section.path, "when", k),
                 found=quote(section.keys.when[k]),
-                allowed=_("at most {end}; for a longer cycle of loads write cycle: {turns} turns").format(
+                allowed=_("at most {end}; if the loads repeat after a longer cycle, write cycle: {turns} turns").format(
                     end=end, turns=max(2, math.ceil(place / math.tau))
                 ),
             )
@@ -335,9 +337,9 @@ def _crank_window(section: FileSection, linkage: Linkage) -> tuple[float, float]
     if length < SAME_DRIVER_POSITION or cycle - length < SAME_DRIVER_POSITION:
         raise section.refusal(
             "when",
-            _("the two angles are equal, or a whole cycle apart: the load would act never or always"),
+            _("the two angles are equal or differ by a whole cycle, so the load would act either never or always"),
             str(section.keys.when),
-            _("two different angles less than {end} apart, or when: always").format(end=end),
+            _("two different angles that differ by less than {end}, or when: always").format(end=end),
         )
     return low, high
 
@@ -348,7 +350,7 @@ def _build_table(section: FileSection, want: Dimension, linkage: Linkage, loaded
     if linkage.driver.kind == "slide":
         raise section.refusal(
             "against",
-            _("a table of a load needs a crank as the driver, but this driver is a slider"),
+            _("a load can be given by a table only if the driver is a crank, but this driver is a slider"),
             str(keys.against),
             _("size: a single value"),
         )
@@ -391,7 +393,7 @@ def _refuse_beyond_stroke(section: FileSection, shares: Sequence[Any]) -> None:
                 _("this is not a fraction of the stroke"),
                 path=(*section.path, "table", row, 0),
                 found=quote(section.keys.table[row][0]),
-                allowed=_("0 to 1, or 0 to 100 %; for lengths or angles of the stroke write against: stroke"),
+                allowed=_("0 to 1, or 0 to 100 %; to give lengths or angles instead, write against: stroke"),
             )
 
 

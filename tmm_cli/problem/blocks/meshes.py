@@ -31,7 +31,7 @@ class GearKeys(Strict):
         min_length=2, max_length=2, description="the two gears; one may be the frame (a fixed gear)"
     )
     carrier: Name = Field(
-        default="0", description="link that carries both axes; if it is not the frame, the gears are planetary"
+        default="0", description="link that carries both axes; if it is not the frame, the gears form a planetary train"
     )
     teeth: list[Value] | None = Field(
         default=None, min_length=2, max_length=2, description="numbers of teeth of both gears"
@@ -43,11 +43,12 @@ class GearKeys(Strict):
         default=None, description="ratio of the first radius to the second, instead of teeth or radii"
     )
     module: Value | None = Field(
-        default=None, description="module; with teeth it is checked against the distance of the axes"
+        default=None, description="module; together with teeth it is checked against the centre distance"
     )
     inner: bool = Field(default=False, description="true if one of the gears is internal")
     offset: Value = Field(
-        default=0, description="angle of the second gear relative to the carrier when that of the first is zero"
+        default=0,
+        description="angle of the second gear relative to the carrier when the angle of the first gear is zero",
     )
     pressure: Value = Field(default="20 deg", description="pressure angle of the teeth")
 
@@ -62,7 +63,8 @@ class RackKeys(Strict):
     side: Literal["left", "right"] | None = Field(
         default=None,
         description=(
-            "side of the guide of the rack on which the gear lies; needed if the axis of the gear lies on the guide"
+            "side of the rack on which the gear lies, looking along the guide of the rack; required if the "
+            "axis of the gear lies on the guide"
         ),
     )
     offset: Value = Field(default=0, description="displacement of the rack when the angle of the gear is zero")
@@ -72,8 +74,8 @@ class RackKeys(Strict):
 class CamPieceKeys(Strict):
     """A segment of a cam's law of motion."""
 
-    over: Value = Field(description="angle of rotation of the cam during this part")
-    rise: Value = Field(default=0, description="rise of the follower; negative: return, zero: dwell")
+    over: Value = Field(description="angle of rotation of the cam during this segment")
+    rise: Value = Field(default=0, description="rise of the follower; negative for a return, zero for a dwell")
     law: Literal["linear", "parabolic", "cosine", "sine", "3-4-5", "4-5-6-7"] = "sine"
 
 
@@ -85,22 +87,25 @@ class CamKeys(Strict):
         description="link that is the follower: it slides on the carrier, or swings about a hinge on the frame"
     )
     carrier: Name = Field(
-        default="0", description="link that carries both; on a moving link the cam changes a length of that link"
+        default="0",
+        description=(
+            "link that carries both the cam and the follower; if it moves, the cam changes the length of that link"
+        ),
     )
     law: list[CamPieceKeys] = Field(
-        min_length=1, max_length=100, description="law of motion, part by part over a full turn"
+        min_length=1, max_length=100, description="law of motion: segments that add up to a full turn"
     )
     start: Value = Field(
-        default=0, description="angle of the cam relative to the carrier at which the first part begins"
+        default=0, description="angle of the cam relative to the carrier at which the first segment begins"
     )
     offset: Value = Field(
-        default=0, description="displacement (or angle) of the follower at the beginning of the first part"
+        default=0, description="displacement (or angle) of the follower at the beginning of the first segment"
     )
     roller: Name | None = Field(
         default=None,
         description=(
-            "number of the roller on the follower; the structural analysis counts it as a link, it does not "
-            "affect the motion"
+            "number of the roller on the follower; the structural analysis counts the roller as a link, but it "
+            "does not affect the motion"
         ),
     )
 
@@ -167,9 +172,9 @@ def _refuse_locked_trains(gears: list[Mesh]) -> None:
             or abs(angle - other_phase) > IN_PHASE
         ):
             raise ProblemError(
-                _("gear pair {name} contradicts the ones before it: the gears lock each other").format(name=gear.name),
+                _("gear pair {name} contradicts the pairs before it: the gears lock each other").format(name=gear.name),
                 path=("gears", gear.name),
-                allowed=_("ratios and offsets that agree around the closed train, or one gear pair less"),
+                allowed=_("ratios and offsets that agree around the closed train, or one gear pair fewer"),
                 key=True,
             )
 
@@ -229,18 +234,18 @@ def _radius_ratio(section: FileSection, keys: GearKeys, distance: float) -> floa
     if keys.ratio is not None:
         ratios["ratio"] = section.positive("ratio", NUMBER)
     if not ratios or (keys.module is not None and teeth is None):
-        message = _("expected `teeth`, `radii` or `ratio`; together with `module` it must be `teeth`")
+        message = _("one of the keys `teeth`, `radii` or `ratio` is required; with `module`, `teeth` is required")
         raise section.refusal("", message, allowed=_("teeth: [20, 40]"))
     ratio = next(iter(ratios.values()))
     i, j = keys.between
     if any(abs(other - ratio) > PITCHES_TOUCH * ratio for other in ratios.values()):
         raise section.refusal(
             "",
-            _("contradictory ratios of gears {i} and {j}").format(i=i, j=j),
+            _("the data of gears {i} and {j} give contradictory ratios").format(i=i, j=j),
             ", ".join(f"by {key} {value:.6g}" for key, value in ratios.items()),
         )
     if not 1 / MAX_GEAR_RATIO <= ratio <= MAX_GEAR_RATIO or (keys.inner and ratio == 1):
-        raise section.refusal("", _("no pair of gears can have this ratio"), f"{ratio:.6g}")
+        raise section.refusal("", _("a pair of gears cannot have this ratio"), f"{ratio:.6g}")
     if keys.module is not None and teeth is not None and radii is None:
         module = section.positive("module", LENGTH)
         radii = [module * number / 2 for number in teeth]
@@ -253,10 +258,10 @@ def _radius_ratio(section: FileSection, keys: GearKeys, distance: float) -> floa
             )
             raise section.refusal(
                 "",
-                _("gears {i} and {j} do not mesh: the distance of their axes is {distance}").format(
+                _("gears {i} and {j} do not mesh: their centre distance is {distance}").format(
                     i=i, j=j, distance=apart
                 ),
-                allowed=_("a distance of {wanted}").format(wanted=needed),
+                allowed=_("a centre distance of {wanted}").format(wanted=needed),
             )
     return ratio if keys.inner else -ratio
 
@@ -312,7 +317,7 @@ def _build_cam(sense: int, name: str, section: FileSection, members: LinksAndPai
     slide = members.slide(follower, carrier)
     if slide is None and carrier != FRAME:
         text = _("on a moving carrier the follower must slide, but link {follower} has no guide on link {carrier}")
-        allowed = _("slides: {{on: {carrier}, along: ...}} of link {follower}")
+        allowed = _("for link {follower} write slides: {{on: {carrier}, along: ...}}")
         names = {"follower": follower, "carrier": carrier}
         raise section.refusal("follower", text.format(**names), allowed=allowed.format(**names))
     if keys.roller is not None and keys.roller in (FRAME, *members.links):
@@ -327,7 +332,7 @@ def _build_cam(sense: int, name: str, section: FileSection, members: LinksAndPai
     if abs(turn - 2 * math.pi) > 1e-9:
         total = f"{math.degrees(turn):.6g} deg"
         raise section.refusal(
-            "law", _("the parts of the law of motion do not add up to a full turn of the cam"), total, "360 deg"
+            "law", _("the segments of the law of motion do not add up to a full turn of the cam"), total, "360 deg"
         )
     if abs(rise) > 1e-9 * max(abs(p.rise) for p in pieces):
         allowed = _("values of `rise` that add up to 0")

@@ -66,7 +66,7 @@ def build_dynamics(shape: schema.File, linkage: Linkage, values: ValueReader) ->
     if delta is not None and delta >= 1:
         raise section.refusal(
             "delta",
-            _("no machine runs with so large a fluctuation of speed"),
+            _("no machine can run with such a large fluctuation of speed"),
             quote(keys.delta),
             _("less than 1; usual values are 1/5 to 1/100"),
         )
@@ -105,7 +105,7 @@ def _build_run(
             raise whole.refusal(
                 key,
                 _(
-                    "this key belongs to steady running: a single run has no mean speed and no coefficient of "
+                    "this key applies only to steady running: a single run has no mean speed and no coefficient of "
                     "fluctuation"
                 ),
                 at_key=True,
@@ -119,10 +119,10 @@ def _build_run(
                 key,
                 _("this run is too long"),
                 str(getattr(keys, key)),
-                _("an angle of no more than {most} turns from the x axis").format(most=MAX_RUN_TURNS),
+                _("an angle from the x axis of at most {most} turns").format(most=MAX_RUN_TURNS),
             )
     if first is not None and first == last:
-        raise section.refusal("to", _("the run begins and ends at the same position of the driver"), str(keys.to))
+        raise section.refusal("to", _("the run begins and ends at the same driver coordinate"), str(keys.to))
     drive = None
     if isinstance(keys.drive, optional_keys.ProfileKeys):
         drive = _build_profile(FileSection(keys.drive, (*section.path, "drive"), section.values), place, effort)
@@ -138,7 +138,7 @@ def _build_profile(section: FileSection, place: Dimension, effort: Dimension) ->
     if keys.area is not None and effort == MOMENT:
         raise section.refusal(
             "area",
-            _("a pressure acts on a piston, but this driver is a crank"),
+            _("a pressure can drive only a piston, but this driver is a crank"),
             quote(keys.area),
             _("a table of moments without `area`, or a driven slider"),
             at_key=True,
@@ -161,10 +161,10 @@ def _build_motor(section: FileSection) -> MotorCharacteristic:
     required = MOTOR_KEYS[keys.kind]
     for key in required:
         if getattr(keys, key) is None:
-            raise section.refusal("", _("a motor of this kind is specified by other keys"), allowed=", ".join(required))
+            raise section.refusal("", _("a motor of this kind requires other keys"), allowed=", ".join(required))
     for key in keys.model_fields_set - {"kind", "ratio", *required}:
         raise section.refusal(
-            key, _("a motor of this kind is specified by other keys"), quote(key), ", ".join(required), at_key=True
+            key, _("a motor of this kind requires other keys"), quote(key), ", ".join(required), at_key=True
         )
     if keys.kind == "linear":
         return LinearMotor(ratio * section.positive("stall", MOMENT), section.positive("free", ANGULAR_SPEED) / ratio)
@@ -213,9 +213,9 @@ def build_balancing(shape: schema.File, linkage: Linkage, values: ValueReader) -
         if not guides:
             raise section.refusal(
                 "share",
-                _("`share` applies to the force along a guide of the frame, and this mechanism has no such guide"),
+                _("`share` applies to the force along a guide on the frame, but this mechanism has no such guide"),
                 str(keys.share),
-                _("leave out `share`: then the force counts equally in all directions"),
+                _("omit `share`; the force then has the same weight in all directions"),
             )
         along = unit_vector((output if output in guides else guides[0]).direction)
     rotor = None if keys.rotor is None else _build_rotor(keys.rotor, values)
@@ -237,8 +237,8 @@ def _build_counterweight_place(
         raise section.refusal(
             "radius",
             _(
-                "the point about which this counterweight is placed moves, so its mass must be known: `radius` is "
-                "missing"
+                "the point from which the radius of this counterweight is measured moves, so the mass must be "
+                "known: `radius` is missing"
             ),
             allowed=_("give `radius`, e.g. 80 mm, or in `about` the hinge of this link on the frame"),
         )
@@ -296,7 +296,7 @@ def _build_wheel(
     if link not in turning:
         raise section.refusal(
             "moves_with",
-            _("the wheel must move with a link that is hinged to the frame"),
+            _("the link that moves the wheel must be hinged to the frame"),
             quote(link),
             ", ".join(turning),
         )

@@ -18,8 +18,8 @@ class MotorKeys(Strict):
 
     kind: Literal["linear", "asynchronous"] = Field(
         description=(
-            "kind of motor. linear: direct current, straight characteristic; asynchronous: induction, by the "
-            "Kloss formula"
+            "kind of motor. linear: DC motor with a straight characteristic; asynchronous: induction motor by "
+            "the Kloss formula"
         )
     )
     ratio: Value = Field(default=1, description="ratio of the motor speed to the driver speed")
@@ -36,7 +36,7 @@ class FlywheelKeys(Strict):
 
     inertia: Value | None = Field(
         default=None,
-        description="moment of inertia of a given flywheel about its own shaft; without it the flywheel is sized",
+        description="moment of inertia of a given flywheel about its shaft; if omitted, the flywheel is sized",
     )
     ratio: Value = Field(default=1, description="ratio of the speed of the flywheel shaft to the driver speed")
     shape: Literal["disk", "rim"] = "disk"
@@ -50,15 +50,16 @@ class ProfileKeys(Strict):
 
     against: Literal["time", "way"] = Field(
         description=(
-            "first column of the table. time: seconds from the start; way: displacement of the driver from the start"
+            "quantity in the first column of the table. time: seconds from the start; way: displacement of the "
+            "driver from the start"
         )
     )
     table: list[Vector] = Field(
         min_length=2,
         max_length=10_000,
-        description="rows [argument, value]; two rows with the same argument are a jump",
+        description="rows [argument, value]; two rows with the same argument mean a jump",
     )
-    area: Value | None = Field(default=None, description="area of the piston; the table then contains pressures")
+    area: Value | None = Field(default=None, description="area of the piston; if given, the table contains pressures")
 
 
 class RunKeys(Strict):
@@ -106,12 +107,13 @@ class CounterweightKeys(Strict):
     about: Place | None = Field(
         default=None,
         description=(
-            "point of the link about which the counterweight is placed; default: the hinge on the frame, else "
-            "the first point"
+            "point of the link from which the radius of the counterweight is measured; default: the hinge on "
+            "the frame, otherwise the first point"
         ),
     )
     radius: Value | None = Field(
-        default=None, description="radius of the centre of mass of the counterweight; with it the mass is reported too"
+        default=None,
+        description="radius of the centre of mass of the counterweight; if given, the mass is also computed",
     )
 
 
@@ -131,7 +133,7 @@ class RotorPlaneKeys(Strict):
     radius: Value | None = Field(
         default=None,
         description=(
-            "radius of the balancing mass; with it the mass is reported, not only the product of mass and radius"
+            "radius of the balancing mass; if given, the mass is computed and not only the product of mass and radius"
         ),
     )
 
@@ -158,9 +160,9 @@ class BalancingKeys(Strict):
     share: Value | None = Field(
         default=None,
         description=(
-            "weight of the force along the guide of the output, 0 to 1; the force across it has the rest. In a "
-            "crank-slider: the fraction of the reciprocating masses that is balanced. Without it both "
-            "directions count equally"
+            "weight, 0 to 1, of the force along the guide of the output; the transverse force has the rest. In "
+            "a crank-slider it is the balanced fraction of the reciprocating masses. If omitted, both "
+            "directions have the same weight"
         ),
     )
     rotor: RotorKeys | None = None
@@ -176,7 +178,7 @@ Settings = Annotated[list[Values], Field(min_length=1, max_length=12)]
 class WheelKeys(Strict):
     """A ratchet wheel, a shaft on a one-way clutch, or a slotted flange, coaxial with the link that moves it."""
 
-    moves_with: Name = Field(description="link that carries the wheel along; it must be hinged to the frame")
+    moves_with: Name = Field(description="link that moves the wheel; it must be hinged to the frame")
     when: Literal["forward", "backward", "working stroke", "idle stroke"] = Field(
         description=(
             "when the wheel moves: while that link rotates forward (counterclockwise) or backward, or during a "

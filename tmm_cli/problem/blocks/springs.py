@@ -34,7 +34,7 @@ class SpringKeys(Strict):
     `rate`.
     """
 
-    between: list[Name] = Field(min_length=2, max_length=2, description="two links; the frame may be one")
+    between: list[Name] = Field(min_length=2, max_length=2, description="the two links; one of them may be the frame")
     at: list[Place] | None = Field(
         default=None,
         min_length=2,
@@ -96,7 +96,7 @@ def _build_spring(name: str, keys: SpringKeys, linkage: Linkage, section: FileSe
         if any({i, j} <= set(h.links) and keys.at[0] == keys.at[1] == h.point for h in linkage.hinges):
             raise section.refusal(
                 "at",
-                _("both ends of spring {name} are in hinge {point}: it has no length").format(
+                _("both ends of spring {name} are at hinge {point}, so its length is zero").format(
                     name=name, point=keys.at[0]
                 ),
             )
@@ -113,7 +113,7 @@ def _build_spring(name: str, keys: SpringKeys, linkage: Linkage, section: FileSe
     if twists and abs(free) > math.pi:
         raise section.refusal(
             "free",
-            _("the free angle must be within half a turn; any further winding is given as `preload`"),
+            _("the free angle must not exceed half a turn; enter any further winding as `preload`"),
             found=str(keys.free),
         )
     preload = section.number("preload", MOMENT if twists else FORCE)

@@ -184,7 +184,11 @@ class FileNode:
 
     def _bounded(self, length: int) -> None:
         if length > MAX_ITEMS:
-            raise self.refused(_("too many items or characters: at most {max_length}").format(max_length=MAX_ITEMS))
+            raise self.refused(
+                _("there are too many items or characters; at most {max_length} are allowed").format(
+                    max_length=MAX_ITEMS
+                )
+            )
 
     def pairs(self) -> Iterator[tuple[str, FileNode]]:
         """Yield the keys of a mapping with their values."""

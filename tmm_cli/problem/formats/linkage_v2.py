@@ -53,7 +53,7 @@ class PointConstruction:
             if not isinstance(node.data, str):
                 return node.number()
             node = self.parameters[node.one_of(self.parameters)]
-        raise node.refused(_("the parameters refer to each other in a circle"))
+        raise node.refused(_("the parameters depend on each other in a circle"))
 
     def of(self, step: FileNode, key: str) -> complex:
         """Return the position of the point named under a key of a construction step."""

@@ -146,14 +146,17 @@ def _refuse_wrong_names(saved: PmksFile, file: str) -> None:
     for records in (saved.joints, saved.links):
         if len(records) > MAX_RECORDS:
             raise ProblemError(
-                _("too many items or characters: at most {max_length}").format(max_length=MAX_RECORDS), file=file
+                _("there are too many items or characters; at most {max_length} are allowed").format(
+                    max_length=MAX_RECORDS
+                ),
+                file=file,
             )
     joints, links = [joint.id for joint in saved.joints], [link.id for link in saved.links]
     link_names = {*links, *(name for link in saved.links for name in link.parts)}
     for names in (joints, links):
         for k, name in enumerate(names):
             if name in names[:k]:
-                raise ProblemError(_("this name occurs twice"), found=quote(name), file=file)
+                raise ProblemError(_("this name occurs twice in the file"), found=quote(name), file=file)
     referenced = [(("forces", force.id), force.link) for force in saved.forces]
     referenced += [(("joints", joint.id), joint.carrier) for joint in saved.joints if joint.carrier]
     for path, name in referenced:

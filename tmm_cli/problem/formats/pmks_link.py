@@ -174,7 +174,7 @@ class _LinkRecords:
         x, y, angle = (self._number(path, "J", name, k, text, needed=True) for k, text in enumerate(fields[2:5]))
         carrier, a, b, speed, mass, *more = [*fields[5:], "", "", "", "", ""][: max(5, len(fields) - 5)]
         if any("~" in text for text in (mass, *more)) and len(more) == 2:  # static, kinetic, radius of the journal
-            left.append(_("Friction of joint {name}.").format(name=name))
+            left.append(_("The friction of joint {name}.").format(name=name))
             mass, more = "", []
         welded, __, *unknown = [*more, "", ""]
         if welded not in ("", "0", "Fe") or any(unknown):
@@ -303,9 +303,7 @@ def _read_entries(tail: str, file: str) -> tuple[dict[tuple[str, str, int], floa
             raise ProblemError(_("gears of PMKS+ are not supported"), found=quote(entry), file=file)
         elif tag in "ST":
             lost = (
-                _("Data of the synthesis in PMKS+.")
-                if tag == "S"
-                else _("Materials, cross-sections and their load cases.")
+                _("The data for synthesis in PMKS+.") if tag == "S" else _("Materials, cross-sections and load cases.")
             )
             if lost not in left:
                 left.append(lost)
@@ -315,4 +313,6 @@ def _read_entries(tail: str, file: str) -> tuple[dict[tuple[str, str, int], floa
 
 
 def _unknown_entry_error(entry: str, file: str) -> ProblemError:
-    return ProblemError(_("unknown entry"), found=quote(entry), allowed="J L F C H K P S T", file=file)
+    return ProblemError(
+        _("this entry of the web link is unknown"), found=quote(entry), allowed="J L F C H K P S T", file=file
+    )

@@ -32,7 +32,7 @@ def read(text: str, file: str) -> ImportedMechanism:
     joints: dict[str, FileNode] = {}
     for joint in top["joints"].items():
         if joints.setdefault(joint["id"].text(), joint) is not joint:
-            raise joint["id"].refused(_("this name occurs twice"))
+            raise joint["id"].refused(_("this name occurs twice in the file"))
     links = top["links"].items()
     frame = _frame_joints(joints, links)
     positions = {name: _joint_place(joint) for name, joint in joints.items()}
@@ -43,7 +43,7 @@ def read(text: str, file: str) -> ImportedMechanism:
     for link in links:
         kind, name = link["type"].one_of(LINK_TYPES), link["id"].text()
         if name in (body.name for body in bodies):
-            raise link["id"].refused(_("this name occurs twice"))
+            raise link["id"].refused(_("this name occurs twice in the file"))
         if kind == "ground":
             continue
         names = [joint_node.one_of(joints) for joint_node in link["joints"].items()]
