@@ -253,7 +253,7 @@ def test_what_cannot_be_asked_is_refused(options):
     [
         ("{OA: [90, 30]}", "the first bound must be smaller than the second"),
         ("{OA: [-90, 30]}", "a length cannot be negative"),
-        ("{OA: [30]}", "at least 2 expected here"),
+        ("{OA: [30]}", "at least 2 are required here"),
         ("{n1: [30, 40]}", "is given, although"),
     ],
 )
