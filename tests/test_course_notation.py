@@ -167,7 +167,7 @@ def test_the_note_follows_the_steps_of_the_guidelines_where_the_file_asks(tmp_pa
         "4.4.1 Group of links 4, 5",
         "4.4.2 Group of links 2, 3",
         "4.4.3 Input link 1",
-        "4.5 Zhukovsky lever",
+        "4.5 Check by the Zhukovsky lever",
     )
     body = text[text.rindex("4 Force analysis") :]
     places = [body.index(step) for step in steps]

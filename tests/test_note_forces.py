@@ -109,7 +109,7 @@ def test_groups_come_from_the_last_to_the_driving_link():
         "Group of links 4, 5",
         "Group of links 2, 3",
         "Input link 1",
-        "Zhukovsky lever",
+        "Check by the Zhukovsky lever",
         "Forces in all positions",
     ]
 

@@ -407,8 +407,10 @@ def test_several_primary_mechanisms_have_as_many_freedoms_together():
         (
             "shaper",
             (
-                "Type of chain and of structure: closed, complex: the driver and "
-                "several groups, groups of several types.",
+                (
+                    "Type of the kinematic chain and of the structure: closed, complex: the driver and several groups, "
+                    "groups of several types."
+                ),
                 "Number of independent loops K = p − n: 2.",
             ),
         ),
@@ -419,7 +421,7 @@ def test_several_primary_mechanisms_have_as_many_freedoms_together():
             "five-bar",
             (
                 "Primary mechanisms: I(0,1), I(0,4); total W = 2.",
-                "Type of chain and of structure: closed, simple: the driver and one group.",
+                "Type of the kinematic chain and of the structure: closed, simple: the driver and one group.",
             ),
         ),
         # p = 5 + 1 on n = 4 links

@@ -188,9 +188,15 @@ def test_explain_says_the_structure_in_sentences_for_a_note():
         "(5, 1в), A' 3-2 (5, 1п), x 0-5 (5, 1п).",
         "Link 1 (crank) is an input link: 8.587 rad/s = 82 rpm, counterclockwise.",
         "The structural formula is I(0,1) → II(2,3) → II(4,5); the mechanism is of class II.",
-        "Type of chain and of structure: closed, complex: the driver and several groups, groups of several types.",
+        (
+            "Type of the kinematic chain and of the structure: closed, complex: the driver and several groups, "
+            "groups of several types."
+        ),
         "Number of independent loops K = p − n: 2.",
-        "Basic mechanisms it contains: slotted-link 0-1-2-3-0, crank-slider 0-3-4-5-0, six-bar: Watt II.",
+        (
+            "The mechanism contains these basic mechanisms: slotted-link 0-1-2-3-0, crank-slider 0-3-4-5-0, "
+            "six-bar: Watt II."
+        ),
         "Motion of the links: 1: rotates about O; 2: plane motion; 3: rotates about C; 4: plane motion; 5: slides "
         "along guide x.",
         ("Group II(2,3) is of class II, order 2 and type RPR (ВПВ, 3); its external pairs are A (link 1), C (frame)."),

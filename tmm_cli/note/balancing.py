@@ -140,7 +140,8 @@ def write_counterweights(subject: Subject, cycle: BalancedCycle, task: Balancing
         yield write_sentence(
             _(
                 "The mass-radius product {D} = m·r of each counterweight and its angle are chosen so that the mean "
-                "square of the shaking force over the cycle is least; the force depends on them linearly."
+                "square of the shaking force over the cycle is least. The shaking force is a linear function of "
+                "the vectors {D}."
             ),
             D=MASS_RADIUS,
         )
@@ -362,7 +363,7 @@ def _write_correction_mass(subject: Subject, rotor: UnbalancedShaft, corrections
     )
     if abs(correction):
         direction = subject.text(float(np.degrees(np.angle(correction) % (2 * np.pi))))
-        yield write_sentence(_("Its angle is {angle}°."), angle=direction)
+        yield write_sentence(_("The angle of this mass is {angle}°."), angle=direction)
     radius = rotor.planes[k].radius
     if radius:
         mass = Leaf(unbalance, abs(correction)) / Leaf(Symbol("r", name), radius)

@@ -116,7 +116,7 @@ def _write_mobility(structure: Structure) -> Iterable[Block]:
         sliding=str(lower - turning),
     )
     yield ComputedQuantity(W, chebyshev_formula(n, lower, higher), structure.mobility, whole=True)
-    classes = _("In terms of the classes of pairs, W = 3n - 2 p5 - p4 = {count}.")
+    classes = _("With the pairs counted by class, W = 3n - 2 p5 - p4 = {count}.")
     yield paragraph(typeset(classes.format(count=mobility_by_classes((n, lower, higher)))))
     general = _("The generalised formula W = Hn - sum((H - i) p_i) with H = 3 gives {count}.")
     yield paragraph(typeset(general.format(count=generalised_mobility((n, lower, higher)))))
@@ -140,7 +140,10 @@ def _write_mobility(structure: Structure) -> Iterable[Block]:
         )
     if structure.reduction:
         yield write_sentence(
-            _("For the structural formula: {what}. The remaining links and pairs give:"),
+            _(
+                "In the structural formula some links or pairs are left out or merged: {what}. The remaining links "
+                "and pairs give:"
+            ),
             what="; ".join(reduction_sentences(structure)),
         )
         yield ComputedQuantity(W, chebyshev_formula(*structure.count), len(structure.drivers), whole=True)
@@ -156,7 +159,13 @@ def _write_groups(subject: Subject) -> Iterable[Block]:
     structure = subject.results.structure
     if structure.groups:
         head = cells(
-            _("group"), _("class"), _("order"), _("type"), _("internal pairs"), _("external pairs"), _("mobility")
+            _("group"),
+            _("class"),
+            _("order of the group"),
+            _("type"),
+            _("internal pairs"),
+            _("external pairs"),
+            _("mobility"),
         )
         rows = tuple(_group_row(group) for group in structure.groups)
         yield from write_table(
@@ -164,13 +173,15 @@ def _write_groups(subject: Subject) -> Iterable[Block]:
                 "When the input links and the frame are removed, the Assur groups of table {table} remain; the "
                 "mobility of each group is zero."
             ),
-            Rows(_("Assur groups in the order of their connection"), head, rows, "groups"),
+            Rows(_("Assur groups in the order in which they are attached"), head, rows, "groups"),
         )
     yield paragraph(_("The structural formula of the mechanism is:"))
     yield Equation(Words(structure.formula.replace("->", "→")))
     if len(structure.drivers) > 1:
         yield paragraph(_("Primary mechanisms: {names}.").format(names=describe_primary_mechanisms(structure)))
-    yield paragraph(_("Type of chain and of structure: {words}.").format(words=describe_classification(structure)))
+    yield paragraph(
+        _("Type of the kinematic chain and of the structure: {words}.").format(words=describe_classification(structure))
+    )
     yield paragraph(
         typeset(_("Number of independent loops K = p - n: {count}.").format(count=describe_contours(structure)))
     )
@@ -180,7 +191,7 @@ def _write_groups(subject: Subject) -> Iterable[Block]:
     yield write_sentence(text, source=Link("frolov"), number=structure.roman)
     schemes = describe_schemes(structure)
     if schemes:
-        yield paragraph(_("Basic mechanisms it contains: {schemes}.").format(schemes=schemes))
+        yield paragraph(_("The mechanism contains these basic mechanisms: {schemes}.").format(schemes=schemes))
     yield from _draw_parts(subject)
 
 

@@ -49,7 +49,7 @@ def write_synthesis(subject: Subject) -> Iterable[Block]:
     for drawn in task.outcome.drawings:
         sentence = _("The construction is drawn in figure {figure}.")
         if drawn in diagrams[:1]:
-            sentence = _("Figure {figure} shows how the result depends on the free choice.")
+            sentence = _("Figure {figure} shows how the result depends on the freely chosen quantity.")
         elif drawn in diagrams:
             sentence = _("Figure {figure} shows other quantities that depend on this choice.")
         yield from subject.figures("synthesis", sentence, only=f"synthesis-{drawn.name}")
@@ -57,7 +57,7 @@ def write_synthesis(subject: Subject) -> Iterable[Block]:
     yield from subject.figures("synthesis", sentence, only="synthesis-extremes")
     if measured is not None:
         text = _("Table {table} gives the same quantities measured on the mechanism with these dimensions.")
-        rows = note_table(subject, measured, _("Requirements, measured on the mechanism"), "measured", FOUND)
+        rows = note_table(subject, measured, _("Required quantities, measured on the mechanism"), "measured", FOUND)
         yield from write_table(text, rows)
 
 

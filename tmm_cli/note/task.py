@@ -118,7 +118,9 @@ def _dimension_table(subject: Subject) -> Rows:
         for name, link in linkage.links.items()
         if name != FRAME
     )
-    return Rows(_("Links and their dimensions"), cells(_("link"), _("name of the link"), _("sizes")), rows, "sizes")
+    return Rows(
+        _("Links and their dimensions"), cells(_("link"), _("name of the link"), _("dimensions")), rows, "sizes"
+    )
 
 
 def _describe_dimensions(subject: Subject, link: Link) -> Line:
@@ -148,7 +150,7 @@ def _fixed_point_table(subject: Subject) -> Rows:
         if slide.carrier == FRAME:
             angle = subject.value(float(np.ravel(slide.direction)[0]), ANGLE)
             rows.append(cells(_("guide {name}").format(name=slide.name), *_format_point(subject, slide.through), angle))
-    head = cells(_("point"), f"x, {unit}", f"y, {unit}", _("direction"))
+    head = cells(_("point"), f"x, {unit}", f"y, {unit}", _("angle to the x axis"))
     if _has_fixed_guides(subject):
         return Rows(_("Fixed points and guides"), head, tuple(rows), "fixed")
     return Rows(_("Fixed points"), head[:-1], tuple(row[:-1] for row in rows), "fixed")
@@ -184,7 +186,7 @@ def _mass_table(subject: Subject) -> Rows:
 
 def _load_table(subject: Subject) -> Rows:
     linkage = subject.results.linkage
-    head = cells(_("load"), _("on link"), _("point of action"), _("magnitude"), _("acts"))
+    head = cells(_("load"), _("acts on link"), _("point of action"), _("magnitude"), _("when it acts"))
     return Rows(_("Loads"), head, tuple(_load_row(subject, load) for load in linkage.loads), "loads")
 
 

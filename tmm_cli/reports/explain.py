@@ -40,7 +40,7 @@ def narrate_structure(results: Results) -> Iterable[str]:
     structure = results.structure
     yield _mobility_sentence(structure)
     count = (len(structure.links), len(structure.pairs) - structure.higher, structure.higher)
-    yield _("In terms of the classes of pairs, W = 3n - 2 p5 - p4 = {count}.").format(count=mobility_by_classes(count))
+    yield _("With the pairs counted by class, W = 3n - 2 p5 - p4 = {count}.").format(count=mobility_by_classes(count))
     yield _("The generalised formula W = Hn - sum((H - i) p_i) with H = 3 gives {count}.").format(
         count=generalised_mobility(count)
     )
@@ -63,11 +63,13 @@ def narrate_structure(results: Results) -> Iterable[str]:
     )
     if len(structure.drivers) > 1:
         yield _("Primary mechanisms: {names}.").format(names=describe_primary_mechanisms(structure))
-    yield _("Type of chain and of structure: {words}.").format(words=describe_classification(structure))
+    yield _("Type of the kinematic chain and of the structure: {words}.").format(
+        words=describe_classification(structure)
+    )
     yield _("Number of independent loops K = p - n: {count}.").format(count=describe_contours(structure))
     schemes = describe_schemes(structure)
     if schemes:
-        yield _("Basic mechanisms it contains: {schemes}.").format(schemes=schemes)
+        yield _("The mechanism contains these basic mechanisms: {schemes}.").format(schemes=schemes)
     motions = (f"{link}: {describe_link_motion(results, link)}" for link in structure.links)
     yield _("Motion of the links: {motions}.").format(motions="; ".join(motions))
     for sentence in reduction_sentences(structure):

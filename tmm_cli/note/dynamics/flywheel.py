@@ -112,8 +112,8 @@ def write_flywheel_by_mertsalov(position: SteadyPosition) -> Iterable[Block]:
     second = Leaf(INERTIA) - Leaf(CONSTANT) if constant else Leaf(INERTIA)
     yield write_sentence(
         _(
-            "If the squares of the speeds are taken approximately as {plus} and {minus}, as is usual in a "
-            "course, the same tangents give {found} kg·m²."
+            "If the squares of the speeds are approximated by {plus} and {minus}, as is usual in student "
+            "projects, the same tangents give {found} kg·m²."
         ),
         plus=symbolic_formula(square * (1 + delta)),
         minus=symbolic_formula(square * (1 - delta)),
@@ -150,7 +150,9 @@ def write_flywheel_by_mertsalov(position: SteadyPosition) -> Iterable[Block]:
         yield ComputedQuantity(FLYWHEEL.primed, inertia, steady.mertsalov, _("kg·m²"))
         return
     yield ComputedQuantity(FIRST_GROUP, inertia, steady.first_group, _("kg·m²"))
-    yield write_sentence(_("Without the links of the first group, the moment of inertia of the flywheel is"))
+    yield write_sentence(
+        _("When the links of the first group are subtracted, the moment of inertia of the flywheel is")
+    )
     flywheel = Leaf(FIRST_GROUP, steady.first_group) - Leaf(CONSTANT, constant)
     yield ComputedQuantity(FLYWHEEL.primed, flywheel, steady.mertsalov, _("kg·m²"))
 

@@ -177,7 +177,9 @@ def _write_energy_balance(single: SingleRun, *, crank: bool) -> Iterable[Block]:
     if single.task.flywheel:
         total_inertia = Leaf(FLYWHEEL, single.task.flywheel) + total_inertia
     if run.speed[-1] > 0:
-        yield write_sentence(_("With the reduced inertia at the end of the run, the final velocity is"))
+        yield write_sentence(
+            _("The final velocity follows from the kinetic energy and the reduced inertia at the end of the run:")
+        )
         root = Function("sqrt", 2 * end / total_inertia)
         unit = _("rad/s") if crank else _("m/s")
         yield ComputedQuantity(Symbol("ω" if crank else "v", "1"), root, float(run.speed[-1]), unit)

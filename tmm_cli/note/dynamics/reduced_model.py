@@ -88,8 +88,9 @@ def explain_reduction(position: SteadyPosition) -> Iterable[Block]:
         _(
             "The machine is replaced by its input link {link}, to which all masses and all loads are reduced; "
             "quantities in its sense of rotation are positive. With the reduced moment of inertia {J} the "
-            "input link has the kinetic energy of all links; the power of the reduced moment {M} is that of "
-            "all loads. Both follow from velocity ratios, which do not depend on the speed of the input link."
+            "input link has the kinetic energy of all links; the power of the reduced moment {M} equals the "
+            "power of all loads. Both follow from velocity ratios, which do not depend on the speed of the "
+            "input link."
         ),
         link=link,
         J=INERTIA,
@@ -104,9 +105,9 @@ def write_reduced_inertia(position: SteadyPosition) -> Iterable[Block]:
         return
     yield write_sentence(
         _(
-            "Position {number}: the reduced moment of inertia, where {m} is the mass of a link, {v} the "
-            "velocity of its centre of mass, {J} its moment of inertia about the centre of mass and {omega} "
-            "its angular velocity:"
+            "In position {number} the reduced moment of inertia is found by the following formula, in which "
+            "{m} is the mass of a link, {v} the velocity of its centre of mass, {J} its moment of inertia "
+            "about the centre of mass and {omega} its angular velocity:"
         ),
         number=position.number,
         m=Symbol("m"),
@@ -140,9 +141,9 @@ def write_reduced_moment(position: SteadyPosition) -> Iterable[Block]:
         return
     yield write_sentence(
         _(
-            "The reduced moment of the loads, where {v} is the velocity of the point of action of a force and "
-            "{alpha} the angle between the force and this velocity; the power of a couple is positive if it "
-            "acts in the sense of the angular velocity of its link:"
+            "The reduced moment of the loads is found by the following formula, in which {v} is the velocity "
+            "of the point of action of a force and {alpha} the angle between the force and this velocity; the "
+            "power of a couple is positive if it acts in the sense of the angular velocity of its link:"
         ),
         v=Symbol("v"),
         alpha=Symbol("α"),
@@ -235,7 +236,7 @@ def _write_kloss_moment(position: SteadyPosition, motor: KlossMotor) -> Iterable
         _(
             "The motor is asynchronous; its moment depends on the slip {s} according to Kloss's formula. "
             "Reduced to the input link, the synchronous speed is {omega} and the breakdown torque (the largest "
-            "moment) {M}; it is reached at the slip {sk}. At the speed in position {number}:"
+            "moment) {M}, which is reached at the slip {sk}. At the speed in position {number}:"
         ),
         s=SLIP,
         omega=FREE,

@@ -69,7 +69,9 @@ def _write_position(subject: Subject, k: int) -> Iterable[Block]:
     by_steps = subject.results.problem.note_style.sections == "MATI"
     yield from (_write_by_guidelines if by_steps else _write_by_groups)(subject, k, heading)
     yield from loads.write_balance_without_friction(subject, k)
-    yield from lever.write_lever(subject, k, heading(_("Zhukovsky lever")), explained=k == subject.detail[0])
+    yield from lever.write_lever(
+        subject, k, heading(_("Check by the Zhukovsky lever")), explained=k == subject.detail[0]
+    )
 
 
 def _write_by_groups(subject: Subject, k: int, heading: Callable[[str], str]) -> Iterable[Block]:
@@ -98,13 +100,13 @@ def _write_by_guidelines(subject: Subject, k: int, heading: Callable[[str], str]
         value=subject.text(subject.scale("position", k, stem)),
     )
     yield Heading(heading(_("Weights and useful resistance")), 2)
-    yield write_sentence(_("They are drawn on the links as arrows of equal length, not to scale."))
+    yield write_sentence(_("These forces are drawn on the links as arrows of equal length, not to scale."))
     if first:
         yield from loads.write_weights(subject)
     yield from subject.figures(
         "position",
         _("All forces that act on the links are shown in figure {figure}."),
-        _("The mechanism under its loads, {position}").format(position=caption),
+        _("Mechanism under load, {position}").format(position=caption),
         k,
     )
     yield Heading(heading(_("Acceleration plan and inertia forces")), 2)
@@ -127,7 +129,7 @@ def _write_group_sections(subject: Subject, k: int, heading: Callable[[str], str
     """Write the sections on the groups, from the last to the first, and on the input links."""
     for number, body in enumerate(list_bodies(subject, k)):
         if body.forces is not None:
-            text = _("Group of links {links}") if len(body.links) > 1 else _("Group of link {links}")
+            text = _("Group of links {links}") if len(body.links) > 1 else _("Group of one link: {links}")
         else:
             text = _("Input link {links}")
         text = heading(text.format(links=", ".join(body.links)))
@@ -203,7 +205,7 @@ def write_transmission(subject: Subject) -> Iterable[Block]:
     P, Q, angle = Symbol("P"), Symbol("Q"), Symbol("λ")
     head = cells(
         _("driven link"),
-        _("driven through"),
+        _("driven through pair"),
         _("position"),
         (P, ", ", _("N")),
         (angle, ", °"),
@@ -284,7 +286,7 @@ def write_balancing_loads(subject: Subject) -> Iterable[Block]:
     if has_flywheel(results) and balances[0].moment is not None:
         yield write_sentence(
             _(
-                "The flywheel is not one of the links: {balance} balances the links alone, and the driving moment "
+                "The flywheel is not counted as a link: {balance} balances only the links, and the driving moment "
                 "is {whole}."
             ),
             balance=total_symbol,

@@ -83,8 +83,8 @@ def _write_couples(subject: Subject, plan: LeverPlan, k: int) -> Iterable[Block]
     if plan.couples:
         yield write_sentence(
             _(
-                "The other couples act on the lever multiplied by the ratio of the velocity of their link to that "
-                "of the input link, {M}:"
+                "The other couples act on the lever as {M}, that is, multiplied by the ratio of the angular "
+                "velocity of their link to the velocity of the input link:"
             ),
             M=Symbol("M").primed,
         )
@@ -130,8 +130,8 @@ def _write_reduced_balance(subject: Subject, k: int, unit: str) -> Iterable[Bloc
     yield write_sentence(
         _(
             "The balancing loads of all drivers enter the equation with their values from the force plan, and "
-            "the lever is in equilibrium. Reduced to link {link}, that is multiplied by the ratio {i} of the "
-            "velocity of the driver to the velocity of this link, their sum is"
+            "the lever is in equilibrium. Reduced to link {link}, that is, multiplied by the ratio {i} of the "
+            "velocity of the driver to the velocity of this link, they add up to"
         ),
         link=first.driver.link,
         i=Symbol("i"),

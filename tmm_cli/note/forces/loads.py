@@ -77,9 +77,9 @@ def write_inertia(subject: Subject, k: int, *, explained: bool) -> Iterable[Bloc
     yield from nonzero
     zero_symbols = [quantity.name for quantity in quantities if quantity not in nonzero]
     if zero_symbols:
-        text = _("These are zero because the accelerations are zero: {names}.")
+        text = _("The following are zero, because the corresponding accelerations are zero: {names}.")
         if len(zero_symbols) == 1:
-            text = _("This is zero because the acceleration is zero: {names}.")
+            text = _("{names} = 0, because the corresponding acceleration is zero.")
         yield write_sentence(text, names=join_inline(zero_symbols))
 
 
@@ -205,7 +205,7 @@ def write_load_table(subject: Subject, k: int, caption: str) -> Iterable[Block]:
             rows.append(cells(couple, load.link, magnitude, name_sense(moment)))
     if rows:
         text = _("Table {table} lists everything that acts on the links in this position except the reactions.")
-        head = cells(_("force or couple"), _("on link"), _("magnitude"), _("angle to the x axis, or sense"))
+        head = cells(_("force or couple"), _("acts on link"), _("magnitude"), _("angle to the x axis, or sense"))
         yield from write_table(text, Rows(caption, head, tuple(rows), f"loads-{k}"))
 
 

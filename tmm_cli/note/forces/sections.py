@@ -191,7 +191,10 @@ def write_section(body: AnalysedBody, heading: Heading, *, first: bool) -> Itera
     """
     yield heading
     if not body.free_body.acting:
-        yield write_sentence(_("No loads act here ({links}): all reactions are zero."), links=_name_links(body.links))
+        yield write_sentence(
+            _("No loads act on this part of the mechanism ({links}), so all reactions are zero."),
+            links=_name_links(body.links),
+        )
         return
     yield from _write_free_body(body)
     if body.needs_common_solution:
@@ -321,8 +324,8 @@ def _write_moments(body: AnalysedBody, equation: MomentEquation) -> Iterable[Blo
         )
     elif sought.arm:
         text = _(
-            "The equation of moments about point {point} ({links}) gives the distance from it to the line of "
-            "action of the reaction {symbol}:"
+            "The equation of moments about point {point} ({links}) gives the distance from this point to the "
+            "line of action of the reaction {symbol}:"
         )
     elif quantity is None and not equation.terms:
         text = _("No force has a moment about point {point} ({links}), so {symbol} is zero:")
@@ -372,13 +375,15 @@ def _write_force_plan(body: AnalysedBody, *, explained: bool) -> Iterable[Block]
     unknown = [v for v in vectors if v.symbol not in known_symbols]
     if sum(1 if v.symbol in lines else 2 for v in unknown) > SIZES:
         yield write_sentence(
-            _("The polygon closes with the following reactions, with which each link is also in equilibrium by itself:")
+            _("The polygon closes with the following reactions; with them each link by itself is also in equilibrium:")
         )
     elif unknown:
-        text = _("The lengths of its sides, multiplied by the scale factor {mu}, give the remaining unknowns:")
+        text = _(
+            "The lengths of the sides of the polygon, multiplied by the scale factor {mu}, give the remaining unknowns:"
+        )
         yield write_sentence(text, mu=Symbol("μ", "F"))
     else:
-        yield write_sentence(_("All its vectors are already known; the closure of the polygon serves as a check."))
+        yield write_sentence(_("All vectors of the polygon are already known; that it closes serves as a check."))
     least = NO_FORCE * body.plan.plan.size
     for vector in unknown:
         magnitude = abs(vector.value)

@@ -30,6 +30,6 @@ def formats_of(text: str) -> list[str]:
     if "docx" in names and find_spec("docx") is None:
         raise ProblemError(
             _("DOCX requires the package python-docx, which is not installed"),
-            allowed=_("html; or: pip install 'tmm-cli[note]'"),
+            allowed=_("html; for docx, first run pip install 'tmm-cli[note]'"),
         )
     return names

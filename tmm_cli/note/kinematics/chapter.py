@@ -43,8 +43,8 @@ def write_drivers(subject: Subject) -> Iterable[Block]:
         if running is not None:
             yield write_sentence(
                 _(
-                    "The velocity of input link {link} follows from its law of motion, which is determined below. The "
-                    "law of motion requires only velocity ratios, and these are the same at every velocity."
+                    "The velocity of input link {link} follows from its law of motion, which is determined below. Only "
+                    "velocity ratios are needed for this, and they do not depend on the velocity."
                 ),
                 link=driver.link,
             )
@@ -89,7 +89,7 @@ def _write_rotating_driver(subject: Subject, driver: Driver) -> Iterable[Block]:
     else:
         yield _value_equation(subject, omega, driver.rate)
     if driver.acceleration:
-        yield write_sentence(_("in position 0 and with the constant angular acceleration"))
+        yield write_sentence(_("This is the value in position 0; the angular acceleration is constant:"))
         yield _value_equation(subject, Symbol("ε", subscript), driver.acceleration)
 
 
@@ -102,7 +102,7 @@ def _write_sliding_driver(subject: Subject, driver: Driver) -> Iterable[Block]:
     yield write_sentence(text, link=driver.link, base=driver.base)
     yield _value_equation(subject, Symbol("v", "0" if driver.acceleration else subscript), driver.rate)
     if driver.acceleration:
-        yield write_sentence(_("in position 0 and with the constant acceleration"))
+        yield write_sentence(_("This is the value in position 0; the acceleration is constant:"))
         yield _value_equation(subject, Symbol("a", subscript), driver.acceleration)
 
 
@@ -115,7 +115,9 @@ def write_driver_speed(position: PositionPlans) -> Iterable[Block]:
     results, motion = position.subject.results, position.motion
     driver, turns = motion.linkage.driver, motion.linkage.driver.kind == "turn"
     if driver.law is not None or results.running is not None:
-        yield write_sentence(_("By the law of motion, its velocity and its acceleration in this position are"))
+        yield write_sentence(
+            _("By the law of motion, the velocity and the acceleration of the input link in this position are")
+        )
         for letter, values in zip("ωε" if turns else "va", (motion.rate, motion.acceleration), strict=True):
             value = float(np.broadcast_to(values, motion.q.shape)[position.k])
             yield _value_equation(position.subject, Symbol(letter, driver.link), value)
@@ -325,7 +327,9 @@ def _position_table(subject: Subject, caption: str, columns: Sequence[Column], k
         (head, [subject.format_result(float(value)) if np.isfinite(value) else "–" for value in values])
         for head, values in all_columns
     ]
-    return table_over_positions(subject, caption, [*texts, *([((_("state"),), states)] if any(states) else [])], key)
+    return table_over_positions(
+        subject, caption, [*texts, *([((_("state of the mechanism"),), states)] if any(states) else [])], key
+    )
 
 
 def _driver_columns(subject: Subject) -> Iterable[Column]:
@@ -376,9 +380,9 @@ def _write_position(position: PositionPlans, steps: list[SolutionStep]) -> Itera
         if slid is not None:
             yield write_sentence(
                 _(
-                    "The point of the guide that coincides with the sliding block in this position is denoted with the "
-                    "number of the link of the guide: {under} of link {link} lies at {point}; its distances to other "
-                    "points of the link are those in this position."
+                    "The symbol of the point of the guide that coincides with the sliding block in this position "
+                    "contains the number of the guide's link: {under} of link {link} coincides with {point}. The "
+                    "distances from {under} to other points of the link are those in this position."
                 ),
                 under=point_symbol(slid.base),
                 link=slid.slide.carrier,

@@ -152,16 +152,16 @@ def _rolling_rate(position: PositionPlans, step: SolutionStep, ratio: HigherPair
 
 
 def _introduce_cam_law(mesh: Mesh, letter: str) -> Block:
-    text = _("The second derivative {second} of the motion law gives")
+    text = _("The second derivative {second} from the law of motion gives")
     if letter == "ω" and mesh.slide:
         text = _(
-            "The motion law of follower {follower} gives the derivative {first} of its displacement with "
+            "The law of motion of follower {follower} gives the derivative {first} of its displacement with "
             "respect to the angle of cam {cam}:"
         )
     elif letter == "ω":
         text = _(
-            "The motion law of follower {follower} gives the derivative {first} of its angle with respect to "
-            "the angle of cam {cam}:"
+            "The law of motion of follower {follower} gives the derivative {first} of its angle with respect "
+            "to the angle of cam {cam}:"
         )
     return write_sentence(
         text, follower=mesh.j, cam=mesh.i, first=_derivative_symbol(mesh, 1), second=_derivative_symbol(mesh, 2)

@@ -52,11 +52,11 @@ def _write_driver_velocities(position: PositionPlans, step: SolutionStep) -> Ite
     if position.first and turned:
         for_one = _(
             "The velocity of point {points} of the input link is perpendicular to {line} and directed in the "
-            "sense of its rotation:"
+            "sense in which the link rotates:"
         )
         for_several = _(
-            "The velocities of points {points} of the input link are perpendicular to their radii and directed "
-            "in the sense of its rotation:"
+            "The velocities of points {points} of the input link are perpendicular to the radii of the points "
+            "and directed in the sense in which the link rotates:"
         )
         line = turned[0].base.at + turned[0].point.at
         points = join_inline(words.point_symbol(about.point) for about in turned)
@@ -301,7 +301,7 @@ def _write_plan_solution(position: PositionPlans, step: SolutionStep, known_name
         together,
         "ε",
         lambda about: _component(position, about, "τ"),
-        _("Vector {a}, transferred to point {point}, shows that {epsilon} is {sense}."),
+        _("Vector {a}, transferred to point {point}, shows that the angular acceleration {epsilon} is {sense}."),
         _("Angular acceleration {epsilon} is {sense}."),
     )
     yield from words.write_common_rotation(position, step, "ε")
