@@ -182,7 +182,7 @@ def test_explain_says_the_structure_in_sentences_for_a_note():
     assert told.splitlines()[1:16] == [
         "The mechanism has n = 5 moving links and p1 = 7 lower pairs (revolute: 5, prismatic: 2); by Chebyshev's "
         "formula its mobility is W = 3n − 2 p1 = 3·5 − 2·7 = 1.",
-        "In terms of the classes of pairs, W = 3n − 2 p5 − p4 = 3·5 − 2·7 − 0 = 1.",
+        "With the pairs counted by class, W = 3n − 2 p5 − p4 = 3·5 − 2·7 − 0 = 1.",
         "The generalised formula W = Hn − sum((H − i) p_i) with H = 3 gives 3·5 − 2·7 − 1·0 = 1.",
         "Pairs, with their classes and codes: O 0-1 (5, 1в), C 0-3 (5, 1в), A 1-2 (5, 1в), D 3-4 (5, 1в), E 4-5 "
         "(5, 1в), A' 3-2 (5, 1п), x 0-5 (5, 1п).",
