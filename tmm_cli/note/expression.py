@@ -156,7 +156,7 @@ class ComputedQuantity:
     most: int = FIGURES
 
     def value(self, figures: int) -> float:
-        """Return the value of the expression with its numbers rounded to so many figures; angles in degrees."""
+        """Evaluate the expression with its numbers rounded to `figures` significant figures. Angles are in degrees."""
         number = evaluate(self.expression, figures)
         return math.degrees(number) if self.angle else number
 
@@ -215,7 +215,7 @@ def _terms(operand: object) -> tuple[tuple[int, Expression], ...]:
 
 
 def evaluate(expression: Expression, figures: int) -> float:
-    """Evaluate an expression with each quantity rounded to so many significant figures."""
+    """Evaluate an expression with the value of each quantity rounded to `figures` significant figures."""
     evaluate_part = partial(evaluate, figures=figures)
     match expression:
         case Leaf(_, value, angle, instead):
@@ -336,18 +336,18 @@ def _build_formula(expression: Expression, leaf: Callable[[Leaf], paper.Node]) -
 
 
 def round_figures(value: float, figures: int) -> float:
-    """Round to so many significant figures. In numbers below 10^7 no digit before the decimal point is lost."""
+    """Round to `figures` significant figures. In numbers below 10^7 no digit before the decimal point is lost."""
     text = f"{half_up(value):.{figures - 1}e}"
     return float(f"{half_up(value):.0f}") if figures <= int(text.partition("e")[2]) < WHOLE else float(text)
 
 
 def format_fixed(value: float, figures: int, terms: float = 0.0) -> str:
-    """Format a value with so many significant figures, trailing zeros included.
+    """Format a value with a fixed number of significant figures, trailing zeros included.
 
     Args:
         value: Value to format.
         figures: Number of significant figures.
-        terms: Magnitude of the terms whose sum is zero; it sets the number of decimals with which a zero is written.
+        terms: Only for a zero: magnitude of the terms that cancel, which sets the number of decimals of the zero.
     """
     if value == 0:
         return "0" if not terms else f"{0.0:.{max(figures - 1 - math.floor(math.log10(terms)), 0)}f}"

@@ -62,7 +62,7 @@ def write_synthesis(subject: Subject) -> Iterable[Block]:
 
 
 def _write_formulas(task: Synthesised) -> Iterable[Block]:
-    """Write those formulas of the synthesis that fit on one line, with numbers substituted."""
+    """Write the formulas of the synthesis, with numbers substituted. Only formulas that fit on one line are included."""
     values = {
         value.name: float(value.value) for value in (*task.outcome.asked, *task.outcome.found) if value.name in USED
     }

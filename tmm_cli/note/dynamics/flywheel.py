@@ -174,7 +174,7 @@ def write_flywheel_on_its_shaft(position: SteadyPosition) -> Iterable[Block]:
 
 
 def write_flywheel_size(position: SteadyPosition) -> Iterable[Block]:
-    """Write the diameter, width and mass of a flywheel in the form of a disk or a rim."""
+    """Write the diameter, the width and the mass of the flywheel, which is a disk or a rim."""
     steady = position.steady
     form, inertia = steady.task.size, Leaf(FLYWHEEL if steady.task.ratio == 1 else ON_SHAFT, steady.on_shaft)
     share, diameter = Leaf(SHARE, form.width), Leaf(DIAMETER, steady.diameter)

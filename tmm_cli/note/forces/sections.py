@@ -129,7 +129,7 @@ class AnalysedBody:
 
     @property
     def needs_common_solution(self) -> bool:
-        """True if a moment equation has more than one unknown, so that all equations must be solved together."""
+        """True if some moment equation has several unknowns, so that the equations must be solved together."""
         return any(e.sought is None for e in self.free_body.equations)
 
     @property
@@ -152,9 +152,7 @@ class AnalysedBody:
         return abs(complex(reaction.force[self.position.k]))
 
     def arm_scale(self, equation: MomentEquation) -> float | None:
-        """Return the scale (m/mm) of the drawing that shows the arms of an equation; None if the note gives arms in
-        metres.
-        """
+        """Return the scale (m/mm) of the drawing with the arms of an equation; None if arms are printed in metres."""
         if self.subject.results.problem.note_style.arms != "paper":
             return None
         number = next(n for n, few in enumerate(split_equations(self.free_body.equations)) if equation in few)

@@ -481,7 +481,7 @@ def _count_letters(line: Line) -> float:
 
 
 def _column_widths(block: blocks.Rows, letter: float) -> list[float]:
-    """Return the column widths (mm), narrowed to fit the page without breaking words. letter: width of one in mm."""
+    """Return the column widths (mm), narrowed to fit the page without breaking words. letter: letter width (mm)."""
     columns = list(zip(block.head, *block.rows, strict=True))
     whole = [letter * (3 + max(map(_count_letters, column))) for column in columns]
     least = [

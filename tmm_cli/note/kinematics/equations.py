@@ -74,12 +74,12 @@ def rotation_equations(together: Iterable[VectorEquation]) -> list[SameLinkEquat
 
 
 def further_points(step: SolutionStep) -> list[SameLinkEquation]:
-    """Return the equations of points that no other equation of the step needs, except on links that do not rotate."""
+    """Return the equations of points that are not needed in the solution, except on links that do not rotate."""
     return [about for about in step.after if not about.idle]
 
 
 def solved_points(step: SolutionStep) -> set[str]:
-    """Return the names of the points whose motion is known after this step."""
+    """Return the names of the points whose motion a step of the solution gives."""
     names = {
         s.name for e in step.equations for s in ([e.point] if isinstance(e, FixedGuideEquation) else [e.point, e.base])
     }

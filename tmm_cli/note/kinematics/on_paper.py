@@ -172,7 +172,7 @@ class PositionPlans:
 
     @cached_property
     def epsilon(self) -> Mapping[str, float]:
-        """Angular accelerations (rad/s²) in this position, by link. Links that never have one are left out."""
+        """Angular accelerations (rad/s²) in this position, by link. Links that always rotate uniformly are left out."""
         return {turn.symbol.below: turn.value for turn in angular_values(self.motion, self.k, "epsilon")}
 
     def rates(self, letter: str) -> Mapping[str, float]:

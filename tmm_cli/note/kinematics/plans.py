@@ -47,7 +47,7 @@ def write_velocities(position: PositionPlans, steps: Sequence[SolutionStep]) -> 
 
 
 def _write_driver_velocities(position: PositionPlans, step: SolutionStep) -> Iterable[Block]:
-    """Write the velocities of points of an input link."""
+    """Write the velocities of the points of an input link."""
     turned = words.further_points(step)
     if position.first and turned:
         for_one = _(
@@ -88,7 +88,7 @@ def _known_velocities(position: PositionPlans, step: SolutionStep) -> Iterable[D
 def _write_group_velocities(
     position: PositionPlans, step: SolutionStep, known_names: Collection[str]
 ) -> Iterable[Block]:
-    """Write the velocities of a group: ratios of higher pairs, vector equations, plan values, further points."""
+    """Write the velocities of a group: from higher pairs, from vector equations and the plan, then of further points."""
     points, together, solved_names = (
         words.unknown_points(step, known_names),
         words.simultaneous_equations(step),
@@ -159,7 +159,7 @@ def write_accelerations(position: PositionPlans, steps: Sequence[SolutionStep]) 
 
 
 def _write_driver_accelerations(position: PositionPlans, step: SolutionStep) -> Iterable[Block]:
-    """Write the accelerations of points of an input link."""
+    """Write the accelerations of the points of an input link."""
     for equation in step.equations:
         a = position.a.vector_of(equation.point)
         text = _("Input link {link} moves uniformly, so {a} = 0.")
