@@ -62,7 +62,7 @@ def write_synthesis(subject: Subject) -> Iterable[Block]:
 
 
 def _write_formulas(task: Synthesised) -> Iterable[Block]:
-    """Write the formulas of the synthesis, with numbers substituted. Only formulas that fit on one line are included."""
+    """Write the formulas of the synthesis with numbers substituted, if they fit on one line."""
     values = {
         value.name: float(value.value) for value in (*task.outcome.asked, *task.outcome.found) if value.name in USED
     }

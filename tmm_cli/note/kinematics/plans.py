@@ -88,7 +88,7 @@ def _known_velocities(position: PositionPlans, step: SolutionStep) -> Iterable[D
 def _write_group_velocities(
     position: PositionPlans, step: SolutionStep, known_names: Collection[str]
 ) -> Iterable[Block]:
-    """Write the velocities of a group: from higher pairs, from vector equations and the plan, then of further points."""
+    """Write the velocities of a group: from higher pairs, from vector equations and the plan, of further points."""
     points, together, solved_names = (
         words.unknown_points(step, known_names),
         words.simultaneous_equations(step),
