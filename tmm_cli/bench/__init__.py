@@ -1,4 +1,4 @@
-"""Measurements of the product against other ways to compute the same results; used by `tmm bench` only."""
+"""Measurements of speed and accuracy against other methods of computation; used only by `tmm bench`."""
 
 from tmm_cli.interfaces import lazy
 

@@ -1,4 +1,4 @@
-"""Measurement of `tmm bench accuracy`: time per position against largest error, for every method and linkage."""
+"""Measurement of `tmm bench accuracy`: time per position and largest error of each method on each reference linkage."""
 
 from __future__ import annotations
 
@@ -35,8 +35,15 @@ Solver = Callable[[Real], MethodAnswers]
 
 @dataclass(frozen=True)
 class AccuracyRow:
-    """One method on one linkage. microseconds: per position, None if the time has no meaning; errors: nan if not
-    computed.
+    """Result of one method on one linkage.
+
+    Attributes:
+        linkage: name of the reference linkage.
+        method: name of the method.
+        family: name shared by methods that differ in one setting.
+        setting: value of this setting, e.g. the tolerance; None if there is none.
+        microseconds: time per position; None if it was not measured.
+        errors: largest relative error of each quantity; nan if the method does not compute it.
     """
 
     linkage: str
@@ -49,8 +56,12 @@ class AccuracyRow:
 
 @dataclass(frozen=True)
 class Accuracy(Measurement):
-    """Results of the measurement. absent: rivals that are not installed or cannot compute a linkage, with the
-    reason.
+    """Results of `tmm bench accuracy`.
+
+    Attributes:
+        rows: a result for each linkage and method.
+        positions: number of positions in a timed run.
+        repeats: number of timed runs, of which the median counts.
     """
 
     rows: tuple[AccuracyRow, ...]
@@ -65,7 +76,7 @@ class Accuracy(Measurement):
 
     @property
     def failures(self) -> tuple[str, ...]:
-        """Targets that the product misses."""
+        """Messages on errors of tmm that exceed their targets."""
         return tuple(
             f"{row.linkage}: {row.method}: {quantity}: error {row.errors[quantity]:.2g}, target {TARGETS[quantity]:.0e}"
             for row in self.rows
@@ -75,8 +86,9 @@ class Accuracy(Measurement):
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the content of the JSON file: null if not computed or not timed, "inf" for an infinite error (method
-        failed).
+        """Return the contents of the JSON file.
+
+        An error that was not computed is null; an infinite one, where a method failed, is "inf".
         """
         content = super().to_dict() | {"targets": TARGETS}
         for row in content["rows"]:
@@ -84,7 +96,7 @@ class Accuracy(Measurement):
         return content
 
     def lines(self) -> list[Sequence[object]]:
-        """Return the CSV rows, one for each linkage and method, with a header."""
+        """Return the rows of the CSV file: the header, then a row for each linkage and method."""
         header = ("linkage", "method", "family", "setting", "us_per_position", *QUANTITIES)
         return [
             header,
@@ -103,7 +115,7 @@ class Accuracy(Measurement):
 
     @property
     def tables(self) -> tuple[Table, ...]:
-        """One table for each linkage."""
+        """Tables of times and errors, one for each linkage."""
         return tuple(
             text_table(
                 "accuracy",
@@ -128,7 +140,7 @@ def _plain(value: float) -> float | str | None:
 
 
 def sample_coordinates(case: Case, count: int) -> Real:
-    """Return `count` driver coordinates over a turn at equal steps, none of them a special position."""
+    """Return `count` equally spaced driver coordinates (rad) over one revolution, none at a special position."""
     return case.start + case.law.sense * 2 * np.pi * (np.arange(count) + 0.3717) / count
 
 
@@ -139,8 +151,15 @@ def measure_accuracy(
     methods: Iterable[Method] | None = None,
     progress: Callable[[str], None] = lambda __: None,
 ) -> Accuracy:
-    """Measure the errors of all methods against 50 digits, and their times, alternately in one process (median of
-    repeats).
+    """Measure the errors of all methods against reference values of 50 digits, and their times.
+
+    The methods are timed alternately in one process; the median of the repeats counts.
+
+    Args:
+        linkages: Names of reference linkages.
+        reduced: True for fewer methods and repeats.
+        methods: Methods to measure; by default all.
+        progress: Called with the name of each linkage.
     """
     chosen = tuple(methods or (FEWER if reduced else METHODS))
     rivals, missing = installed()

@@ -1,9 +1,9 @@
-"""Three mechanisms coded by hand: what an engineer who needs just one mechanism writes in NumPy.
+"""Three mechanisms programmed by hand: the NumPy code of an engineer who needs only this one mechanism.
 
-Kinematics of all joints and centres of mass, all reactions with inertia and weights, and the balancing moment; at
-crank angles q (rad) for a constant crank speed w (rad/s). Dimensions are numbers or arrays (variants, 1). The general
-calculator is timed against this code, and the results have its names; the formulas are those of any course, and each
-value is computed once.
+Each function computes the kinematics of all joints and centres of mass, all reactions with inertia forces and weights,
+and the balancing moment, at crank angles q (rad) for a constant crank speed w (rad/s). Dimensions are numbers or arrays
+(variants, 1). The general program is timed against this code. The formulas are those of any textbook, and each value is
+computed only once.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ G = 9.81
 
 
 def cross(a: Any, b: Any) -> Any:
-    """Return the z component of a x b."""
+    """Return the z component of the cross product of two vectors given as complex numbers."""
     return a.real * b.imag - a.imag * b.real
 
 
@@ -43,8 +43,19 @@ def crank_slider(
     w: float,
     F: float,
 ) -> dict[str, Any]:
-    """Compute a crank-slider: crank OA, rod AB with its centre of mass at the fraction s of its length, slider on the x
-    axis; S1 at O.
+    """Compute a crank-slider: crank OA = r, connecting rod AB = l, slider B on the x axis.
+
+    The centre of mass of the crank is at O, that of the rod at the fraction `s` of AB.
+
+    Args:
+        q: Crank angles, rad.
+        m1, m2, m3: Masses, kg.
+        J2: Moment of inertia of the rod, kg m2.
+        w: Crank speed, rad/s.
+        F: Force on the slider along x, N.
+
+    Returns:
+        Values at the angles q by name, e.g. "B.v", "2.omega", "R.A" (reaction in A), "T.1" (balancing moment).
     """
     c, sn = np.cos(q), np.sin(q)
     w2 = w * w
@@ -94,10 +105,14 @@ def crank_slider(
 def six_bar(
     q: Any, *, a: Any, b: Any, c: Any, d: Any, e: Any, y: float, S2: complex, w: float, m: Any, J: Any, F: float
 ) -> dict[str, Any]:
-    """Compute a six-bar: crank OA = a, coupler AB = b, rocker DB = c, OD = d, rod BF = e, slider at the height y.
+    """Compute a six-bar: crank OA = a, coupler AB = b, rocker DB = c, OD = d, rod BF = e, slider F at the height y.
 
-    Centres of mass: of the crank at its middle, of the coupler at S2 (in its axes, as a fraction of b), of the rocker
-    at 0.4 of DB, of the rod at its middle, of the slider at F. m and J: masses and moments of inertia of links 1 to 5.
+    The centres of mass are: of the crank at its middle, of the coupler at S2 (in its axes, as a fraction of b), of the
+    rocker at 0.4 of DB, of the rod at its middle, of the slider at F. m and J are the masses and moments of inertia of
+    links 1 to 5.
+
+    Returns:
+        Values at the crank angles q (rad) by name, as in `crank_slider`.
     """
     w2 = w * w
     A = a * (np.cos(q) + 1j * np.sin(q))
@@ -179,11 +194,14 @@ def six_bar(
 def shaper(
     q: Any, *, a: Any, f: Any, c: Any, e: Any, y: float, S5: complex, at: complex, w: float, m: Any, J: Any, F: float
 ) -> dict[str, Any]:
-    """Compute a shaper: crank OA = a, OC = f downwards, slotted link CD = c, rod DE = e, ram at the height y; sliding
-    block hinged to the crank at A.
+    """Compute a shaper: crank OA = a, sliding block at A, slotted link CD = c, rod DE = e, ram E at the height y.
 
-    Centres of mass: crank at 0.3, slotted link and rod at their middles, sliding block at A, ram at S5 from E. The
-    force F acts at `at` from E. m and J: of links 1 to 5.
+    The pivot C is the distance f below O. The centres of mass are: of the crank at 0.3 of OA, of the sliding block at
+    A, of the slotted link and the rod at their middles, of the ram at S5 from E. The force F acts on the ram at `at`
+    from E. m and J are the masses and moments of inertia of links 1 to 5.
+
+    Returns:
+        Values at the crank angles q (rad) by name, as in `crank_slider`.
     """
     w2 = w * w
     A = a * (np.cos(q) + 1j * np.sin(q))
@@ -261,7 +279,14 @@ Arguments = Callable[[Linkage], dict[str, Any]]
 
 @dataclass(frozen=True)
 class HandCodedMechanism:
-    """A mechanism in both forms. code: the function written by hand; longer: links that are longer in the variants."""
+    """A mechanism that is computed both by tmm and by code written by hand for it.
+
+    Attributes:
+        name: name of the reference linkage.
+        code: the function written by hand.
+        arguments: function that returns the arguments of `code` for a linkage.
+        longer: links that are made longer in the variants.
+    """
 
     name: str
     code: Callable[..., dict[str, Any]]
@@ -269,14 +294,17 @@ class HandCodedMechanism:
     longer: tuple[str, ...]
 
     def linkage(self) -> Linkage:
-        """Reference of that name with constant loads: the code by hand has no tables and no strokes."""
+        """Return the reference linkage with constant loads.
+
+        The code written by hand has no load tables and no strokes.
+        """
         linkage = reference(self.name).case.linkage
         (load,) = linkage.loads
         force = load.force * (1 if load.table is None else load.table.values[0])
         return replace(linkage, loads=(replace(load, force=force, table=None, when="always"),))
 
     def variants(self, count: int, seed: int = 1) -> list[Linkage]:
-        """Return linkages whose moving links are up to 3 % longer; the first is the reference itself."""
+        """Return `count` variants of the linkage: the reference itself, then linkages with links up to 3 % longer."""
         first, random = self.linkage(), np.random.default_rng(seed)
         linkages = [first]
         for _ in range(count - 1):
@@ -290,12 +318,12 @@ class HandCodedMechanism:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """Names of the results of the code by hand."""
+        """Names of the values that the code written by hand computes."""
         first = self.linkage()
         return tuple(self.by_hand([first])(np.array([first.sketch.at])))
 
     def ours(self, linkages: Sequence[Linkage]) -> Batch:
-        """Return the product's function for the same results."""
+        """Prepare the computation of the same values by tmm, as a function of the driver coordinates."""
 
         def asked(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
             results = read_all(motion, reactions)
@@ -304,8 +332,9 @@ class HandCodedMechanism:
         return prepare_batch(linkages, asked)
 
     def by_hand(self, linkages: Sequence[Linkage]) -> Callable[[Real], dict[str, Any]]:
-        """Return the hand-written code for these linkages as a function of q; numbers that vary become arrays
-        (variants, 1).
+        """Return the code written by hand for these variants, as a function of the crank angles q (rad).
+
+        Dimensions that differ between the variants are arrays (variants, 1).
         """
         each = [self.arguments(linkage) for linkage in linkages]
         first = each[0]

@@ -1,4 +1,4 @@
-"""Common parts of charts: an A4 page with a title, axes with plain numbers and light grids, the image file."""
+"""Common parts of the charts: an A4 page with a title, axes with plain numbers and light grids, the image file."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PLAIN = FuncFormatter(lambda value, __: f"{value:g}")
 
 
 def make_page(title: str, caption: str, share: float = 1.0) -> Figure:
-    """Make a landscape A4 page, or this share of its height, with a title and a caption."""
+    """Make a landscape A4 page with a title and a caption; `share` reduces its height to this fraction."""
     height = share * LANDSCAPE[1]
     figure = Figure(figsize=(LANDSCAPE[0] * MM, height * MM))
     FigureCanvasAgg(figure)
@@ -28,7 +28,7 @@ def make_page(title: str, caption: str, share: float = 1.0) -> Figure:
 
 
 def label_axes(axes: Any, title: str, x: str = "", y: str = "") -> None:
-    """Set title, axis labels, small figures and a light grid."""
+    """Set the title and the axis labels; make the tick labels small and draw a light grid."""
     axes.set_title(title, fontsize=10, loc="left")
     axes.set_xlabel(x, fontsize=9)
     axes.set_ylabel(y, fontsize=9)
@@ -38,7 +38,7 @@ def label_axes(axes: Any, title: str, x: str = "", y: str = "") -> None:
 
 
 def set_log_axes(axes: Any) -> None:
-    """Make both axes logarithmic, with plain numbers."""
+    """Make both axes logarithmic, with plain numbers as tick labels."""
     for set_scale, axis in ((axes.set_xscale, axes.xaxis), (axes.set_yscale, axes.yaxis)):
         set_scale("log")
         axis.set_major_formatter(PLAIN)
@@ -46,14 +46,14 @@ def set_log_axes(axes: Any) -> None:
 
 
 def set_error_axis(axes: Any, powers: range) -> None:
-    """Make the y axis logarithmic for errors, with ticks at these powers of ten."""
+    """Make the y axis logarithmic, with ticks at these powers of ten."""
     axes.set_yscale("log")
     axes.set_yticks([10.0**k for k in powers], [f"1e{k}" if k else "1" for k in powers])
     axes.yaxis.set_minor_formatter(NullFormatter())
 
 
 def png_bytes(figure: Figure) -> bytes:
-    """Return the image as PNG; equal figures give equal bytes."""
+    """Return the figure as the contents of a PNG file; equal figures give equal bytes."""
     stream = io.BytesIO()
     figure.savefig(stream, format="png", dpi=DPI, metadata={"Software": None}, pil_kwargs={"compress_level": 3})
     return stream.getvalue()

@@ -1,4 +1,4 @@
-"""Charts of `tmm bench accuracy` (work-precision) and `tmm bench stability` (errors near dead positions)."""
+"""Charts of `tmm bench accuracy` (time against error) and `tmm bench stability` (errors near critical positions)."""
 
 from __future__ import annotations
 
@@ -35,13 +35,14 @@ LINED = ("newton", "differences")  # methods that differ in one setting
 
 
 def accuracy_charts(accuracy: Accuracy) -> dict[str, Figure]:
-    """Return the charts of `tmm bench accuracy`, one for each linkage, by file name."""
+    """Draw the charts of `tmm bench accuracy`, one for each linkage; return them by file name."""
     return {f"accuracy-{name}.png": draw_accuracy(accuracy, name) for name in accuracy.linkages}
 
 
 def draw_accuracy(accuracy: Accuracy, linkage: str) -> Figure:
-    """Draw the chart of one linkage, A4: a panel for each quantity, time per position across, largest relative error
-    upwards.
+    """Draw the A4 chart of one linkage, with a panel for each quantity.
+
+    In each panel the x axis is the time per position, the y axis the largest relative error.
     """
     rows = [row for row in accuracy.rows if row.linkage == linkage]
     caption = (
@@ -155,7 +156,7 @@ DISTANCES = {
 
 
 def stability_charts(stability: Stability) -> dict[str, Figure]:
-    """Return the charts of `tmm bench stability`, A4 sheets with five families each, by file name."""
+    """Draw the charts of `tmm bench stability`, five linkage families on an A4 sheet; return them by file name."""
     families = stability.families
     pages = [families[k : k + PANELS] for k in range(0, len(families), PANELS)]
     title = "Errors near critical positions ({page} of {pages})"
@@ -188,7 +189,10 @@ def _line_style(method: str) -> dict[str, Any]:
 
 
 def _rows_of_family(rows: list[StabilityRow], family: str) -> list[StabilityRow]:
-    """Return the rows from left to right: the worst distance on the right, sizes and ratios increasing."""
+    """Sort the results of a family from left to right along the x axis.
+
+    The worst distance is on the right. Sizes and ratios increase to the right.
+    """
     return sorted(rows, key=lambda row: row.distance, reverse=FAMILIES_BY_NAME[family].unit in ("rad", "share"))
 
 
@@ -218,8 +222,9 @@ def _draw_errors(axes: Any, stability: Stability, family: str, methods: list[str
 
 
 def _draw_outcomes(axes: Any, stability: Stability, family: str, methods: list[str]) -> None:
-    """Draw a row for each method and a column for each distance, in colours mixed by the shares of right and wrong
-    results.
+    """Draw a grid of cells, with a row for each method and a column for each distance.
+
+    The colour of a cell is mixed from the shares of right results, reported failures and wrong results.
     """
     family_rows = [method for method in methods if stability.of(family, method)]
     rows = [_rows_of_family(stability.of(family, method), family) for method in family_rows]

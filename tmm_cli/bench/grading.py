@@ -1,6 +1,6 @@
-"""Measurement of `tmm bench grading`: time of grading a group and its growth, and share of mistakes named correctly.
+"""Measurement of `tmm bench grading`: time to grade a group, its growth, and the share of mistakes named correctly.
 
-The groups are simulated: variants of a six-bar with forces, answers drawn to 1 %, correct or with mistakes.
+The groups are simulated: variants of a six-bar with forces, answers drawn to 1 %, right or with mistakes.
 """
 
 from __future__ import annotations
@@ -51,13 +51,21 @@ BOUNDS = {"OA": (90.0, 110.0, "mm"), "AB": (340.0, 360.0, "mm"), "n1": (80.0, 11
 
 @cache
 def grading_task_text() -> str:
-    """Return the text of the task file."""
+    """Return the text of the task file that the simulated students solve."""
     return (files("tmm_cli.bench") / "data" / "grading" / "six-bar.yaml").read_text(encoding="utf-8")
 
 
 @dataclass(frozen=True, eq=False)
 class StudentGroup:
-    """Simulated students, each with a variant, and the correct answers."""
+    """Simulated students.
+
+    Attributes:
+        task: task that they solve.
+        table: parameter values of their variants.
+        family: their variants, solved together.
+        right: right answers of their variants.
+        random: generator of their mistakes and drawing errors.
+    """
 
     task: Task
     table: VariantTable
@@ -71,21 +79,22 @@ class StudentGroup:
 
     @cached_property
     def with_mistake(self) -> Vector:
-        """Answers that result from each mistake, shape (mistakes, students, answers)."""
+        """Answers that result from each mistake, (mistakes, students, answers)."""
         with np.errstate(all="ignore"):
             return np.stack([predict_answers(self.family, self.right.asked, [case]) for case in self.cases])
 
     @cached_property
     def seen(self) -> Real:
-        """True where a mistake is visible in the answers of a student, shape (mistakes, students)."""
+        """True where a mistake visibly changes the answers of a student, (mistakes, students)."""
         with np.errstate(all="ignore"):
             moved = np.max(np.abs(self.with_mistake - self.right.value) / self.right.scale, axis=2)
         visible: Real = np.isfinite(moved) & (moved >= VISIBLE_FACTOR * DRAWING_ERROR)
         return visible
 
     def mistakes(self, n: int, count: int) -> tuple[int, ...]:
-        """Return `count` random mistakes of different kinds that are visible in the answers of student n; kinds equally
-        frequent.
+        """Choose `count` random mistakes of different kinds for student n; return their indices.
+
+        Only mistakes that visibly change the answers of this student are chosen; all kinds are equally likely.
         """
         kinds: dict[type[Mistake], list[int]] = {}
         for c in np.flatnonzero(self.seen[:, n]).tolist():
@@ -95,7 +104,10 @@ class StudentGroup:
         return tuple(int(self.random.choice(kind_members[k])) for k in chosen)
 
     def sheets(self, mistakes: Sequence[tuple[int, ...]]) -> Vector:
-        """Return the answers with these mistakes (one tuple for each student), with drawing errors."""
+        """Return answers with drawing errors, (students, answers).
+
+        mistakes: for each student, the indices of the mistakes made.
+        """
         value = self.right.value.copy()
         for n, student_mistakes in enumerate(mistakes):
             if len(student_mistakes) == 1:
@@ -109,9 +121,11 @@ class StudentGroup:
         return self.drawn(value)
 
     def drawn(self, value: Vector, rows: Real | None = None) -> Vector:
-        """Return the values with drawing errors, as measured in a plan; exact quantities are counted and stay exact.
+        """Return values with random drawing errors; quantities that must be exact (e.g. mobility) are unchanged.
 
-        rows: the students of the values; all if None.
+        Args:
+            value: Values, (students, answers).
+            rows: Indices of the students to whom the values belong; None for all.
         """
         scale = self.right.scale if rows is None else self.right.scale[rows]
         vector, exact = (
@@ -128,7 +142,6 @@ class StudentGroup:
 
 
 def make_students(count: int, seed: int = 1) -> StudentGroup:
-    """Simulate `count` students."""
     task = read_task(read_text(grading_task_text(), "six-bar.yaml"))
     random = np.random.default_rng(seed)
     columns = [[f"{x:.2f} {unit}" for x in random.uniform(low, high, count)] for low, high, unit in BOUNDS.values()]
@@ -139,7 +152,7 @@ def make_students(count: int, seed: int = 1) -> StudentGroup:
 
 
 def solve_family(task: Task, table: VariantTable) -> VariantFamily:
-    """Solve all variants of a table together."""
+    """Build the variants of a table as one family."""
     dimensions, numbers = read_parameter_values(task, table, list(table.rows))
     ((rows, family),) = split_families(lambda values: task.make(table.names, dimensions, values), numbers)
     if not isinstance(family, VariantFamily) or len(rows) < len(table.rows):
@@ -148,9 +161,13 @@ def solve_family(task: Task, table: VariantTable) -> VariantFamily:
 
 
 def write_submissions(group: StudentGroup, sheets: Vector, folder: Path, first: int = 0) -> None:
-    """Write the task, the table of variants, and a file for each student, as they are handed in.
+    """Write the files of a course: the task, the table of variants, and the answers of each student.
 
-    first: number of students already written.
+    Args:
+        group: Students.
+        sheets: Their answers, (students, answers).
+        folder: Folder for the files.
+        first: Number of students written before; the table of variants is continued.
     """
     (folder / "submissions").mkdir(parents=True, exist_ok=True)
     (folder / "task.yaml").write_text(grading_task_text(), encoding="utf-8")
@@ -191,9 +208,15 @@ LOOKS = 0.05  # s between observations of the memory
 
 @dataclass(frozen=True)
 class GradingFigure:
-    """A measured figure and its bound, `most` or `least`.
+    """A measured figure of `tmm bench grading`, and its target.
 
-    absolute: a time that depends on the speed and load of the machine; a reduced run only reports it.
+    Attributes:
+        what: what was measured.
+        of: number of students, sheets or candidates that were measured.
+        found: measured value.
+        target: limit of the value; None if there is none.
+        bound: whether the target is the largest ("most") or smallest ("least") permitted value.
+        absolute: True for times, which depend on the machine and its load; a reduced run does not check them.
     """
 
     what: str
@@ -220,7 +243,7 @@ class GradingFigure:
 
 @dataclass(frozen=True)
 class GradingMeasurement(Measurement):
-    """Results of the measurement."""
+    """Results of `tmm bench grading`."""
 
     figures: tuple[GradingFigure, ...]
 
@@ -248,7 +271,13 @@ class GradingMeasurement(Measurement):
 def measure_grading(
     *, reduced: bool = False, full: bool = False, progress: Callable[[str], None] = lambda _: None
 ) -> GradingMeasurement:
-    """Measure all figures; full: also with 100 000 students."""
+    """Measure all figures of `tmm bench grading`.
+
+    Args:
+        reduced: True for smaller groups.
+        full: True to grade also 100 000 students.
+        progress: Called with the name of each step.
+    """
     sheets = REDUCED_SHEETS if reduced else SHEETS
     figures: list[GradingFigure] = []
     students = make_students(sheets)
@@ -264,7 +293,10 @@ def measure_grading(
 
 
 def measure_diagnosis(group: StudentGroup, count: int) -> Iterator[GradingFigure]:
-    """Yield the shares of answers with `count` mistakes that are explained by these, and by mistakes not made."""
+    """Yield the shares of sheets whose `count` mistakes are named correctly, named wrongly, or with others besides.
+
+    For count 0: the shares of right sheets in which an answer is marked wrong or a mistake is named.
+    """
     students = range(len(group.family))
     mistakes = [group.mistakes(n, count) for n in students]
     value = group.sheets(mistakes)
@@ -293,9 +325,9 @@ def measure_diagnosis(group: StudentGroup, count: int) -> Iterator[GradingFigure
 
 
 def measure_carried_errors(group: StudentGroup) -> GradingFigure:
-    """Measure error carried forward: share of students who lose the points of one answer only.
+    """Measure the share of students who lose the points of one answer only when they make one error.
 
-    One answer of each is far off, and all later answers follow correctly from it.
+    In each sheet one answer is far off, and all later answers follow correctly from it.
     """
     right, chance = group.right, group.random
     count = len(group.family)
@@ -330,7 +362,7 @@ def measure_carried_errors(group: StudentGroup) -> GradingFigure:
 
 
 def measure_variant_selection(count: int) -> GradingFigure:
-    """Measure how many candidates for variants are judged feasible or not in a second on one core."""
+    """Measure how many candidates for variants are checked per second on one core."""
     variety = VariantGenerator(make_students(1).task)
     random = np.random.default_rng(1)
     picks = np.stack([random.integers(0, len(values), count) for values in variety.numbers], axis=1)
@@ -345,7 +377,7 @@ def measure_variant_selection(count: int) -> GradingFigure:
 
 
 def measure_command(sizes: Sequence[int], progress: Callable[[str], None]) -> Iterator[GradingFigure]:
-    """Measure the command for groups of these sizes, from files to files."""
+    """Measure time and memory of `tmm grade` for groups of these sizes, and the exponent of the growth of time."""
     times = []
     for students in sizes:
         progress(f"{students} students")
@@ -381,15 +413,20 @@ def measure_command(sizes: Sequence[int], progress: Callable[[str], None]) -> It
 
 
 def _draw_mistakes(group: StudentGroup) -> list[tuple[int, ...]]:
-    """Return mistakes for a typical group: most students make none."""
+    """Choose the mistakes of each student of a typical group, in which most students make none."""
     draws = group.random.random(len(group.family))
     return [group.mistakes(n, 2 if x < TWO else 1 if x < TWO + ONE else 0) for n, x in enumerate(draws.tolist())]
 
 
 @dataclass
 class _CommandRun:
-    """Resources of a command: wall-clock time (s), processor time (s) of its first process and of the others, memory
-    (MB).
+    """Resources that a command used.
+
+    Attributes:
+        seconds: wall-clock time, s.
+        first: processor time of its first process, s.
+        others: processor time of its other processes, s.
+        memory: largest memory of all processes together, MB.
     """
 
     seconds: float = math.nan
@@ -399,7 +436,7 @@ class _CommandRun:
 
 
 def _run_command(folder: Path) -> _CommandRun:
-    """Run `tmm grade` with two processes."""
+    """Run `tmm grade` with two processes and return the resources it used."""
     call = ["-m", "tmm_cli", "grade", "task.yaml", "--variants", "variants.csv", "--submissions", "submissions"]
     environment = {**os.environ, "PYTHONPATH": str(Path(tmm_cli.__file__).parents[1])}
     run, begun, start = _CommandRun(), os.times(), time.perf_counter()
@@ -420,7 +457,7 @@ def _run_command(folder: Path) -> _CommandRun:
 
 
 def _observe_process(run: _CommandRun, process: int) -> None:
-    """Update the resources of a running process, if the system reports them."""
+    """Update the resources used by a running process, if the system reports them."""
     try:
         proc_folder = Path(f"/proc/{process}")
         run.first = sum(

@@ -1,4 +1,4 @@
-"""Generated linkages of the measurements: chains of dyads, and families of linkages near a critical position."""
+"""Generated linkages for the measurements: chains of dyads, and families of linkages near a critical position."""
 
 from __future__ import annotations
 
@@ -21,8 +21,9 @@ AT = 1.0  # rad, the crank in the sketch
 
 
 def dyad_chain(dyads: int) -> Linkage:
-    """Make a crank and a chain of RRR groups, each attached to the rocker of the previous one: 2 dyads + 1 moving
-    links.
+    """Make a linkage of a crank and a chain of RRR dyads, each attached to the rocker of the one before.
+
+    It has 2 dyads + 1 moving links.
     """
     links = {
         FRAME: Link(FRAME, {"O": 0j}),
@@ -75,7 +76,14 @@ CRANK = Driver("1", "turn", "O", 10.0)  # rad/s
 
 @dataclass(frozen=True)
 class LinkageScene:
-    """A linkage, the driver coordinate q (rad), and the observed point of a link and pair."""
+    """A linkage at one driver coordinate.
+
+    Attributes:
+        linkage: the linkage.
+        q: driver coordinate, rad.
+        point: point whose position, velocity and acceleration are compared.
+        pair: pair whose reaction is compared.
+    """
 
     linkage: Linkage
     q: float
@@ -88,8 +96,11 @@ class LinkageFamily:
     """A family of linkages that approach a critical position.
 
     Attributes:
+        name: name of the family and its data file.
+        title: title in charts.
+        scene: function that returns a linkage of the family from its numbers and the distance.
         distances: distances from the critical position, from the harmless one to the worst.
-        unit: unit of the distance.
+        unit: unit of the distance; "share" is a fraction of a length, "ratio" a ratio of lengths.
         fixed: True if only the driver coordinate depends on the distance, and not the linkage.
     """
 
@@ -102,7 +113,7 @@ class LinkageFamily:
 
 
 def _bar(name: str, ends: tuple[str, str], length: float, mass: float) -> Link:
-    """Make a uniform bar along its x axis."""
+    """Make a uniform bar along its x axis; ends: names of its end points."""
     points = {ends[0]: 0j, ends[1]: complex(length)}
     return Link(name, points, mass, mass * length * length / 12, complex(length / 2))
 
@@ -112,8 +123,9 @@ def _point(place: DecimalPoint) -> complex:
 
 
 def intersect_circles(A: complex, b: float, D: complex, c: float, side: float) -> complex:
-    """Return an intersection of circles about A and D, to the left of AD for side 1; for sketches, without care for
-    rounding.
+    """Return an intersection of two circles about A and D with radii b and c; for side 1 the one to the left of AD.
+
+    It is meant for sketches: near a common tangent it is not accurate.
     """
     base = D - A
     d = abs(base)
@@ -122,7 +134,10 @@ def intersect_circles(A: complex, b: float, D: complex, c: float, side: float) -
 
 
 def transmission_sine(A: complex, b: float, D: complex, c: float) -> float:
-    """Return the sine of the transmission angle, 0 where the circles do not intersect."""
+    """Return the sine of the transmission angle of a four-bar with coupler b from A and rocker c from D.
+
+    It is 0 if the coupler and the rocker do not reach each other.
+    """
     cosine = (b * b + c * c - abs(D - A) ** 2) / (2 * b * c)
     return math.sqrt(max(1 - cosine * cosine, 0.0))
 
@@ -130,9 +145,13 @@ def transmission_sine(A: complex, b: float, D: complex, c: float) -> float:
 def four_bar_linkage(
     a: Decimal, b: Decimal, c: Decimal, pivots: tuple[DecimalPoint, DecimalPoint], side: float, at: float
 ) -> Linkage:
-    """Make a four-bar with crank OA = a, coupler AB = b, rocker DB = c under a moment.
+    """Make a four-bar with crank OA = a, coupler AB = b and rocker DB = c, which is loaded by a moment.
 
-    side: 1 for B to the left of AD. at: crank angle of the sketch.
+    Args:
+        a, b, c: Lengths, m.
+        pivots: Coordinates of O and D, m.
+        side: 1 if B lies to the left of AD, otherwise -1.
+        at: Crank angle of the sketch, rad.
     """
     la, lb, lc = float(a), float(b), float(c)
     o, d = (_point(place) for place in pivots)
@@ -154,7 +173,7 @@ def four_bar_linkage(
 
 
 def crank_slider_linkage(r: Decimal, length: Decimal, pivot: DecimalPoint, at: float) -> Linkage:
-    """Make a central crank-slider with crank OA = r, rod AB and a force on the piston."""
+    """Make a central crank-slider with crank OA = r and connecting rod AB = length, with a force on the piston."""
     lr, ll = float(r), float(length)
     o = _point(pivot)
     A = o + lr * complex(math.cos(at), math.sin(at))
@@ -172,9 +191,13 @@ def crank_slider_linkage(r: Decimal, length: Decimal, pivot: DecimalPoint, at: f
 
 
 def slotted_lever_linkage(a: Decimal, pivots: tuple[DecimalPoint, DecimalPoint], far: Decimal, at: float) -> Linkage:
-    """Make a slotted-lever mechanism: crank OA = a, sliding block at A, slotted link on the pivot C under a moment.
+    """Make a slotted-lever mechanism: crank OA = a, sliding block at A, slotted link CK loaded by a moment.
 
-    far: distance of its point K from C, on the side of A.
+    Args:
+        a: Length of the crank, m.
+        pivots: Coordinates of O and C, m.
+        far: Length CK, m; K lies on the same side of C as A.
+        at: Crank angle of the sketch, rad.
     """
     la, lk = float(a), float(far)
     o, c = (_point(place) for place in pivots)
@@ -193,7 +216,7 @@ def slotted_lever_linkage(a: Decimal, pivots: tuple[DecimalPoint, DecimalPoint],
 
 
 def triad_linkage(n: Numbers) -> Linkage:
-    """Make a crank OA and a ternary link PQR on three legs AP, CQ, DR, with a moment on leg CQ."""
+    """Make a crank OA and a triad: a ternary link PQR on three bars AP, CQ and DR, with a moment on CQ."""
     at = float(n["at"])
     z = {key: complex(float(n[key + "x"]), float(n[key + "y"])) for key in "OCDQRPqr"}
     la, leg = float(n["a"]), float(n["leg"])
@@ -227,7 +250,7 @@ def _pivots(n: Numbers) -> tuple[DecimalPoint, DecimalPoint]:
 
 
 def _dead_position_scene(n: Numbers, distance: Decimal) -> LinkageScene:
-    """Return a four-bar near a position with coupler and rocker in line; distance: of the driver coordinate, rad."""
+    """Return a four-bar near a position in which coupler and rocker are in line; distance of the crank in rad."""
     sense = n["sense"]
     at = float(n["critical"] + sense * n["back"])
     linkage = four_bar_linkage(n["a"], n["b"], n["c"], _pivots(n), float(n["side"]), at)
@@ -235,25 +258,23 @@ def _dead_position_scene(n: Numbers, distance: Decimal) -> LinkageScene:
 
 
 def _collinear_scene(n: Numbers, distance: Decimal) -> LinkageScene:
-    """Return a four-bar whose sketch and start are near a position with three collinear points of the crank and
-    coupler.
-    """
+    """Return a four-bar in whose sketch three points of the crank and coupler are nearly collinear; distance in rad."""
     q = float(n["critical"] + n["sense"] * distance)
     return LinkageScene(four_bar_linkage(n["a"], n["b"], n["c"], _pivots(n), float(n["side"]), q), q)
 
 
 def _outer_tangent_scene(n: Numbers, share: Decimal) -> LinkageScene:
-    """Return a four-bar with the distance AD less than b + c by this share of it."""
+    """Return a four-bar whose distance AD is less than b + c by the fraction `share`."""
     return _tangent_scene(n, (n["b"] + n["c"]) * (1 - share))
 
 
 def _inner_tangent_scene(n: Numbers, share: Decimal) -> LinkageScene:
-    """Return a four-bar with the distance AD greater than |b - c| by this share of it."""
+    """Return a four-bar whose distance AD is greater than |b - c| by the fraction `share`."""
     return _tangent_scene(n, abs(n["b"] - n["c"]) * (1 + share))
 
 
 def _tangent_scene(n: Numbers, base: Decimal) -> LinkageScene:
-    """Return a four-bar with D at this distance from A in the direction (ux, uy)."""
+    """Return a four-bar whose pivot D is at the distance `base` from A."""
     pivots = (n["Ox"], n["Oy"]), (n["Ax"] + n["ux"] * base, n["Ay"] + n["uy"] * base)
     o, d = (_point(place) for place in pivots)
     a, b, c, q = float(n["a"]), float(n["b"]), float(n["c"]), float(n["q"])
@@ -265,16 +286,14 @@ def _tangent_scene(n: Numbers, base: Decimal) -> LinkageScene:
 
 
 def _block_over_pivot_scene(n: Numbers, share: Decimal) -> LinkageScene:
-    """Return a slotted-lever mechanism whose sliding block is near the pivot, at a share of the crank length."""
+    """Return a slotted-lever mechanism whose sliding block is close to the pivot; share: their distance over OA."""
     C = n["Ax"] + n["a"] * share * n["ux"], n["Ay"] + n["a"] * share * n["uy"]
     q = float(n["q"])
     return LinkageScene(slotted_lever_linkage(n["a"], ((n["Ox"], n["Oy"]), C), n["far"], q + 1.0), q, "K", "A")
 
 
 def _short_rod_scene(n: Numbers, share: Decimal) -> LinkageScene:
-    """Return a crank-slider whose rod is longer than the crank by this share, near the upright crank where this
-    matters.
-    """
+    """Return a crank-slider near its critical crank angle, with a rod longer than the crank by the fraction `share`."""
     q = float(n["critical"] + n["lean"] * share.sqrt())
     return LinkageScene(crank_slider_linkage(n["r"], n["r"] * (1 + share), (n["Ox"], n["Oy"]), 0.7), q, "B", "A")
 
@@ -284,7 +303,7 @@ def _long_rod_scene(n: Numbers, ratio: Decimal) -> LinkageScene:
 
 
 def _size_scene(n: Numbers, size: Decimal) -> LinkageScene:
-    """Return a four-bar or a crank-slider scaled to this size (m)."""
+    """Return a four-bar or a crank-slider of the size `size`, m."""
     q, pivot = float(n["q"]), (n["Ox"] * size, n["Oy"] * size)
     if "r" in n:
         return LinkageScene(crank_slider_linkage(n["r"] * size, n["l"] * size, pivot, 0.7), q, "B", "A")
@@ -293,7 +312,7 @@ def _size_scene(n: Numbers, size: Decimal) -> LinkageScene:
 
 
 def _fold_scene(n: Numbers, distance: Decimal) -> LinkageScene:
-    """Return a group of class III near a position in which two of its assemblies coincide."""
+    """Return a linkage with a class III group near a position in which two of its assemblies coincide."""
     return LinkageScene(triad_linkage(n), float(n["critical"] + n["sense"] * distance), "Q", "C")
 
 

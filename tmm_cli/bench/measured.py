@@ -1,4 +1,4 @@
-"""Common parts of measurements: clock, description of the machine, targets."""
+"""Common parts of the measurements: clock, description of the machine, targets."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Name = TypeVar("Name")
 
 
 def describe_machine() -> dict[str, str]:
-    """Return the versions and the system of the measurement."""
+    """Return the versions of tmm, Python and NumPy, and the operating system."""
     return {
         "tmm": __version__,
         "python": platform.python_version(),
@@ -42,7 +42,14 @@ def target_slack(reduced: bool) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Measurement(ABC):
-    """Results of a measurement. absent: what could not be measured, and why."""
+    """Base class for the results of a measurement.
+
+    Attributes:
+        reduced: True if fewer cases were measured.
+        absent: messages on what could not be measured, with the reason.
+        machine: versions and operating system.
+        met: text printed if all targets are met.
+    """
 
     reduced: bool = False
     absent: tuple[str, ...] = ()
@@ -53,42 +60,47 @@ class Measurement(ABC):
     @property
     @abstractmethod
     def failures(self) -> tuple[str, ...]:
-        """Missed targets."""
+        """Messages on missed targets; empty if all are met."""
 
     @property
     @abstractmethod
     def tables(self) -> tuple[Table, ...]:
-        """Tables shown in the terminal."""
+        """Tables to print in the terminal."""
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """Remarks shown before the verdict."""
+        """Messages to print before the result of the check against the targets."""
         return self.absent
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the content of the JSON file."""
+        """Return the contents of the JSON file."""
         return asdict(self) | {"failures": list(self.failures)}
 
     def lines(self) -> list[Sequence[object]]:
-        """Return the CSV rows, the header first; if empty, a single table is written instead."""
+        """Return the rows of the CSV file, the header first; if empty, the file contains the only table instead."""
         return []
 
 
 def text_table(name: str, title: str, headers: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
-    """Make a table of texts."""
+    """Make a table whose cells are texts."""
     return Table(name, title, tuple(Column(header, [row[k] for row in rows]) for k, header in enumerate(headers)))
 
 
 def csv_cell(value: float | None, digits: int = 3) -> str:
-    """Write a number for a CSV file; empty if None or nan."""
+    """Return a number as text for a CSV file, with `digits` significant figures; empty for None or nan."""
     return "" if value is None or math.isnan(value) else f"{value:.{digits}g}"
 
 
 def time_runs(runs: Mapping[Name, Callable[[], Any]], turns: int, least: float = 0.0) -> dict[Name, list[float]]:
-    """Time the runs alternately (s), so that disturbances of the machine affect all alike, after one run for warming
-    up.
+    """Time several functions alternately, so that disturbances of the machine affect all of them alike.
 
-    A run that takes less than `least` (s) is repeated within its turn.
+    Args:
+        runs: Functions by name. Each is called once before timing starts.
+        turns: Number of timings of each function.
+        least: A function that takes less than this time (s) is called several times in each timing.
+
+    Returns:
+        Times of a call (s), by name.
     """
     often = {}
     for name, run in runs.items():
@@ -108,10 +120,10 @@ def time_runs(runs: Mapping[Name, Callable[[], Any]], turns: int, least: float =
 
 
 class TimedResult(Protocol):
-    """A result of timing, with or without a target."""
+    """Interface of a timing that may have a target."""
 
     def missed(self, slack: float) -> str:
-        """Describe the target if it is missed, with its limit widened by the factor `slack`; empty if it is met."""
+        """Return a message if the target is missed, "" if it is met; slack: factor by which the target is widened."""
 
 
 AnyTimedResult = TypeVar("AnyTimedResult", bound=TimedResult)
@@ -120,10 +132,18 @@ AnyTimedResult = TypeVar("AnyTimedResult", bound=TimedResult)
 def time_until_met(
     runs: Mapping[str, Callable[[], Any]], find: Callable[[dict[str, float]], AnyTimedResult], reduced: bool
 ) -> AnyTimedResult:
-    """Return find(least times of all runs), with additional turns while its target is missed.
+    """Time several functions, and again while the target is missed, up to 3 more times.
 
-    Other work of the machine only adds to a time, so the least of all turns approaches the true time. If a target is
-    missed, up to 3 full series are added; a target still missed then is missed by the product.
+    Other work of the machine can only lengthen a time, so the least of all times approaches the true one. A target that
+    is still missed after all repetitions is missed by the program.
+
+    Args:
+        runs: Functions by name.
+        find: Returns the result of the timing from the least time (s) of each function.
+        reduced: True for fewer timings and wider targets.
+
+    Returns:
+        Result of `find` for the least times.
     """
     least = dict.fromkeys(runs, math.inf)
     for turns in (REDUCED_TURNS if reduced else TURNS, *[TURNS] * ADDITIONAL_RUNS):

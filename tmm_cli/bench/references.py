@@ -1,4 +1,4 @@
-"""Reference linkages and scenes with answers to 50 digits, which are package data.
+"""Reference linkages with results to 50 digits, which are stored as package data.
 
 tests/write_bench_references.py and tests/write_stability_references.py write the data.
 """
@@ -27,7 +27,13 @@ REFERENCE_NAMES = ("crank-slider", "crank-rocker", "shaper", "six-bar", "press-c
 
 @dataclass(frozen=True)
 class Reference:
-    """A case, driver coordinates q (rad), and the true answers there (longdouble, to its full accuracy)."""
+    """A reference linkage with its exact results.
+
+    Attributes:
+        case: the linkage.
+        q: driver coordinates, rad.
+        exact: results at q as longdouble, rounded from 50 digits.
+    """
 
     case: Case
     q: Real
@@ -35,7 +41,7 @@ class Reference:
 
 
 def make_case(name: str, results: Results) -> Case:
-    """Make the input of the methods from results that include kinematics."""
+    """Return the input of the methods from results of tmm that include kinematics."""
     return Case(name, results.linkage, results.structure, results.kernels, results.start, results.strokes)
 
 
@@ -46,13 +52,13 @@ def _read_data(name: str) -> dict[str, Any]:
 
 
 def problem_tree(name: str) -> Tree:
-    """Return the problem file of a reference, as read."""
+    """Return the contents of the problem file of a reference linkage."""
     return read_text(_read_data(name)["problem"], f"{name}.yaml")
 
 
 @cache
 def reference(name: str) -> Reference:
-    """Return a reference by its name."""
+    """Return the reference linkage of this name with its exact results."""
     content = _read_data(name)
     results = solve(build_problem(problem_tree(name)), "kinematics")
     x, v, a, forces = (
@@ -67,7 +73,7 @@ def reference(name: str) -> Reference:
 
 
 def to_longdouble(written: Sequence[Any]) -> Any:
-    """Convert numbers of 50 digits, or vectors of two of them, to longdouble."""
+    """Convert decimal texts to longdouble; pairs of texts are the components of vectors and become complex numbers."""
     numbers = np.array(written, dtype=np.longdouble)
     return numbers if numbers.ndim == 1 else numbers[:, 0] + 1j * numbers[:, 1]
 
@@ -86,10 +92,16 @@ KEYS: dict[Compared, str] = {
 
 @dataclass(frozen=True)
 class KnownScene:
-    """A scene and the true values (longdouble) of its observed point and pair.
+    """A linkage near a critical position with its exact results, longdouble.
 
-    largest: reference values of errors, the larger of the value here and in the first, harmless scene of the same
-    numbers.
+    Attributes:
+        family: family to which the linkage belongs.
+        seed: number of the member of the family.
+        distance: distance from the critical position.
+        scene: the linkage and its driver coordinate.
+        exact: exact values at the compared point and pair.
+        largest: reference values of relative errors: the exact value, or that of the harmless scene of the same member
+            if it is larger.
     """
 
     family: LinkageFamily
@@ -102,7 +114,12 @@ class KnownScene:
 
 @dataclass(frozen=True)
 class FamilyMember:
-    """Numbers of a linkage of a family, and the answers at every distance."""
+    """A member of a linkage family.
+
+    Attributes:
+        numbers: numbers that define the linkage.
+        scenes: exact results at each distance, as read from the data file.
+    """
 
     numbers: Numbers
     scenes: tuple[Mapping[str, Any], ...]
@@ -110,7 +127,7 @@ class FamilyMember:
 
 @cache
 def family_members(family: str) -> tuple[FamilyMember, ...]:
-    """Return the content of the data file of a family."""
+    """Read the members of a linkage family from its data file."""
     text = (files("tmm_cli.bench") / "data" / "stability" / f"{family}.json").read_text(encoding="utf-8")
     return tuple(
         FamilyMember({key: Decimal(value) for key, value in seed["numbers"].items()}, tuple(seed["scenes"]))
@@ -119,11 +136,12 @@ def family_members(family: str) -> tuple[FamilyMember, ...]:
 
 
 def known_scenes(family: str, chosen: int | None = None, stride: int = 1) -> Iterator[KnownScene]:
-    """Yield the scenes of a family.
+    """Yield the linkages of a family at their distances from the critical position, with exact results.
 
     Args:
-        chosen: number of members, the first ones; all if None.
-        stride: step through the distances; the last one is always included.
+        family: Name of the family.
+        chosen: Number of members, the first ones; None for all.
+        stride: Step through the distances; the last distance is always included.
     """
     linkage_family = FAMILIES_BY_NAME[family]
     for number, seed in enumerate(family_members(family)[:chosen]):

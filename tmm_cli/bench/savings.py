@@ -1,7 +1,8 @@
-"""Work saved by computing only what was requested: counts and times, with each saving and without it.
+"""Measurement of `tmm bench savings`: work and time saved by computing only what is requested.
 
-Solutions are counted from outside: the calculation itself knows nothing of it. A solution is a group at one driver
-position, or one iteration of Newton's method there; its velocities and its accelerations count as one more each.
+Solutions are counted by wrapping the solvers; the calculation itself does not count them. A solution is a group at one
+driver position, or one iteration of Newton's method there. Its velocities count as one more solution, and so do its
+accelerations.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ STAGES = (assembling, sketch_matching, mechanism, motion, pipeline, pressure_ang
 
 @dataclass
 class SolutionCount:
-    """Numbers of solutions."""
+    """Numbers of solutions of groups for positions (`places`), velocities and accelerations."""
 
     places: int = 0
     velocities: int = 0
@@ -47,7 +48,7 @@ class SolutionCount:
 
 @contextmanager
 def count_solutions() -> Iterator[SolutionCount]:
-    """Count the solutions within this context."""
+    """Count the solutions of groups that are computed within this context."""
     count = SolutionCount()
     replaced: list[tuple[Any, str, Any]] = []
 
@@ -78,7 +79,7 @@ def count_solutions() -> Iterator[SolutionCount]:
 
 @contextmanager
 def _replace_in_stages(name: str, other: Any) -> Iterator[None]:
-    """Replace a name in every stage within this context."""
+    """Replace a name in the modules of all stages of the calculation within this context."""
     replaced = [(stage, getattr(stage, name)) for stage in STAGES if hasattr(stage, name)]
     try:
         for stage, _ in replaced:
@@ -91,7 +92,7 @@ def _replace_in_stages(name: str, other: Any) -> Iterator[None]:
 
 @contextmanager
 def with_all_orders() -> Iterator[None]:
-    """Make every stage compute accelerations within this context."""
+    """Make each stage compute positions, velocities and accelerations within this context, even if it needs fewer."""
     original = sequence.link_states
 
     def whole(linkage: Any, kernels: Any, q: Any, order: int = 2, **named: Any) -> Any:
@@ -103,7 +104,7 @@ def with_all_orders() -> Iterator[None]:
 
 @contextmanager
 def without_closed_forms() -> Iterator[None]:
-    """Solve every group by Newton's method within this context."""
+    """Solve all groups by Newton's method within this context."""
     with _replace_in_stages("CLOSED_FORM_SOLVERS", ()):
         yield
 
@@ -129,7 +130,14 @@ Workload = Callable[[], Any]
 
 @dataclass(frozen=True)
 class Saving:
-    """One saving. with_, without: counts of what it saves (COUNTED_NAMES); seconds: of each, least of several runs."""
+    """Effect of one saving.
+
+    Attributes:
+        name: name of the saving.
+        counts: what is counted: solutions, loads or pictures.
+        with_, without: counts with the saving and without it.
+        seconds: times with the saving and without it, each the least of several runs.
+    """
 
     name: str
     counts: str
@@ -142,7 +150,7 @@ class Saving:
         return self.with_ < self.without
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the content of the JSON file, times in s."""
+        """Return this saving as it is written to the JSON file, times in s."""
         return {
             "name": self.name,
             "counts": self.counts,
@@ -156,7 +164,12 @@ class Saving:
 
 @dataclass(frozen=True)
 class Savings(Measurement):
-    """Results of the measurement on a problem."""
+    """Results of `tmm bench savings`.
+
+    Attributes:
+        problem, title: name and title of the problem on which the savings were measured.
+        found: the savings.
+    """
 
     problem: str
     title: str
@@ -164,11 +177,11 @@ class Savings(Measurement):
 
     @property
     def failures(self) -> tuple[str, ...]:
-        """Savings without effect."""
+        """Names of savings that save nothing."""
         return tuple(SAVING_TITLES[saving.name] for saving in self.found if not saving.holds)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the content of the JSON file."""
+        """Return the contents of the JSON file."""
         return {
             "problem": self.problem,
             "savings": [saving.to_dict() for saving in self.found],
@@ -177,7 +190,7 @@ class Savings(Measurement):
 
     @property
     def tables(self) -> tuple[Table, ...]:
-        """Table with a row for each saving: counts and times with it and without."""
+        """Table of the savings: counts and times with each saving and without it."""
         found = self.found
         note = (
             "A solution is a group at one driver position, or an iteration of Newton's method there; "
@@ -203,7 +216,12 @@ class Savings(Measurement):
 
 
 def measure_savings(*, reduced: bool = False, progress: Callable[[str], None] = lambda __: None) -> Savings:
-    """Measure every saving on the problem that `tmm new` writes."""
+    """Measure each saving on the shaper, the problem that `tmm new` writes.
+
+    Args:
+        reduced: True for fewer positions and repeats.
+        progress: Called with the name of each saving.
+    """
     problem = build_problem(read_text(template_text(MEASURED), f"{MEASURED}.yaml"))
     measured = []
     for saving in iterate_savings(problem, reduced):
@@ -213,7 +231,7 @@ def measure_savings(*, reduced: bool = False, progress: Callable[[str], None] = 
 
 
 def iterate_savings(problem: Problem, reduced: bool) -> Iterator[Saving]:
-    """Yield every saving, each from the work with it and without it."""
+    """Yield the effect of each saving on a problem, measured by doing the work with the saving and without it."""
     repeats = FEW_REPEATS if reduced else REPEATS
     results = with_forces(solve(problem, "kinematics"), cycle=False)
     linkage, kernels = problem.linkage, results.kernels
@@ -249,8 +267,13 @@ def iterate_savings(problem: Problem, reduced: bool) -> Iterator[Saving]:
 def compare_work(
     name: str, with_saving: Workload, without_saving: Workload, repeats: int, counts: str = "solutions"
 ) -> Saving:
-    """Run both alternately: least time of each, and number of solutions, or what the work returns if counts is another
-    name.
+    """Do the work with a saving and without it alternately; compare the counts and the least times.
+
+    Args:
+        name: Name of the saving.
+        with_saving, without_saving: The work to compare.
+        repeats: Number of runs of each.
+        counts: What is counted; if it is not "solutions", the work itself returns the count.
     """
     numbers, best = [0, 0], [math.inf, math.inf]
     for __ in range(repeats):
@@ -264,24 +287,24 @@ def compare_work(
 
 
 def _structure_results(problem: Problem) -> object:
-    """Return the structure results with the range of the driver, which distinguishes a crank from a rocker."""
+    """Compute the structure and the range of the driver, which tells a crank from a rocker."""
     results = solve(problem, "structure")
     return results.driver_range, results.roles
 
 
 def _analyse_at(results: Results, q: Real) -> object:
-    """Compute kinematics and forces at q."""
+    """Compute kinematics and forces at driver coordinates q."""
     return with_forces(replace(results, motion=motion_at_positions(results, q)), cycle=False)
 
 
 def _quality_results(problem: Problem) -> object:
-    """Return everything that needs no accelerations: range, strokes, dead positions, roles of links."""
+    """Compute results that need no accelerations: range, strokes, dead positions, kinds of links (crank, rocker)."""
     results = solve(problem, "structure").mechanism
     return results.driver_range, results.strokes, results.dead, results.roles
 
 
 def _with_light_links(linkage: Linkage, mass: float) -> Linkage:
-    """Return the linkage with the last moving link as it is and the mass `mass` of all others."""
+    """Return the linkage with `mass` as mass and moment of inertia of all moving links except the last."""
     last = linkage.moving[-1]
     links = {
         name: link if name == last else replace(link, mass=mass, inertia=mass) for name, link in linkage.links.items()
@@ -290,9 +313,7 @@ def _with_light_links(linkage: Linkage, mass: float) -> Linkage:
 
 
 def _count_loads(results: Results, linkage: Linkage) -> int:
-    """Return the number of weight and inertia forces and couples, after computing force plan and Zhukovsky lever with
-    them.
-    """
+    """Compute the forces in a linkage; return the number of weights, inertia forces and inertia couples that act."""
     assert results.motion is not None
     motion = replace(results.motion, linkage=linkage, finer=None, where=None)
     inputs = replace(results.inputs, linkage=linkage)
@@ -301,5 +322,5 @@ def _count_loads(results: Results, linkage: Linkage) -> int:
 
 
 def _count_pictures(results: Results) -> int:
-    """Return the number of pictures made."""
+    """Draw all pictures and return their number."""
     return sum(1 for __ in sheet_files(with_forces(results)))

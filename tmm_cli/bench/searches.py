@@ -1,10 +1,10 @@
-"""Measurement of `tmm bench synthesis`: rate of evaluation, and searches from several seeds.
+"""Measurement of `tmm bench synthesis`: candidates evaluated per second, and searches from several seeds.
 
-Published path problems of four-bar linkages are given as problem files. Points, timing, bounds and published solutions
-are from public copies of the sources named: HCDJ and FOUR_BAR contain those of the papers, PHCPACK those of an exact
-task. HCDJ requires the crank to be the shortest link. Lengths whose bounds there start at zero start a little above
-zero here; where no bounds are given, they are chosen to include the published solution. One of the 25 points,
-(5.05, 6.84), may be a misprint of 5.45, but is kept as printed.
+Published path problems of four-bar linkages are written as problem files. Points, timing, bounds and published
+solutions are from public copies of the sources named: HCDJ and FOUR_BAR contain those of the papers, PHCPACK those of a
+problem with an exact solution. HCDJ requires the crank to be the shortest link. Where the published bounds of a length
+start at zero, they start slightly above zero here. Where no bounds are published, they are chosen to include the
+published solution. One of the 25 points, (5.05, 6.84), may be a misprint of 5.45, but is kept as printed.
 """
 
 from __future__ import annotations
@@ -32,16 +32,20 @@ TURN: Final = (0.0, 360.0)
 
 @dataclass(frozen=True)
 class PathProblem:
-    """A published path problem.
+    """A published problem: find the four-bar whose coupler point passes through given points.
 
     Attributes:
-        lengths: bounds of crank, coupler, rocker and frame.
-        offsets: bounds of the coupler point in the axes of the coupler.
-        places: bounds of the crank pivot, if it is free.
+        name: name in tables.
+        source: publication, and public copy of its data.
+        points: points of the path, mm.
+        lengths: bounds of the lengths of crank, coupler, rocker and frame, mm.
+        offsets: bounds of the coordinates of the coupler point in the axes of the coupler, mm.
+        places: bounds of the coordinates of the crank pivot, mm; None if it is fixed.
         tilted: True if the frame may have any angle.
-        at: crank angles from the frame (deg), counted from a free first angle if `phase`.
-        apart: distance of the fixed pivots, if it is given.
-        shortest: the crank must be the shortest link; no double crank.
+        at: crank angles (deg) at the points, measured from the frame; from an unknown first angle if `phase`.
+        phase: True if the first crank angle is unknown.
+        apart: distance of the fixed pivots, if it is prescribed; otherwise 0.
+        shortest: True if the crank must be the shortest link, which excludes double-crank linkages.
         printed: root-mean-square distance (mm) of the best published linkage, computed from its lengths; zero if it
             passes through all points; None if no published linkage is driven by a crank.
         least: least distance (mm) found in all runs of this search.
@@ -66,7 +70,7 @@ class PathProblem:
         return 6 - bool(self.apart) + 2 * (self.places is not None) + self.tilted + self.phase
 
     def text(self) -> str:
-        """Text of the problem file."""
+        """Return the text of the problem file."""
         vary = dict.fromkeys(("crank", "coupler", "rocker", "frame"), self.lengths)
         vary |= {"along": self.offsets, "aside": self.offsets}
         if self.apart:
@@ -207,7 +211,16 @@ SEEDS, REDUCED_SEEDS, OF_TEN = 10, 3, 9
 
 @dataclass(frozen=True)
 class SearchRate:
-    """Candidates per second in generations of one size, from the least time of several turns."""
+    """Speed of the evaluation of candidates in generations of one size.
+
+    Attributes:
+        problem: name of the problem.
+        parameters, constraints, positions: numbers of these in the problem.
+        operations: number of operations of the traced program; 0 if it is not traced.
+        generation: number of candidates in a generation.
+        per_second: candidates evaluated per second, from the least time.
+        target: least required number; None if there is none.
+    """
 
     problem: str
     parameters: int
@@ -227,9 +240,16 @@ class SearchRate:
 
 @dataclass(frozen=True)
 class SearchOutcome:
-    """Result of one seed: exact objective, violation of constraints (relative), processor times (s).
+    """Result of a search from one seed.
 
-    off: relative excess over the best known objective. history: number of candidates and excess, at each improvement.
+    Attributes:
+        seed: seed of the random numbers.
+        objective: exact value of the objective.
+        missed: relative violation of the constraints; 0 if all are met.
+        off: relative excess over the best known objective.
+        evaluations: number of candidates evaluated.
+        searching, polishing: processor times of the search and of the local refinement, s.
+        history: number of candidates evaluated and excess, at each improvement.
     """
 
     seed: int
@@ -248,12 +268,16 @@ class SearchOutcome:
 
 @dataclass(frozen=True)
 class PathOutcome:
-    """Result of one seed on a published path problem.
+    """Result of a search for a published path problem from one seed.
 
     Attributes:
+        problem: name of the problem.
+        parameters: number of parameters that vary.
+        seed: seed of the random numbers.
         distance: root-mean-square distance, mm.
-        off: excess over the least known distance, relative to it (to the spread of the points if it is zero).
-        agree: True if independent starts agree.
+        off: excess over the least known distance, relative to it; if that is zero, relative to the spread of the
+            points.
+        agree: True if searches from independent starting points agree.
         seconds: processor time.
         printed: distance of the best published linkage, mm.
     """
@@ -274,7 +298,14 @@ class PathOutcome:
 
 @dataclass(frozen=True)
 class Searches(Measurement):
-    """Results of the measurement. known: results of the long runs, see best_known."""
+    """Results of `tmm bench synthesis`.
+
+    Attributes:
+        rates: speed of evaluation for each problem and generation size.
+        found: searches of one problem from several seeds.
+        known: best known solution of this problem, see `best_known`.
+        paths: searches for the published path problems.
+    """
 
     rates: tuple[SearchRate, ...]
     found: tuple[SearchOutcome, ...]
@@ -287,12 +318,12 @@ class Searches(Measurement):
 
     @property
     def wanted(self) -> int:
-        """Number of seeds that must come near: 9 of 10; in a reduced run all but one."""
+        """Number of seeds whose search must come near the best known solution: 9 of 10; all but one if reduced."""
         return OF_TEN if len(self.found) == SEEDS else len(self.found) - 1
 
     @property
     def failures(self) -> tuple[str, ...]:
-        """Missed targets; in a reduced run, those missed by more than a factor of two."""
+        """Messages on missed targets; in a reduced run, on those missed by more than a factor of two."""
         slow = tuple(filter(None, (rate.missed(target_slack(self.reduced)) for rate in self.rates)))
         slow += tuple(filter(None, (self._far(name) for name in dict.fromkeys(path.problem for path in self.paths))))
         if self.near >= self.wanted:
@@ -301,8 +332,10 @@ class Searches(Measurement):
         return (*slow, f"{near} of the best known, target {self.wanted}")
 
     def _far(self, name: str) -> str:
-        """Path problems on which more than one seed of ten ends far above the least known distance, or takes too
-        long.
+        """Return a message if the searches for a path problem miss their target, otherwise "".
+
+        The target is missed if more than one seed of ten ends far above the least known distance, if a search ends
+        above the best published linkage, or if it takes too long.
         """
         outcomes = [path for path in self.paths if path.problem == name]
         near, longest = sum(path.near for path in outcomes), max(path.seconds for path in outcomes)
@@ -316,7 +349,7 @@ class Searches(Measurement):
         return ""
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the content of the JSON file."""
+        """Return the contents of the JSON file."""
         found = [asdict(one) | {"near": one.near} for one in self.found]
         return super().to_dict() | {"found": found, "near": self.near, "wanted": self.wanted}
 
@@ -356,14 +389,15 @@ class Searches(Measurement):
 
 @cache
 def search_problem_text(name: str) -> str:
-    """Return the text of a problem file in the package data."""
+    """Return the text of a problem file that is stored as package data."""
     return (files("tmm_cli.bench") / "data" / "synthesis" / f"{name}.yaml").read_text(encoding="utf-8")
 
 
 @cache
 def best_known() -> dict[str, Any]:
-    """Return the best known solution of SEARCHED and the long runs that found it (from
-    tests/write_synthesis_best.py).
+    """Return the best known solution of SEARCHED, and the long runs that found it.
+
+    tests/write_synthesis_best.py writes these data.
     """
     source = (files("tmm_cli.bench") / "data" / "synthesis" / "best.json").read_text(encoding="utf-8")
     best: dict[str, Any] = json.loads(source)
@@ -371,12 +405,17 @@ def best_known() -> dict[str, Any]:
 
 
 def load_candidates(name: str) -> Candidates:
-    """Return the task of a problem, ready for evaluation."""
+    """Read a problem file from the package data; return its optimal synthesis, ready to evaluate candidates."""
     return Candidates(read_task(read_text(search_problem_text(name), f"{name}.yaml")))
 
 
 def measure_searches(*, reduced: bool = False, progress: Callable[[str], None] = lambda _: None) -> Searches:
-    """Measure the rate of evaluation on every problem, then the search from several seeds on one."""
+    """Measure the speed of evaluation on each problem, then the searches from several seeds.
+
+    Args:
+        reduced: True for fewer seeds and problems.
+        progress: Called with the name of each step.
+    """
     rates: list[SearchRate] = []
     for name in SEARCH_NAMES:
         progress(name)
@@ -393,7 +432,10 @@ def measure_searches(*, reduced: bool = False, progress: Callable[[str], None] =
 
 
 def _run_path_searches(reduced: bool, progress: Callable[[str], None]) -> Iterator[PathOutcome]:
-    """Yield the results of the published path problems from several seeds; in a reduced run some of them from one."""
+    """Yield the results for the published path problems from several seeds.
+
+    A reduced run uses two of the problems and one seed.
+    """
     for problem in PROBLEMS:
         if reduced and problem.name not in REDUCED_PATHS:
             continue
@@ -403,7 +445,7 @@ def _run_path_searches(reduced: bool, progress: Callable[[str], None]) -> Iterat
 
 
 def run_path_search(problem: PathProblem, seed: int) -> PathOutcome:
-    """Return the result of the search with its ordinary settings."""
+    """Search for the linkage of a published path problem from one seed, with the default settings."""
     search = Candidates(read_task(read_text(problem.text(), f"{problem.name}.yaml")))
     search.task = replace(search.task, seed=seed)
     start = CLOCK()
@@ -416,7 +458,10 @@ def run_path_search(problem: PathProblem, seed: int) -> PathOutcome:
 
 
 def measure_rates(name: str, reduced: bool) -> list[SearchRate]:
-    """Measure candidates per second, evenly distributed within the bounds, for several generation sizes."""
+    """Measure the candidates evaluated per second for several generation sizes.
+
+    The candidates are evenly distributed within the bounds.
+    """
     search = load_candidates(name)
     chance = np.random.default_rng(1)
     sizes = (search.population, *GENERATIONS[: 2 if reduced else None])
@@ -424,7 +469,10 @@ def measure_rates(name: str, reduced: bool) -> list[SearchRate]:
 
 
 def _time_generations(name: str, search: Candidates, generations: Real, reduced: bool) -> SearchRate:
-    """Time generations (2, size, parameters) alternately: the program of repeated candidates would already be known."""
+    """Measure the candidates evaluated per second in two generations, (2, candidates, parameters).
+
+    They are evaluated alternately, since the results of a generation that is evaluated twice running would be reused.
+    """
     _, size, parameters = generations.shape
     target = PER_SECOND.get(name) if size == search.population else None
     turn = cycle(generations)
@@ -439,7 +487,7 @@ def _time_generations(name: str, search: Candidates, generations: Real, reduced:
 
 
 def run_search(search: Candidates, seed: int, best_objective: float) -> SearchOutcome:
-    """Search and refine from a seed, with the ordinary settings of the task."""
+    """Run the search and the local refinement from one seed, with the default settings of the task."""
     times = [CLOCK()]
 
     def watch(at: int, of: int) -> None:

@@ -1,4 +1,4 @@
-"""Measurement of `tmm bench speed`: against code written by hand, dyads, other programs; sweeps and growth."""
+"""Measurement of `tmm bench speed`: against code written by hand and other programs; rate of sweeps; growth of time."""
 
 from __future__ import annotations
 
@@ -46,8 +46,13 @@ GROWING = {  # what increases, and its numbers
 
 @dataclass(frozen=True)
 class Race:
-    """Time per position (ns, least of all turns) of the product and of code written by hand; preparing (ms): once a
-    linkage.
+    """Times of tmm and of code written by hand for the same mechanism.
+
+    Attributes:
+        mechanism: name of the mechanism.
+        variants, positions: numbers of variants, and of positions of each.
+        ours, by_hand: time per position of tmm and of the code written by hand, ns; the least of all timings.
+        preparing: time to prepare tmm for the variants, once, ms.
     """
 
     mechanism: str
@@ -63,7 +68,7 @@ class Race:
 
     @property
     def target(self) -> float | None:
-        """Largest allowed ratio; None if there is no target."""
+        """Largest permitted ratio of the times; None if there is no target."""
         return TARGETS.get((self.variants, self.positions))
 
     def missed(self, slack: float) -> str:
@@ -75,7 +80,14 @@ class Race:
 
 @dataclass(frozen=True)
 class Growth:
-    """Times (s) for increasing numbers of links, positions or variants; they grow as t0 + c n^exponent."""
+    """Times for increasing numbers of links, positions or variants, which grow as t0 + c n^exponent.
+
+    Attributes:
+        what: what increases: links, positions or variants.
+        numbers: the numbers n.
+        seconds: time for each number, s.
+        exponent: exponent of the best fit.
+    """
 
     what: str
     numbers: tuple[int, ...]
@@ -90,7 +102,7 @@ class Growth:
 
 @dataclass(frozen=True)
 class RivalRace:
-    """Time per position (ns) of another program and of the product for the same quantities."""
+    """Times per position (ns) of another program (`theirs`) and of tmm (`ours`) for the same quantities."""
 
     name: str
     mechanism: str
@@ -103,7 +115,7 @@ class RivalRace:
 
     @property
     def target(self) -> float:
-        """Least required ratio."""
+        """Least required ratio of the time of the other program to that of tmm."""
         return RIVALS[self.name]
 
     def missed(self, slack: float) -> str:
@@ -114,7 +126,15 @@ class RivalRace:
 
 @dataclass(frozen=True)
 class SpeedMeasurement(Measurement):
-    """Results of the measurement."""
+    """Results of `tmm bench speed`.
+
+    Attributes:
+        races: tmm against code written by hand.
+        growths: growth of time with the numbers of links, positions and variants.
+        rivals: tmm against other programs.
+        iterated: linkages with groups of class III against the six-bar.
+        sweeps: rates of sweeps.
+    """
 
     races: tuple[Race, ...]
     growths: tuple[Growth, ...]
@@ -124,12 +144,12 @@ class SpeedMeasurement(Measurement):
 
     @property
     def failures(self) -> tuple[str, ...]:
-        """Missed targets; in a reduced run, those missed by more than a factor of two."""
+        """Messages on missed targets; in a reduced run, on those missed by more than a factor of two."""
         found: tuple[TimedResult, ...] = (*self.races, *self.iterated, *self.sweeps, *self.growths, *self.rivals)
         return tuple(filter(None, (one.missed(target_slack(self.reduced)) for one in found)))
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the content of the JSON file."""
+        """Return the contents of the JSON file."""
         return super().to_dict() | {
             "races": [asdict(r) | {"ratio": r.ratio, "target": r.target} for r in self.races],
             "iterated": [r.to_dict() for r in self.iterated],
@@ -185,7 +205,12 @@ class SpeedMeasurement(Measurement):
 
 
 def measure_speed(*, reduced: bool = False, progress: Callable[[str], None] = lambda __: None) -> SpeedMeasurement:
-    """Measure everything alternately in one process, so that disturbances of the machine affect all alike."""
+    """Measure all speeds in one process, alternately where two are compared, so that disturbances affect both alike.
+
+    Args:
+        reduced: True for fewer and shorter runs.
+        progress: Called with the name of each step.
+    """
     races: list[Race] = []
     for mechanism in MECHANISMS:
         progress(mechanism.name)
@@ -209,7 +234,7 @@ def measure_speed(*, reduced: bool = False, progress: Callable[[str], None] = la
 
 
 def race_mechanism(mechanism: HandCodedMechanism, reduced: bool) -> list[Race]:
-    """Time a mechanism with one and with many variants, by the product and by hand alternately."""
+    """Time a mechanism with one variant and with many, alternately by tmm and by code written by hand."""
     kinds = [(1, n) for n in POSITIONS] + [(v, OF_VARIANTS) for v in VARIANTS if not (reduced and v == 100)]
     return [_time_race(mechanism, variants, positions, reduced) for variants, positions in kinds]
 
@@ -231,10 +256,10 @@ def _time_race(mechanism: HandCodedMechanism, variants: int, positions: int, red
 
 
 def measure_growth(quantity: str, reduced: bool) -> Growth:
-    """Time a chain of dyads with increasing numbers of links, or the six-bar with increasing positions or variants.
+    """Time linkages of increasing size, or a six-bar with increasing numbers of positions or variants.
 
-    Only the balancing moment is requested, for which all groups are solved forward and backward: so the work grows, and
-    not the results, which would soon make memory the limit.
+    Only the balancing moment is requested. All groups must be solved for it, forward and backward, but the results take
+    little memory, which would otherwise soon limit the speed.
     """
     numbers = GROWING[quantity][1][:-1] if reduced else GROWING[quantity][1]
     six_bar = next(m for m in MECHANISMS if m.name == "six-bar")
@@ -265,7 +290,7 @@ def _make_call(batch: Batch, positions: int) -> Callable[[], Any]:
 
 
 def fit_exponent(numbers: Sequence[int], seconds: Sequence[float]) -> float:
-    """Return p of the best fit t0 + c n^p, t0 >= 0, by least squares of relative deviations."""
+    """Fit t0 + c n^p with t0 >= 0 to times by least squares of relative deviations; return p."""
     n, t = np.asarray(numbers, float), np.asarray(seconds, float)
     best, fits = np.inf, 1.0
     for p in np.arange(0.5, 1.5005, 0.001):
@@ -280,7 +305,11 @@ def fit_exponent(numbers: Sequence[int], seconds: Sequence[float]) -> float:
 
 
 def race_rivals(reduced: bool, progress: Callable[[str], None]) -> tuple[tuple[RivalRace, ...], tuple[str, ...]]:
-    """Time the installed rivals on the mechanisms that they can compute, at 360 positions."""
+    """Time the installed other programs and tmm on the mechanisms that they can compute, at 360 positions.
+
+    Returns:
+        The timings, and messages on programs or mechanisms that could not be timed.
+    """
     methods, missing = installed()
     absent = [f"{name}: not installed" for name in missing]
     races = []
@@ -317,10 +346,13 @@ ITERATED_TARGETS = {360: 2.0 / 0.23, 36_000: 1.0 / 0.23}  # 2 us and 1 us per po
 
 @dataclass(frozen=True)
 class IteratedRace:
-    """A linkage with a group solved by iteration: time per position (ns) of its own, and of the six-bar at 360
-    positions.
+    """Times per position (ns) of a linkage with a group solved by iteration, and of the six-bar with dyads only.
 
-    rest: share of the positions that are left to the ordinary stages.
+    Attributes:
+        mechanism: name of the linkage.
+        positions: number of its positions; the six-bar is timed at 360.
+        ours, six_bar: the two times.
+        rest: fraction of the positions that the traced program does not solve and leaves to the ordinary calculation.
     """
 
     mechanism: str
@@ -335,7 +367,7 @@ class IteratedRace:
 
     @property
     def target(self) -> float:
-        """Largest allowed ratio."""
+        """Largest permitted ratio of the times."""
         return ITERATED_TARGETS[self.positions]
 
     def missed(self, slack: float) -> str:
@@ -345,7 +377,7 @@ class IteratedRace:
         return f"{kind}: {self.ratio:.1f} times the six-bar, target {self.target:.1f}"
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the content of the JSON file."""
+        """Return this timing as it is written to the JSON file."""
         return asdict(self) | {"ratio": self.ratio, "target": self.target}
 
 
@@ -369,7 +401,7 @@ def race_iterated(name: str, reduced: bool) -> list[IteratedRace]:
 
 
 def _linkage_with_constant_loads(name: str) -> Linkage:
-    """Return the linkage of a reference with constant loads, like those of the other races."""
+    """Return a reference linkage with constant loads in place of load tables."""
     linkage = reference(name).case.linkage
     loads = tuple(
         replace(x, force=x.force * (1 if x.table is None else x.table.values[0]), table=None, when="always")
@@ -379,7 +411,7 @@ def _linkage_with_constant_loads(name: str) -> Linkage:
 
 
 def iterated_table(rows: Sequence[IteratedRace]) -> Table:
-    """Make the table shown in the terminal."""
+    """Make the table that compares groups of class III with the six-bar."""
     return text_table(
         "iterated",
         "Groups of class III against the six-bar: time per position with all reactions, ns",
@@ -407,7 +439,15 @@ A_MINUTE = 1e6
 
 @dataclass(frozen=True)
 class SweepRate:
-    """A sweep: number of mechanisms, positions of each, mechanisms per minute on one core; preparing (ms): once."""
+    """Speed of a sweep on one core.
+
+    Attributes:
+        mechanism: name of the mechanism.
+        mechanisms: number of mechanisms in the sweep.
+        positions: number of positions of each.
+        a_minute: mechanisms computed per minute.
+        preparing: time of preparation, once, ms.
+    """
 
     mechanism: str
     mechanisms: int
@@ -426,12 +466,12 @@ class SweepRate:
         return f"sweep of {self.mechanism}: {self.a_minute:.0f} mechanisms per minute, target {self.target:.0f}"
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the content of the JSON file."""
+        """Return this rate as it is written to the JSON file."""
         return asdict(self) | {"target": self.target}
 
 
 def time_sweep(name: str, reduced: bool) -> SweepRate:
-    """Time the points of a sweep as `tmm sweep` computes them; all of them are feasible."""
+    """Time a sweep as `tmm sweep` computes it, over a range in which all mechanisms can be assembled."""
     count = REDUCED_MECHANISMS if reduced else SWEPT_MECHANISMS
     start = perf_counter()
     tree = problem_tree(name)
@@ -448,7 +488,7 @@ def time_sweep(name: str, reduced: bool) -> SweepRate:
 
 
 def sweep_table(rows: Sequence[SweepRate]) -> Table:
-    """Make the table shown in the terminal."""
+    """Make the table of the rates of sweeps."""
     return text_table(
         "sweeps",
         f"Mechanisms per minute of a sweep on one core, with {SWEPT_QUANTITIES[0]}",

@@ -1,9 +1,8 @@
-"""Measurement of `tmm bench stability`: results of every method near critical positions, and whether failures are
-reported.
+"""Measurement of `tmm bench stability`: results of all methods near critical positions, and reports of failures.
 
 A result is wrong if its error exceeds 1e-6 of the largest value, or 10 times the error that the method itself states
-(tolerance of Newton's method, 5 % of the drawing board); one of the product if it exceeds its own error bound. A method
-reports a failure by an exception, by nan, or by not converging; the product also by a sufficiently wide bound.
+(tolerance of Newton's method), or 5 % for the drawing board. A result of tmm is wrong if its error exceeds its own
+error bound. A method reports a failure by an exception, by nan, or by not converging; tmm also by a wide error bound.
 """
 
 from __future__ import annotations
@@ -45,10 +44,15 @@ Solver = Callable[[Real], MethodAnswers]
 
 @dataclass(frozen=True)
 class SceneOutcome:
-    """One method in one scene: errors of its results (fractions of the largest values), and the verdict.
+    """Result of one method for one linkage near a critical position.
 
-    why: how it reported a failure. Product only: bound, and widths: bound over true error of each number, nan without
-    bound.
+    Attributes:
+        method: name of the method.
+        verdict: right, said (failure reported) or wrong.
+        errors: relative error of each quantity, nan if not computed.
+        why: how a failure was reported.
+        bound: largest error bound, as a fraction of the largest value; only for tmm.
+        widths: ratio of bound to true error for each number; only for tmm.
     """
 
     method: str
@@ -61,9 +65,17 @@ class SceneOutcome:
 
 @dataclass(frozen=True)
 class StabilityRow:
-    """One method at one distance: numbers of scenes with right results, reported failures (said) and wrong results.
+    """Results of one method at one distance from the critical position.
 
-    errors: largest errors of its results; bound: largest bound of the product, as a fraction of the largest value.
+    Attributes:
+        family: name of the linkage family.
+        method: name of the method.
+        distance: distance, in the unit of the family.
+        scenes: number of linkages.
+        right, said, wrong: numbers of linkages with right results, with reported failures, with wrong results.
+        errors: largest relative error of each quantity.
+        bound: largest error bound of tmm, as a fraction of the largest value.
+        why: how failures were reported.
     """
 
     family: str
@@ -79,14 +91,19 @@ class StabilityRow:
 
     @property
     def error(self) -> float:
-        """Largest error of all quantities; nan if there are none."""
+        """Largest relative error of all quantities; nan if none was computed."""
         errors = [error for error in self.errors.values() if not np.isnan(error)]
         return max(errors, default=float("nan"))
 
 
 @dataclass(frozen=True)
 class Stability(Measurement):
-    """Results of the measurement. widths: ratios of all bounds of the product to the true errors."""
+    """Results of `tmm bench stability`.
+
+    Attributes:
+        rows: results for each linkage family, method and distance.
+        widths: ratio of bound to true error for each number computed by tmm.
+    """
 
     rows: tuple[StabilityRow, ...]
     widths: tuple[float, ...]
@@ -102,23 +119,21 @@ class Stability(Measurement):
         return tuple(dict.fromkeys(row.method for row in self.rows))
 
     def of(self, family: str, method: str) -> list[StabilityRow]:
-        """Return the rows from the harmless distance to the worst."""
+        """Return the results of a method for a linkage family, from the harmless distance to the worst."""
         return [row for row in self.rows if (row.family, row.method) == (family, method)]
 
     def lies(self, family: str, method: str) -> float | None:
-        """Return the distance at which a method first gives a wrong result without reporting it; None if it never
-        does.
-        """
+        """Return the distance at which a method first gives a wrong result without a report; None if it never does."""
         return next((row.distance for row in self.of(family, method) if row.wrong), None)
 
     @property
     def sharp(self) -> float:
-        """Share of the bounds of the product that are at most 100 times the true error."""
+        """Fraction of the error bounds of tmm that are at most 100 times the true error."""
         return float(np.mean(np.array(self.widths) <= LARGEST_WIDTH)) if self.widths else float("nan")
 
     @property
     def failures(self) -> tuple[str, ...]:
-        """Targets that the product misses."""
+        """Messages on targets that tmm misses."""
         lies = [
             f"{row.family}: {row.wrong} of {row.scenes} outside their error bounds at {row.distance:g}"
             for row in self.rows
@@ -131,7 +146,7 @@ class Stability(Measurement):
         return tuple(lies)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the content of the JSON file: null for an error that was not computed."""
+        """Return the contents of the JSON file; an error that was not computed is null."""
         rows = [
             vars(row) | {"errors": {q: _plain(e) for q, e in row.errors.items()}, "bound": _plain(row.bound)}
             for row in self.rows
@@ -177,11 +192,14 @@ def measure_stability(
     own: bool = True,
     progress: Callable[[str], None] = lambda __: None,
 ) -> Stability:
-    """Apply all methods to all scenes.
+    """Apply the methods to linkages near critical positions.
 
     Args:
-        reduced: fewer scenes and methods.
-        own: include the product with its error bounds.
+        families: Names of linkage families.
+        reduced: True for fewer linkages and methods.
+        methods: Methods to apply; by default all.
+        own: True to include tmm with its error bounds.
+        progress: Called with the name of each family.
     """
     fewer = [method for method in RIVALS if method.name in WHEN_REDUCED or method in TEXTBOOK_METHODS]
     chosen = tuple(methods if methods is not None else fewer if reduced else RIVALS)
@@ -204,7 +222,11 @@ def measure_stability(
 def _prepare_scenes(
     scenes: Iterable[KnownScene], methods: tuple[Method, ...], absent: dict[str, None]
 ) -> Iterator[tuple[KnownScene, Case, dict[Method, Solver | Exception]]]:
-    """Yield scenes with prepared methods, prepared once where the linkage is the same at all distances."""
+    """Yield each linkage with its prepared methods, or the error with which preparation failed.
+
+    Methods are prepared only once if the linkage is the same at all distances. Methods that cannot compute a linkage
+    are added to `absent`.
+    """
     for __, group in groupby(scenes, key=lambda at: (at.seed, None if at.family.fixed else at.distance)):
         of_one = list(group)
         case = Case.of(of_one[0].scene.linkage)
@@ -222,7 +244,7 @@ def _prepare_scenes(
 
 
 def error_limit(method: Method) -> float:
-    """Return the error, as a fraction of the largest value, beyond which a result of the method is wrong."""
+    """Return the relative error beyond which a result of the method counts as wrong."""
     stated = (
         BOARD_ERROR
         if method.family == "board"
@@ -234,7 +256,10 @@ def error_limit(method: Method) -> float:
 
 
 def judge_method(method: Method, solver: Solver | Exception, at: KnownScene) -> SceneOutcome:
-    """Return the errors and the verdict of a method in a scene."""
+    """Apply a method to a linkage and compare the results with the exact values.
+
+    solver: the prepared method, or the error with which preparation failed, which counts as a reported failure.
+    """
     nothing: dict[Compared, float] = dict.fromkeys(QUANTITIES, float("nan"))
     try:
         if isinstance(solver, Exception):
@@ -265,8 +290,10 @@ def _watched_value(answers: MethodAnswers, quantity: Compared, at: KnownScene) -
 
 
 def judge_product(case: Case, at: KnownScene) -> SceneOutcome:
-    """Return the errors and the verdict of the product: wrong if a value is outside its bound; not printed without a
-    bound.
+    """Apply tmm to a linkage and compare the results with the exact values.
+
+    The verdict is wrong if a value is outside its error bound; a value without a finite bound counts as a reported
+    failure.
     """
     q = np.array([at.scene.q])
     results = solve_bare_linkage(case.linkage, q, case.structure, case.kernels)

@@ -1,4 +1,4 @@
-"""Charts of `tmm bench speed`, `savings` and `synthesis`: times, counts, and rates of optimal synthesis."""
+"""Charts of `tmm bench speed`, `savings` and `synthesis`: times, counts, and speed of optimal synthesis."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ MECHANISM_COLOURS = {"crank-slider": BLUE, "six-bar": RED, "shaper": GREEN}
 
 
 def speed_charts(speed: SpeedMeasurement) -> dict[str, Figure]:
-    """Return the charts of `tmm bench speed` by file name."""
+    """Draw the charts of `tmm bench speed`; return them by file name."""
     return {"speed.png": draw_speed(speed)}
 
 
 def draw_speed(speed: SpeedMeasurement) -> Figure:
-    """Draw all results on one sheet."""
+    """Draw all results of `tmm bench speed` on one sheet."""
     caption = (
         "all joints, centres of mass, reactions, balancing moment; least of many turns in one "
         "process; tmm {tmm}, Python {python}, NumPy {numpy}, {system}"
@@ -82,12 +82,12 @@ SAVINGS_SHEET_SHARE = 0.75  # of the height of a landscape sheet
 
 
 def savings_charts(measured: Savings) -> dict[str, Figure]:
-    """Return the charts of `tmm bench savings` by file name."""
+    """Draw the charts of `tmm bench savings`; return them by file name."""
     return {"savings.png": draw_savings(measured)}
 
 
 def draw_savings(measured: Savings) -> Figure:
-    """Draw a pair of bars for each saving, with the numbers beside them."""
+    """Draw a pair of bars for each saving, counts and times, with the numbers beside them."""
     savings = measured.found
     figure = make_page("Savings by computing only what is requested", measured.title[:90], SAVINGS_SHEET_SHARE)
     axes = figure.add_subplot()
@@ -127,12 +127,12 @@ SEARCH_SHEET_SHARE = 0.62  # of the height of a landscape sheet
 
 
 def search_charts(measured: Searches) -> dict[str, Figure]:
-    """Return the charts of `tmm bench synthesis` by file name."""
+    """Draw the charts of `tmm bench synthesis`; return them by file name."""
     return {"synthesis.png": draw_searches(measured)}
 
 
 def draw_searches(measured: Searches) -> Figure:
-    """Draw both panels on half a sheet."""
+    """Draw the speed of evaluation and the deviations of the searches, side by side on a sheet."""
     caption = (
         "five lengths of a crank-rocker, three constraints, 72 positions; one thread; tmm {tmm}, "
         "Python {python}, NumPy {numpy}, {system}"

@@ -1,4 +1,4 @@
-"""Grading: variants of a task, submissions of students, marks, and explanations of mistakes."""
+"""Grading: variants of a task, reading of submissions, marks, and explanations of wrong answers."""
 
 from tmm_cli.interfaces import lazy
 

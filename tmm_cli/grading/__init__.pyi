@@ -1,4 +1,4 @@
-"""Grading: variants of a task, what students hand in, how right it is, and what went wrong where it is not."""
+"""Grading: variants of a task, reading of submissions, marks, and explanations of wrong answers."""
 
 from .answer_key import (
     HEADER as HEADER,

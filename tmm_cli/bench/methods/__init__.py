@@ -1,1 +1,1 @@
-"""Methods of computation, those of the product and others, in a common form."""
+"""Methods of computation, of tmm and of others, with a common interface so that they can be compared."""

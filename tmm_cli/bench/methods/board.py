@@ -1,10 +1,10 @@
-"""The drawing board: a student with ruler and compasses, every constructed point read to a grid on paper.
+"""The drawing board: a student with ruler and compasses reads each constructed point to a grid on the paper.
 
-Scales are those of the product's own sheets, at each position. The groups are drawn in order: points of the mechanism,
-ends of the velocity plan, of the acceleration plan; then the force polygons, the last group first. A construction
-starts from what was drawn before it, so errors propagate as on paper: directions come from drawn links, normal
-accelerations from measured velocities, arms of moments from the drawing. Pivots on the frame and lengths of links are
-laid off exactly. I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 4, 5 and 13.
+The scales are those of the sheets that tmm draws, chosen at each position. The Assur groups are drawn in order: points
+of the mechanism, ends of the vectors of the velocity plan, then of the acceleration plan; then the force polygons, from
+the last group to the first. Each construction starts from what was drawn before, so errors propagate as on paper:
+directions come from drawn links, normal accelerations from measured velocities, moment arms from the drawing. Pivots on
+the frame and lengths of links are exact. I. I. Artobolevsky, Theory of Mechanisms and Machines, ch. 4, 5 and 13.
 """
 
 from __future__ import annotations
@@ -39,13 +39,19 @@ from tmm_cli.mechanics.plans import Plan, acceleration_plan, force_plans, sheet_
 
 
 def snap_to_grid(value: Vector, grid: Real) -> Vector:
-    """Round vectors to a grid."""
+    """Round both components of vectors to multiples of the grid spacing."""
     return grid * (np.round(value.real / grid) + 1j * np.round(value.imag / grid))
 
 
 @dataclass(frozen=True)
 class BoardScales:
-    """Scales (SI units per mm) at every position: of the mechanism (m), the velocity, acceleration and force plans."""
+    """Scales of the drawings at each position, SI units per mm, (positions,).
+
+    Attributes:
+        x: scale of the mechanism, m/mm.
+        v, a: scales of the velocity plan and the acceleration plan.
+        forces: scales of the force polygons, N/mm, by the links of the polygon.
+    """
 
     x: Real
     v: Real
@@ -54,7 +60,7 @@ class BoardScales:
 
     @classmethod
     def of(cls, case: Case, motion: Motion, reactions: Reactions) -> BoardScales:
-        """Return the scales of the product's sheets."""
+        """Return the scales that tmm chooses for its own sheets."""
         count = range(len(motion.q))
         fixed = [case.linkage.local(FRAME, h.point) for h in case.linkage.hinges if FRAME in h.links]
         moving = [motion.named(point).x for point in case.linkage.moving_points]
@@ -75,7 +81,7 @@ def _scale(plan: Plan) -> float:
 
 @dataclass(frozen=True)
 class PolygonSolver(WrappedSolver):
-    """Solver whose reactions are read from the force polygon; grid in N."""
+    """Solver of a group whose reactions are read from the force polygon; grid: spacing of the grid, N."""
 
     grid: Real
 
@@ -92,8 +98,13 @@ class PolygonSolver(WrappedSolver):
 
 @dataclass(frozen=True)
 class Board:
-    """A drawing of all positions; grids: of positions (m), and of v and a per unit of the driver speed and its
-    square.
+    """Drawing of the mechanism and its plans at all positions.
+
+    Attributes:
+        case: the linkage.
+        x: grid spacing of positions, m.
+        v: grid spacing of velocities, per unit of the driver speed.
+        a: grid spacing of accelerations, per unit of its square.
     """
 
     case: Case
@@ -102,7 +113,7 @@ class Board:
     a: Real
 
     def _ends(self, link: str) -> tuple[str, str] | None:
-        """Return the two points of a link farthest apart, which show its direction in the drawing."""
+        """Return the two points of a link that show its direction: those farthest apart. None if it has only one point."""
         points = self.case.linkage.links[link].points
         fixed = self.case.linkage.links[FRAME].points
         pairs = [
@@ -115,7 +126,10 @@ class Board:
         return max(pairs, key=lambda p: (p[0] in fixed, abs(points[p[0]] - points[p[1]])), default=None)
 
     def _partner(self, link: str, drawn: Mapping[str, object]) -> tuple[str, float] | None:
-        """Return the link on which this one slides, and its angle from it (rad)."""
+        """Return a link, already drawn, that forms a prismatic pair with this one, and the angle (rad) between them.
+
+        Return None if there is no such link.
+        """
         for slide in self.case.linkage.slides:
             if slide.runner == link and slide.carrier in drawn:
                 return slide.carrier, slide.turned
@@ -124,18 +138,27 @@ class Board:
         return None
 
     def _order(self, links: tuple[str, ...]) -> list[str]:
-        """Return the links, those that show their own direction first."""
+        """Sort the links so that those with two points, which show their own direction, come first."""
         return sorted(links, key=lambda link: self._ends(link) is None)
 
     def _fixed(self, point: str) -> bool:
         return point in self.case.linkage.links[FRAME].points
 
     def _point(self, link: str) -> complex:
-        """Return a drawn point of a link, in its axes."""
+        """Return the first point of a link in its own axes; the origin if it has none."""
         return next(iter(self.case.linkage.links[link].points.values()), 0j)
 
     def draw(self, links: tuple[str, ...], exact_poses: Poses, known: Poses) -> dict[str, Pose]:
-        """Return the poses as drawn."""
+        """Draw links on the plan of positions.
+
+        Args:
+            links: Names of the links.
+            exact_poses: Their exact poses.
+            known: Poses of the links drawn before.
+
+        Returns:
+            Poses of all links drawn so far, as read from the drawing.
+        """
         drawn = dict(known)
         for link in self._order(links):
             pose, ends = exact_poses[link], self._ends(link)
@@ -153,7 +176,7 @@ class Board:
         return drawn
 
     def lay_off(self, links: tuple[str, ...], rates: Rates, poses: Poses, known: Rates) -> dict[str, Rate]:
-        """Return the rates as in the velocity plan."""
+        """Draw velocities of links on the velocity plan; return those of all links drawn so far, as read from it."""
         drawn = dict(known)
         for link in self._order(links):
             rate, pose, ends = rates[link], poses[link], self._ends(link)
@@ -171,7 +194,7 @@ class Board:
         return drawn
 
     def normals(self, links: tuple[str, ...], poses: Poses, rates: Rates) -> dict[str, Rate]:
-        """Return rates whose normal accelerations w^2 l are vectors of the grid."""
+        """Return the velocities of the links, with ω changed so that ω² l is a multiple of the acceleration grid."""
         laid = dict(rates)
         for link in links:
             ends = self._ends(link)
@@ -185,7 +208,7 @@ class Board:
     def accelerate(
         self, links: tuple[str, ...], accels: Accels, poses: Poses, rates: Rates, known: Accels
     ) -> dict[str, Accel]:
-        """Return the accelerations as in the acceleration plan."""
+        """Draw accelerations of links on the acceleration plan; return those of all links drawn, as read from it."""
         drawn = dict(known)
         for link in self._order(links):
             accel, pose, w, ends = accels[link], poses[link], rates[link].w, self._ends(link)
@@ -202,7 +225,7 @@ class Board:
         return drawn
 
     def motion(self, q: Real) -> tuple[Motion, tuple[Placement, ...]]:
-        """Return the motion with all positions drawn."""
+        """Draw all links and plans; return the motion read from the drawing, and the placements of the groups."""
         linkage = self.case.linkage
         drives = drives_at(linkage, q)
         frame = frame_state(q)
@@ -229,7 +252,7 @@ class Board:
 
 
 def prepare_board(millimetres: float, case: Case) -> Callable[[Real], MethodAnswers]:
-    """Return the drawing board on which points are read to so many millimetres."""
+    """Prepare the drawing board on which points are read to this accuracy, mm."""
 
     def at(q: Real) -> MethodAnswers:
         exact = compute_motion(case.linkage, case.kernels, q, case.law)

@@ -1,4 +1,4 @@
-"""Input and output of the methods: the common form in which they are compared."""
+"""Common input and output of the methods that are compared."""
 
 from __future__ import annotations
 
@@ -22,14 +22,20 @@ QUANTITIES: tuple[Compared, ...] = ("positions", "velocities", "accelerations", 
 
 
 class MethodUnable(Exception):  # noqa: N818 - no error, but what a method says of itself
-    """The method cannot compute this linkage."""
+    """Raised by a method that cannot compute a linkage; the message says why."""
 
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """An assembled linkage with its driver; lower pairs only.
+    """Input of a method: an assembled linkage with its driver; lower pairs only.
 
-    start: driver coordinate at t = 0 (rad or m); strokes: required if loads act in working strokes only.
+    Attributes:
+        name: name of the linkage.
+        linkage: the linkage.
+        structure: its Assur groups and pairs.
+        kernels: solvers of its groups.
+        start: driver coordinate at t = 0, rad or m.
+        strokes: strokes of the output; required if loads act in working strokes only.
     """
 
     name: str
@@ -41,7 +47,7 @@ class Case:
 
     @classmethod
     def of(cls, linkage: Linkage, name: str = "", start: float = 0.0, strokes: Strokes | None = None) -> Case:
-        """Assemble a linkage as sketched. Raises the errors of `assemble`."""
+        """Assemble a linkage as its sketch shows it. Raises the errors of `assemble`."""
         structure = analyse_structure(linkage)
         return cls(name, linkage, structure, assemble(linkage, structure), start, strokes)
 
@@ -52,13 +58,19 @@ class Case:
 
     @cached_property
     def size(self) -> float:
-        """Greatest distance of two points of one link, m: the unit of gaps."""
+        """Size of the linkage (m): the largest distance between two points of one link."""
         return max(link_extent(self.linkage, link) for link in self.linkage.links) or 1.0
 
     def motion(
         self, q: Real, poses: Mapping[str, Pose], first: Mapping[str, Rate], second: Mapping[str, Accel]
     ) -> Motion:
-        """Make a motion from the states of all links; first and second are derivatives with respect to q."""
+        """Build the motion from the poses of all links and their derivatives.
+
+        Args:
+            q: Driver coordinates.
+            poses: Poses of the links.
+            first, second: First and second derivatives of the poses with respect to q.
+        """
         law, every = self.law, np.ones(np.shape(q), dtype=bool)
         acceleration = np.full(np.shape(q), float(law.sense * law.acceleration))
         return Motion(
@@ -79,11 +91,11 @@ class Case:
         )
 
     def loads(self, motion: Motion) -> tuple[AppliedLoad, ...]:
-        """Return all forces on the links of a motion except reactions."""
+        """Return all forces and moments on the links except reactions: loads, weights, inertia forces."""
         return collect_loads(motion, self.strokes)
 
     def wrenches(self, motion: Motion) -> dict[str, Wrench]:
-        """Return these forces summed about the origin of each link."""
+        """Return the resultant force on each link and the resultant moment about its origin, reactions excluded."""
         nothing = np.zeros(np.shape(motion.q))
         on = {name: Wrench(nothing + 0j, nothing) for name in self.linkage.links}
         for load in self.loads(motion):
@@ -94,10 +106,12 @@ class Case:
 
 @dataclass(frozen=True)
 class MethodAnswers:
-    """Results of a method at every position, SI; None if it does not compute a quantity. Arrays are (positions,).
+    """Results of a method at all positions, SI; None for a quantity that it does not compute.
 
-    positions (m), velocities (m/s), accelerations (m/s2) of moving points by name; reactions (N) on the second link of
-    each pair by name; balancing moment (N m) or force (N) of the first driver.
+    Attributes:
+        positions, velocities, accelerations: vectors of the moving points by name, (positions,).
+        reactions: force on the second link of each pair, by the name of the pair, (positions,).
+        balancing: balancing moment or force of the first driver, (positions,).
     """
 
     positions: Mapping[str, Vector] | None = None
@@ -107,17 +121,25 @@ class MethodAnswers:
     balancing: Real | None = None
 
     def series(self, quantity: Compared) -> Mapping[str, Vector] | None:
-        """Return one quantity by name; the balancing moment under the name of its quantity."""
+        """Return the values of one quantity by the name of the point or pair; None if it is not computed.
+
+        The balancing moment is returned under the name "balancing".
+        """
         values = getattr(self, quantity)
         return {quantity: values} if quantity == "balancing" and values is not None else values
 
 
 @dataclass(frozen=True)
 class Method:
-    """A method of computation. `prepare` is called once for a linkage and returns a function of q.
+    """A method of computation that is compared with others.
 
-    family: name shared by methods that differ in one setting; timed: False if its time has no meaning; alone: call of
-    another program without conversion of its results.
+    Attributes:
+        name: name of the method.
+        family: name shared by methods that differ in one setting.
+        prepare: called once for a linkage; returns a function of the driver coordinates.
+        setting: value of the setting, e.g. the tolerance; None if there is none.
+        timed: False if its time says nothing, as for the drawing board.
+        alone: like `prepare`, for another program: only its own computation, without conversion of the results.
     """
 
     name: str
@@ -128,14 +150,14 @@ class Method:
     alone: Callable[[Case], Callable[[Real], object]] | None = None
 
     def solve(self, case: Case, q: Real) -> MethodAnswers:
-        """Prepare the case and evaluate it at q."""
+        """Prepare a case and compute it at driver coordinates q."""
         return self.prepare(case)(np.atleast_1d(np.asarray(q)))
 
 
 def answers_of_motion(
     case: Case, motion: Motion, reactions: Mapping[str, Vector] | None, balancing: Real | None
 ) -> MethodAnswers:
-    """Return the results from a motion and separately computed forces."""
+    """Return the results of a method from a motion and separately computed reactions and balancing moments."""
     points = {name: motion.named(name) for name in case.linkage.moving_points}
     return MethodAnswers(
         {name: point.x for name, point in points.items()},
@@ -147,7 +169,7 @@ def answers_of_motion(
 
 
 def answers_of_plan(case: Case, motion: Motion, plan: Reactions) -> MethodAnswers:
-    """Return the results from a motion and its force plan."""
+    """Return the results of a method from a motion and its force analysis."""
     forces = {r.pair.name: r.onto(r.pair.j) for r in plan.all}
     return answers_of_motion(case, motion, forces, plan.balance.generalized)
 
@@ -155,9 +177,10 @@ def answers_of_plan(case: Case, motion: Motion, plan: Reactions) -> MethodAnswer
 def relative_errors(
     computed: MethodAnswers, exact: MethodAnswers, quantities: Iterable[Compared] = QUANTITIES
 ) -> dict[Compared, float]:
-    """Return the largest error of each quantity relative to the largest value of the same point or pair in the cycle.
+    """Return the largest relative error of each quantity over all positions.
 
-    nan if the quantity is not computed; infinite if the method fails in some position (nan).
+    Errors are relative to the largest value at the same point or pair. The result is nan for a quantity that is not
+    computed, and infinite if the method fails (nan) at some position.
     """
     worst: dict[Compared, float] = {}
     for quantity in quantities:

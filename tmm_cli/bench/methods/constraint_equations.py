@@ -1,7 +1,7 @@
 """Newton's method on the constraint equations of the pairs: loop closure, and the multibody formulation.
 
-The equations of the pairs as rows, and their derivatives with respect to the positions of the links: of all pairs at
-once (multibody), or of those at which the loops are cut open (loop closure).
+The multibody formulation uses the equations of all pairs at once. Loop closure uses only those of the pairs at which
+the loops are cut open.
 
 E. J. Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems, ch. 3, 4 and 8; J. Garcia de Jalon, E. Bayo,
 Kinematic and Dynamic Simulation of Multibody Systems, ch. 2 and 3; A. A. Shabana, Dynamics of Multibody Systems, ch. 3.
@@ -40,7 +40,14 @@ from tmm_cli.mechanics.structure import Pair
 
 @dataclass(frozen=True)
 class PairEquations:
-    """Two rows for each pair, then that of the driver if `driven`. size (m): unit of lengths."""
+    """Constraint equations of some pairs, two for each pair.
+
+    Attributes:
+        linkage: the linkage.
+        pairs: the pairs.
+        driven: True to add the equation of the driver as the last one.
+        size: unit of length that makes the equations dimensionless, m.
+    """
 
     linkage: Linkage
     pairs: tuple[Pair, ...]
@@ -49,7 +56,7 @@ class PairEquations:
 
     @cached_property
     def constraints(self) -> tuple[PairConstraint, ...]:
-        """Constraint equations of the pairs and of the driver."""
+        """Constraint of each pair, then that of the driver if `driven`."""
         pair_constraints = tuple(PAIR_CONSTRAINTS[pair.kind](pair, self.linkage) for pair in self.pairs)
         return (
             (*pair_constraints, DriverConstraint.of(self.linkage.driver, self.linkage))
@@ -59,16 +66,17 @@ class PairEquations:
 
     @cached_property
     def scale(self) -> Real:
-        """Factors that make each row dimensionless."""
+        """Factors that make the equations dimensionless, (equations,)."""
         return np.array([1 / self.size if length else 1.0 for c in self.constraints for length in c.lengths])
 
     def residuals(self, poses: Poses, drives: DriverStates) -> Real:
-        """Return the residuals, shape (positions, rows)."""
+        """Return the residuals of the equations, (positions, equations)."""
         return np.stack([row for c in self.constraints for row in c.residuals(poses, drives)], axis=-1) * self.scale
 
     def matrix(self, poses: Poses) -> Real:
-        """Return the derivatives with respect to x, y and angle of each moving link, shape (positions, rows, 3
-        links).
+        """Return the Jacobian matrix, (positions, equations, 3 links).
+
+        The columns are derivatives with respect to x, y and angle of each moving link.
         """
         first = {name: 3 * k for k, name in enumerate(self.linkage.moving)}
         J = np.zeros((len(poses[self.linkage.driver.link].x), len(self.scale), 3 * len(first)))
@@ -81,11 +89,11 @@ class PairEquations:
         return J * self.scale[:, None]
 
     def velocity_terms(self, poses: Poses, rates: Rates) -> Real:
-        """Return the second derivatives with all link accelerations zero, shape (positions, rows)."""
+        """Return the second derivatives of the equations for zero link accelerations, (positions, equations)."""
         return np.stack([row for c in self.constraints for row in c.velocity_terms(poses, rates)], axis=-1) * self.scale
 
     def reactions(self, poses: Poses, multipliers: Real) -> dict[str, Vector]:
-        """Return the multipliers as forces on the second link of each pair, N."""
+        """Convert Lagrange multipliers to forces (N) on the second link of each pair, by the name of the pair."""
         forces: dict[str, Vector] = {}
         pushes = list(np.moveaxis(multipliers * self.scale, -1, 0))
         for number, (pair, constraint) in enumerate(zip(self.pairs, self.constraints, strict=False)):
@@ -95,7 +103,7 @@ class PairEquations:
 
 
 def columns_by_link(linkage: Linkage, parts: Mapping[str, tuple[Vector, Real]]) -> Real:
-    """Stack a vector (of the origin) and a number (of the angle) of each moving link in the columns of the matrix."""
+    """Arrange a vector and a number for each moving link like the columns x, y, angle of the Jacobian matrix."""
     columns = [column for at, around in map(parts.__getitem__, linkage.moving) for column in (at.real, at.imag, around)]
     return np.stack(columns, axis=-1)
 
@@ -109,21 +117,31 @@ LEAST_GAP = 1e-11  # a residual below this that is no longer halved is rounding
 
 
 class LinkageClosure(Protocol):
-    """Interface of the equations of a linkage in coordinates X (positions, unknowns), dimensionless."""
+    """Interface of closure equations of a linkage: dimensionless, in coordinates X of shape (positions, unknowns)."""
 
     def residuals(self, X: Real, q: Real) -> Real:
-        """Return the residuals, shape (positions, unknowns)."""
+        """Return the residuals, (positions, unknowns)."""
 
     def matrix(self, X: Real, q: Real) -> Real:
-        """Return the derivatives with respect to the coordinates, shape (positions, unknowns, unknowns)."""
+        """Return the Jacobian matrix, (positions, unknowns, unknowns)."""
 
     def sketched(self, poses: dict[str, Pose], q: Real) -> Real:
-        """Return the coordinates of given poses."""
+        """Return the coordinates X that correspond to given poses of the links."""
 
 
 def close_positions(closure: LinkageClosure, X: Real, q: Real, tolerance: float) -> Real:
-    """Apply Newton's method until the residuals of each position are within the tolerance or rounding; otherwise
-    nan.
+    """Solve closure equations by Newton's method at driver coordinates q.
+
+    Iteration stops when the residuals of a position are within the tolerance or no longer decrease because of rounding.
+
+    Args:
+        closure: Closure equations.
+        X: Initial guesses, (positions, unknowns).
+        q: Driver coordinates, (positions,).
+        tolerance: Largest permitted residual, dimensionless.
+
+    Returns:
+        Coordinates X; nan at positions where the iteration does not converge.
     """
     active, last = np.ones(len(q), dtype=bool), np.full(len(q), np.inf)
     for _ in range(MOST_ITERATIONS):
@@ -142,14 +160,20 @@ def close_positions(closure: LinkageClosure, X: Real, q: Real, tolerance: float)
 
 @dataclass(frozen=True)
 class TracedCoordinates:
-    """Coordinates of a closure at increasing driver coordinates q."""
+    """Coordinates X of closure equations along the motion, used as initial guesses.
+
+    Attributes:
+        q: increasing driver coordinates, (nodes,).
+        X: coordinates, (nodes, unknowns).
+        cycle: period in q if the driver makes full revolutions, otherwise None.
+    """
 
     q: Real
     X: Real
     cycle: float | None
 
     def near(self, q: Real) -> Real:
-        """Return the coordinates of the nearest node."""
+        """Return the coordinates X of the node nearest to each driver coordinate."""
         within = q if self.cycle is None else self.q[0] + np.mod(q - self.q[0], self.cycle)
         right = np.clip(np.searchsorted(self.q, within), 1, len(self.q) - 1)
         nearer = np.where(within - self.q[right - 1] < self.q[right] - within, right - 1, right)
@@ -157,8 +181,9 @@ class TracedCoordinates:
 
 
 def trace_coordinates(case: Case, closure: LinkageClosure) -> TracedCoordinates:
-    """Trace the coordinates from the sketch to both sides, as far as the linkage moves; half a turn each way for a
-    crank.
+    """Trace the coordinates X from the sketch in both directions, as far as the linkage moves.
+
+    A crank is traced by half a turn in each direction.
     """
     at = case.linkage.sketch.at
     sketch_q = np.array([at])
@@ -174,7 +199,7 @@ def trace_coordinates(case: Case, closure: LinkageClosure) -> TracedCoordinates:
 
 
 def _trace_one_way(closure: LinkageClosure, X: Real, at: float, step: float) -> list[tuple[float, Real]]:
-    """Return driver and closure coordinates step by step, until the closure fails."""
+    """Return driver coordinates with their X, step by step, until Newton's method fails."""
     nodes: list[tuple[float, Real]] = []
     with np.errstate(all="ignore"):
         for k in range(1, TRACED_POSITIONS // 2 + 1):
@@ -196,7 +221,7 @@ def _trace_one_way(closure: LinkageClosure, X: Real, at: float, step: float) -> 
 
 @dataclass(frozen=True)
 class TreeBranch:
-    """A pair of the spanning tree, which joins the link `own` to one nearer to the frame."""
+    """A pair of the spanning tree, with the link `own` that it connects to the tree."""
 
     pair: Pair
     own: str
@@ -207,19 +232,19 @@ class TreeBranch:
 
     @property
     def runs(self) -> bool:
-        """True if the own link is the runner of a prismatic pair, False if it is the carrier."""
+        """True if `own` is the sliding link of a prismatic pair; False if it carries the guide or the pair is revolute."""
         return self.pair.slide is not None and self.pair.slide.runner == self.own
 
 
 @dataclass(frozen=True)
 class LoopEquations:
-    """Loop closure in joint coordinates: the angle or run in the pair that joins each moving link to the tree."""
+    """Loop closure in joint coordinates: the relative angle or displacement in each pair of a spanning tree."""
 
     case: Case
 
     @cached_property
     def tree(self) -> tuple[TreeBranch, ...]:
-        """Branches from the frame outwards, drivers first where possible."""
+        """Branches of the spanning tree from the frame outwards; driving pairs are preferred."""
         structure = self.case.structure
         driving = [structure.driving_pair(driver) for driver in structure.drivers]
         pairs = sorted(structure.pairs, key=lambda pair: pair not in driving)
@@ -233,29 +258,29 @@ class LoopEquations:
 
     @cached_property
     def cut(self) -> tuple[Pair, ...]:
-        """Pairs outside the tree."""
+        """Pairs outside the spanning tree, at which the loops are cut open."""
         inside = [branch.pair for branch in self.tree]
         return tuple(pair for pair in self.case.structure.pairs if pair not in inside)
 
     @cached_property
     def rows(self) -> PairEquations:
-        """Equations of these pairs."""
+        """Constraint equations of the cut pairs."""
         return PairEquations(self.case.linkage, self.cut, size=self.case.size)
 
     @cached_property
     def given(self) -> int:
-        """Index of the driver coordinate."""
+        """Index of the driver coordinate among the joint coordinates."""
         pair = self.case.structure.driving_pair(self.case.linkage.driver)
         return next(k for k, branch in enumerate(self.tree) if branch.pair == pair)
 
     @cached_property
     def free(self) -> list[int]:
-        """Indices of the unknown coordinates."""
+        """Indices of the unknown joint coordinates."""
         return [k for k in range(len(self.tree)) if k != self.given]
 
     @cached_property
     def paths(self) -> Mapping[str, frozenset[int]]:
-        """Indices of the coordinates that move each link."""
+        """Indices of the joint coordinates on which the pose of each link depends, by link."""
         coordinates_of: dict[str, frozenset[int]] = {FRAME: frozenset()}
         for k, branch in enumerate(self.tree):
             coordinates_of[branch.own] = coordinates_of[branch.before] | {k}
@@ -264,7 +289,7 @@ class LoopEquations:
     # positions
 
     def all(self, X: Real, q: Real) -> list[Real]:
-        """Return unknowns and driver coordinate in the order of the tree."""
+        """Return all joint coordinates in the order of the tree: the unknowns X and the driver coordinate q."""
         columns = list(np.moveaxis(X, -1, 0))
         columns.insert(self.given, q)
         return columns
@@ -311,10 +336,9 @@ class LoopEquations:
         return (self.rows.matrix(poses) @ self.transformation(poses))[..., self.free]
 
     def transformation(self, poses: Poses) -> Real:
-        """Return the derivatives of x, y and angle of the links with respect to the coordinates, that of the driver
-        included.
+        """Return the derivatives of x, y and angle of the links with respect to all joint coordinates.
 
-        Shape (positions, 3 links, coordinates): matrix R of Garcia de Jalon and Bayo.
+        The shape is (positions, 3 links, coordinates). This is matrix R of Garcia de Jalon and Bayo.
         """
         R = np.zeros((len(poses[FRAME].x), 3 * len(self.tree), len(self.tree)))
         for k, branch in enumerate(self.tree):
@@ -334,7 +358,10 @@ class LoopEquations:
         return poses[link].at(self.case.linkage.local(link, pair.point))
 
     def states(self, poses: Poses, speeds: list[Real], bends: list[Real]) -> tuple[dict[str, Rate], dict[str, Accel]]:
-        """Return rates and accelerations of all links from those of the coordinates."""
+        """Return velocities and accelerations of all links from the derivatives of the joint coordinates.
+
+        speeds, bends: first and second derivatives.
+        """
         _, rest, still = frame_state(poses[FRAME].x)
         first, second = {FRAME: rest}, {FRAME: still}
         for branch, s1, s2 in zip(self.tree, speeds, bends, strict=True):
@@ -360,7 +387,17 @@ class LoopEquations:
     # forces
 
     def forces(self, poses: Poses, J: Real, Q: Real, on: Mapping[str, Wrench]) -> tuple[dict[str, Vector], Real]:
-        """Return the reactions on the second link of each pair, and the balancing moment or force of the driver."""
+        """Compute the reactions, from the cut pairs to the root of the tree, and the balancing moment.
+
+        Args:
+            poses: Poses of the links.
+            J: Jacobian matrix of the cut pairs with respect to all joint coordinates.
+            Q: Generalized forces of the loads.
+            on: Resultant load on each link, reactions excluded.
+
+        Returns:
+            Forces (N) on the second link of each pair, and the balancing moment (N m) or force (N) of the driver.
+        """
         cut = solve(np.swapaxes(J[..., self.free], -1, -2), -Q[..., self.free])
         balancing = -(Q[:, self.given] + np.einsum("nr,nr->n", J[..., self.given], cut))
         borne = {link: wrench.force for link, wrench in on.items()}
@@ -377,14 +414,15 @@ class LoopEquations:
 
 @lru_cache(maxsize=8)
 def _traced_loops(case: Case) -> tuple[LoopEquations, TracedCoordinates]:
-    """Trace the coordinates over the range of the driver, once for all tolerances."""
+    """Return the loop equations of a linkage and their traced coordinates, computed once for all tolerances."""
     loops = LoopEquations(case)
     return loops, trace_coordinates(case, loops)
 
 
 def prepare_loops(tolerance: float, case: Case) -> Callable[[Real], MethodAnswers]:
-    """Return the method that stops when every loop closes within the tolerance (fraction of the linkage size, or
-    rad).
+    """Prepare Newton's method on loop closure.
+
+    tolerance: largest gap of a loop, as a fraction of the linkage size or in rad.
     """
     loops, nodes = _traced_loops(case)
 
@@ -413,7 +451,7 @@ TOLERANCE = 0.0  # until residuals are rounding
 
 @dataclass(frozen=True)
 class MultibodyEquations:
-    """Coordinates x, y, angle of every moving link; two rows for each pair, that of the driver last."""
+    """Constraint equations of all pairs and the driver, in coordinates x, y and angle of each moving link."""
 
     case: Case
 
@@ -423,11 +461,11 @@ class MultibodyEquations:
 
     @cached_property
     def first(self) -> dict[str, int]:
-        """Index of the first coordinate of each link."""
+        """Index of the x coordinate of each link among all coordinates."""
         return {name: 3 * k for k, name in enumerate(self.case.linkage.moving)}
 
     def poses(self, X: Real) -> dict[str, Pose]:
-        """Return the poses of all links, including the frame."""
+        """Return the poses of all links, including the frame, from their coordinates."""
         poses = {FRAME: frame_state(X[:, 0])[0]}
         for name, k in self.first.items():
             poses[name] = Pose(X[:, k] + 1j * X[:, k + 1], unit(X[:, k + 2]), X[:, k + 2])
@@ -444,7 +482,10 @@ class MultibodyEquations:
 
 
 def prepare_multibody(case: Case) -> Callable[[Real], MethodAnswers]:
-    """Return the method with one linear system for each position and order: J^T for the forces, J otherwise."""
+    """Prepare the multibody method: one linear system for velocities, accelerations and forces each.
+
+    The matrix is the Jacobian J; for the forces it is its transpose.
+    """
     body = MultibodyEquations(case)
     nodes = trace_coordinates(case, body)
 

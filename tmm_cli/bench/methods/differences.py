@@ -1,7 +1,7 @@
-"""Velocities and accelerations by central differences of positions, which are in closed form.
+"""Velocities and accelerations by central differences of positions that are computed in closed form.
 
-f' = (f(q + h) - f(q - h)) / 2h with the error h^2 f'''/6, f'' = (f(q + h) - 2 f(q) + f(q - h)) / h^2 with h^2 f''''/12;
-rounding adds its unit over h and over h^2. Forces are computed from these.
+f' = (f(q + h) - f(q - h)) / 2h has the error h^2 f'''/6; f'' = (f(q + h) - 2 f(q) + f(q - h)) / h^2 has the error
+h^2 f''''/12. Rounding adds errors proportional to 1/h and to 1/h^2. Forces are computed from these accelerations.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from tmm_cli.mechanics.numerics import Real
 
 
 def prepare_differences(step: float, case: Case) -> Callable[[Real], MethodAnswers]:
-    """Return the method with this step of the driver (rad, or for a sliding driver a fraction of the linkage size)."""
+    """Prepare the method with this step of the driver: rad, or for a sliding driver a fraction of the linkage size."""
     h = step * (1.0 if case.linkage.driver.kind == "turn" else case.size)
 
     def answer(q: Real) -> MethodAnswers:

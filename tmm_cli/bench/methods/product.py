@@ -1,5 +1,6 @@
-"""The product's method, groups in closed form and forces group by group, in several precisions and as a traced
-program.
+"""The method of tmm, in single, double and extended precision, and as a traced program.
+
+Positions of groups are found in closed form and forces group by group.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from tmm_cli.mechanics.structure import Group, Pair
 
 
 def convert_precision(value: Any, real: type) -> Any:
-    """Convert all numbers in records, tuples and arrays to `real` or its complex counterpart; widening is exact."""
+    """Convert all numbers in records, tuples and arrays to the type `real`, or to the corresponding complex type."""
     if isinstance(value, (bool, int, str, Group, Pair)) or value is None:
         return value
     if isinstance(value, np.ndarray):
@@ -44,7 +45,7 @@ def convert_precision(value: Any, real: type) -> Any:
 
 @dataclass(frozen=True)
 class ConvertedSolver(WrappedSolver):
-    """A solver whose input and output are converted to another precision."""
+    """Group solver whose input and output are converted to another precision."""
 
     real: type
 
@@ -53,21 +54,19 @@ class ConvertedSolver(WrappedSolver):
 
 
 def prepare_double(case: Case) -> Callable[[Real], MethodAnswers]:
-    """Return the method in float64: groups of class II in closed form, higher classes by Newton's method from their
-    trace.
-    """
+    """Prepare the method of tmm in float64: dyads in closed form, groups of higher class by Newton's method."""
     return _prepare_precision(case, np.float64)
 
 
 def prepare_single(case: Case) -> Callable[[Real], MethodAnswers]:
-    """Return the method in float32; only sums of loads and the last products with the speed are in float64."""
+    """Prepare the method of tmm in float32; only sums of loads and products with the driver speed are in float64."""
     linkage = convert_precision(case.linkage, np.float32)
     kernels = tuple(ConvertedSolver(k.group, k.size, _round_start(k.rebind(linkage)), np.float32) for k in case.kernels)
     return _prepare_precision(replace(case, linkage=linkage, kernels=kernels), np.float32)
 
 
 def _round_start(kernel: GroupSolver) -> GroupSolver:
-    """Round the initial guesses of a group of higher class."""
+    """Round the initial guesses of a group of higher class to float32."""
     if isinstance(kernel, NewtonSolver):
         return replace(
             kernel, start=convert_precision(kernel.start, np.float32), trace=convert_precision(kernel.trace, np.float32)
@@ -76,7 +75,7 @@ def _round_start(kernel: GroupSolver) -> GroupSolver:
 
 
 def prepare_extended(case: Case) -> Callable[[Real], MethodAnswers]:
-    """Return the method in double-doubles, from the same numbers; results in longdouble, as the reference values."""
+    """Prepare the method of tmm in double-double arithmetic from the same input data; the results are longdouble."""
     linkage = as_double_doubles(case.linkage)
     wide = _prepare_precision(
         replace(case, linkage=linkage, kernels=tuple(k.rebind(linkage) for k in case.kernels)), to_double_double
@@ -102,7 +101,7 @@ def _prepare_precision(case: Case, real: Callable[[Any], Any]) -> Callable[[Real
 
 
 def make_batch(case: Case, *, forces: bool = True) -> Batch:
-    """Make a batch of the quantities of the common form only: QUANTITY.NAME, and "balancing"."""
+    """Trace the computation of the compared quantities once for repeated use; results are named e.g. "velocities.B"."""
 
     def asked(motion: Motion, plan: Reactions | None) -> Mapping[str, Any]:
         values: dict[str, Any] = {}
@@ -118,7 +117,11 @@ def make_batch(case: Case, *, forces: bool = True) -> Batch:
 
 
 def prepare_traced(case: Case) -> Callable[[Real], MethodAnswers]:
-    """Return the method as a traced program. Raises MethodUnable for linkages that cannot be traced."""
+    """Prepare the method of tmm as a traced program, which repeats the recorded operations for new driver coordinates.
+
+    Raises:
+        MethodUnable: The linkage cannot be traced.
+    """
     played = make_batch(case)
     if played.program is None:
         raise MethodUnable("cam laws, friction and redundant constraints cannot be traced")

@@ -1,4 +1,4 @@
-"""Register of the methods, those of the product and its rivals: a new one is a module and a line here."""
+"""List of all methods, those of tmm and others. To add one, write a module and list it here."""
 
 from __future__ import annotations
 
@@ -18,7 +18,14 @@ def method_family(
     *,
     timed: bool = True,
 ) -> tuple[Method, ...]:
-    """Return methods that differ in one setting."""
+    """Return methods that differ in one setting.
+
+    Args:
+        name: Name of the family.
+        prepare: Called with the setting and the case.
+        settings: Values of the setting, by the suffix of the method's name.
+        timed: False if the time of these methods says nothing.
+    """
     return tuple(Method(f"{name}-{key}", name, partial(prepare, at), at, timed) for key, at in settings.items())
 
 

@@ -1,8 +1,8 @@
 """Textbook formulas for one mechanism, as students type them in: a four-bar or a central crank-slider.
 
-The law of cosines (two inverse cosines for the angles of the diagonal), and the tangent of half the angle from
-Freudenstein's equation. R. L. Norton, Design of Machinery, ch. 4 (4.5), 6 (6.7) and 7 (7.3); F. Freudenstein, Trans.
-ASME 77 (1955). Kinematics only.
+The angles follow from the law of cosines (two inverse cosines), or from the tangent of half the angle by Freudenstein's
+equation. R. L. Norton, Design of Machinery, ch. 4 (4.5), 6 (6.7) and 7 (7.3); F. Freudenstein, Trans. ASME 77 (1955).
+Kinematics only.
 """
 
 from __future__ import annotations
@@ -21,7 +21,13 @@ Angles = Callable[[Real, int], tuple[Real, Real]]
 
 @dataclass(frozen=True)
 class TextbookFourBar:
-    """Pivots O and D, lengths a, b, c of crank OA, coupler AB and rocker DB, and speed of the crank (rad/s)."""
+    """A four-bar for textbook formulas.
+
+    Attributes:
+        O, D: fixed pivots of the crank and the rocker, m.
+        a, b, c: lengths of the crank OA, the coupler AB and the rocker DB, m.
+        w: speed of the crank, rad/s.
+    """
 
     O: complex  # noqa: E741
     D: complex
@@ -31,7 +37,7 @@ class TextbookFourBar:
     w: float
 
     def cosines(self, q: Real, sign: int) -> tuple[Real, Real]:
-        """Return the directions of coupler and rocker (rad), with B to the left of AD for sign 1."""
+        """Return the angles (rad) of coupler and rocker by the law of cosines; sign 1: B to the left of AD."""
         base = self.D - self.O - self.a * unit(q)
         f = np.abs(base)
         at_a = np.arccos((self.b**2 + f**2 - self.c**2) / (2 * self.b * f))
@@ -40,7 +46,10 @@ class TextbookFourBar:
         return along + sign * at_a, along + np.pi - sign * at_d
 
     def freudenstein(self, q: Real, sign: int) -> tuple[Real, Real]:
-        """Return the same directions from K1 to K5 and two quadratic equations in the tangents of half the angles."""
+        """Return the angles (rad) of coupler and rocker by Freudenstein's equation; sign 1: B to the left of AD.
+
+        The constants K1 to K5 give two quadratic equations in the tangents of half the angles.
+        """
         d, along = abs(self.D - self.O), np.angle(self.D - self.O)
         a, b, c, t = self.a, self.b, self.c, np.cos(q - along)
         k1, k2, k3 = d / a, d / c, (a * a - b * b + c * c + d * d) / (2 * a * c)
@@ -51,7 +60,7 @@ class TextbookFourBar:
         return along + coupler, along + rocker
 
     def solved(self, q: Real, angles: tuple[Real, Real]) -> MethodAnswers:
-        """Return the points A and B from the angles of the links, B on the rocker."""
+        """Return positions, velocities and accelerations of A and B from the angles of coupler and rocker, rad."""
         a, b, c, w = self.a, self.b, self.c, self.w
         three, four = angles
         w3 = a * w * np.sin(four - q) / (b * np.sin(three - four))
@@ -70,7 +79,14 @@ class TextbookFourBar:
 
 @dataclass(frozen=True)
 class TextbookCrankSlider:
-    """Crank OA = a and rod AB = b, guide through O in the direction `along` (rad)."""
+    """A central crank-slider for textbook formulas.
+
+    Attributes:
+        O: fixed pivot of the crank, m; the guide passes through it.
+        a, b: lengths of the crank OA and the rod AB, m.
+        along: direction of the guide, rad.
+        w: speed of the crank, rad/s.
+    """
 
     O: complex  # noqa: E741
     a: float
@@ -79,19 +95,22 @@ class TextbookCrankSlider:
     w: float
 
     def cosines(self, q: Real, sign: int) -> tuple[Real, Real]:
-        """Return the direction of the rod (rad) by an inverse sine; twice, for the two links of a four-bar."""
+        """Return the angle of the rod (rad) by an inverse sine, twice to have the same form as for a four-bar."""
         lean = np.arcsin(-self.a * np.sin(q - self.along) / self.b)
         rod = self.along + (lean if sign > 0 else np.pi - lean)
         return rod, rod
 
     def freudenstein(self, q: Real, sign: int) -> tuple[Real, Real]:
-        """Return the direction from the tangent of half the angle: s t^2 - 2 t + s = 0 with s its sine."""
+        """Return the angle of the rod (rad) by the tangent of half the angle, twice.
+
+        The tangent t follows from s t² - 2 t + s = 0, where s is the sine of the angle.
+        """
         s = -self.a * np.sin(q - self.along) / self.b
         rod = self.along + _half_angle(s, -2 + 0 * s, s, -sign)
         return rod, rod
 
     def solved(self, q: Real, angles: tuple[Real, Real]) -> MethodAnswers:
-        """Return the points A and B from the angle of the rod."""
+        """Return positions, velocities and accelerations of A and B; angles[0]: angle of the rod, rad."""
         a, b, w = self.a, self.b, self.w
         crank, rod = a * unit(q), b * unit(angles[0])
         unwrapped, lean = q - self.along, angles[0] - self.along
@@ -105,13 +124,17 @@ class TextbookCrankSlider:
 
 
 def _half_angle(a: Real, b: Real, c: Real, sign: int) -> Real:
-    """Return 2 arctan of a root of a t^2 + b t + c = 0."""
+    """Return 2 arctan t, where t is a root of a t² + b t + c = 0; sign: which root."""
     angle: Real = 2 * np.arctan((-b + sign * np.sqrt(b * b - 4 * a * c)) / (2 * a))
     return angle
 
 
 def recognise(case: Case) -> TextbookFourBar | TextbookCrankSlider:
-    """Return the mechanism. Raises MethodUnable if the book has no formula for it."""
+    """Return the mechanism of a case if the textbook has formulas for it.
+
+    Raises:
+        MethodUnable: The linkage is neither a four-bar nor a central crank-slider.
+    """
     linkage = case.linkage
     driver, types = linkage.driver, [group.type for group in case.structure.groups]
     w = driver.sense * driver.rate
@@ -142,8 +165,9 @@ def _prepare(
 
 
 def _sketched_side(mechanism: TextbookFourBar | TextbookCrankSlider, points: Mapping[str, complex]) -> int:
-    """Return the assembly of the sketch: 1 with B to the left of AD, or for a slider with B ahead of A along the
-    guide.
+    """Return the assembly that the sketch shows: 1 or -1.
+
+    It is 1 if B lies to the left of AD, or for a crank-slider if B is ahead of A along the guide.
     """
     rod = points["B"] - points["A"]
     if isinstance(mechanism, TextbookCrankSlider):
@@ -152,10 +176,10 @@ def _sketched_side(mechanism: TextbookFourBar | TextbookCrankSlider, points: Map
 
 
 def cosines(case: Case) -> Callable[[Real], MethodAnswers]:
-    """Return the method by the law of cosines."""
+    """Prepare the textbook method by the law of cosines."""
     return _prepare(case, lambda mechanism: mechanism.cosines)
 
 
 def freudenstein(case: Case) -> Callable[[Real], MethodAnswers]:
-    """Return the method by Freudenstein's equation."""
+    """Prepare the textbook method by Freudenstein's equation."""
     return _prepare(case, lambda mechanism: mechanism.freudenstein)

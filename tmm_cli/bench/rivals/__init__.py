@@ -1,4 +1,4 @@
-"""Other programs, measured if installed (pip install tmm-cli[bench]): a new one is a module and a line here."""
+"""Other programs, measured if installed (pip install tmm-cli[bench]). To add one, write a module and list it here."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ RIVALS = ("pylinkage", "kinepy")
 
 
 def installed() -> tuple[tuple[Method, ...], tuple[str, ...]]:
-    """Return the methods of installed rivals, and the names of those that are not installed."""
+    """Return the methods of the other programs that are installed, and the names of those that are not."""
     there = [name for name in RIVALS if find_spec(name) is not None]
     methods = [import_module(f"tmm_cli.bench.rivals.{name}_rival").METHOD for name in there]
     return tuple(methods), tuple(name for name in RIVALS if name not in there)

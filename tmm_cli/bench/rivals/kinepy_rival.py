@@ -1,4 +1,7 @@
-"""kinepy: positions in closed form, accelerations by second differences over time, forces from these."""
+"""Computation by kinepy.
+
+Positions are found in closed form, accelerations by second differences over time, forces from these accelerations.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,11 @@ SAME = 1e-6  # of the linkage's size
 
 
 def prepare(case: Case) -> Callable[[Real], MethodAnswers]:
-    """Return its results in the common form, for q at equal steps. Raises MethodUnable."""
+    """Prepare the computation of a case by kinepy at equally spaced driver coordinates.
+
+    Raises:
+        MethodUnable: kinepy cannot compute this linkage.
+    """
     model = _Model(case)
 
     def at(q: Real) -> MethodAnswers:
@@ -32,12 +39,16 @@ def prepare(case: Case) -> Callable[[Real], MethodAnswers]:
 
 
 def alone(case: Case) -> Callable[[Real], object]:
-    """Return its `solve_dynamics` alone: its only route, in NumPy. Raises MethodUnable."""
+    """Prepare kinepy's `solve_dynamics` without conversion of its results.
+
+    Raises:
+        MethodUnable: kinepy cannot compute this linkage.
+    """
     return _Model(case).solve
 
 
 class _Model:
-    """The linkage as a kinepy model, SI."""
+    """A linkage as a kinepy model in SI units."""
 
     def __init__(self, case: Case) -> None:
         driver = case.linkage.driver
@@ -81,7 +92,7 @@ class _Model:
         self._choose()
 
     def _choose(self) -> None:
-        """Choose the assemblies of the sketch."""
+        """Choose the assembly of each group that the sketch shows."""
         case = self.case
         q = case.start + STEP * np.arange(5)
         true = compute_motion(case.linkage, case.kernels, q, case.law)
@@ -97,9 +108,12 @@ class _Model:
         raise MethodUnable("the program does not solve this linkage")
 
     def solve(self, q: Real) -> tuple[slice, float]:
-        """Solve for q at equal steps, with two more positions at the ends, whose values kinepy loses.
+        """Solve the model at equally spaced driver coordinates q, with a position added at each end.
 
-        Returns the slice of the requested positions, and the time step (s).
+        Kinepy loses the values at the ends.
+
+        Returns:
+            Slice of the requested positions, and the time step (s).
         """
         key = (float(q[0]), float(q[1] - q[0]), len(q))
         if key != self._loaded:
@@ -115,7 +129,7 @@ class _Model:
         return slice(1, -1, self._times), self._dt
 
     def load(self, acting: list[tuple[str, complex, Vector, Real]]) -> None:
-        """Apply the loads of the case instead of earlier ones."""
+        """Replace the loads of the model by loads on links: link, point of action, force, moment."""
         for name in self.solids:
             self.solids[name].external_actions.externals.clear()
         for link, at, force, moment in acting:
@@ -125,7 +139,7 @@ class _Model:
                 self.solids[link].add_torque(moment)
 
     def positions(self) -> dict[str, Vector]:
-        """Return the positions of the named points."""
+        """Return the positions of the named points (m) by name."""
         positions = {}
         for point in self.case.linkage.moving_points:
             link = self.case.linkage.owner(point)
@@ -134,7 +148,12 @@ class _Model:
         return positions
 
     def answers(self, chosen: slice, dt: float) -> MethodAnswers:
-        """Return its results, with its own differences for velocities and accelerations."""
+        """Return the results in the common form; velocities and accelerations by kinepy's own difference formulas.
+
+        Args:
+            chosen: Slice of the requested positions.
+            dt: Time step, s.
+        """
         x = self.positions()
         v = {name: _between((at[2:] - at[:-2]) / (2 * dt)) for name, at in x.items()}
         a = {name: _between((at[2:] + at[:-2] - 2 * at[1:-1]) / (dt * dt)) for name, at in x.items()}
@@ -143,7 +162,7 @@ class _Model:
         return MethodAnswers(one, two, three, reactions, -np.asarray(self.crank.torque)[chosen])
 
     def _force(self, name: str) -> Vector:
-        """Return the reaction on the second link of a pair; kinepy gives the one on the first."""
+        """Return the reaction on the second link of a pair; kinepy gives the reaction on the first link."""
         joint = self.joints[name]
         pair = self.case.structure.pair(name)
         if pair.slide is None:

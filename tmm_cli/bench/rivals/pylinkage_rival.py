@@ -1,4 +1,4 @@
-"""pylinkage: kinematics of linkages of a crank and RRR and RRP groups, step by step from one position to the next."""
+"""Computation by pylinkage: kinematics of linkages of a crank and RRR and RRP groups, from position to position."""
 
 from __future__ import annotations
 
@@ -20,7 +20,11 @@ from tmm_cli.mechanics.structure import Group, Pair
 
 
 def prepare(case: Case) -> Callable[[Real], MethodAnswers]:
-    """Return its results in the common form, for q at equal steps. Raises MethodUnable."""
+    """Prepare the computation of a case by pylinkage at equally spaced driver coordinates.
+
+    Raises:
+        MethodUnable: pylinkage cannot compute this linkage.
+    """
     simulated, names = _simulated(case)
     own = [(k, name) for k, name in enumerate(names) if name in case.linkage.moving_points]
 
@@ -32,16 +36,22 @@ def prepare(case: Case) -> Callable[[Real], MethodAnswers]:
 
 
 def alone(case: Case) -> Callable[[Real], object]:
-    """Return its own call alone. Raises MethodUnable."""
+    """Prepare pylinkage's own computation without conversion of its results.
+
+    Raises:
+        MethodUnable: pylinkage cannot compute this linkage.
+    """
     return _simulated(case)[0]
 
 
 def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list[str]]:
-    """Return a function for positions, velocities, accelerations (positions, joints, 2) at equal steps, and joint
-    names.
+    """Build the pylinkage model of a case.
 
-    This is the fastest route in its documentation: the solver compiled by numba, called directly with arrays that are
-    made once (pylinkage.solver).
+    Its fastest documented solver is used: compiled by numba, called directly with arrays that are prepared once.
+
+    Returns:
+        Function of equally spaced driver coordinates, which returns arrays of positions, velocities and accelerations
+        (positions, joints, 2); and the names of the joints.
     """
     driver = case.linkage.driver
     if driver.kind != "turn" or case.linkage.others:
@@ -65,7 +75,7 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
     joints: dict[tuple[float, float], tuple[Any, tuple[Any, ...]]] = {}
 
     def arrays(first: float, step: float) -> tuple[Any, tuple[Any, ...]]:
-        """Return the joints one step before the first position, and the other arguments of its solver."""
+        """Return the joint coordinates one step before the first position, and the other arguments of the solver."""
         before = compute_motion(case.linkage, case.kernels, np.array([first - step]), case.law)
         for name in set(case.linkage.moving_points) & set(parts):
             at = complex(before.named(name).x[0])
@@ -97,7 +107,7 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
 
 
 def _add(group: Group, case: Case, parts: dict[str, Any], guides: list[Any], points: Mapping[str, complex]) -> None:
-    """Add the internal hinge of a group."""
+    """Add the internal hinge of a group to the pylinkage model."""
     local = case.linkage.local
     if group.type not in ("RRR", "RRP"):
         raise MethodUnable(f"the program does not support group {group.title} of type {group.type or 'of class III'}")
