@@ -28,8 +28,8 @@ from tmm_cli.bench import (
     MethodAnswers,
     convert_precision,
     draw_accuracy,
+    load_reference,
     measure_accuracy,
-    reference,
     relative_errors,
     rivals,
     sample_coordinates,
@@ -44,7 +44,7 @@ UNIT = np.finfo(float).eps
 
 
 def error_of(method, name):
-    true = reference(name)
+    true = load_reference(name)
     return relative_errors(BY_NAME[method].solve(true.case, true.q), true.exact)
 
 
@@ -77,7 +77,7 @@ def test_references_are_of_the_linkages_of_the_bank(name):
 
 
 def test_references_have_forces_in_every_pair_and_points_on_every_moving_link(name):
-    true = reference(name)
+    true = load_reference(name)
     assert set(true.exact.reactions) == {pair.name for pair in true.case.structure.pairs}
     assert set(true.exact.positions) == set(true.case.linkage.moving_points)
     assert len(true.q) == 24
@@ -116,7 +116,7 @@ def test_extended_precision_is_better_than_double_and_double_than_single(name):
 
 
 def test_numbers_are_recast_and_names_are_not():
-    linkage = reference("shaper").case.linkage
+    linkage = load_reference("shaper").case.linkage
     wide = convert_precision(linkage, np.longdouble)
     assert wide.links.keys() == linkage.links.keys()
     assert isinstance(wide.links["3"].mass, np.longdouble)
@@ -143,7 +143,7 @@ def test_the_error_of_differences_falls_with_the_square_of_the_step_until_roundi
 @pytest.mark.parametrize("millimetres", [0.25, 0.5])
 def test_points_on_the_drawing_board_are_off_by_less_than_two_grids(name, millimetres):
     """A point by half a grid both ways, which is 0.7 of it; the rest is what a link's direction makes of that."""
-    true = reference(name)
+    true = load_reference(name)
     found = BY_NAME[f"board-{millimetres:.2f}"].solve(true.case, true.q)
     frame = true.case.linkage.links["0"].points.values()
     for k in range(len(true.q)):
@@ -164,7 +164,7 @@ def test_a_finer_grid_makes_a_truer_drawing(name):
     fine, coarse = (error_of(f"board-{mm}", name) for mm in ("0.25", "0.50"))
     assert np.prod([coarse[q] / fine[q] for q in QUANTITIES]) > 1
     finest = Method("", "", partial(board.prepare_board, 1e-6))
-    true = reference(name)
+    true = load_reference(name)
     assert max(relative_errors(finest.solve(true.case, true.q), true.exact).values()) < 1e-6
 
 
@@ -172,15 +172,15 @@ def test_a_finer_grid_makes_a_truer_drawing(name):
 
 
 def test_loops_have_two_equations_each_and_one_coordinate_a_moving_link(name):
-    case = reference(name).case
+    case = load_reference(name).case
     loops = LoopEquations(case)
     contours = len(case.structure.pairs) - len(case.linkage.moving)
     assert len(loops.cut) == contours
-    assert len(loops.free) == 2 * contours == len(case.linkage.moving) - 1
+    assert len(loops.unknowns) == 2 * contours == len(case.linkage.moving) - 1
 
 
 def test_a_case_is_made_of_a_linkage_alone():
-    true = reference("crank-rocker").case
+    true = load_reference("crank-rocker").case
     case = Case.of(true.linkage, "alone", true.start, true.strokes)
     q = sample_coordinates(case, 5)
     one, other = CLOSED_FORM.solve(case, q), CLOSED_FORM.solve(true, q)
@@ -220,7 +220,7 @@ def test_the_chart_has_a_panel_for_every_quantity_and_every_family_in_its_legend
 
 def test_rivals_are_measured_only_where_they_are_installed(monkeypatch):
     monkeypatch.setattr(rivals, "RIVALS", ("no_such_program",))
-    assert rivals.installed() == ((), ("no_such_program",))
+    assert rivals.list_installed() == ((), ("no_such_program",))
 
 
 # the command

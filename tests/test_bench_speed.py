@@ -36,8 +36,8 @@ TURNED = {"R.B", "R.E", "R.F"}  # by hand on the other link of the pair
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=lambda m: m.name)
 @pytest.mark.parametrize("variants", [1, 7])
 def test_the_code_by_hand_gives_what_the_product_gives(mechanism, variants):
-    linkages = mechanism.variants(variants)
-    ours, by_hand = mechanism.ours(linkages)(Q), mechanism.by_hand(linkages)(Q)
+    linkages = mechanism.make_variants(variants)
+    ours, by_hand = mechanism.prepare_ours(linkages)(Q), mechanism.prepare_by_hand(linkages)(Q)
     assert set(ours) == set(by_hand)
     for name, mine in ours.items():
         theirs = by_hand[name] * (1j if name == "R.x" else 1)
@@ -71,7 +71,7 @@ def test_what_misses_its_target_is_timed_again_and_the_least_of_all_turns_is_kep
     )
 
     class Judged(SimpleNamespace):
-        def missed(self, slack):
+        def describe_miss(self, slack):
             assert slack == (2 if reduced else 1)
             return "missed" if next(ticks) < missing else ""
 

@@ -25,12 +25,12 @@ from tmm_cli.bench import (
     Case,
     Method,
     MethodAnswers,
-    MethodUnable,
+    UnsupportedLinkageError,
     close_positions,
     error_limit,
-    family_members,
     judge_product,
-    known_scenes,
+    load_family_members,
+    load_known_scenes,
     measure_stability,
     stability,
     stability_charts,
@@ -48,7 +48,7 @@ def many_digits():
 
 def near(family, distance, seed=0):
     """The scene of a family at a distance."""
-    return next(at for at in known_scenes(family) if at.seed == seed and at.distance == Decimal(distance))
+    return next(at for at in load_known_scenes(family) if at.seed == seed and at.distance == Decimal(distance))
 
 
 def rows(family, *names, reduced=True):
@@ -77,7 +77,7 @@ def same(stated, value):
     ],
 )
 def test_answers_are_what_the_textbook_says_in_a_hundred_digits(family, seed, k):
-    stored = family_members(family)[seed]
+    stored = load_family_members(family)[seed]
     scene = FAMILIES_BY_NAME[family].scene(stored.numbers, FAMILIES_BY_NAME[family].distances[k])
     assert Decimal(stored.scenes[k]["distance"]) == FAMILIES_BY_NAME[family].distances[k]
     for key, value in Closely(scene).answers().items():
@@ -85,7 +85,7 @@ def test_answers_are_what_the_textbook_says_in_a_hundred_digits(family, seed, k)
 
 
 def test_the_triads_of_the_fold_lose_two_assemblies_there():
-    family, stored = FAMILIES_BY_NAME["two-assemblies-lost"], family_members("two-assemblies-lost")[0]
+    family, stored = FAMILIES_BY_NAME["two-assemblies-lost"], load_family_members("two-assemblies-lost")[0]
     n = {key: value for key, value in stored.numbers.items() if key != "critical"}
     n["end"] = Decimal(float(stored.numbers["critical"]))  # near it: the fold is found to fifty digits
     begin = starts(replace(family, distances=(Decimal("1e-9"),)), n)
@@ -103,7 +103,7 @@ def test_the_triads_of_the_fold_lose_two_assemblies_there():
 
 
 def test_a_rocker_runs_off_its_velocity_as_the_root_of_the_distance_from_a_dead_position():
-    stored = family_members("dead-position")[0].scenes
+    stored = load_family_members("dead-position")[0].scenes
     speeds = [abs(complex(*map(float, scene["velocity"]))) for scene in stored]
     assert [b / a for a, b in pairwise(speeds[5:14])] == pytest.approx([10**0.5] * 8, rel=0.01)
 
@@ -123,7 +123,7 @@ def test_the_doubles_of_a_scene_are_its_data():
 
 
 def json_of(at, key):
-    scenes = family_members(at.family.name)[at.seed].scenes
+    scenes = load_family_members(at.family.name)[at.seed].scenes
     return next(scene[key] for scene in scenes if Decimal(scene["distance"]) == at.distance)
 
 
@@ -132,27 +132,29 @@ def json_of(at, key):
 
 def test_the_law_of_cosines_loses_as_many_digits_as_the_distance_has():
     found = rows("dead-position", "cosines", reduced=False)
-    errors = [row.error for row in found.of("dead-position", "cosines")]
+    errors = [row.error for row in found.select_rows("dead-position", "cosines")]
     assert errors[0] < 1e-13
     assert np.polyfit(range(1, 14), np.log10(errors[1:14]), 1)[0] == pytest.approx(1.0, abs=0.15)
-    assert 1e-12 <= found.lies("dead-position", "cosines") <= 1e-8
+    assert 1e-12 <= found.first_wrong_distance("dead-position", "cosines") <= 1e-8
 
 
 def test_at_a_change_point_the_law_of_cosines_knows_nothing_from_a_hundred_millionth_on():
     found = rows("change-point", "cosines", "freudenstein", "closed", reduced=False)
     for method in ("cosines", "freudenstein"):
-        assert found.lies("change-point", method) >= 1e-6
-        assert all(row.right == 0 for row in found.of("change-point", method) if row.distance <= 1e-7)
-    assert all(row.wrong == 0 for row in found.of("change-point", "closed") if row.distance <= 1e-8)  # it says so
+        assert found.first_wrong_distance("change-point", method) >= 1e-6
+        assert all(row.right == 0 for row in found.select_rows("change-point", method) if row.distance <= 1e-7)
+    assert all(
+        row.wrong == 0 for row in found.select_rows("change-point", "closed") if row.distance <= 1e-8
+    )  # it says so
 
 
 @pytest.mark.parametrize("family", ["dead-position", "stone-over-pivot"])
 def test_newton_at_a_loose_tolerance_lies(family):
-    assert rows(family, "newton-2").lies(family, "newton-2") >= 1e-5
+    assert rows(family, "newton-2").first_wrong_distance(family, "newton-2") >= 1e-5
 
 
 def test_newton_at_a_tight_tolerance_says_that_it_does_not_converge():
-    found = rows("dead-position", "newton-15").of("dead-position", "newton-15")
+    found = rows("dead-position", "newton-15").select_rows("dead-position", "newton-15")
     assert all(row.wrong == 0 for row in found) and found[-1].said == found[-1].scenes
 
 
@@ -166,13 +168,13 @@ def test_a_plan_has_letters_at_all_ends_where_rounding_parts_them():
 @pytest.mark.parametrize("family", ["dead-position", "short-rod", "inner-tangent"])
 def test_differencing_lies_as_soon_as_its_step_is_no_longer_short(family):
     found = rows(family, "differences-4", reduced=False)
-    assert found.lies(family, "differences-4") >= 1e-4
+    assert found.first_wrong_distance(family, "differences-4") >= 1e-4
 
 
 def test_a_long_rod_takes_all_digits_from_differences():
     found = rows("long-rod", "differences-4", "cosines")
-    assert found.of("long-rod", "differences-4")[-1].error > 0.1
-    assert found.lies("long-rod", "cosines") is None
+    assert found.select_rows("long-rod", "differences-4")[-1].error > 0.1
+    assert found.first_wrong_distance("long-rod", "cosines") is None
 
 
 def test_size_and_three_points_in_line_harm_no_formula():
@@ -194,7 +196,7 @@ def own():
 
 @pytest.mark.parametrize("family", [family.name for family in FAMILIES if family.name != "two-assemblies-lost"])
 def test_no_value_of_ours_is_outside_its_bound(family):
-    for at in known_scenes(family, 2, 7):
+    for at in load_known_scenes(family, 2, 7):
         if at.seed == 0:
             continue  # among those of `own`
         shot = judge_product(Case.of(at.scene.linkage), at)
@@ -203,7 +205,7 @@ def test_no_value_of_ours_is_outside_its_bound(family):
 
 
 def test_no_value_of_a_class_iii_group_is_outside_its_bound_where_it_loses_two_assemblies(own):
-    found = own.of("two-assemblies-lost", PRODUCT)
+    found = own.select_rows("two-assemblies-lost", PRODUCT)
     assert [row.distance for row in found] == [0.1, 1e-5, 1e-9, 1e-13, 1e-15]
     assert all(row.wrong == 0 for row in found) and all(row.right == 1 for row in found[:3])
 
@@ -225,7 +227,7 @@ def test_bounds_that_are_too_narrow_are_found_out(monkeypatch):
 
     monkeypatch.setattr(stability, "bound_values", boasting)
     found = measure_stability(["stone-over-pivot"], methods=(), reduced=True)
-    assert found.lies("stone-over-pivot", PRODUCT) == 0.1
+    assert found.first_wrong_distance("stone-over-pivot", PRODUCT) == 0.1
     assert "stone-over-pivot: 2 of 2 outside their error bounds at 0.1" in found.failures
 
 
@@ -239,7 +241,7 @@ def test_bounds_that_are_too_wide_are_found_out(monkeypatch):
 
     monkeypatch.setattr(stability, "bound_values", timid)
     found = measure_stability(["size"], methods=(), reduced=True)
-    assert found.lies("size", PRODUCT) is None
+    assert found.first_wrong_distance("size", PRODUCT) is None
     assert len(found.failures) == 1 and "of the bounds are within 100 times the true error" in found.failures[0]
 
 
@@ -282,7 +284,7 @@ def test_a_method_that_raises_says_so():
     def raising(case):
         raise np.linalg.LinAlgError("singular")
 
-    found = measure_stability(["long-rod"], reduced=True, methods=[Method("x", "x", raising)], own=False).of(
+    found = measure_stability(["long-rod"], reduced=True, methods=[Method("x", "x", raising)], own=False).select_rows(
         "long-rod", "x"
     )
     assert all(row.said == row.scenes and row.why == ("LinAlgError",) for row in found)
@@ -304,7 +306,7 @@ def test_newtons_method_gives_nothing_where_it_does_not_converge():
 
 def test_the_textbook_has_no_formula_for_other_linkages():
     at = near("stone-over-pivot", "0.1")
-    with pytest.raises(MethodUnable):
+    with pytest.raises(UnsupportedLinkageError):
         METHODS["cosines"].prepare(Case.of(at.scene.linkage))
 
 

@@ -20,7 +20,7 @@ from tmm_cli.bench import (
     Searches,
     SearchOutcome,
     SearchRate,
-    best_known,
+    load_best_known,
     load_candidates,
     search_problem_text,
     searches,
@@ -44,7 +44,7 @@ def test_the_measured_problem_is_that_of_the_bank_with_5_lengths_3_constraints_7
 
 
 def test_the_best_known_keeps_its_constraints_and_is_what_its_numbers_give():
-    best, search = best_known(), load_candidates(SEARCHED)
+    best, search = load_best_known(), load_candidates(SEARCHED)
     x = (np.array(list(best["numbers"].values())) - search.low) / (search.high - search.low)
     values = evaluate_exactly(search, x)
     assert values[0] == pytest.approx(best["objective"], rel=1e-10)

@@ -11,7 +11,7 @@ from models import CLASS_III, linkage_of
 from test_tape import agree, kind, largest_of_kinds, plainly
 
 from tmm_cli.batch import prepare_batch
-from tmm_cli.bench import reference, relative_errors
+from tmm_cli.bench import load_reference, relative_errors
 from tmm_cli.bench.methods import product as taped
 from tmm_cli.mechanics.numerics import EliminatedSystem, EliminationOrder
 from tmm_cli.problem import build_problem, read_text
@@ -42,7 +42,7 @@ def test_wheels_and_racks_are_written_down_with_the_turns_of_their_links(name):
 
 def test_a_press_of_class_iii_is_right_to_the_last_digits():
     """Against 50 digits, relative to the largest value of the same point or pair; the stages have 1.3e-15."""
-    press = reference("press-class-iii")
+    press = load_reference("press-class-iii")
     found = relative_errors(taped.prepare_traced(press.case)(press.q), press.exact)
     assert all(error < 4e-15 for error in found.values()), found
 

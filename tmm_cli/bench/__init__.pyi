@@ -33,7 +33,7 @@ from .methods.case import (
     Case as Case,
     Method as Method,
     MethodAnswers as MethodAnswers,
-    MethodUnable as MethodUnable,
+    UnsupportedLinkageError as UnsupportedLinkageError,
     relative_errors as relative_errors,
 )
 from .methods.constraint_equations import LoopEquations as LoopEquations, close_positions as close_positions
@@ -42,9 +42,9 @@ from .methods.registry import CLOSED_FORM as CLOSED_FORM, FEWER as FEWER, METHOD
 from .references import (
     KEYS as KEYS,
     REFERENCE_NAMES as REFERENCE_NAMES,
-    family_members as family_members,
-    known_scenes as known_scenes,
-    reference as reference,
+    load_family_members as load_family_members,
+    load_known_scenes as load_known_scenes,
+    load_reference as load_reference,
 )
 from .savings import (
     SAVING_TITLES as SAVING_TITLES,
@@ -65,7 +65,7 @@ from .searches import (
     Searches as Searches,
     SearchOutcome as SearchOutcome,
     SearchRate as SearchRate,
-    best_known as best_known,
+    load_best_known as load_best_known,
     load_candidates as load_candidates,
     measure_searches as measure_searches,
     search_problem_text as search_problem_text,

@@ -12,10 +12,18 @@ from typing import Any, ClassVar
 import numpy as np
 
 from tmm_cli.bench.measured import Measurement, csv_cell, target_slack, text_table, time_runs
-from tmm_cli.bench.methods.case import QUANTITIES, Case, Compared, Method, MethodAnswers, MethodUnable, relative_errors
+from tmm_cli.bench.methods.case import (
+    QUANTITIES,
+    Case,
+    Compared,
+    Method,
+    MethodAnswers,
+    UnsupportedLinkageError,
+    relative_errors,
+)
 from tmm_cli.bench.methods.registry import CLOSED_FORM, FEWER, METHODS, TAPED
-from tmm_cli.bench.references import REFERENCE_NAMES, reference
-from tmm_cli.bench.rivals import installed
+from tmm_cli.bench.references import REFERENCE_NAMES, load_reference
+from tmm_cli.bench.rivals import list_installed
 from tmm_cli.mechanics.numerics import Real
 from tmm_cli.reports import Table
 
@@ -162,18 +170,18 @@ def measure_accuracy(
         progress: Called with the name of each linkage.
     """
     chosen = tuple(methods or (FEWER if reduced else METHODS))
-    rivals, missing = installed()
+    rivals, missing = list_installed()
     absent = [f"{name}: not installed" for name in missing]
     repeats = REDUCED_REPEATS if reduced else REPEATS
     rows: list[AccuracyRow] = []
     for name in linkages:
         progress(name)
-        true = reference(name)
+        true = load_reference(name)
         solvers: dict[Method, Solver] = {}
         for method in (*chosen, *rivals):
             try:
                 solvers[method] = method.prepare(true.case)
-            except MethodUnable as error:
+            except UnsupportedLinkageError as error:
                 absent.append(f"{method.name}: {name}: {error}")
         worst = {method: relative_errors(solver(true.q), true.exact) for method, solver in solvers.items()}
         q = sample_coordinates(true.case, TIMED_POSITIONS)

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.batch import Batch, prepare_batch, read_all
-from tmm_cli.bench.references import reference
+from tmm_cli.bench.references import load_reference
 from tmm_cli.mechanics.forces import Reactions
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import Linkage
@@ -293,19 +293,19 @@ class HandCodedMechanism:
     arguments: Arguments
     longer: tuple[str, ...]
 
-    def linkage(self) -> Linkage:
+    def load_linkage(self) -> Linkage:
         """Return the reference linkage with constant loads.
 
         The code written by hand has no load tables and no strokes.
         """
-        linkage = reference(self.name).case.linkage
+        linkage = load_reference(self.name).case.linkage
         (load,) = linkage.loads
         force = load.force * (1 if load.table is None else load.table.values[0])
         return replace(linkage, loads=(replace(load, force=force, table=None, when="always"),))
 
-    def variants(self, count: int, seed: int = 1) -> list[Linkage]:
+    def make_variants(self, count: int, seed: int = 1) -> list[Linkage]:
         """Return `count` variants of the linkage: the reference itself, then linkages with links up to 3 % longer."""
-        first, random = self.linkage(), np.random.default_rng(seed)
+        first, random = self.load_linkage(), np.random.default_rng(seed)
         linkages = [first]
         for _ in range(count - 1):
             links = dict(first.links)
@@ -319,10 +319,10 @@ class HandCodedMechanism:
     @cached_property
     def names(self) -> tuple[str, ...]:
         """Names of the values that the code written by hand computes."""
-        first = self.linkage()
-        return tuple(self.by_hand([first])(np.array([first.sketch.at])))
+        first = self.load_linkage()
+        return tuple(self.prepare_by_hand([first])(np.array([first.sketch.at])))
 
-    def ours(self, linkages: Sequence[Linkage]) -> Batch:
+    def prepare_ours(self, linkages: Sequence[Linkage]) -> Batch:
         """Prepare the computation of the same values by tmm, as a function of the driver coordinates."""
 
         def asked(motion: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
@@ -331,7 +331,7 @@ class HandCodedMechanism:
 
         return prepare_batch(linkages, asked)
 
-    def by_hand(self, linkages: Sequence[Linkage]) -> Callable[[Real], dict[str, Any]]:
+    def prepare_by_hand(self, linkages: Sequence[Linkage]) -> Callable[[Real], dict[str, Any]]:
         """Return the code written by hand for these variants, as a function of the crank angles q (rad).
 
         Dimensions that differ between the variants are arrays (variants, 1).
@@ -347,7 +347,7 @@ class HandCodedMechanism:
         return lambda q: self.code(q, **arguments)
 
 
-def _masses(linkage: Linkage) -> dict[str, Any]:
+def _mass_arguments(linkage: Linkage) -> dict[str, Any]:
     links = [linkage.links[name] for name in sorted(linkage.moving)]
     driver = linkage.driver
     return {
@@ -362,8 +362,8 @@ def _length(linkage: Linkage, link: str, point: str) -> float:
     return abs(linkage.local(link, point))
 
 
-def _crank_slider(linkage: Linkage) -> dict[str, Any]:
-    all_of = _masses(linkage)
+def _crank_slider_arguments(linkage: Linkage) -> dict[str, Any]:
+    all_of = _mass_arguments(linkage)
     (m1, m2, m3), rod = all_of["m"], linkage.links["2"]
     return {
         "r": _length(linkage, "1", "A"),
@@ -378,7 +378,7 @@ def _crank_slider(linkage: Linkage) -> dict[str, Any]:
     }
 
 
-def _six_bar(linkage: Linkage) -> dict[str, Any]:
+def _six_bar_arguments(linkage: Linkage) -> dict[str, Any]:
     return {
         "a": _length(linkage, "1", "A"),
         "b": _length(linkage, "2", "B"),
@@ -387,11 +387,11 @@ def _six_bar(linkage: Linkage) -> dict[str, Any]:
         "e": _length(linkage, "4", "F"),
         "y": 0.2,
         "S2": complex(157.5, 30) / 350,
-        **_masses(linkage),
+        **_mass_arguments(linkage),
     }
 
 
-def _shaper(linkage: Linkage) -> dict[str, Any]:
+def _shaper_arguments(linkage: Linkage) -> dict[str, Any]:
     return {
         "a": _length(linkage, "1", "A"),
         "f": -linkage.local("0", "C").imag,
@@ -400,12 +400,12 @@ def _shaper(linkage: Linkage) -> dict[str, Any]:
         "y": 0.27,
         "S5": linkage.links["5"].centre,
         "at": linkage.loads[0].at,
-        **_masses(linkage),
+        **_mass_arguments(linkage),
     }
 
 
 MECHANISMS = (
-    HandCodedMechanism("crank-slider", crank_slider, _crank_slider, ("1", "2")),
-    HandCodedMechanism("six-bar", six_bar, _six_bar, ("1", "2", "3", "4")),
-    HandCodedMechanism("shaper", shaper, _shaper, ("1", "3", "4")),
+    HandCodedMechanism("crank-slider", crank_slider, _crank_slider_arguments, ("1", "2")),
+    HandCodedMechanism("six-bar", six_bar, _six_bar_arguments, ("1", "2", "3", "4")),
+    HandCodedMechanism("shaper", shaper, _shaper_arguments, ("1", "3", "4")),
 )

@@ -201,7 +201,7 @@ def _draw_errors(axes: Any, stability: Stability, family: str, methods: list[str
     set_error_axis(axes, range(-18, 4, 3))
     axes.set_ylim(STABILITY_LEAST_ERROR, STABILITY_LARGEST_ERROR)
     for method in methods:
-        rows = _rows_of_family(stability.of(family, method), family)
+        rows = _rows_of_family(stability.select_rows(family, method), family)
         if not rows:
             continue
         axes.plot(
@@ -226,8 +226,8 @@ def _draw_outcomes(axes: Any, stability: Stability, family: str, methods: list[s
 
     The colour of a cell is mixed from the shares of right results, reported failures and wrong results.
     """
-    family_rows = [method for method in methods if stability.of(family, method)]
-    rows = [_rows_of_family(stability.of(family, method), family) for method in family_rows]
+    family_rows = [method for method in methods if stability.select_rows(family, method)]
+    rows = [_rows_of_family(stability.select_rows(family, method), family) for method in family_rows]
     picture = np.array([[_outcome_colour(row) for row in line] for line in rows])
     axes.imshow(picture, aspect="auto", interpolation="nearest")
     axes.set_yticks(range(len(family_rows)), family_rows, fontsize=6)

@@ -84,26 +84,26 @@ class StudentGroup:
             return np.stack([predict_answers(self.family, self.right.asked, [case]) for case in self.cases])
 
     @cached_property
-    def seen(self) -> Real:
+    def visible(self) -> Real:
         """True where a mistake visibly changes the answers of a student, (mistakes, students)."""
         with np.errstate(all="ignore"):
             moved = np.max(np.abs(self.with_mistake - self.right.value) / self.right.scale, axis=2)
         visible: Real = np.isfinite(moved) & (moved >= VISIBLE_FACTOR * DRAWING_ERROR)
         return visible
 
-    def mistakes(self, n: int, count: int) -> tuple[int, ...]:
+    def choose_mistakes(self, n: int, count: int) -> tuple[int, ...]:
         """Choose `count` random mistakes of different kinds for student n; return their indices.
 
         Only mistakes that visibly change the answers of this student are chosen; all kinds are equally likely.
         """
         kinds: dict[type[Mistake], list[int]] = {}
-        for c in np.flatnonzero(self.seen[:, n]).tolist():
+        for c in np.flatnonzero(self.visible[:, n]).tolist():
             kinds.setdefault(type(self.cases[c]), []).append(c)
         chosen = self.random.permutation(len(kinds))[:count]
         kind_members = list(kinds.values())
         return tuple(int(self.random.choice(kind_members[k])) for k in chosen)
 
-    def sheets(self, mistakes: Sequence[tuple[int, ...]]) -> Vector:
+    def make_answers(self, mistakes: Sequence[tuple[int, ...]]) -> Vector:
         """Return answers with drawing errors, (students, answers).
 
         mistakes: for each student, the indices of the mistakes made.
@@ -118,9 +118,9 @@ class StudentGroup:
                         self.family.take([n]), self.right.asked, [self.cases[c] for c in student_mistakes]
                     )
                 value[n] = two[0]
-        return self.drawn(value)
+        return self.add_drawing_errors(value)
 
-    def drawn(self, value: Vector, rows: Real | None = None) -> Vector:
+    def add_drawing_errors(self, value: Vector, rows: Real | None = None) -> Vector:
         """Return values with random drawing errors; quantities that must be exact (e.g. mobility) are unchanged.
 
         Args:
@@ -142,6 +142,7 @@ class StudentGroup:
 
 
 def make_students(count: int, seed: int = 1) -> StudentGroup:
+    """Simulate students whose variants have random parameter values."""
     task = read_task(read_text(grading_task_text(), "six-bar.yaml"))
     random = np.random.default_rng(seed)
     columns = [[f"{x:.2f} {unit}" for x in random.uniform(low, high, count)] for low, high, unit in BOUNDS.values()]
@@ -226,7 +227,7 @@ class GradingFigure:
     bound: Literal["most", "least"] = "most"
     absolute: bool = False
 
-    def missed(self, slack: float) -> str:
+    def describe_miss(self, slack: float) -> str:
         if self.target is None or math.isnan(self.found):
             return ""
         if self.bound == "most":
@@ -250,7 +251,7 @@ class GradingMeasurement(Measurement):
     @property
     def failures(self) -> tuple[str, ...]:
         judged = (figure for figure in self.figures if not (self.reduced and figure.absolute))
-        return tuple(filter(None, (figure.missed(target_slack(self.reduced)) for figure in judged)))
+        return tuple(filter(None, (figure.describe_miss(target_slack(self.reduced)) for figure in judged)))
 
     @property
     def tables(self) -> tuple[Table, ...]:
@@ -298,8 +299,8 @@ def measure_diagnosis(group: StudentGroup, count: int) -> Iterator[GradingFigure
     For count 0: the shares of right sheets in which an answer is marked wrong or a mistake is named.
     """
     students = range(len(group.family))
-    mistakes = [group.mistakes(n, count) for n in students]
-    value = group.sheets(mistakes)
+    mistakes = [group.choose_mistakes(n, count) for n in students]
+    value = group.make_answers(mistakes)
     written = WrittenAnswers(value, np.zeros(value.shape, dtype=bool))
     claims = diagnose_students(group.family, group.right, written)
     rightly = wrongly = beside = 0
@@ -331,7 +332,7 @@ def measure_carried_errors(group: StudentGroup) -> GradingFigure:
     """
     right, chance = group.right, group.random
     count = len(group.family)
-    drawn, source = group.drawn(right.value), np.full(count, -1)
+    drawn, source = group.add_drawing_errors(right.value), np.full(count, -1)
     motion = solve_with_mistakes(group.family).motion
     begins = [
         k
@@ -346,7 +347,7 @@ def measure_carried_errors(group: StudentGroup) -> GradingFigure:
         mistake = replace_by_own_answer(
             answer.quantity, wrong_values[:, None], solve_with_mistakes(subfamily).motion, right.value[rows, k][:, None]
         )
-        later = group.drawn(predict_answers(subfamily, right.asked, [mistake] if mistake else []), rows)
+        later = group.add_drawing_errors(predict_answers(subfamily, right.asked, [mistake] if mistake else []), rows)
         same = [j for j, other in enumerate(right.asked) if other.position == answer.position]
         drawn[rows[:, None], same] = later[:, same]
         drawn[rows, k], source[rows] = wrong_values, k
@@ -387,7 +388,7 @@ def measure_command(sizes: Sequence[int], progress: Callable[[str], None]) -> It
                 students_part = make_students(min(PART_STUDENTS, students - PART_STUDENTS * number), seed=number + 3)
                 write_submissions(
                     students_part,
-                    students_part.sheets(_draw_mistakes(students_part)),
+                    students_part.make_answers(_draw_mistakes(students_part)),
                     Path(folder),
                     PART_STUDENTS * number,
                 )
@@ -415,7 +416,7 @@ def measure_command(sizes: Sequence[int], progress: Callable[[str], None]) -> It
 def _draw_mistakes(group: StudentGroup) -> list[tuple[int, ...]]:
     """Choose the mistakes of each student of a typical group, in which most students make none."""
     draws = group.random.random(len(group.family))
-    return [group.mistakes(n, 2 if x < TWO else 1 if x < TWO + ONE else 0) for n, x in enumerate(draws.tolist())]
+    return [group.choose_mistakes(n, 2 if x < TWO else 1 if x < TWO + ONE else 0) for n, x in enumerate(draws.tolist())]
 
 
 @dataclass

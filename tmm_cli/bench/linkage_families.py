@@ -112,13 +112,13 @@ class LinkageFamily:
     fixed: bool = False
 
 
-def _bar(name: str, ends: tuple[str, str], length: float, mass: float) -> Link:
+def _make_bar(name: str, ends: tuple[str, str], length: float, mass: float) -> Link:
     """Make a uniform bar along its x axis; ends: names of its end points."""
     points = {ends[0]: 0j, ends[1]: complex(length)}
     return Link(name, points, mass, mass * length * length / 12, complex(length / 2))
 
 
-def _point(place: DecimalPoint) -> complex:
+def _to_complex(place: DecimalPoint) -> complex:
     return complex(float(place[0]), float(place[1]))
 
 
@@ -154,13 +154,13 @@ def four_bar_linkage(
         at: Crank angle of the sketch, rad.
     """
     la, lb, lc = float(a), float(b), float(c)
-    o, d = (_point(place) for place in pivots)
+    o, d = (_to_complex(place) for place in pivots)
     A = o + la * complex(math.cos(at), math.sin(at))
     links = {
         FRAME: Link(FRAME, {"O": o, "D": d}),
-        "1": _bar("1", ("O", "A"), la, 1.0),
-        "2": _bar("2", ("A", "B"), lb, 3.0),
-        "3": _bar("3", ("D", "B"), lc, 2.0),
+        "1": _make_bar("1", ("O", "A"), la, 1.0),
+        "2": _make_bar("2", ("A", "B"), lb, 3.0),
+        "3": _make_bar("3", ("D", "B"), lc, 2.0),
     }
     hinges = (
         Hinge("O", (FRAME, "1")),
@@ -175,13 +175,13 @@ def four_bar_linkage(
 def crank_slider_linkage(r: Decimal, length: Decimal, pivot: DecimalPoint, at: float) -> Linkage:
     """Make a central crank-slider with crank OA = r and connecting rod AB = length, with a force on the piston."""
     lr, ll = float(r), float(length)
-    o = _point(pivot)
+    o = _to_complex(pivot)
     A = o + lr * complex(math.cos(at), math.sin(at))
     B = o + (A - o).real + math.sqrt(ll * ll - (A - o).imag ** 2)
     links = {
         FRAME: Link(FRAME, {"O": o}),
-        "1": _bar("1", ("O", "A"), lr, 1.0),
-        "2": _bar("2", ("A", "B"), ll, 3.0),
+        "1": _make_bar("1", ("O", "A"), lr, 1.0),
+        "2": _make_bar("2", ("A", "B"), ll, 3.0),
         "3": Link("3", {"B": 0j}, 2.0),
     }
     hinges = (Hinge("O", (FRAME, "1")), Hinge("A", ("1", "2")), Hinge("B", ("2", "3")))
@@ -200,14 +200,14 @@ def slotted_lever_linkage(a: Decimal, pivots: tuple[DecimalPoint, DecimalPoint],
         at: Crank angle of the sketch, rad.
     """
     la, lk = float(a), float(far)
-    o, c = (_point(place) for place in pivots)
+    o, c = (_to_complex(place) for place in pivots)
     A = o + la * complex(math.cos(at), math.sin(at))
     u = (A - c) / abs(A - c)
     links = {
         FRAME: Link(FRAME, {"O": o, "C": c}),
-        "1": _bar("1", ("O", "A"), la, 1.0),
+        "1": _make_bar("1", ("O", "A"), la, 1.0),
         "2": Link("2", {"A": 0j}, 0.5, 1e-3),
-        "3": _bar("3", ("C", "K"), lk, 3.0),
+        "3": _make_bar("3", ("C", "K"), lk, 3.0),
     }
     hinges = (Hinge("O", (FRAME, "1")), Hinge("A", ("1", "2")), Hinge("C", (FRAME, "3")))
     slide = Slide("s", "3", "2", 0j, 0.0, 0j, 0.0, "A")
@@ -222,11 +222,11 @@ def triad_linkage(n: Numbers) -> Linkage:
     la, leg = float(n["a"]), float(n["leg"])
     links = {
         FRAME: Link(FRAME, {"O": z["O"], "C": z["C"], "D": z["D"]}),
-        "1": _bar("1", ("O", "A"), la, 0.8),
+        "1": _make_bar("1", ("O", "A"), la, 0.8),
         "2": Link("2", {"P": 0j, "Q": z["Q"], "R": z["R"]}, 4.0, 0.02, complex(0.123, 0.05)),
-        "3": _bar("3", ("A", "P"), leg, 1.1),
-        "4": _bar("4", ("C", "Q"), leg, 1.1),
-        "5": _bar("5", ("D", "R"), leg, 1.1),
+        "3": _make_bar("3", ("A", "P"), leg, 1.1),
+        "4": _make_bar("4", ("C", "Q"), leg, 1.1),
+        "5": _make_bar("5", ("D", "R"), leg, 1.1),
     }
     hinges = (
         Hinge("O", (FRAME, "1")),
@@ -245,7 +245,7 @@ def triad_linkage(n: Numbers) -> Linkage:
 # families
 
 
-def _pivots(n: Numbers) -> tuple[DecimalPoint, DecimalPoint]:
+def _pivot_coordinates(n: Numbers) -> tuple[DecimalPoint, DecimalPoint]:
     return (n["Ox"], n["Oy"]), (n["Dx"], n["Dy"])
 
 
@@ -253,14 +253,14 @@ def _dead_position_scene(n: Numbers, distance: Decimal) -> LinkageScene:
     """Return a four-bar near a position in which coupler and rocker are in line; distance of the crank in rad."""
     sense = n["sense"]
     at = float(n["critical"] + sense * n["back"])
-    linkage = four_bar_linkage(n["a"], n["b"], n["c"], _pivots(n), float(n["side"]), at)
+    linkage = four_bar_linkage(n["a"], n["b"], n["c"], _pivot_coordinates(n), float(n["side"]), at)
     return LinkageScene(linkage, float(n["critical"] + sense * distance))
 
 
 def _collinear_scene(n: Numbers, distance: Decimal) -> LinkageScene:
     """Return a four-bar in whose sketch three points of the crank and coupler are nearly collinear; distance in rad."""
     q = float(n["critical"] + n["sense"] * distance)
-    return LinkageScene(four_bar_linkage(n["a"], n["b"], n["c"], _pivots(n), float(n["side"]), q), q)
+    return LinkageScene(four_bar_linkage(n["a"], n["b"], n["c"], _pivot_coordinates(n), float(n["side"]), q), q)
 
 
 def _outer_tangent_scene(n: Numbers, share: Decimal) -> LinkageScene:
@@ -276,7 +276,7 @@ def _inner_tangent_scene(n: Numbers, share: Decimal) -> LinkageScene:
 def _tangent_scene(n: Numbers, base: Decimal) -> LinkageScene:
     """Return a four-bar whose pivot D is at the distance `base` from A."""
     pivots = (n["Ox"], n["Oy"]), (n["Ax"] + n["ux"] * base, n["Ay"] + n["uy"] * base)
-    o, d = (_point(place) for place in pivots)
+    o, d = (_to_complex(place) for place in pivots)
     a, b, c, q = float(n["a"]), float(n["b"]), float(n["c"]), float(n["q"])
     angles = [q + off for off in (-1.2, -0.8, -0.5, -0.3, 0.3, 0.5, 0.8, 1.2)]
     shapes = {at: transmission_sine(o + a * complex(math.cos(at), math.sin(at)), b, d, c) for at in angles}

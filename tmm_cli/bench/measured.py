@@ -122,7 +122,7 @@ def time_runs(runs: Mapping[Name, Callable[[], Any]], turns: int, least: float =
 class TimedResult(Protocol):
     """Interface of a timing that may have a target."""
 
-    def missed(self, slack: float) -> str:
+    def describe_miss(self, slack: float) -> str:
         """Return a message if the target is missed, "" if it is met; slack: factor by which the target is widened."""
 
 
@@ -150,6 +150,6 @@ def time_until_met(
         for name, seconds in time_runs(runs, turns, LEAST_DURATION).items():
             least[name] = min(least[name], *seconds)
         timing = find(least)
-        if not timing.missed(target_slack(reduced)):
+        if not timing.describe_miss(target_slack(reduced)):
             break
     return timing

@@ -51,16 +51,16 @@ def _read_data(name: str) -> dict[str, Any]:
     return content
 
 
-def problem_tree(name: str) -> Tree:
+def load_problem_tree(name: str) -> Tree:
     """Return the contents of the problem file of a reference linkage."""
     return read_text(_read_data(name)["problem"], f"{name}.yaml")
 
 
 @cache
-def reference(name: str) -> Reference:
+def load_reference(name: str) -> Reference:
     """Return the reference linkage of this name with its exact results."""
     content = _read_data(name)
-    results = solve(build_problem(problem_tree(name)), "kinematics")
+    results = solve(build_problem(load_problem_tree(name)), "kinematics")
     x, v, a, forces = (
         {point: to_longdouble(values) for point, values in content[key].items()}
         for key in ("positions", "velocities", "accelerations", "reactions")
@@ -126,7 +126,7 @@ class FamilyMember:
 
 
 @cache
-def family_members(family: str) -> tuple[FamilyMember, ...]:
+def load_family_members(family: str) -> tuple[FamilyMember, ...]:
     """Read the members of a linkage family from its data file."""
     text = (files("tmm_cli.bench") / "data" / "stability" / f"{family}.json").read_text(encoding="utf-8")
     return tuple(
@@ -135,7 +135,7 @@ def family_members(family: str) -> tuple[FamilyMember, ...]:
     )
 
 
-def known_scenes(family: str, chosen: int | None = None, stride: int = 1) -> Iterator[KnownScene]:
+def load_known_scenes(family: str, chosen: int | None = None, stride: int = 1) -> Iterator[KnownScene]:
     """Yield the linkages of a family at their distances from the critical position, with exact results.
 
     Args:
@@ -144,7 +144,7 @@ def known_scenes(family: str, chosen: int | None = None, stride: int = 1) -> Ite
         stride: Step through the distances; the last distance is always included.
     """
     linkage_family = FAMILIES_BY_NAME[family]
-    for number, seed in enumerate(family_members(family)[:chosen]):
+    for number, seed in enumerate(load_family_members(family)[:chosen]):
         true = [{quantity: to_longdouble([scene[key]])[0] for quantity, key in KEYS.items()} for scene in seed.scenes]
         for k, scene in enumerate(seed.scenes):
             if k % stride and k != len(seed.scenes) - 1:

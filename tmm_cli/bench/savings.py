@@ -244,13 +244,13 @@ def iterate_savings(problem: Problem, reduced: bool) -> Iterator[Saving]:
 
     def quality_of_all_orders() -> None:
         with with_all_orders():
-            _quality_results(problem)
+            _compute_qualities(problem)
 
     for name, one, other in (
-        ("structure", lambda: solve(problem, "structure"), lambda: _structure_results(problem)),
+        ("structure", lambda: solve(problem, "structure"), lambda: _compute_structure(problem)),
         ("groups", lambda: compute_motion(linkage, first, q, law), lambda: compute_motion(linkage, kernels, q, law)),
         ("positions", lambda: _analyse_at(results, q[:1]), lambda: _analyse_at(results, q)),
-        ("orders", lambda: _quality_results(problem), quality_of_all_orders),
+        ("orders", lambda: _compute_qualities(problem), quality_of_all_orders),
     ):
         yield compare_work(name, one, other, repeats)
     yield compare_work(
@@ -286,7 +286,7 @@ def compare_work(
     return Saving(name, counts, numbers[0], numbers[1], (best[0], best[1]))
 
 
-def _structure_results(problem: Problem) -> object:
+def _compute_structure(problem: Problem) -> object:
     """Compute the structure and the range of the driver, which tells a crank from a rocker."""
     results = solve(problem, "structure")
     return results.driver_range, results.roles
@@ -297,7 +297,7 @@ def _analyse_at(results: Results, q: Real) -> object:
     return with_forces(replace(results, motion=motion_at_positions(results, q)), cycle=False)
 
 
-def _quality_results(problem: Problem) -> object:
+def _compute_qualities(problem: Problem) -> object:
     """Compute results that need no accelerations: range, strokes, dead positions, kinds of links (crank, rocker)."""
     results = solve(problem, "structure").mechanism
     return results.driver_range, results.strokes, results.dead, results.roles

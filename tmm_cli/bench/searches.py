@@ -35,8 +35,7 @@ class PathProblem:
     """A published problem: find the four-bar whose coupler point passes through given points.
 
     Attributes:
-        name: name in tables.
-        source: publication, and public copy of its data.
+        name, source: name in tables; publication, and public copy of its data.
         points: points of the path, mm.
         lengths: bounds of the lengths of crank, coupler, rocker and frame, mm.
         offsets: bounds of the coordinates of the coupler point in the axes of the coupler, mm.
@@ -214,8 +213,7 @@ class SearchRate:
     """Speed of the evaluation of candidates in generations of one size.
 
     Attributes:
-        problem: name of the problem.
-        parameters, constraints, positions: numbers of these in the problem.
+        problem, parameters, constraints, positions: name of the problem, and its numbers of these.
         operations: number of operations of the traced program; 0 if it is not traced.
         generation: number of candidates in a generation.
         per_second: candidates evaluated per second, from the least time.
@@ -231,7 +229,7 @@ class SearchRate:
     per_second: float
     target: float | None = None
 
-    def missed(self, slack: float) -> str:
+    def describe_miss(self, slack: float) -> str:
         if self.target is None or self.per_second >= self.target / slack:
             return ""
         generation_text = f"{self.problem}, generations of {self.generation}"
@@ -243,7 +241,6 @@ class SearchOutcome:
     """Result of a search from one seed.
 
     Attributes:
-        seed: seed of the random numbers.
         objective: exact value of the objective.
         missed: relative violation of the constraints; 0 if all are met.
         off: relative excess over the best known objective.
@@ -271,9 +268,7 @@ class PathOutcome:
     """Result of a search for a published path problem from one seed.
 
     Attributes:
-        problem: name of the problem.
-        parameters: number of parameters that vary.
-        seed: seed of the random numbers.
+        problem, parameters: name of the problem, and number of parameters that vary.
         distance: root-mean-square distance, mm.
         off: excess over the least known distance, relative to it; if that is zero, relative to the spread of the
             points.
@@ -324,14 +319,18 @@ class Searches(Measurement):
     @property
     def failures(self) -> tuple[str, ...]:
         """Messages on missed targets; in a reduced run, on those missed by more than a factor of two."""
-        slow = tuple(filter(None, (rate.missed(target_slack(self.reduced)) for rate in self.rates)))
-        slow += tuple(filter(None, (self._far(name) for name in dict.fromkeys(path.problem for path in self.paths))))
+        slow = tuple(filter(None, (rate.describe_miss(target_slack(self.reduced)) for rate in self.rates)))
+        slow += tuple(
+            filter(
+                None, (self._describe_path_miss(name) for name in dict.fromkeys(path.problem for path in self.paths))
+            )
+        )
         if self.near >= self.wanted:
             return slow
         near = f"{self.near} of {len(self.found)} seeds within {100 * NEAR:g} %"
         return (*slow, f"{near} of the best known, target {self.wanted}")
 
-    def _far(self, name: str) -> str:
+    def _describe_path_miss(self, name: str) -> str:
         """Return a message if the searches for a path problem miss their target, otherwise "".
 
         The target is missed if more than one seed of ten ends far above the least known distance, if a search ends
@@ -394,11 +393,8 @@ def search_problem_text(name: str) -> str:
 
 
 @cache
-def best_known() -> dict[str, Any]:
-    """Return the best known solution of SEARCHED, and the long runs that found it.
-
-    tests/write_synthesis_best.py writes these data.
-    """
+def load_best_known() -> dict[str, Any]:
+    """Return the best known solution of SEARCHED, and the long runs that found it (written by tests/write_synthesis_best.py)."""
     source = (files("tmm_cli.bench") / "data" / "synthesis" / "best.json").read_text(encoding="utf-8")
     best: dict[str, Any] = json.loads(source)
     return best
@@ -421,7 +417,7 @@ def measure_searches(*, reduced: bool = False, progress: Callable[[str], None] =
         progress(name)
         rates += measure_rates(name, reduced)
     search = load_candidates(SEARCHED)
-    reference = best_known()
+    reference = load_best_known()
     found = []
     for seed in range(1, 1 + (REDUCED_SEEDS if reduced else SEEDS)):
         progress(f"{SEARCHED}, seed {seed}")
@@ -432,10 +428,7 @@ def measure_searches(*, reduced: bool = False, progress: Callable[[str], None] =
 
 
 def _run_path_searches(reduced: bool, progress: Callable[[str], None]) -> Iterator[PathOutcome]:
-    """Yield the results for the published path problems from several seeds.
-
-    A reduced run uses two of the problems and one seed.
-    """
+    """Yield the results for the published path problems and seeds; reduced: for two problems and one seed."""
     for problem in PROBLEMS:
         if reduced and problem.name not in REDUCED_PATHS:
             continue
@@ -458,10 +451,7 @@ def run_path_search(problem: PathProblem, seed: int) -> PathOutcome:
 
 
 def measure_rates(name: str, reduced: bool) -> list[SearchRate]:
-    """Measure the candidates evaluated per second for several generation sizes.
-
-    The candidates are evenly distributed within the bounds.
-    """
+    """Measure the candidates evaluated per second for several generation sizes; candidates are random."""
     search = load_candidates(name)
     chance = np.random.default_rng(1)
     sizes = (search.population, *GENERATIONS[: 2 if reduced else None])

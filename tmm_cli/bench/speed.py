@@ -14,9 +14,9 @@ from tmm_cli.bench.by_hand import MECHANISMS, HandCodedMechanism
 from tmm_cli.bench.linkage_families import dyad_chain
 from tmm_cli.bench.measured import Measurement, TimedResult, target_slack, text_table, time_until_met
 from tmm_cli.bench.methods import product as taped
-from tmm_cli.bench.methods.case import Case, Method, MethodUnable
-from tmm_cli.bench.references import problem_tree, reference
-from tmm_cli.bench.rivals import installed
+from tmm_cli.bench.methods.case import Case, Method, UnsupportedLinkageError
+from tmm_cli.bench.references import load_problem_tree, load_reference
+from tmm_cli.bench.rivals import list_installed
 from tmm_cli.mechanics.forces import Reactions
 from tmm_cli.mechanics.kinematics import Motion
 from tmm_cli.mechanics.linkage import Linkage
@@ -71,7 +71,7 @@ class Race:
         """Largest permitted ratio of the times; None if there is no target."""
         return TARGETS.get((self.variants, self.positions))
 
-    def missed(self, slack: float) -> str:
+    def describe_miss(self, slack: float) -> str:
         if self.target is None or self.ratio <= slack * self.target:
             return ""
         kind = f"{self.mechanism}, {self.variants} x {self.positions}"
@@ -84,8 +84,7 @@ class Growth:
 
     Attributes:
         what: what increases: links, positions or variants.
-        numbers: the numbers n.
-        seconds: time for each number, s.
+        numbers, seconds: the numbers n, and the time for each, s.
         exponent: exponent of the best fit.
     """
 
@@ -94,7 +93,7 @@ class Growth:
     seconds: tuple[float, ...]
     exponent: float
 
-    def missed(self, slack: float) -> str:
+    def describe_miss(self, slack: float) -> str:
         if abs(self.exponent - 1) <= slack * EXPONENT:
             return ""
         return f"growth with {self.what}: exponent {self.exponent:.3f}, target 1 +- {EXPONENT:g}"
@@ -118,7 +117,7 @@ class RivalRace:
         """Least required ratio of the time of the other program to that of tmm."""
         return RIVALS[self.name]
 
-    def missed(self, slack: float) -> str:
+    def describe_miss(self, slack: float) -> str:
         if self.ratio >= self.target / slack:
             return ""
         return f"{self.name}, {self.mechanism}: {self.ratio:.1f} times as long, target {self.target:g}"
@@ -129,9 +128,8 @@ class SpeedMeasurement(Measurement):
     """Results of `tmm bench speed`.
 
     Attributes:
-        races: tmm against code written by hand.
+        races, rivals: tmm against code written by hand, and against other programs.
         growths: growth of time with the numbers of links, positions and variants.
-        rivals: tmm against other programs.
         iterated: linkages with groups of class III against the six-bar.
         sweeps: rates of sweeps.
     """
@@ -146,7 +144,7 @@ class SpeedMeasurement(Measurement):
     def failures(self) -> tuple[str, ...]:
         """Messages on missed targets; in a reduced run, on those missed by more than a factor of two."""
         found: tuple[TimedResult, ...] = (*self.races, *self.iterated, *self.sweeps, *self.growths, *self.rivals)
-        return tuple(filter(None, (one.missed(target_slack(self.reduced)) for one in found)))
+        return tuple(filter(None, (one.describe_miss(target_slack(self.reduced)) for one in found)))
 
     def to_dict(self) -> dict[str, Any]:
         """Return the contents of the JSON file."""
@@ -240,13 +238,13 @@ def race_mechanism(mechanism: HandCodedMechanism, reduced: bool) -> list[Race]:
 
 
 def _time_race(mechanism: HandCodedMechanism, variants: int, positions: int, reduced: bool) -> Race:
-    linkages = mechanism.variants(variants)
+    linkages = mechanism.make_variants(variants)
     start = perf_counter()
-    ours = mechanism.ours(linkages)
+    ours = mechanism.prepare_ours(linkages)
     q = linkages[0].sketch.at + 2 * np.pi * np.arange(positions) / positions
     ours(q)
     preparing = 1e3 * (perf_counter() - start)
-    by_hand = mechanism.by_hand(linkages)
+    by_hand = mechanism.prepare_by_hand(linkages)
     share = 1e9 / (variants * positions)
 
     def found(least: dict[str, float]) -> Race:
@@ -266,11 +264,11 @@ def measure_growth(quantity: str, reduced: bool) -> Growth:
     runs: dict[str, Callable[[], Any]] = {}
     for number in numbers:
         if quantity == "links":
-            runs[str(number)] = _make_call(prepare_batch(dyad_chain(number), _balancing), OF_LINKS)
+            runs[str(number)] = _make_call(prepare_batch(dyad_chain(number), _balancing_moment), OF_LINKS)
         elif quantity == "positions":
-            runs[str(number)] = _make_call(prepare_batch(six_bar.linkage(), _balancing), number)
+            runs[str(number)] = _make_call(prepare_batch(six_bar.load_linkage(), _balancing_moment), number)
         else:
-            runs[str(number)] = _make_call(prepare_batch(six_bar.variants(number), _balancing), OF_VARIANTS)
+            runs[str(number)] = _make_call(prepare_batch(six_bar.make_variants(number), _balancing_moment), OF_VARIANTS)
     size = tuple(2 * n + 1 if quantity == "links" else n for n in numbers)
 
     def found(least: dict[str, float]) -> Growth:
@@ -279,7 +277,7 @@ def measure_growth(quantity: str, reduced: bool) -> Growth:
     return time_until_met(runs, found, reduced)
 
 
-def _balancing(__: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
+def _balancing_moment(__: Motion, reactions: Reactions | None) -> Mapping[str, Any]:
     assert reactions is not None
     return {"T": reactions.balance.generalized}
 
@@ -307,19 +305,18 @@ def fit_exponent(numbers: Sequence[int], seconds: Sequence[float]) -> float:
 def race_rivals(reduced: bool, progress: Callable[[str], None]) -> tuple[tuple[RivalRace, ...], tuple[str, ...]]:
     """Time the installed other programs and tmm on the mechanisms that they can compute, at 360 positions.
 
-    Returns:
-        The timings, and messages on programs or mechanisms that could not be timed.
+    The second tuple contains messages on programs and mechanisms that could not be timed.
     """
-    methods, missing = installed()
+    methods, missing = list_installed()
     absent = [f"{name}: not installed" for name in missing]
     races = []
     for method in methods:
         for mechanism in MECHANISMS:
             progress(f"{method.name}, {mechanism.name}")
-            case = reference(mechanism.name).case
+            case = load_reference(mechanism.name).case
             try:
                 solver = (method.alone or method.prepare)(case)
-            except MethodUnable as error:
+            except UnsupportedLinkageError as error:
                 absent.append(f"{method.name}: {mechanism.name}: {error}")
                 continue
             races.append(_race_rival(method, mechanism.name, case, solver, reduced))
@@ -349,9 +346,8 @@ class IteratedRace:
     """Times per position (ns) of a linkage with a group solved by iteration, and of the six-bar with dyads only.
 
     Attributes:
-        mechanism: name of the linkage.
-        positions: number of its positions; the six-bar is timed at 360.
-        ours, six_bar: the two times.
+        mechanism, positions: name of the linkage, and number of its positions; the six-bar is timed at 360.
+        ours, six_bar: the times of the linkage and of the six-bar.
         rest: fraction of the positions that the traced program does not solve and leaves to the ordinary calculation.
     """
 
@@ -370,7 +366,7 @@ class IteratedRace:
         """Largest permitted ratio of the times."""
         return ITERATED_TARGETS[self.positions]
 
-    def missed(self, slack: float) -> str:
+    def describe_miss(self, slack: float) -> str:
         if self.ratio <= slack * self.target:
             return ""
         kind = f"{self.mechanism}, {self.positions} positions"
@@ -383,10 +379,8 @@ class IteratedRace:
 
 def race_iterated(name: str, reduced: bool) -> list[IteratedRace]:
     """Time a linkage over its cycle with all quantities, alternately with the six-bar, whose groups are dyads."""
-    batch, six_bar = (
-        prepare_batch(_linkage_with_constant_loads(name)),
-        prepare_batch(_linkage_with_constant_loads("six-bar")),
-    )
+    batch = prepare_batch(_linkage_with_constant_loads(name))
+    six_bar = prepare_batch(_linkage_with_constant_loads("six-bar"))
     races = []
     for positions in ITERATED_POSITIONS:
         q, few = (batch.linkages[0].sketch.at + 2 * np.pi * np.arange(n) / n for n in (positions, OF_SIX_BAR))
@@ -402,7 +396,7 @@ def race_iterated(name: str, reduced: bool) -> list[IteratedRace]:
 
 def _linkage_with_constant_loads(name: str) -> Linkage:
     """Return a reference linkage with constant loads in place of load tables."""
-    linkage = reference(name).case.linkage
+    linkage = load_reference(name).case.linkage
     loads = tuple(
         replace(x, force=x.force * (1 if x.table is None else x.table.values[0]), table=None, when="always")
         for x in linkage.loads
@@ -442,9 +436,8 @@ class SweepRate:
     """Speed of a sweep on one core.
 
     Attributes:
-        mechanism: name of the mechanism.
-        mechanisms: number of mechanisms in the sweep.
-        positions: number of positions of each.
+        mechanism: name of the mechanism that is varied.
+        mechanisms, positions: number of mechanisms in the sweep, and of positions of each.
         a_minute: mechanisms computed per minute.
         preparing: time of preparation, once, ms.
     """
@@ -460,7 +453,7 @@ class SweepRate:
         """Least required number of mechanisms per minute."""
         return A_MINUTE
 
-    def missed(self, slack: float) -> str:
+    def describe_miss(self, slack: float) -> str:
         if self.a_minute >= self.target / slack:
             return ""
         return f"sweep of {self.mechanism}: {self.a_minute:.0f} mechanisms per minute, target {self.target:.0f}"
@@ -474,7 +467,7 @@ def time_sweep(name: str, reduced: bool) -> SweepRate:
     """Time a sweep as `tmm sweep` computes it, over a range in which all mechanisms can be assembled."""
     count = REDUCED_MECHANISMS if reduced else SWEPT_MECHANISMS
     start = perf_counter()
-    tree = problem_tree(name)
+    tree = load_problem_tree(name)
     mechanisms = SweptMechanisms(tree, read_axes(Task(tree), [f"{SWEPT[name]}:{count}"]), SWEPT_QUANTITIES)
     assert mechanisms.crank_variants is not None
     preparing = 1e3 * (perf_counter() - start)

@@ -17,9 +17,9 @@ import numpy as np
 from tmm_cli.bench.linkage_families import FAMILIES_BY_NAME
 from tmm_cli.bench.measured import Measurement, text_table
 from tmm_cli.bench.methods import textbook
-from tmm_cli.bench.methods.case import QUANTITIES, Case, Compared, Method, MethodAnswers, MethodUnable
+from tmm_cli.bench.methods.case import QUANTITIES, Case, Compared, Method, MethodAnswers, UnsupportedLinkageError
 from tmm_cli.bench.methods.registry import METHODS
-from tmm_cli.bench.references import KnownScene, known_scenes
+from tmm_cli.bench.references import KnownScene, load_known_scenes
 from tmm_cli.mechanics.accuracy import bound_values, solve_bare_linkage
 from tmm_cli.mechanics.errors import LinkageError
 from tmm_cli.mechanics.numerics import ROUNDOFF, Real
@@ -33,8 +33,8 @@ REFERENCE_ERROR = 1e-40  # fraction of the largest value: error of the reference
 SEEDS_WHEN_REDUCED, EVERY_WHEN_REDUCED = 2, 4
 WHEN_REDUCED = ("closed", "newton-2", "newton-6", "newton-12", "differences-4", "single", "extended")
 TEXTBOOK_METHODS = (
-    Method("cosines", "cosines", textbook.cosines),
-    Method("freudenstein", "freudenstein", textbook.freudenstein),
+    Method("cosines", "cosines", textbook.prepare_cosines),
+    Method("freudenstein", "freudenstein", textbook.prepare_freudenstein),
 )
 RIVALS: tuple[Method, ...] = (*METHODS, *TEXTBOOK_METHODS)
 
@@ -118,13 +118,13 @@ class Stability(Measurement):
     def methods(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(row.method for row in self.rows))
 
-    def of(self, family: str, method: str) -> list[StabilityRow]:
+    def select_rows(self, family: str, method: str) -> list[StabilityRow]:
         """Return the results of a method for a linkage family, from the harmless distance to the worst."""
         return [row for row in self.rows if (row.family, row.method) == (family, method)]
 
-    def lies(self, family: str, method: str) -> float | None:
+    def first_wrong_distance(self, family: str, method: str) -> float | None:
         """Return the distance at which a method first gives a wrong result without a report; None if it never does."""
-        return next((row.distance for row in self.of(family, method) if row.wrong), None)
+        return next((row.distance for row in self.select_rows(family, method) if row.wrong), None)
 
     @property
     def sharp(self) -> float:
@@ -151,7 +151,10 @@ class Stability(Measurement):
             vars(row) | {"errors": {q: _plain(e) for q, e in row.errors.items()}, "bound": _plain(row.bound)}
             for row in self.rows
         ]
-        lies = {f: {m: self.lies(f, m) for m in self.methods if self.of(f, m)} for f in self.families}
+        lies = {
+            f: {m: self.first_wrong_distance(f, m) for m in self.methods if self.select_rows(f, m)}
+            for f in self.families
+        }
         return {
             "rows": rows,
             "first_lie": lies,
@@ -165,9 +168,9 @@ class Stability(Measurement):
     @property
     def tables(self) -> tuple[Table, ...]:
         def first(family: str, method: str) -> str:
-            if not self.of(family, method):
+            if not self.select_rows(family, method):
                 return "-"
-            distance = self.lies(family, method)
+            distance = self.first_wrong_distance(family, method)
             return "never" if distance is None else f"{distance:.0e}".replace("e-0", "e-")
 
         rows = [(method, *(first(family, method) for family in self.families)) for method in self.methods]
@@ -210,7 +213,7 @@ def measure_stability(
         progress(family)
         some = (SEEDS_WHEN_REDUCED, EVERY_WHEN_REDUCED) if reduced else (None, 1)
         shots: dict[tuple[str, float], list[SceneOutcome]] = {}
-        for at, case, solvers in _prepare_scenes(known_scenes(family, *some), chosen, absent):
+        for at, case, solvers in _prepare_scenes(load_known_scenes(family, *some), chosen, absent):
             mine = (judge_product(case, at),) if own else ()
             for shot in (*mine, *(judge_method(method, solver, at) for method, solver in solvers.items())):
                 shots.setdefault((shot.method, float(at.distance)), []).append(shot)
@@ -235,7 +238,7 @@ def _prepare_scenes(
             try:
                 with np.errstate(all="ignore"):
                     solvers[method] = method.prepare(case)
-            except MethodUnable as error:
+            except UnsupportedLinkageError as error:
                 absent[f"{method.name}: {of_one[0].family.name}: {error}"] = None
             except (ArithmeticError, ValueError, LinkageError, np.linalg.LinAlgError) as error:
                 solvers[method] = error

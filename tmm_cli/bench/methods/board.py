@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tmm_cli.bench.methods.case import Case, MethodAnswers, answers_of_plan
+from tmm_cli.bench.methods.case import Case, MethodAnswers, build_answers_from_forces
 from tmm_cli.mechanics.forces import Reactions, solve_reactions
 from tmm_cli.mechanics.groups import (
     Accel,
@@ -89,10 +89,12 @@ class PolygonSolver(WrappedSolver):
         laid_off = tuple(Wrench(snap_to_grid(wrench.force, self.grid), wrench.moment) for wrench in on)
         reactions = self.inner.reactions(at, poses, laid_off)
         return replace(
-            reactions, outer=tuple(map(self._read, reactions.outer)), inner=tuple(map(self._read, reactions.inner))
+            reactions,
+            outer=tuple(map(self._read_force, reactions.outer)),
+            inner=tuple(map(self._read_force, reactions.inner)),
         )
 
-    def _read(self, reaction: PairReaction) -> PairReaction:
+    def _read_force(self, reaction: PairReaction) -> PairReaction:
         return replace(reaction, force=snap_to_grid(reaction.force, self.grid))
 
 
@@ -112,8 +114,8 @@ class Board:
     v: Real
     a: Real
 
-    def _ends(self, link: str) -> tuple[str, str] | None:
-        """Return the two points of a link that show its direction: those farthest apart. None if it has only one point."""
+    def _direction_points(self, link: str) -> tuple[str, str] | None:
+        """Return the two points of a link that show its direction: the farthest apart. None if it has only one."""
         points = self.case.linkage.links[link].points
         fixed = self.case.linkage.links[FRAME].points
         pairs = [
@@ -125,7 +127,7 @@ class Board:
         # from a pivot on the frame where there is one
         return max(pairs, key=lambda p: (p[0] in fixed, abs(points[p[0]] - points[p[1]])), default=None)
 
-    def _partner(self, link: str, drawn: Mapping[str, object]) -> tuple[str, float] | None:
+    def _find_sliding_partner(self, link: str, drawn: Mapping[str, object]) -> tuple[str, float] | None:
         """Return a link, already drawn, that forms a prismatic pair with this one, and the angle (rad) between them.
 
         Return None if there is no such link.
@@ -137,18 +139,18 @@ class Board:
                 return slide.runner, -slide.turned
         return None
 
-    def _order(self, links: tuple[str, ...]) -> list[str]:
+    def _sort_links(self, links: tuple[str, ...]) -> list[str]:
         """Sort the links so that those with two points, which show their own direction, come first."""
-        return sorted(links, key=lambda link: self._ends(link) is None)
+        return sorted(links, key=lambda link: self._direction_points(link) is None)
 
-    def _fixed(self, point: str) -> bool:
+    def _is_fixed(self, point: str) -> bool:
         return point in self.case.linkage.links[FRAME].points
 
-    def _point(self, link: str) -> complex:
+    def _first_point(self, link: str) -> complex:
         """Return the first point of a link in its own axes; the origin if it has none."""
         return next(iter(self.case.linkage.links[link].points.values()), 0j)
 
-    def draw(self, links: tuple[str, ...], exact_poses: Poses, known: Poses) -> dict[str, Pose]:
+    def draw_poses(self, links: tuple[str, ...], exact_poses: Poses, known: Poses) -> dict[str, Pose]:
         """Draw links on the plan of positions.
 
         Args:
@@ -160,30 +162,30 @@ class Board:
             Poses of all links drawn so far, as read from the drawing.
         """
         drawn = dict(known)
-        for link in self._order(links):
-            pose, ends = exact_poses[link], self._ends(link)
+        for link in self._sort_links(links):
+            pose, ends = exact_poses[link], self._direction_points(link)
             if ends is None:
-                partner = self._partner(link, drawn)
+                partner = self._find_sliding_partner(link, drawn)
                 z = pose.z if partner is None else drawn[partner[0]].z * unit(partner[1])
-                at = self._point(link)
+                at = self._first_point(link)
                 drawn[link] = Pose(snap_to_grid(pose.at(at), self.x) - at * z, z)
                 continue
             first_point, second_point = (self.case.linkage.local(link, point) for point in ends)
-            start = pose.at(first_point) if self._fixed(ends[0]) else snap_to_grid(pose.at(first_point), self.x)
+            start = pose.at(first_point) if self._is_fixed(ends[0]) else snap_to_grid(pose.at(first_point), self.x)
             along = (snap_to_grid(pose.at(second_point), self.x) - start) / (second_point - first_point)
             z = along / np.abs(along)
             drawn[link] = Pose(start - first_point * z, z)
         return drawn
 
-    def lay_off(self, links: tuple[str, ...], rates: Rates, poses: Poses, known: Rates) -> dict[str, Rate]:
+    def draw_velocities(self, links: tuple[str, ...], rates: Rates, poses: Poses, known: Rates) -> dict[str, Rate]:
         """Draw velocities of links on the velocity plan; return those of all links drawn so far, as read from it."""
         drawn = dict(known)
-        for link in self._order(links):
-            rate, pose, ends = rates[link], poses[link], self._ends(link)
+        for link in self._sort_links(links):
+            rate, pose, ends = rates[link], poses[link], self._direction_points(link)
             if ends is None:
-                partner = self._partner(link, drawn)
+                partner = self._find_sliding_partner(link, drawn)
                 w = rate.w if partner is None else drawn[partner[0]].w
-                arm = self._point(link) * pose.z
+                arm = self._first_point(link) * pose.z
                 drawn[link] = Rate.through(snap_to_grid(rate.at(arm), self.v), w, arm)
                 continue
             first_arm, second_arm = (self.case.linkage.local(link, point) * pose.z for point in ends)
@@ -193,11 +195,11 @@ class Board:
             )
         return drawn
 
-    def normals(self, links: tuple[str, ...], poses: Poses, rates: Rates) -> dict[str, Rate]:
+    def round_normals(self, links: tuple[str, ...], poses: Poses, rates: Rates) -> dict[str, Rate]:
         """Return the velocities of the links, with ω changed so that ω² l is a multiple of the acceleration grid."""
         laid = dict(rates)
         for link in links:
-            ends = self._ends(link)
+            ends = self._direction_points(link)
             if ends is not None:
                 first_arm, second_arm = (self.case.linkage.local(link, point) * poses[link].z for point in ends)
                 length, rate = np.abs(second_arm - first_arm), rates[link]
@@ -205,17 +207,17 @@ class Board:
                 laid[link] = Rate.through(rate.at(first_arm), np.sign(rate.w) * np.sqrt(normal / length), first_arm)
         return laid
 
-    def accelerate(
+    def draw_accelerations(
         self, links: tuple[str, ...], accels: Accels, poses: Poses, rates: Rates, known: Accels
     ) -> dict[str, Accel]:
         """Draw accelerations of links on the acceleration plan; return those of all links drawn, as read from it."""
         drawn = dict(known)
-        for link in self._order(links):
-            accel, pose, w, ends = accels[link], poses[link], rates[link].w, self._ends(link)
+        for link in self._sort_links(links):
+            accel, pose, w, ends = accels[link], poses[link], rates[link].w, self._direction_points(link)
             if ends is None:
-                partner = self._partner(link, drawn)
+                partner = self._find_sliding_partner(link, drawn)
                 e = accel.e if partner is None else drawn[partner[0]].e
-                arm = self._point(link) * pose.z
+                arm = self._first_point(link) * pose.z
                 drawn[link] = Accel.through(snap_to_grid(accel.at(arm, w), self.a), e, w, arm)
                 continue
             first_arm, second_arm = (self.case.linkage.local(link, point) * pose.z for point in ends)
@@ -224,7 +226,7 @@ class Board:
             drawn[link] = Accel.through(b, e, w, first_arm)
         return drawn
 
-    def motion(self, q: Real) -> tuple[Motion, tuple[Placement, ...]]:
+    def draw_all(self, q: Real) -> tuple[Motion, tuple[Placement, ...]]:
         """Draw all links and plans; return the motion read from the drawing, and the placements of the groups."""
         linkage = self.case.linkage
         drives = drives_at(linkage, q)
@@ -233,20 +235,20 @@ class Board:
         for driver in linkage.cranks:
             pose, rate, accel = driven_state(linkage, driver, drives[driver.link])
             one = (driver.link,)
-            poses = self.draw(one, {driver.link: pose}, poses)
-            first = self.lay_off(one, {driver.link: rate}, poses, first)
-            second = self.accelerate(one, {driver.link: accel}, poses, first, second)
+            poses = self.draw_poses(one, {driver.link: pose}, poses)
+            first = self.draw_velocities(one, {driver.link: rate}, poses, first)
+            second = self.draw_accelerations(one, {driver.link: accel}, poses, first, second)
         placements = []
         for kernel in self.case.kernels:
             links = kernel.group.links
             at = kernel.place(poses, q, drives)
-            poses = self.draw(links, dict(zip(links, at.poses, strict=True)), poses)
+            poses = self.draw_poses(links, dict(zip(links, at.poses, strict=True)), poses)
             at = replace(at, poses=tuple(poses[link] for link in links))
             rates = kernel.rates(at, poses, first, drives)
-            first = self.lay_off(links, dict(zip(links, rates, strict=True)), poses, first)
-            normal = self.normals(links, poses, first)
+            first = self.draw_velocities(links, dict(zip(links, rates, strict=True)), poses, first)
+            normal = self.round_normals(links, poses, first)
             accels = kernel.accelerations(at, poses, normal, second, drives)
-            second = self.accelerate(links, dict(zip(links, accels, strict=True)), poses, first, second)
+            second = self.draw_accelerations(links, dict(zip(links, accels, strict=True)), poses, first, second)
             placements.append(at)
         return self.case.motion(q, poses, first, second), tuple(placements)
 
@@ -259,13 +261,13 @@ def prepare_board(millimetres: float, case: Case) -> Callable[[Real], MethodAnsw
         scales = BoardScales.of(case, exact, solve_reactions(exact, case.structure, case.loads(exact)))
         x, v, a = (millimetres * scale for scale in (scales.x, scales.v, scales.a))
         speed = np.abs(exact.rate)
-        motion, placements = Board(case, x, v / speed, a / speed**2).motion(q)
+        motion, placements = Board(case, x, v / speed, a / speed**2).draw_all(q)
         forces = {links: millimetres * scale for links, scale in scales.forces.items()}
         polygons = tuple(PolygonSolver.around(k, forces[k.group.links]) for k in case.kernels)
         motion = replace(motion, kernels=polygons, placements=placements)
         plan = solve_reactions(motion, case.structure, case.loads(motion))
         frames = tuple(replace(f, force=snap_to_grid(f.force, forces[(f.on,)])) for f in plan.frames)
-        found = answers_of_plan(case, motion, replace(plan, frames=frames))
+        found = build_answers_from_forces(case, motion, replace(plan, frames=frames))
         assert found.positions and found.velocities and found.accelerations
         return replace(
             found,

@@ -21,7 +21,7 @@ Compared = Literal["positions", "velocities", "accelerations", "reactions", "bal
 QUANTITIES: tuple[Compared, ...] = ("positions", "velocities", "accelerations", "reactions", "balancing")
 
 
-class MethodUnable(Exception):  # noqa: N818 - no error, but what a method says of itself
+class UnsupportedLinkageError(Exception):
     """Raised by a method that cannot compute a linkage; the message says why."""
 
 
@@ -154,7 +154,7 @@ class Method:
         return self.prepare(case)(np.atleast_1d(np.asarray(q)))
 
 
-def answers_of_motion(
+def build_answers(
     case: Case, motion: Motion, reactions: Mapping[str, Vector] | None, balancing: Real | None
 ) -> MethodAnswers:
     """Return the results of a method from a motion and separately computed reactions and balancing moments."""
@@ -168,10 +168,10 @@ def answers_of_motion(
     )
 
 
-def answers_of_plan(case: Case, motion: Motion, plan: Reactions) -> MethodAnswers:
+def build_answers_from_forces(case: Case, motion: Motion, plan: Reactions) -> MethodAnswers:
     """Return the results of a method from a motion and its force analysis."""
     forces = {r.pair.name: r.onto(r.pair.j) for r in plan.all}
-    return answers_of_motion(case, motion, forces, plan.balance.generalized)
+    return build_answers(case, motion, forces, plan.balance.generalized)
 
 
 def relative_errors(

@@ -16,7 +16,7 @@ from typing import Protocol
 
 import numpy as np
 
-from tmm_cli.bench.methods.case import Case, MethodAnswers, answers_of_motion
+from tmm_cli.bench.methods.case import Case, MethodAnswers, build_answers
 from tmm_cli.mechanics.groups import (
     PAIR_CONSTRAINTS,
     Accel,
@@ -43,8 +43,6 @@ class PairEquations:
     """Constraint equations of some pairs, two for each pair.
 
     Attributes:
-        linkage: the linkage.
-        pairs: the pairs.
         driven: True to add the equation of the driver as the last one.
         size: unit of length that makes the equations dimensionless, m.
     """
@@ -102,7 +100,7 @@ class PairEquations:
         return forces
 
 
-def columns_by_link(linkage: Linkage, parts: Mapping[str, tuple[Vector, Real]]) -> Real:
+def arrange_columns(linkage: Linkage, parts: Mapping[str, tuple[Vector, Real]]) -> Real:
     """Arrange a vector and a number for each moving link like the columns x, y, angle of the Jacobian matrix."""
     columns = [column for at, around in map(parts.__getitem__, linkage.moving) for column in (at.real, at.imag, around)]
     return np.stack(columns, axis=-1)
@@ -125,7 +123,7 @@ class LinkageClosure(Protocol):
     def matrix(self, X: Real, q: Real) -> Real:
         """Return the Jacobian matrix, (positions, unknowns, unknowns)."""
 
-    def sketched(self, poses: dict[str, Pose], q: Real) -> Real:
+    def coordinates_from_poses(self, poses: dict[str, Pose], q: Real) -> Real:
         """Return the coordinates X that correspond to given poses of the links."""
 
 
@@ -172,7 +170,7 @@ class TracedCoordinates:
     X: Real
     cycle: float | None
 
-    def near(self, q: Real) -> Real:
+    def find_nearest(self, q: Real) -> Real:
         """Return the coordinates X of the node nearest to each driver coordinate."""
         within = q if self.cycle is None else self.q[0] + np.mod(q - self.q[0], self.cycle)
         right = np.clip(np.searchsorted(self.q, within), 1, len(self.q) - 1)
@@ -181,16 +179,13 @@ class TracedCoordinates:
 
 
 def trace_coordinates(case: Case, closure: LinkageClosure) -> TracedCoordinates:
-    """Trace the coordinates X from the sketch in both directions, as far as the linkage moves.
-
-    A crank is traced by half a turn in each direction.
-    """
+    """Trace the coordinates X from the sketch in both directions: a crank by half a turn, others to their limits."""
     at = case.linkage.sketch.at
     sketch_q = np.array([at])
     poses = dict(compute_motion(case.linkage, case.kernels, sketch_q, case.law).poses)
     turns = case.linkage.driver.kind == "turn"
     reach = np.pi if turns else case.size
-    q, X = [at], [close_positions(closure, closure.sketched(poses, sketch_q), sketch_q, 0.0)[0]]
+    q, X = [at], [close_positions(closure, closure.coordinates_from_poses(poses, sketch_q), sketch_q, 0.0)[0]]
     ways = [_trace_one_way(closure, X[0], at, sense * reach / (TRACED_POSITIONS // 2)) for sense in (-1, 1)]
     whole = turns and all(len(trace) == TRACED_POSITIONS // 2 for trace in ways)
     q = [*(place for place, _ in reversed(ways[0])), at, *(place for place, _ in ways[1])]
@@ -232,7 +227,7 @@ class TreeBranch:
 
     @property
     def runs(self) -> bool:
-        """True if `own` is the sliding link of a prismatic pair; False if it carries the guide or the pair is revolute."""
+        """True if `own` is the sliding link of a prismatic pair; False if it carries the guide or rotates."""
         return self.pair.slide is not None and self.pair.slide.runner == self.own
 
 
@@ -268,18 +263,18 @@ class LoopEquations:
         return PairEquations(self.case.linkage, self.cut, size=self.case.size)
 
     @cached_property
-    def given(self) -> int:
+    def driver_index(self) -> int:
         """Index of the driver coordinate among the joint coordinates."""
         pair = self.case.structure.driving_pair(self.case.linkage.driver)
         return next(k for k, branch in enumerate(self.tree) if branch.pair == pair)
 
     @cached_property
-    def free(self) -> list[int]:
+    def unknowns(self) -> list[int]:
         """Indices of the unknown joint coordinates."""
-        return [k for k in range(len(self.tree)) if k != self.given]
+        return [k for k in range(len(self.tree)) if k != self.driver_index]
 
     @cached_property
-    def paths(self) -> Mapping[str, frozenset[int]]:
+    def coordinates_of(self) -> Mapping[str, frozenset[int]]:
         """Indices of the joint coordinates on which the pose of each link depends, by link."""
         coordinates_of: dict[str, frozenset[int]] = {FRAME: frozenset()}
         for k, branch in enumerate(self.tree):
@@ -288,16 +283,16 @@ class LoopEquations:
 
     # positions
 
-    def all(self, X: Real, q: Real) -> list[Real]:
+    def insert_driver(self, X: Real, q: Real) -> list[Real]:
         """Return all joint coordinates in the order of the tree: the unknowns X and the driver coordinate q."""
         columns = list(np.moveaxis(X, -1, 0))
-        columns.insert(self.given, q)
+        columns.insert(self.driver_index, q)
         return columns
 
     def poses(self, X: Real, q: Real) -> dict[str, Pose]:
         local = self.case.linkage.local
         poses = {FRAME: frame_state(q)[0]}
-        for branch, s in zip(self.tree, self.all(X, q), strict=True):
+        for branch, s in zip(self.tree, self.insert_driver(X, q), strict=True):
             before, pair, slide = poses[branch.before], branch.pair, branch.pair.slide
             if slide is None:
                 unwrapped = before.turned + s
@@ -314,9 +309,9 @@ class LoopEquations:
             poses[branch.own] = Pose(x, z, unwrapped)
         return poses
 
-    def sketched(self, poses: dict[str, Pose], q: Real) -> Real:
+    def coordinates_from_poses(self, poses: dict[str, Pose], q: Real) -> Real:
         columns = []
-        for k in self.free:
+        for k in self.unknowns:
             branch = self.tree[k]
             slide = branch.pair.slide
             if slide is None:
@@ -333,7 +328,7 @@ class LoopEquations:
 
     def matrix(self, X: Real, q: Real) -> Real:
         poses = self.poses(X, q)
-        return (self.rows.matrix(poses) @ self.transformation(poses))[..., self.free]
+        return (self.rows.matrix(poses) @ self.transformation(poses))[..., self.unknowns]
 
     def transformation(self, poses: Poses) -> Real:
         """Return the derivatives of x, y and angle of the links with respect to all joint coordinates.
@@ -344,31 +339,30 @@ class LoopEquations:
         for k, branch in enumerate(self.tree):
             slide = branch.pair.slide
             for n, link in enumerate(self.case.linkage.moving):
-                if k not in self.paths[link]:
+                if k not in self.coordinates_of[link]:
                     continue
                 if slide is None:
-                    moved = 1j * (poses[link].x - self._place(branch.pair, branch.own, poses))
+                    moved = 1j * (poses[link].x - self._joint_position(branch.pair, branch.own, poses))
                     R[:, 3 * n + 2, k] = 1.0
                 else:
                     moved = GuideGeometry.at(slide, poses).u * (1 if branch.runs else -1)
                 R[:, 3 * n, k], R[:, 3 * n + 1, k] = moved.real, moved.imag
         return R
 
-    def _place(self, pair: Pair, link: str, poses: Poses) -> Vector:
+    def _joint_position(self, pair: Pair, link: str, poses: Poses) -> Vector:
         return poses[link].at(self.case.linkage.local(link, pair.point))
 
-    def states(self, poses: Poses, speeds: list[Real], bends: list[Real]) -> tuple[dict[str, Rate], dict[str, Accel]]:
-        """Return velocities and accelerations of all links from the derivatives of the joint coordinates.
-
-        speeds, bends: first and second derivatives.
-        """
+    def link_motion(
+        self, poses: Poses, speeds: list[Real], bends: list[Real]
+    ) -> tuple[dict[str, Rate], dict[str, Accel]]:
+        """Return velocities and accelerations of all links from first and second derivatives of the coordinates."""
         _, rest, still = frame_state(poses[FRAME].x)
         first, second = {FRAME: rest}, {FRAME: still}
         for branch, s1, s2 in zip(self.tree, speeds, bends, strict=True):
             rate, accel, before = first[branch.before], second[branch.before], poses[branch.before]
             own, slide = poses[branch.own], branch.pair.slide
             if slide is None:
-                place = self._place(branch.pair, branch.own, poses)
+                place = self._joint_position(branch.pair, branch.own, poses)
                 w, e = rate.w + s1, accel.e + s2
             else:
                 place = poses[slide.runner].at(slide.at)
@@ -386,7 +380,7 @@ class LoopEquations:
 
     # forces
 
-    def forces(self, poses: Poses, J: Real, Q: Real, on: Mapping[str, Wrench]) -> tuple[dict[str, Vector], Real]:
+    def solve_forces(self, poses: Poses, J: Real, Q: Real, on: Mapping[str, Wrench]) -> tuple[dict[str, Vector], Real]:
         """Compute the reactions, from the cut pairs to the root of the tree, and the balancing moment.
 
         Args:
@@ -398,8 +392,8 @@ class LoopEquations:
         Returns:
             Forces (N) on the second link of each pair, and the balancing moment (N m) or force (N) of the driver.
         """
-        cut = solve(np.swapaxes(J[..., self.free], -1, -2), -Q[..., self.free])
-        balancing = -(Q[:, self.given] + np.einsum("nr,nr->n", J[..., self.given], cut))
+        cut = solve(np.swapaxes(J[..., self.unknowns], -1, -2), -Q[..., self.unknowns])
+        balancing = -(Q[:, self.driver_index] + np.einsum("nr,nr->n", J[..., self.driver_index], cut))
         borne = {link: wrench.force for link, wrench in on.items()}
         reactions = self.rows.reactions(poses, cut)
         for pair in self.cut:
@@ -413,35 +407,32 @@ class LoopEquations:
 
 
 @lru_cache(maxsize=8)
-def _traced_loops(case: Case) -> tuple[LoopEquations, TracedCoordinates]:
+def _trace_loops(case: Case) -> tuple[LoopEquations, TracedCoordinates]:
     """Return the loop equations of a linkage and their traced coordinates, computed once for all tolerances."""
     loops = LoopEquations(case)
     return loops, trace_coordinates(case, loops)
 
 
 def prepare_loops(tolerance: float, case: Case) -> Callable[[Real], MethodAnswers]:
-    """Prepare Newton's method on loop closure.
-
-    tolerance: largest gap of a loop, as a fraction of the linkage size or in rad.
-    """
-    loops, nodes = _traced_loops(case)
+    """Prepare Newton's method on loop closure; tolerance: gap of a loop in rad or as a fraction of the size."""
+    loops, nodes = _trace_loops(case)
 
     def at(q: Real) -> MethodAnswers:
-        poses = loops.poses(close_positions(loops, nodes.near(q), q, tolerance), q)
+        poses = loops.poses(close_positions(loops, nodes.find_nearest(q), q, tolerance), q)
         links, R = loops.rows.matrix(poses), loops.transformation(poses)
         J = links @ R
-        free, driver_column = J[..., loops.free], J[..., loops.given]
+        free, driver_column = J[..., loops.unknowns], J[..., loops.driver_index]
         still = np.zeros(len(q))
-        speeds = loops.all(solve(free, -driver_column), still + 1)
-        first, bent = loops.states(poses, speeds, [still] * len(speeds))
-        accels = columns_by_link(case.linkage, {name: (accel.a, accel.e) for name, accel in bent.items()})
+        speeds = loops.insert_driver(solve(free, -driver_column), still + 1)
+        first, bent = loops.link_motion(poses, speeds, [still] * len(speeds))
+        accels = arrange_columns(case.linkage, {name: (accel.a, accel.e) for name, accel in bent.items()})
         bends = np.einsum("nrc,nc->nr", links, accels) + loops.rows.velocity_terms(poses, first)
-        first, second = loops.states(poses, speeds, loops.all(solve(free, -bends), still))
+        first, second = loops.link_motion(poses, speeds, loops.insert_driver(solve(free, -bends), still))
         motion = case.motion(q, poses, first, second)
         on = case.wrenches(motion)
-        loads = columns_by_link(case.linkage, {name: (wrench.force, wrench.moment) for name, wrench in on.items()})
-        forces, balancing = loops.forces(poses, J, np.einsum("nck,nc->nk", R, loads), on)
-        return answers_of_motion(case, motion, forces, balancing)
+        loads = arrange_columns(case.linkage, {name: (wrench.force, wrench.moment) for name, wrench in on.items()})
+        forces, balancing = loops.solve_forces(poses, J, np.einsum("nck,nc->nk", R, loads), on)
+        return build_answers(case, motion, forces, balancing)
 
     return at
 
@@ -471,8 +462,8 @@ class MultibodyEquations:
             poses[name] = Pose(X[:, k] + 1j * X[:, k + 1], unit(X[:, k + 2]), X[:, k + 2])
         return poses
 
-    def sketched(self, poses: dict[str, Pose], q: Real) -> Real:
-        return columns_by_link(self.case.linkage, {name: (poses[name].x, poses[name].turned) for name in self.first})
+    def coordinates_from_poses(self, poses: dict[str, Pose], q: Real) -> Real:
+        return arrange_columns(self.case.linkage, {name: (poses[name].x, poses[name].turned) for name in self.first})
 
     def residuals(self, X: Real, q: Real) -> Real:
         return self.rows.residuals(self.poses(X), drives_at(self.case.linkage, q))
@@ -482,15 +473,12 @@ class MultibodyEquations:
 
 
 def prepare_multibody(case: Case) -> Callable[[Real], MethodAnswers]:
-    """Prepare the multibody method: one linear system for velocities, accelerations and forces each.
-
-    The matrix is the Jacobian J; for the forces it is its transpose.
-    """
+    """Prepare the multibody method: a linear system with the Jacobian matrix J for each order, J^T for forces."""
     body = MultibodyEquations(case)
     nodes = trace_coordinates(case, body)
 
     def at(q: Real) -> MethodAnswers:
-        X = close_positions(body, nodes.near(q), q, TOLERANCE)
+        X = close_positions(body, nodes.find_nearest(q), q, TOLERANCE)
         J, poses = body.matrix(X, q), body.poses(X)
         asked = np.zeros_like(X)
         asked[:, -1] = 1.0
@@ -504,7 +492,7 @@ def prepare_multibody(case: Case) -> Callable[[Real], MethodAnswers]:
             second[name] = Accel(A[:, k] + 1j * A[:, k + 1], A[:, k + 2])
         motion = case.motion(q, poses, first, second)
         on = {name: (wrench.force, wrench.moment) for name, wrench in case.wrenches(motion).items()}
-        multipliers = solve(np.swapaxes(J, -1, -2), -columns_by_link(case.linkage, on))
-        return answers_of_motion(case, motion, body.rows.reactions(poses, multipliers), multipliers[:, -1])
+        multipliers = solve(np.swapaxes(J, -1, -2), -arrange_columns(case.linkage, on))
+        return build_answers(case, motion, body.rows.reactions(poses, multipliers), multipliers[:, -1])
 
     return at

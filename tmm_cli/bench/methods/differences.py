@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tmm_cli.bench.methods.case import Case, MethodAnswers, answers_of_plan
+from tmm_cli.bench.methods.case import Case, MethodAnswers, build_answers_from_forces
 from tmm_cli.mechanics.forces import solve_reactions
 from tmm_cli.mechanics.groups import Accel, Rate
 from tmm_cli.mechanics.kinematics import compute_motion
@@ -38,6 +38,6 @@ def prepare_differences(step: float, case: Case) -> Callable[[Real], MethodAnswe
         motion = replace(
             case.motion(q, middle.poses, first, second), kernels=case.kernels, placements=middle.placements
         )
-        return answers_of_plan(case, motion, solve_reactions(motion, case.structure, case.loads(motion)))
+        return build_answers_from_forces(case, motion, solve_reactions(motion, case.structure, case.loads(motion)))
 
     return answer

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from tmm_cli.batch import Batch, prepare_batch as batch_of
-from tmm_cli.bench.methods.case import Case, MethodAnswers, MethodUnable, answers_of_plan
+from tmm_cli.bench.methods.case import Case, MethodAnswers, UnsupportedLinkageError, build_answers_from_forces
 from tmm_cli.mechanics.accuracy import as_double_doubles
 from tmm_cli.mechanics.forces import Reactions, solve_reactions
 from tmm_cli.mechanics.groups import GroupSolver, NewtonSolver, WrappedSolver
@@ -92,7 +92,7 @@ def _prepare_precision(case: Case, real: Callable[[Any], Any]) -> Callable[[Real
     def at(q: Real) -> MethodAnswers:
         motion = compute_motion(case.linkage, case.kernels, real(q), case.law)
         motion = replace(motion, rate=real(motion.rate))  # otherwise its square would be rounded to float64
-        return answers_of_plan(case, motion, solve_reactions(motion, case.structure, case.loads(motion)))
+        return build_answers_from_forces(case, motion, solve_reactions(motion, case.structure, case.loads(motion)))
 
     return at
 
@@ -124,7 +124,7 @@ def prepare_traced(case: Case) -> Callable[[Real], MethodAnswers]:
     """
     played = make_batch(case)
     if played.program is None:
-        raise MethodUnable("cam laws, friction and redundant constraints cannot be traced")
+        raise UnsupportedLinkageError("cam laws, friction and redundant constraints cannot be traced")
     kinds = ("positions", "velocities", "accelerations", "reactions")
     names = {kind: [name for name in played.program.outputs if name.startswith(f"{kind}.")] for kind in kinds}
 

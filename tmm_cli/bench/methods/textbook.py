@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_cli.bench.methods.case import Case, MethodAnswers, MethodUnable
+from tmm_cli.bench.methods.case import Case, MethodAnswers, UnsupportedLinkageError
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import Real, cross, dot, unit
 
@@ -36,7 +36,7 @@ class TextbookFourBar:
     c: float
     w: float
 
-    def cosines(self, q: Real, sign: int) -> tuple[Real, Real]:
+    def angles_by_cosines(self, q: Real, sign: int) -> tuple[Real, Real]:
         """Return the angles (rad) of coupler and rocker by the law of cosines; sign 1: B to the left of AD."""
         base = self.D - self.O - self.a * unit(q)
         f = np.abs(base)
@@ -45,7 +45,7 @@ class TextbookFourBar:
         along = np.angle(base)
         return along + sign * at_a, along + np.pi - sign * at_d
 
-    def freudenstein(self, q: Real, sign: int) -> tuple[Real, Real]:
+    def angles_by_freudenstein(self, q: Real, sign: int) -> tuple[Real, Real]:
         """Return the angles (rad) of coupler and rocker by Freudenstein's equation; sign 1: B to the left of AD.
 
         The constants K1 to K5 give two quadratic equations in the tangents of half the angles.
@@ -59,7 +59,7 @@ class TextbookFourBar:
         coupler = _half_angle(t - k1 + k4 * t + k5, middle, k1 + (k4 - 1) * t + k5, -sign)
         return along + coupler, along + rocker
 
-    def solved(self, q: Real, angles: tuple[Real, Real]) -> MethodAnswers:
+    def solve_points(self, q: Real, angles: tuple[Real, Real]) -> MethodAnswers:
         """Return positions, velocities and accelerations of A and B from the angles of coupler and rocker, rad."""
         a, b, c, w = self.a, self.b, self.c, self.w
         three, four = angles
@@ -94,13 +94,13 @@ class TextbookCrankSlider:
     along: float
     w: float
 
-    def cosines(self, q: Real, sign: int) -> tuple[Real, Real]:
+    def angles_by_cosines(self, q: Real, sign: int) -> tuple[Real, Real]:
         """Return the angle of the rod (rad) by an inverse sine, twice to have the same form as for a four-bar."""
         lean = np.arcsin(-self.a * np.sin(q - self.along) / self.b)
         rod = self.along + (lean if sign > 0 else np.pi - lean)
         return rod, rod
 
-    def freudenstein(self, q: Real, sign: int) -> tuple[Real, Real]:
+    def angles_by_freudenstein(self, q: Real, sign: int) -> tuple[Real, Real]:
         """Return the angle of the rod (rad) by the tangent of half the angle, twice.
 
         The tangent t follows from s t² - 2 t + s = 0, where s is the sine of the angle.
@@ -109,7 +109,7 @@ class TextbookCrankSlider:
         rod = self.along + _half_angle(s, -2 + 0 * s, s, -sign)
         return rod, rod
 
-    def solved(self, q: Real, angles: tuple[Real, Real]) -> MethodAnswers:
+    def solve_points(self, q: Real, angles: tuple[Real, Real]) -> MethodAnswers:
         """Return positions, velocities and accelerations of A and B; angles[0]: angle of the rod, rad."""
         a, b, w = self.a, self.b, self.w
         crank, rod = a * unit(q), b * unit(angles[0])
@@ -129,7 +129,7 @@ def _half_angle(a: Real, b: Real, c: Real, sign: int) -> Real:
     return angle
 
 
-def recognise(case: Case) -> TextbookFourBar | TextbookCrankSlider:
+def recognise_mechanism(case: Case) -> TextbookFourBar | TextbookCrankSlider:
     """Return the mechanism of a case if the textbook has formulas for it.
 
     Raises:
@@ -153,15 +153,15 @@ def recognise(case: Case) -> TextbookFourBar | TextbookCrankSlider:
             else:
                 D = next(h.point for h in linkage.hinges if {FRAME, b} <= set(h.links))
                 return TextbookFourBar(pivot, local(FRAME, D), crank, rod, abs(local(b, last) - local(b, D)), w)
-    raise MethodUnable("the textbook has formulas for a four-bar and a central crank-slider only")
+    raise UnsupportedLinkageError("the textbook has formulas for a four-bar and a central crank-slider only")
 
 
 def _prepare(
     case: Case, choose: Callable[[TextbookFourBar | TextbookCrankSlider], Angles]
 ) -> Callable[[Real], MethodAnswers]:
-    mechanism = recognise(case)
+    mechanism = recognise_mechanism(case)
     angles, sign = choose(mechanism), _sketched_side(mechanism, case.linkage.sketch.points)
-    return lambda q: mechanism.solved(q, angles(q, sign))
+    return lambda q: mechanism.solve_points(q, angles(q, sign))
 
 
 def _sketched_side(mechanism: TextbookFourBar | TextbookCrankSlider, points: Mapping[str, complex]) -> int:
@@ -175,11 +175,11 @@ def _sketched_side(mechanism: TextbookFourBar | TextbookCrankSlider, points: Map
     return 1 if cross(mechanism.D - points["A"], rod) > 0 else -1
 
 
-def cosines(case: Case) -> Callable[[Real], MethodAnswers]:
+def prepare_cosines(case: Case) -> Callable[[Real], MethodAnswers]:
     """Prepare the textbook method by the law of cosines."""
-    return _prepare(case, lambda mechanism: mechanism.cosines)
+    return _prepare(case, lambda mechanism: mechanism.angles_by_cosines)
 
 
-def freudenstein(case: Case) -> Callable[[Real], MethodAnswers]:
+def prepare_freudenstein(case: Case) -> Callable[[Real], MethodAnswers]:
     """Prepare the textbook method by Freudenstein's equation."""
-    return _prepare(case, lambda mechanism: mechanism.freudenstein)
+    return _prepare(case, lambda mechanism: mechanism.angles_by_freudenstein)

@@ -10,7 +10,7 @@ from tmm_cli.bench.methods.case import Method
 RIVALS = ("pylinkage", "kinepy")
 
 
-def installed() -> tuple[tuple[Method, ...], tuple[str, ...]]:
+def list_installed() -> tuple[tuple[Method, ...], tuple[str, ...]]:
     """Return the methods of the other programs that are installed, and the names of those that are not."""
     there = [name for name in RIVALS if find_spec(name) is not None]
     methods = [import_module(f"tmm_cli.bench.rivals.{name}_rival").METHOD for name in there]

@@ -12,20 +12,20 @@ from pylinkage.dyads import RRPDyad, RRRDyad
 from pylinkage.simulation import Linkage
 from pylinkage.solver import linkage_to_solver_data, simulate_with_kinematics
 
-from tmm_cli.bench.methods.case import Case, Method, MethodAnswers, MethodUnable
+from tmm_cli.bench.methods.case import Case, Method, MethodAnswers, UnsupportedLinkageError
 from tmm_cli.mechanics.kinematics import compute_motion
 from tmm_cli.mechanics.linkage import FRAME
 from tmm_cli.mechanics.numerics import Real, unit
 from tmm_cli.mechanics.structure import Group, Pair
 
 
-def prepare(case: Case) -> Callable[[Real], MethodAnswers]:
+def prepare_pylinkage(case: Case) -> Callable[[Real], MethodAnswers]:
     """Prepare the computation of a case by pylinkage at equally spaced driver coordinates.
 
     Raises:
         MethodUnable: pylinkage cannot compute this linkage.
     """
-    simulated, names = _simulated(case)
+    simulated, names = _build_simulation(case)
     own = [(k, name) for k, name in enumerate(names) if name in case.linkage.moving_points]
 
     def at(q: Real) -> MethodAnswers:
@@ -35,16 +35,16 @@ def prepare(case: Case) -> Callable[[Real], MethodAnswers]:
     return at
 
 
-def alone(case: Case) -> Callable[[Real], object]:
+def prepare_pylinkage_alone(case: Case) -> Callable[[Real], object]:
     """Prepare pylinkage's own computation without conversion of its results.
 
     Raises:
         MethodUnable: pylinkage cannot compute this linkage.
     """
-    return _simulated(case)[0]
+    return _build_simulation(case)[0]
 
 
-def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list[str]]:
+def _build_simulation(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list[str]]:
     """Build the pylinkage model of a case.
 
     Its fastest documented solver is used: compiled by numba, called directly with arrays that are prepared once.
@@ -55,7 +55,7 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
     """
     driver = case.linkage.driver
     if driver.kind != "turn" or case.linkage.others:
-        raise MethodUnable("the driver must be a single crank")
+        raise UnsupportedLinkageError("the driver must be a single crank")
     start = compute_motion(case.linkage, case.kernels, np.array([case.start]), case.law)
     coordinates = {point: complex(start.named(point).x[0]) for point in case.linkage.moving_points}
     parts: dict[str, Any] = {}
@@ -64,12 +64,12 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
     arm = case.linkage.links[driver.link].points
     ends = [point for point in arm if point != driver.joint]
     if len(ends) != 1:
-        raise MethodUnable("the crank must have one end point")
+        raise UnsupportedLinkageError("the crank must have one end point")
     radius = abs(arm[ends[0]] - arm[driver.joint])
     crank = parts[ends[0]] = Crank(parts[driver.joint], radius, 0.0, case.start, name=ends[0])
     guides: list[Any] = []
     for group in case.structure.groups:
-        _add(group, case, parts, guides, coordinates)
+        _add_group(group, case, parts, guides, coordinates)
     linkage = Linkage([*parts.values(), *guides])
     names = [component.name for component in linkage.components]
     joints: dict[tuple[float, float], tuple[Any, tuple[Any, ...]]] = {}
@@ -106,18 +106,22 @@ def _simulated(case: Case) -> tuple[Callable[[Real], tuple[Any, Any, Any]], list
     return at, names
 
 
-def _add(group: Group, case: Case, parts: dict[str, Any], guides: list[Any], points: Mapping[str, complex]) -> None:
+def _add_group(
+    group: Group, case: Case, parts: dict[str, Any], guides: list[Any], points: Mapping[str, complex]
+) -> None:
     """Add the internal hinge of a group to the pylinkage model."""
     local = case.linkage.local
     if group.type not in ("RRR", "RRP"):
-        raise MethodUnable(f"the program does not support group {group.title} of type {group.type or 'of class III'}")
+        raise UnsupportedLinkageError(
+            f"the program does not support group {group.title} of type {group.type or 'of class III'}"
+        )
     point = group.inner[0].point
     x, y = points[point].real, points[point].imag
 
     def reach(pair: Pair) -> tuple[Any, float]:
         own = pair.i if pair.i in group.links else pair.j
         if pair.point not in parts:
-            raise MethodUnable(f"{group.title} depends on a point that is not an earlier joint")
+            raise UnsupportedLinkageError(f"{group.title} depends on a point that is not an earlier joint")
         return parts[pair.point], float(abs(local(own, pair.point) - local(own, point)))
 
     turning = [pair for pair in group.outer if pair.kind == "R"]
@@ -127,7 +131,7 @@ def _add(group: Group, case: Case, parts: dict[str, Any], guides: list[Any], poi
         return
     slide = next(pair.slide for pair in group.outer if pair.slide is not None)
     if slide.carrier != FRAME or slide.at != local(slide.runner, point):
-        raise MethodUnable("guides must pass through hinges")
+        raise UnsupportedLinkageError("guides must pass through hinges")
     one, r = reach(turning[0])
     line = [slide.through, slide.through + unit(slide.direction)]
     ends = [Ground(p.real, p.imag, name=f"guide {slide.name} {k}") for k, p in enumerate(line)]
@@ -135,4 +139,4 @@ def _add(group: Group, case: Case, parts: dict[str, Any], guides: list[Any], poi
     parts[point] = RRPDyad(one, *ends, r, x, y, name=point)
 
 
-METHOD = Method("pylinkage", "pylinkage", prepare, alone=alone)
+METHOD = Method("pylinkage", "pylinkage", prepare_pylinkage, alone=prepare_pylinkage_alone)
