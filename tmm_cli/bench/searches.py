@@ -394,7 +394,7 @@ def search_problem_text(name: str) -> str:
 
 @cache
 def load_best_known() -> dict[str, Any]:
-    """Return the best known solution of SEARCHED, and the long runs that found it (written by tests/write_synthesis_best.py)."""
+    """Return the best known solution of SEARCHED and the runs that found it (tests/write_synthesis_best.py)."""
     source = (files("tmm_cli.bench") / "data" / "synthesis" / "best.json").read_text(encoding="utf-8")
     best: dict[str, Any] = json.loads(source)
     return best
